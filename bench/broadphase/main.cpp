@@ -1,0 +1,165 @@
+// Time of the broad phase over its data sets: bounds in the space to pairs in the space, everything between
+// included.
+//
+//   scree_bench_broadphase [--set A,B,C] [--n 1000000,16000000] [--space host|cuda] [--levels L]
+//                          [--method hierarchical_grid|uniform_grid|brute_force] [--check METHOD]
+//
+// Two calls to warm up, then the median of nine. --check compares count and checksum of the pairs with those
+// of another method; exit status 1 if they differ.
+#include "bench/broadphase/data_sets.hpp"
+#include "broadphase/broad_phase.hpp"
+#include "core/error.hpp"
+#include "core/parallel.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <map>
+#include <sstream>
+#include <string>
+#include <vector>
+
+namespace scree::bench {
+
+namespace {
+
+constexpr int warm_ups = 2;
+constexpr int repeats = 9;
+
+const std::map<std::string, BroadPhaseMethod> methods = {
+    {"hierarchical_grid", BroadPhaseMethod::hierarchical_grid},
+    {"uniform_grid", BroadPhaseMethod::uniform_grid},
+    {"brute_force", BroadPhaseMethod::brute_force}};
+
+using Options = std::map<std::string, std::string>;
+
+Options parse(int argc, char** argv) {
+  Options options = {{"--set", "A,B,C"},      {"--n", "1000000"}, {"--method", "hierarchical_grid"},
+                     {"--space", Host::name}, {"--levels", "0"},  {"--check", ""}};
+  for (int k = 1; k < argc; k += 2) {
+    const auto option = options.find(argv[k]);
+    if (option == options.end() || k + 1 == argc) {
+      throw InputError(std::string(argv[k]) + ": not an option, or without a value");
+    }
+    option->second = argv[k + 1];
+  }
+  return options;
+}
+
+std::vector<std::string> split(const std::string& list) {
+  std::vector<std::string> items;
+  std::istringstream text(list);
+  for (std::string item; std::getline(text, item, ',');) items.push_back(item);
+  return items;
+}
+
+BroadPhaseMethod method_of(const std::string& name) {
+  const auto found = methods.find(name);
+  if (found == methods.end()) throw InputError("method " + name + ": unknown");
+  return found->second;
+}
+
+/// A 64-bit mix of each pair (splitmix64; Steele, Lea, Flood 2014); their sum does not depend on the order.
+struct MixPair {
+  ConstView<Pair> pairs;
+  SCREE_HD std::uint64_t operator()(std::int64_t k) const {
+    std::uint64_t z = static_cast<std::uint64_t>(pairs[k].i) << 32 | static_cast<std::uint32_t>(pairs[k].j);
+    z = (z ^ (z >> 30)) * 0xBF58476D1CE4E5B9ull;
+    z = (z ^ (z >> 27)) * 0x94D049BB133111EBull;
+    return z ^ (z >> 31);
+  }
+};
+
+template <class Space>
+std::uint64_t checksum(ConstView<Pair> pairs) {
+  return parallel::reduce<std::uint64_t, Space>("bench.checksum", pairs.size(), MixPair{pairs},
+                                                std::uint64_t{0}, thrust::plus<std::uint64_t>());
+}
+
+/// Sorted times of find() in ms.
+template <class Space>
+std::vector<double> measure(BroadPhase<Space>& broad_phase, ConstView<Aabb> bounds,
+                            ConstView<Mobility> mobility) {
+  using Clock = std::chrono::steady_clock;
+  std::vector<double> times;
+  for (int k = 0; k < warm_ups + repeats; ++k) {
+    Space::synchronize();
+    const Clock::time_point start = Clock::now();
+    broad_phase.find(bounds, mobility);
+    Space::synchronize();
+    if (k >= warm_ups)
+      times.push_back(std::chrono::duration<double, std::milli>(Clock::now() - start).count());
+  }
+  std::sort(times.begin(), times.end());
+  return times;
+}
+
+/// Prints a row of the table; false if the check failed.
+template <class Space>
+bool run(const std::string& set, std::int64_t n, const Options& options) {
+  const BroadPhaseSettings settings = {.method = method_of(options.at("--method")),
+                                       .levels = std::stoi(options.at("--levels"))};
+  Array<Aabb, Space> bounds;
+  Array<Mobility, Space> mobility;
+  copy(bounds, make_data_set(set, n));
+  copy(mobility, std::vector<Mobility>(static_cast<std::size_t>(n), Mobility::free));
+  const auto broad_phase = make_broad_phase<Space>(settings);
+  const std::vector<double> times = measure<Space>(*broad_phase, bounds.view(), mobility.view());
+  const BroadPhaseStats stats = broad_phase->stats();
+  std::printf("%-4s %10lld %-18s %-5s %6d %12lld %7.2f %10.3f %10.3f %10.3f %10.2f", set.c_str(),
+              static_cast<long long>(n), options.at("--method").c_str(), Space::name, stats.levels,
+              static_cast<long long>(stats.pairs),
+              static_cast<double>(stats.candidates) / static_cast<double>(n), times[repeats / 2],
+              times.front(), times.back(), 1e6 * times[repeats / 2] / static_cast<double>(n));
+  bool agrees = true;
+  if (!options.at("--check").empty()) {
+    const auto other = make_broad_phase<Space>({.method = method_of(options.at("--check"))});
+    const ConstView<Pair> expected = other->find(bounds.view(), mobility.view());
+    const ConstView<Pair> actual = broad_phase->find(bounds.view(), mobility.view());
+    agrees = expected.size() == actual.size() && checksum<Space>(expected) == checksum<Space>(actual);
+    std::printf("  %s %s", agrees ? "agrees with" : "DIFFERS from", options.at("--check").c_str());
+  }
+  std::printf("\n");
+  return agrees;
+}
+
+bool run_in_space(const std::string& set, std::int64_t n, const Options& options) {
+  bool known = false;
+  bool agrees = true;
+#define SCREE_TRY(Space)                      \
+  if (options.at("--space") == Space::name) { \
+    known = true;                             \
+    agrees = run<Space>(set, n, options);     \
+  }
+  SCREE_FOR_EACH_SPACE(SCREE_TRY)
+#undef SCREE_TRY
+  if (!known) throw InputError("space " + options.at("--space") + ": not in this build");
+  return agrees;
+}
+
+int run_all(int argc, char** argv) {
+  const Options options = parse(argc, argv);
+  std::printf(
+      "set           n method             space levels        pairs tests/n  median ms     min ms     max ms "
+      " ns/object\n");
+  bool agrees = true;
+  for (const std::string& set : split(options.at("--set"))) {
+    for (const std::string& n : split(options.at("--n"))) {
+      agrees = run_in_space(set, std::stoll(n), options) && agrees;
+    }
+  }
+  return agrees ? 0 : 1;
+}
+
+}  // namespace
+
+}  // namespace scree::bench
+
+int main(int argc, char** argv) {
+  try {
+    return scree::bench::run_all(argc, argv);
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "scree_bench_broadphase: %s\n", error.what());
+    return 2;
+  }
+}

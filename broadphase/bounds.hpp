@@ -1,0 +1,64 @@
+// From the double state of a body to the float box that the broad phase sees.
+#pragma once
+
+#include "broadphase/aabb.hpp"
+#include "core/array.hpp"
+#include "core/bodies.hpp"
+#include "core/math.hpp"
+
+#include <bit>
+#include <cstdint>
+
+namespace scree {
+
+/// The next float under x; x finite or +infinity.
+SCREE_HD inline float next_below(float x) {
+  if (x == 0) return -std::numeric_limits<float>::denorm_min();
+  const auto bits = std::bit_cast<std::uint32_t>(x);
+  return std::bit_cast<float>(x > 0 ? bits - 1 : bits + 1);
+}
+SCREE_HD inline float next_above(float x) { return -next_below(-x); }
+
+/// The largest float that is not over x, and the smallest that is not under it; NaN stays NaN.
+SCREE_HD inline float round_down(double x) {
+  const auto nearest = static_cast<float>(x);
+  return static_cast<double>(nearest) > x ? next_below(nearest) : nearest;
+}
+SCREE_HD inline float round_up(double x) { return -round_down(-x); }
+
+/// What bounds a body.
+struct BodyGeometry {
+  Shape shape;
+  Vec3 position;
+  Quat orientation;
+  Vec3 size;
+};
+
+/// Box of a sphere or box, fat by `margin` on every side, relative to `origin` (m). It holds the box of exact
+/// arithmetic: the rounding of the double formula is added before the result is rounded outward to float.
+/// Planes are absent: the narrow phase tests them against every body.
+SCREE_HD inline Aabb bounds_of(const BodyGeometry& body, double margin, const Vec3& origin) {
+  if (body.shape == Shape::plane) return absent_bounds();
+  Vec3 half = Vec3::Constant(body.size.x());
+  if (body.shape == Shape::box) half = body.orientation.toRotationMatrix().cwiseAbs() * body.size;
+  // About ten roundings, each of 2^-53 of the size or of the distance, and twice that of the quaternion's
+  // norm.
+  constexpr double rounding = 0x1p-48;
+  const double reach = bounding_radius(body.shape, body.size) + margin;
+  Aabb box;
+  for (int a = 0; a < 3; ++a) {
+    const double centre = body.position[a] - origin[a];
+    const double outward = half[a] + margin + rounding * (fabs(centre) + reach);
+    box.lo[a] = round_down(centre - outward);
+    box.hi[a] = round_up(centre + outward);
+  }
+  return box;
+}
+
+/// bounds[i] = bounds_of(body i, margin[i], origin) for every body. Makes no check: find() refuses what is
+/// not finite and names the body.
+template <class Space>
+void compute_bounds(const ConstBodyView& bodies, ConstView<double> margin, const Vec3& origin,
+                    View<Aabb> bounds);
+
+}  // namespace scree

@@ -1,0 +1,121 @@
+// One level of the hierarchical grid: which cell a coordinate is in, and where a cell stands in the table.
+//
+// A table is made of bricks of cells, 4 by 4 rows along x. Where a level's bricks fit they stand side by
+// side, and a row runs through the whole domain (dense); else rows are cut after 16 cells and a brick stands
+// where a hash of its coordinates says (hashed), so that neither far clusters nor a lone outlier cost memory.
+// In a hashed table bricks can share a slot. That costs tests, but no pair is lost or doubled: cells up to
+// three apart on each axis differ in their place inside the brick, so in a search of up to 3x3x3 cells each
+// object stands in at most one cell visited, and an object that overlaps stands in the cell where it belongs.
+#pragma once
+
+#include "broadphase/aabb.hpp"
+
+#include <cmath>
+#include <cstdint>
+
+namespace scree {
+
+/// Cells along y and z of a brick, and along x of a brick in a hashed table.
+inline constexpr std::uint32_t brick_width = 4;
+inline constexpr std::uint32_t brick_row = 16;
+inline constexpr std::uint32_t brick_rows = brick_width * brick_width;
+
+/// Cells are wider than the largest object by this share, so that rounding of cell numbers (2^-52 of at most
+/// farthest_cell, twice) cannot part two objects that overlap by more than one cell.
+inline constexpr double cell_slack = 0x1p-16;
+inline constexpr double farthest_cell = 0x1p29;
+
+/// Cells from lo to hi on each axis, both included; nothing where lo > hi.
+struct CellRange {
+  std::int32_t lo[3];
+  std::int32_t hi[3];
+};
+
+struct GridLevel {
+  float largest;           ///< extent of its objects at most (m)
+  double cell;             ///< width (m), over `largest` by cell_slack
+  double inverse_cell;     ///< 1/m
+  std::int32_t first[3];   ///< absolute number of the first cell in use: cells are counted from it
+  std::int32_t last[3];    ///< number of the last cell in use
+  bool hashed;             ///< else dense
+  std::uint32_t row;       ///< cells in a brick's row
+  std::uint32_t bricks_y;  ///< dense: bricks side by side along y
+  std::uint32_t slots;     ///< bricks in the table; hashed: a power of two
+  std::uint32_t base;      ///< first cell of the level in the table of all levels
+  std::int32_t begin;      ///< its objects in the sorted order: from begin to before end
+  std::int32_t end;
+  std::uint32_t upward;  ///< bit l: its objects search level l, whose cells are wider
+
+  /// Number of the cell that holds a coordinate. Monotone and clamped, so what is at most a cell's width
+  /// apart is at most one number apart.
+  SCREE_HD std::int32_t cell_of(double coordinate, int axis) const {
+    const double number = floor(coordinate * inverse_cell);
+    return static_cast<std::int32_t>(fmax(-farthest_cell, fmin(number, farthest_cell))) - first[axis];
+  }
+
+  /// The cells in use that can hold the centre of an object of this level that overlaps the box.
+  SCREE_HD CellRange reach_of(const Aabb& box) const {
+    CellRange range;
+    for (int a = 0; a < 3; ++a) {
+      const std::int32_t lo = cell_of(static_cast<double>(box.lo[a]) - 0.5 * cell, a);
+      const std::int32_t hi = cell_of(static_cast<double>(box.hi[a]) + 0.5 * cell, a);
+      range.lo[a] = lo > 0 ? lo : 0;
+      range.hi[a] = hi < last[a] ? hi : last[a];
+    }
+    return range;
+  }
+
+  /// Whether the cell of an object of this level is one of the range.
+  SCREE_HD bool stands_in(const Aabb& box, const CellRange& range) const {
+    for (int a = 0; a < 3; ++a) {
+      const std::int32_t number = cell_of(centre_of(box, a), a);
+      if (number < range.lo[a] || number > range.hi[a]) return false;
+    }
+    return true;
+  }
+
+  /// Place in the table of the cell numbered (x, y, z), within 0 to last.
+  SCREE_HD std::uint32_t address(std::int32_t x, std::int32_t y, std::int32_t z) const {
+    const auto ux = static_cast<std::uint32_t>(x);
+    const auto uy = static_cast<std::uint32_t>(y);
+    const auto uz = static_cast<std::uint32_t>(z);
+    const std::uint32_t brick_x = hashed ? ux / brick_row : 0;
+    const std::uint32_t slot = slot_of(brick_x, uy / brick_width, uz / brick_width);
+    const std::uint32_t row_in_brick = uz % brick_width * brick_width + uy % brick_width;
+    return base + (slot * brick_rows + row_in_brick) * row + ux - brick_x * brick_row;
+  }
+
+  /// Number of the last cell, `end` at most, that stands in one run with cell x of the same row.
+  SCREE_HD std::int32_t run_end(std::int32_t x, std::int32_t end_of_range) const {
+    const std::int32_t end_of_row = hashed ? x | static_cast<std::int32_t>(brick_row - 1) : end_of_range;
+    return end_of_row < end_of_range ? end_of_row : end_of_range;
+  }
+
+  SCREE_HD std::uint32_t cells() const { return slots * brick_rows * row; }
+
+ private:
+  // A multiplicative hash of the three numbers, then murmur3's finaliser (Appleby 2011).
+  SCREE_HD std::uint32_t slot_of(std::uint32_t x, std::uint32_t y, std::uint32_t z) const {
+    if (!hashed) return z * bricks_y + y;
+    std::uint32_t h = x * 0x9E3779B1u + y * 0x85EBCA77u + z * 0xC2B2AE3Du;
+    h = (h ^ (h >> 16)) * 0x85EBCA6Bu;
+    h = (h ^ (h >> 13)) * 0xC2B2AE35u;
+    return (h ^ (h >> 16)) & (slots - 1);
+  }
+};
+
+/// The level of an object: the lowest whose cells are large enough. `levels` ends with one that takes all.
+SCREE_HD inline int level_of_extent(const GridLevel* levels, float extent) {
+  int level = 0;
+  while (extent > levels[level].largest) ++level;
+  return level;
+}
+
+/// The level of the k-th object in the sorted order.
+SCREE_HD inline int level_of_rank(const GridLevel* levels, std::int64_t k) {
+  int level = 0;
+  while (k >= levels[level].end) ++level;
+  return level;
+}
+
+}  // namespace scree

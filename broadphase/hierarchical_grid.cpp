@@ -1,0 +1,166 @@
+#include "broadphase/hierarchical_grid.hpp"
+
+#include "broadphase/census.hpp"
+#include "broadphase/grid_plan.hpp"
+#include "broadphase/grid_search.hpp"
+#include "broadphase/pair_list.hpp"
+#include "core/parallel.hpp"
+
+#include <bit>
+#include <vector>
+
+namespace scree {
+
+namespace {
+
+struct AssignCell {
+  ConstView<Aabb> bounds;
+  ConstView<GridLevel> levels;
+  std::uint32_t absent;  ///< key of what stands in no cell: after all cells
+  View<std::uint32_t> key;
+  View<std::int32_t> body;
+  SCREE_HD void operator()(std::int64_t i) const {
+    body[i] = static_cast<std::int32_t>(i);
+    const Aabb box = bounds[i];
+    if (is_absent(box)) {
+      key[i] = absent;
+      return;
+    }
+    const GridLevel& level = levels[level_of_extent(levels.data(), extent_of(box))];
+    key[i] = level.address(level.cell_of(centre_of(box, 0), 0), level.cell_of(centre_of(box, 1), 1),
+                           level.cell_of(centre_of(box, 2), 2));
+  }
+};
+
+struct GatherObject {
+  ConstView<Aabb> bounds;
+  ConstView<Mobility> mobility;
+  ConstView<std::int32_t> body;
+  View<GridObject> objects;
+  SCREE_HD void operator()(std::int64_t k) const {
+    const std::int32_t i = body[k];
+    const Aabb box = bounds[i];
+    objects[k] = {{box.lo[0], box.lo[1], box.lo[2]},
+                  i,
+                  {box.hi[0], box.hi[1], box.hi[2]},
+                  mobility[i] == Mobility::fixed ? 1 : 0};
+  }
+};
+
+/// The last object of each cell's run says where the next cell starts.
+struct EndRun {
+  ConstView<std::uint32_t> key;
+  std::int64_t count;
+  View<std::uint32_t> starts;
+  SCREE_HD void operator()(std::int64_t k) const {
+    if (k + 1 == count || key[k + 1] != key[k]) starts[key[k] + 1] = static_cast<std::uint32_t>(k) + 1;
+  }
+};
+
+struct CountQueryItems {
+  GridView grid;
+  const DescentView* descents;
+  View<std::uint32_t> items;
+  SCREE_HD void operator()(std::int64_t q) const {
+    const Query query = make_query(grid, descents, q);
+    items[q] = static_cast<std::uint32_t>(query.items(grid.levels[query.to]));
+  }
+};
+
+template <class Space>
+class HierarchicalGrid final : public BroadPhase<Space> {
+ public:
+  explicit HierarchicalGrid(int levels) : forced_levels_(levels) {}
+
+  ConstView<Pair> find(ConstView<Aabb> bounds, ConstView<Mobility> mobility) override {
+    stats_ = {};
+    initialize(bounds);
+    if (plan_.levels.empty()) return {};
+    sort();
+    construct(bounds, mobility);
+    return traverse();
+  }
+
+  const BroadPhaseStats& stats() const override { return stats_; }
+
+ private:
+  /// Level and cell of each object.
+  void initialize(ConstView<Aabb> bounds) {
+    const Census census = take_census<Space>(bounds);
+    plan_ = plan_grid(census, count_sizes<Space>(bounds, census), forced_levels_);
+    stats_.levels = static_cast<int>(plan_.levels.size());
+    if (plan_.levels.empty()) return;
+    objects_.resize(census.present);
+    copy(levels_, plan_.levels);
+    key_.resize(bounds.size());
+    body_.resize(bounds.size());
+    parallel::for_each<Space>("broadphase.initialize.cells", bounds.size(),
+                              AssignCell{bounds, levels_.view(), plan_.cells, key_.view(), body_.view()});
+  }
+
+  /// Cell order; the sort is stable, so objects of one cell stay in the order of their numbers.
+  void sort() { parallel::sort_by_key("broadphase.sort", key_, body_, std::bit_width(plan_.cells)); }
+
+  /// Start and end of each cell's run, and the objects themselves in cell order.
+  void construct(ConstView<Aabb> bounds, ConstView<Mobility> mobility) {
+    parallel::for_each<Space>("broadphase.construct.gather", objects_.size(),
+                              GatherObject{bounds, mobility, body_.view(), objects_.view()});
+    starts_.resize(std::int64_t{plan_.cells} + 1);
+    parallel::fill("broadphase.construct.clear", starts_, 0u);
+    parallel::for_each<Space>("broadphase.construct.ends", objects_.size(),
+                              EndRun{key_.view(), objects_.size(), starts_.view()});
+    parallel::running_max("broadphase.construct.starts", starts_);
+  }
+
+  /// Each object against its own level and the others.
+  ConstView<Pair> traverse() {
+    const GridView grid{levels_.data(), stats_.levels, objects_.data(), starts_.data()};
+    return pairs_.collect(stats_, NearSearch{grid, objects_.size()}, wide_search(grid));
+  }
+
+  /// The searches of large objects among small ones, cut into items of like cost.
+  WideSearch wide_search(const GridView& grid) {
+    std::vector<DescentView> descents;
+    std::int64_t queries = 0;
+    for (const Descent& descent : plan_.descents) {
+      const GridLevel& from = plan_.levels[static_cast<std::size_t>(descent.from)];
+      descents.push_back({descent.from, descent.to, queries});
+      queries += from.end - from.begin;
+    }
+    if (queries == 0) return {grid, 0, nullptr, nullptr, 0};
+    copy(descents_, descents);
+    query_items_.resize(queries);
+    parallel::for_each<Space>("broadphase.traverse.queries", queries,
+                              CountQueryItems{grid, descents_.data(), query_items_.view()});
+    const std::int64_t items =
+        parallel::exclusive_scan<Space>("broadphase.traverse.items", query_items_, first_item_);
+    return {grid, items, descents_.data(), first_item_.data(), queries};
+  }
+
+  int forced_levels_;
+  BroadPhaseStats stats_;
+  GridPlan plan_;
+  Array<GridLevel, Space> levels_;
+  Array<std::uint32_t, Space> key_;   ///< cell of each object
+  Array<std::int32_t, Space> body_;   ///< its number
+  Array<GridObject, Space> objects_;  ///< in cell order
+  Array<std::uint32_t, Space> starts_;
+  Array<DescentView, Space> descents_;
+  Array<std::uint32_t, Space> query_items_;
+  Array<std::int64_t, Space> first_item_;
+  PairList<Space> pairs_;
+};
+
+}  // namespace
+
+template <class Space>
+std::unique_ptr<BroadPhase<Space>> make_hierarchical_grid(int levels) {
+  return std::make_unique<HierarchicalGrid<Space>>(levels);
+}
+
+#define SCREE_INSTANTIATE(Space) \
+  template std::unique_ptr<BroadPhase<Space>> make_hierarchical_grid<Space>(int);
+SCREE_FOR_EACH_SPACE(SCREE_INSTANTIATE)
+#undef SCREE_INSTANTIATE
+
+}  // namespace scree

@@ -1,0 +1,13 @@
+// What a scene may say about the broad phase.
+#pragma once
+
+namespace scree {
+
+enum class BroadPhaseMethod { hierarchical_grid, uniform_grid, brute_force };
+
+struct BroadPhaseSettings {
+  BroadPhaseMethod method = BroadPhaseMethod::hierarchical_grid;
+  int levels = 0;  ///< number of grid levels; 0: chosen from the size histogram. Never changes the PCS.
+};
+
+}  // namespace scree

@@ -1,0 +1,152 @@
+#include "broadphase/uniform_grid.hpp"
+
+#include "broadphase/census.hpp"
+#include "broadphase/pair_list.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace scree {
+
+namespace {
+
+/// Cells are numbered from the lowest centre, 2^21 at most on each axis, so that a cell is a 63-bit key in
+/// which the cells of a row follow each other. There is no table: rows are found among the sorted keys.
+struct UniformCells {
+  static constexpr int bits = 21;
+  static constexpr std::int64_t last = (std::int64_t{1} << bits) - 1;
+
+  static constexpr std::uint64_t absent = std::uint64_t{1} << (3 * bits);  ///< key of what stands in no cell
+
+  double origin[3];
+  double width;
+
+  SCREE_HD std::int64_t cell_of(const Aabb& box, int axis) const {
+    const double number = floor((centre_of(box, axis) - origin[axis]) / width);
+    return static_cast<std::int64_t>(fmin(fmax(number, 0.0), static_cast<double>(last)));
+  }
+  SCREE_HD static std::uint64_t key_of(std::int64_t x, std::int64_t y, std::int64_t z) {
+    return static_cast<std::uint64_t>(((z << bits | y) << bits) | x);
+  }
+};
+
+struct KeyOfBox {
+  UniformCells cells;
+  ConstView<Aabb> bounds;
+  View<std::uint64_t> key;
+  View<std::int32_t> body;
+  SCREE_HD void operator()(std::int64_t i) const {
+    const Aabb box = bounds[i];
+    body[i] = static_cast<std::int32_t>(i);
+    key[i] = is_absent(box)
+                 ? UniformCells::absent
+                 : UniformCells::key_of(cells.cell_of(box, 0), cells.cell_of(box, 1), cells.cell_of(box, 2));
+  }
+};
+
+/// Each object against all 27 cells around it; a pair is reported by the body with the lower number.
+struct FullStencil {
+  static constexpr const char* count_label = "broadphase.uniform_grid.count";
+  static constexpr const char* fill_label = "broadphase.uniform_grid.fill";
+
+  std::int64_t items;
+  UniformCells cells;
+  ConstView<Aabb> bounds;
+  ConstView<Mobility> mobility;
+  ConstView<std::uint64_t> key;
+  ConstView<std::int32_t> body;
+
+  template <class Hit>
+  SCREE_HD std::uint32_t operator()(std::int64_t k, Hit& hit) const {
+    if (key[k] == UniformCells::absent) return 0;
+    const Aabb box = bounds[body[k]];
+    const std::int64_t x = cells.cell_of(box, 0);
+    const std::int64_t y = cells.cell_of(box, 1);
+    const std::int64_t z = cells.cell_of(box, 2);
+    const std::int64_t x_end = x < UniformCells::last ? x + 1 : x;
+    std::uint32_t tests = 0;
+    for (std::int64_t row_z = z > 0 ? z - 1 : 0; row_z <= z + 1 && row_z <= UniformCells::last; ++row_z) {
+      for (std::int64_t row_y = y > 0 ? y - 1 : 0; row_y <= y + 1 && row_y <= UniformCells::last; ++row_y) {
+        tests += test_row(UniformCells::key_of(x > 0 ? x - 1 : 0, row_y, row_z),
+                          UniformCells::key_of(x_end, row_y, row_z), body[k], hit);
+      }
+    }
+    return tests;
+  }
+
+ private:
+  template <class Hit>
+  SCREE_HD std::uint32_t test_row(std::uint64_t first, std::uint64_t last, std::int32_t i, Hit& hit) const {
+    const Aabb box = bounds[i];
+    std::uint32_t tests = 0;
+    for (std::int64_t k = lower_bound(first); k < key.size() && key[k] <= last; ++k) {
+      const std::int32_t j = body[k];
+      if (j <= i) continue;
+      ++tests;
+      const bool both_fixed = mobility[i] == Mobility::fixed && mobility[j] == Mobility::fixed;
+      if (overlap(box, bounds[j]) && !both_fixed) hit({i, j});
+    }
+    return tests;
+  }
+
+  SCREE_HD std::int64_t lower_bound(std::uint64_t value) const {
+    std::int64_t lo = 0;
+    std::int64_t hi = key.size();
+    while (lo < hi) {
+      const std::int64_t middle = lo + (hi - lo) / 2;
+      if (key[middle] < value) {
+        lo = middle + 1;
+      } else {
+        hi = middle;
+      }
+    }
+    return lo;
+  }
+};
+
+template <class Space>
+class UniformGrid final : public BroadPhase<Space> {
+ public:
+  ConstView<Pair> find(ConstView<Aabb> bounds, ConstView<Mobility> mobility) override {
+    stats_ = {};
+    const Census census = take_census<Space>(bounds);
+    stats_.levels = census.present > 0 ? 1 : 0;
+    UniformCells cells{};
+    double longest = 0;
+    for (int a = 0; a < 3; ++a) {
+      cells.origin[a] = census.lo[a];
+      longest = std::max(longest, static_cast<double>(census.hi[a]) - cells.origin[a]);
+    }
+    // Wider than the largest box by far more than the rounding of a cell's number, and never so narrow that
+    // the cells of the domain run out of numbers.
+    cells.width =
+        std::max({1.001 * census.largest, longest / static_cast<double>(UniformCells::last), 1e-300});
+    key_.resize(bounds.size());
+    body_.resize(bounds.size());
+    parallel::for_each<Space>("broadphase.uniform_grid.keys", bounds.size(),
+                              KeyOfBox{cells, bounds, key_.view(), body_.view()});
+    parallel::sort_by_key("broadphase.uniform_grid.sort", key_, body_, 3 * UniformCells::bits + 1);
+    return pairs_.collect(stats_,
+                          FullStencil{bounds.size(), cells, bounds, mobility, key_.view(), body_.view()});
+  }
+  const BroadPhaseStats& stats() const override { return stats_; }
+
+ private:
+  BroadPhaseStats stats_;
+  Array<std::uint64_t, Space> key_;
+  Array<std::int32_t, Space> body_;
+  PairList<Space> pairs_;
+};
+
+}  // namespace
+
+template <class Space>
+std::unique_ptr<BroadPhase<Space>> make_uniform_grid() {
+  return std::make_unique<UniformGrid<Space>>();
+}
+
+#define SCREE_INSTANTIATE(Space) template std::unique_ptr<BroadPhase<Space>> make_uniform_grid<Space>();
+SCREE_FOR_EACH_SPACE(SCREE_INSTANTIATE)
+#undef SCREE_INSTANTIATE
+
+}  // namespace scree

@@ -1,0 +1,73 @@
+# Language, warnings and the one switch between "one source, two compilers".
+
+set(CMAKE_CXX_STANDARD 20)
+set(CMAKE_CXX_STANDARD_REQUIRED ON)
+set(CMAKE_CXX_EXTENSIONS OFF)
+set(CMAKE_EXPORT_COMPILE_COMMANDS ON)
+if(NOT CMAKE_BUILD_TYPE)
+  set(CMAKE_BUILD_TYPE Release)
+endif()
+
+find_program(SCREE_CCACHE ccache)
+if(SCREE_CCACHE)
+  set(CMAKE_CXX_COMPILER_LAUNCHER ${SCREE_CCACHE})
+endif()
+
+# Programs look for libraries beside themselves first, from the build on, so that copying them makes a folder that
+# runs elsewhere (scripts/bundle.sh). The old tag, because the new one does not hold for libraries of libraries.
+set(CMAKE_BUILD_WITH_INSTALL_RPATH ON)
+set(CMAKE_INSTALL_RPATH "$ORIGIN/../lib")
+add_link_options(LINKER:--disable-new-dtags)
+
+if(SCREE_CUDA)
+  # CMake 3.25 does not know CUDA's C++20, so the standard goes through the flags.
+  set(CMAKE_CUDA_ARCHITECTURES ${SCREE_CUDA_ARCHITECTURES})
+  enable_language(CUDA)
+  set(CMAKE_CUDA_STANDARD_REQUIRED OFF)
+  find_package(CUDAToolkit REQUIRED)
+endif()
+
+# Every target of scree: warnings are errors; Eigen keeps its types free of alignment beyond that of their
+# scalars, so that host and device passes agree on every layout; no fused multiply-add behind our back, so that
+# host and device round alike.
+add_library(scree_options INTERFACE)
+target_include_directories(scree_options INTERFACE ${CMAKE_SOURCE_DIR})
+target_compile_definitions(scree_options INTERFACE
+  EIGEN_MAX_STATIC_ALIGN_BYTES=0
+  SCREE_WITH_CUDA=$<BOOL:${SCREE_CUDA}>)
+set(warnings -Wall -Wextra -Wpedantic -Wshadow -Werror)
+target_compile_options(scree_options INTERFACE
+  $<$<COMPILE_LANGUAGE:CXX>:${warnings} -ffp-contract=off>)
+if(SCREE_SANITIZE)
+  target_compile_options(scree_options INTERFACE
+    $<$<COMPILE_LANGUAGE:CXX>:-fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer>)
+  target_link_options(scree_options INTERFACE -fsanitize=address,undefined)
+endif()
+
+# What a library or program needs to reach Thrust: its sources are compiled as CUDA where the build has nvcc and
+# as C++ where it has not, unchanged.
+add_library(scree_parallel_options INTERFACE)
+target_link_libraries(scree_parallel_options INTERFACE scree_options)
+if(SCREE_CUDA)
+  target_compile_options(scree_parallel_options INTERFACE
+    $<$<COMPILE_LANGUAGE:CUDA>:-std=c++20 --expt-relaxed-constexpr -diag-suppress=20012 --fmad=false -t2
+      -Xcompiler=-Wall,-Wextra,-Wshadow,-Werror,-ffp-contract=off>)
+  target_link_libraries(scree_parallel_options INTERFACE CUDA::cudart_static)
+else()
+  target_compile_definitions(scree_parallel_options INTERFACE
+    THRUST_DEVICE_SYSTEM=THRUST_DEVICE_SYSTEM_TBB)
+endif()
+
+function(scree_parallel_target target)
+  if(SCREE_CUDA)
+    get_target_property(sources ${target} SOURCES)
+    set_source_files_properties(${sources} PROPERTIES LANGUAGE CUDA)
+  endif()
+  target_link_libraries(${target} PUBLIC scree_parallel_options TBB::tbb)
+endfunction()
+
+# A library whose sources may include core/parallel.hpp.
+function(add_parallel_library target)
+  add_library(${target} STATIC ${ARGN})
+  scree_parallel_target(${target})
+endfunction()

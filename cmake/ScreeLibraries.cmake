@@ -1,0 +1,27 @@
+# Everything scree takes from Debian; the reason for each is in docs/dependencies.md.
+
+find_package(PkgConfig REQUIRED)
+find_package(Threads REQUIRED)
+find_package(TBB REQUIRED)
+find_package(Eigen3 3.4 REQUIRED)
+target_include_directories(scree_options SYSTEM INTERFACE $<TARGET_PROPERTY:Eigen3::Eigen,INTERFACE_INCLUDE_DIRECTORIES>)
+
+# Thrust: nvcc brings its own; without nvcc it is Debian's, unless another is named (the toolkit's
+# include/cccl sorts twice as fast on the host). Never found by chance: two machines with the same packages build
+# the same program.
+if(NOT SCREE_CUDA)
+  set(SCREE_THRUST_INCLUDE /usr/include CACHE PATH "Folder that holds thrust/version.h, for builds without nvcc")
+  if(NOT EXISTS ${SCREE_THRUST_INCLUDE}/thrust/version.h)
+    message(FATAL_ERROR "SCREE_THRUST_INCLUDE: no thrust/version.h in ${SCREE_THRUST_INCLUDE} (libthrust-dev)")
+  endif()
+  target_include_directories(scree_parallel_options SYSTEM INTERFACE ${SCREE_THRUST_INCLUDE})
+endif()
+
+find_package(yaml-cpp REQUIRED)
+find_package(fmt REQUIRED)
+find_package(CLI11 REQUIRED)
+find_package(nlohmann_json REQUIRED)
+find_package(PNG REQUIRED)
+pkg_check_modules(ccd REQUIRED IMPORTED_TARGET ccd)
+pkg_check_modules(osmesa REQUIRED IMPORTED_TARGET osmesa)
+pkg_check_modules(xxhash REQUIRED IMPORTED_TARGET libxxhash)

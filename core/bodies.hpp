@@ -1,0 +1,133 @@
+// The state of all bodies as a structure of arrays. The fields are listed once, in for_each_field; resize,
+// permute, snapshot, checkpoint and hash all use that list.
+#pragma once
+
+#include "core/array.hpp"
+#include "core/math.hpp"
+
+#include <cstdint>
+#include <type_traits>
+#include <vector>
+
+namespace scree {
+
+/// A body's place in the arrays. Everything that refers to a body beyond one step uses Bodies::id instead.
+enum class BodyIndex : std::int32_t { none = -1 };
+
+enum class Shape : std::uint8_t {
+  sphere,  ///< size.x() is the radius
+  box,     ///< size holds the half extents
+  plane,   ///< half space below the body's z axis through its position; always fixed
+};
+
+enum class Mobility : std::uint8_t {
+  free,        ///< moved by forces and contacts
+  fixed,       ///< never moves
+  prescribed,  ///< moves as its `motion` says, whatever hits it
+};
+
+template <class T>
+using HostVector = std::vector<T>;
+
+/// Fields of N bodies. `Container` is an array type: HostVector for scenes and snapshots, Array<., Space>
+/// in the simulation. SI units, world frame unless said.
+template <template <class> class Container>
+struct BodyFields {
+  Container<Vec3> position;         ///< centre of mass (m); of a plane, the point of it nearest the origin
+  Container<Quat> orientation;      ///< unit; body frame (principal axes) to world
+  Container<Vec3> velocity;         ///< of the centre of mass (m/s)
+  Container<Vec3> spin;             ///< angular velocity (rad/s)
+  Container<Vec3> size;             ///< see Shape (m)
+  Container<double> inverse_mass;   ///< 1/kg; 0 for bodies that are not free
+  Container<Vec3> inverse_inertia;  ///< principal, 1/(kg m^2); 0 for bodies that are not free
+  Container<Shape> shape;
+  Container<Mobility> mobility;
+  Container<std::int32_t> material;  ///< index into the scene's materials
+  Container<std::int32_t> id;        ///< the body's number in the scene; stays when the arrays are permuted
+
+  std::int64_t count() const { return static_cast<std::int64_t>(position.size()); }
+};
+
+/// Calls f(name, field...) for each field of one or more BodyFields, in a fixed order.
+template <class F, class... Fields>
+void for_each_field(F&& f, Fields&... fields) {
+  f("position", fields.position...);
+  f("orientation", fields.orientation...);
+  f("velocity", fields.velocity...);
+  f("spin", fields.spin...);
+  f("size", fields.size...);
+  f("inverse_mass", fields.inverse_mass...);
+  f("inverse_inertia", fields.inverse_inertia...);
+  f("shape", fields.shape...);
+  f("mobility", fields.mobility...);
+  f("material", fields.material...);
+  f("id", fields.id...);
+}
+
+/// Bodies on the host, in growable vectors: what scenes build and what is recorded and drawn.
+using BodyTable = BodyFields<HostVector>;
+
+namespace detail {
+template <class Space>
+struct ArrayIn {
+  template <class T>
+  using type = Array<T, Space>;
+};
+// ConstView in words that nvcc cannot mistake: as a template argument, it takes the alias of View<const T>
+// for View itself.
+template <class T>
+using ReadOnly = View<std::add_const_t<T>>;
+}  // namespace detail
+
+/// Bodies in a space: what the step works on.
+template <class Space>
+using Bodies = BodyFields<detail::ArrayIn<Space>::template type>;
+
+/// What kernels take: views of every field, read-write or read-only.
+using BodyView = BodyFields<View>;
+using ConstBodyView = BodyFields<detail::ReadOnly>;
+
+template <template <class> class Container>
+BodyView view_of(BodyFields<Container>& bodies) {
+  BodyView views;
+  for_each_field([](const char*, auto& v, auto& field) { v = field.view(); }, views, bodies);
+  return views;
+}
+template <template <class> class Container>
+ConstBodyView view_of(const BodyFields<Container>& bodies) {
+  ConstBodyView views;
+  for_each_field([](const char*, auto& v, const auto& field) { v = field.view(); }, views, bodies);
+  return views;
+}
+
+/// Every field of `to` becomes that of `from`; the two may live in different spaces.
+template <template <class> class To, template <class> class From>
+void copy_bodies(BodyFields<To>& to, const BodyFields<From>& from) {
+  for_each_field([](const char*, auto& t, const auto& f) { copy(t, f); }, to, from);
+}
+
+/// Moves every field into the order given: element k becomes the old element order[k].
+void permute(BodyTable& bodies, const std::vector<std::int32_t>& order);
+
+/// 64-bit XXH3 over every field in the order of the list.
+std::uint64_t hash_of(const BodyTable& bodies);
+
+/// Radius of the smallest sphere around the centre that holds a sphere or box (m); infinite for a plane.
+SCREE_HD inline double bounding_radius(Shape shape, const Vec3& size) {
+  if (shape == Shape::plane) return HUGE_VAL;
+  return shape == Shape::sphere ? size.x() : size.norm();
+}
+
+/// The length to which a body's tolerances are relative: radius, or smallest half extent (m).
+SCREE_HD inline double smallest_size(Shape shape, const Vec3& size) {
+  if (shape == Shape::plane) return HUGE_VAL;
+  return shape == Shape::sphere ? size.x() : size.minCoeff();
+}
+
+/// True where all principal moments are equal (spheres, cubes): the spin is then constant in free flight
+/// and there is no gyroscopic term.
+SCREE_HD inline bool has_equal_moments(const Vec3& inverse_inertia) {
+  return inverse_inertia.x() == inverse_inertia.y() && inverse_inertia.y() == inverse_inertia.z();
+}
+
+}  // namespace scree

@@ -1,0 +1,168 @@
+// Labelled parallel calls in either space. Sums have a fixed tree, so results do not depend on the number of
+// threads. With space_policy.hpp one of the two headers that reach Thrust: for parallel libraries alone.
+#pragma once
+
+#include "core/array.hpp"
+#include "core/space_policy.hpp"
+
+#include <thrust/extrema.h>
+#include <thrust/for_each.h>
+#include <thrust/functional.h>
+#include <thrust/iterator/counting_iterator.h>
+#include <thrust/iterator/transform_iterator.h>
+#include <thrust/scan.h>
+#include <thrust/transform_reduce.h>
+
+#include <algorithm>
+#include <cstdint>
+
+namespace scree::parallel {
+
+/// Calls f(i) for 0 <= i < n, in any order and at once. f is a copyable function object over views; on
+/// Device the call returns before the work is done. `label` names the work to a profiler.
+template <class Space, class F>
+void for_each([[maybe_unused]] const char* label, std::int64_t n, F f) {
+  // Under this many items the cost of waking threads exceeds the work.
+  constexpr std::int64_t few = 256;
+  if constexpr (std::is_same_v<Space, Host>) {
+    if (n < few) {
+      for (std::int64_t i = 0; i < n; ++i) f(i);
+      return;
+    }
+  }
+  thrust::for_each_n(scree::detail::policy(Space{}), thrust::counting_iterator<std::int64_t>(0), n, f);
+}
+
+namespace detail {
+
+template <class T>
+struct Widen {
+  const T* counts;
+  SCREE_HD std::int64_t operator()(std::int64_t i) const { return static_cast<std::int64_t>(counts[i]); }
+};
+
+template <class T>
+struct Set {
+  T* values;
+  T value;
+  SCREE_HD void operator()(std::int64_t i) const { values[i] = value; }
+};
+
+// Leaves of the sum's tree hold this many items; it fixes the grouping, so changing it changes the last bits.
+inline constexpr std::int64_t leaf = 256;
+
+template <class T, class F>
+struct SumLeaf {
+  F f;
+  T* partial;
+  std::int64_t n;
+  SCREE_HD void operator()(std::int64_t block) const {
+    const std::int64_t first = block * leaf;
+    const std::int64_t last = first + leaf < n ? first + leaf : n;
+    T sum = f(first);
+    for (std::int64_t i = first + 1; i < last; ++i) sum = sum + f(i);
+    partial[block] = sum;
+  }
+};
+
+template <class T>
+struct Load {
+  const T* values;
+  SCREE_HD T operator()(std::int64_t i) const { return values[i]; }
+};
+
+}  // namespace detail
+
+/// Sets every element to `value`.
+template <class Space, class T>
+void fill(const char* label, Array<T, Space>& values, const T& value) {
+  parallel::for_each<Space>(label, values.size(), detail::Set<T>{values.data(), value});
+}
+
+/// Sum of f(i) over 0 <= i < n, as T with an operator +; T{} for n = 0. The tree of the additions depends on
+/// n alone.
+template <class T, class Space, class F>
+T sum(const char* label, std::int64_t n, F f) {
+  if (n <= 0) return T{};
+  std::int64_t blocks = (n + detail::leaf - 1) / detail::leaf;
+  Array<T, Space> partial(blocks);
+  parallel::for_each<Space>(label, blocks, detail::SumLeaf<T, F>{f, partial.data(), n});
+  while (blocks > 1) {
+    const std::int64_t next = (blocks + detail::leaf - 1) / detail::leaf;
+    Array<T, Space> level(next);
+    parallel::for_each<Space>(label, next,
+                              detail::SumLeaf<T, detail::Load<T>>{{partial.data()}, level.data(), blocks});
+    partial.swap(level);
+    blocks = next;
+  }
+  T total;
+  copy_bytes<Host, Space>(&total, partial.data(), sizeof(T));
+  return total;
+}
+
+/// Largest f(i), and `lowest` for n = 0. Exact, whatever the grouping.
+template <class T, class Space, class F>
+T max([[maybe_unused]] const char* label, std::int64_t n, F f, T lowest) {
+  const thrust::counting_iterator<std::int64_t> first(0);
+  return thrust::transform_reduce(scree::detail::policy(Space{}), first, first + n, f, lowest,
+                                  thrust::maximum<T>());
+}
+
+/// All of f(i) for 0 <= i < n joined by `join`, and `neutral` for n = 0. The grouping is free: `join` must be
+/// exact, associative and commutative (integers, minima, maxima), or the result would depend on it.
+template <class T, class Space, class F, class Join>
+T reduce([[maybe_unused]] const char* label, std::int64_t n, F f, T neutral, Join join) {
+  const thrust::counting_iterator<std::int64_t> first(0);
+  return thrust::transform_reduce(scree::detail::policy(Space{}), first, first + n, f, neutral, join);
+}
+
+/// counts[b] = number of i, 0 <= i < n, with f(i) = b, for 0 <= b < bins; other values are not counted. f
+/// gives int; bins <= 256 is fastest.
+template <class Space, class F>
+void histogram([[maybe_unused]] const char* label, std::int64_t n, F f, int bins,
+               Array<std::uint32_t, Space>& counts) {
+  counts.resize(bins);
+  const auto first = thrust::make_transform_iterator(thrust::counting_iterator<std::int64_t>(0), f);
+  scree::detail::histogram(Space{}, first, n, bins, counts.data());
+}
+
+/// values[i] becomes the largest of values[0..i].
+template <class Space, class T>
+void running_max([[maybe_unused]] const char* label, Array<T, Space>& values) {
+  thrust::inclusive_scan(scree::detail::policy(Space{}), values.data(), values.data() + values.size(),
+                         values.data(), thrust::maximum<T>());
+}
+
+/// offsets[i] = counts[0] + ... + counts[i-1] for 0 <= i <= n; returns offsets[n]. 64-bit throughout.
+template <class Space, class T>
+std::int64_t exclusive_scan(const char* label, const Array<T, Space>& counts,
+                            Array<std::int64_t, Space>& offsets) {
+  const std::int64_t n = counts.size();
+  offsets.resize(n + 1);
+  parallel::for_each<Space>(label, 1, detail::Set<std::int64_t>{offsets.data(), 0});
+  const auto first = thrust::make_transform_iterator(thrust::counting_iterator<std::int64_t>(0),
+                                                     detail::Widen<T>{counts.data()});
+  thrust::inclusive_scan(scree::detail::policy(Space{}), first, first + n, offsets.data() + 1);
+  std::int64_t total = 0;
+  copy_bytes<Host, Space>(&total, offsets.data() + n, sizeof(total));
+  return total;
+}
+
+/// Stable sort of values by the lowest `bits` bits of their unsigned keys, which hold nothing above them.
+template <class Space, class Key, class Value>
+void sort_by_key([[maybe_unused]] const char* label, Array<Key, Space>& keys, Array<Value, Space>& values,
+                 int bits = 8 * sizeof(Key)) {
+  Array<Key, Space> spare_keys(keys.size());
+  Array<Value, Space> spare_values(values.size());
+  Key* k = keys.data();
+  Key* sk = spare_keys.data();
+  Value* v = values.data();
+  Value* sv = spare_values.data();
+  scree::detail::sort_pairs(Space{}, k, v, sk, sv, keys.size(), bits);
+  if (k != keys.data()) {
+    keys.swap(spare_keys);
+    values.swap(spare_values);
+  }
+}
+
+}  // namespace scree::parallel

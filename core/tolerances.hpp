@@ -1,0 +1,75 @@
+// Every tolerance of scree: unit, purpose, what changing it does, and how it relates to the others.
+// Lengths are relative to a body's smallest_size, so that a scene in mm and in m gives the same motion.
+#pragma once
+
+namespace scree::tolerance {
+
+/// Relative growth of a bound when it is rounded from double to float, beyond the rounding itself: none is
+/// needed, bounds are moved outward by one float where the conversion moved them inward.
+
+/// Gap under which a contact counts as closed (of smallest_size). Contacts rest inside this shell instead of
+/// flickering at 0: without it a box on four corners jitters. Larger: visible gaps; must stay under
+/// contact_slack.
+inline constexpr double closed_gap = 1e-5;
+
+/// Extra reach of contact detection beyond the distance that bodies can travel in a step (of smallest_size).
+/// Larger: more contacts to solve that never close.
+inline constexpr double contact_slack = 0.02;
+
+/// Safety factor on the distance that a body can travel in a step, for what impacts add to its speed.
+inline constexpr double travel_factor = 1.05;
+
+/// Share of an overlap that one position correction removes. 1 can collapse a pile, 0.2 leaves 4 times the
+/// overlap.
+inline constexpr double correction_share = 0.5;
+/// Largest correction of one body in one step (of smallest_size): deep overlaps part gently.
+inline constexpr double correction_cap = 0.2;
+
+/// Restitution threshold in units of |gravity| * step: slower approaches do not bounce, so bodies come to
+/// rest. Must exceed 0.5 (what gravity adds in half a step), or resting contacts would count as impacts.
+inline constexpr double restitution_threshold = 2.0;
+
+/// Slowest approach that can count as an impact, relative to the bodies' speeds: under it, it is rounding.
+inline constexpr double closing_speed = 1e-12;
+/// Change at which the time of an impact is found (of the substep), and at which the impulses of one impact
+/// are (of their size). Both are met to rounding; energy depends on neither.
+inline constexpr double impact_time = 1e-15;
+inline constexpr double impact_residual = 1e-15;
+
+/// A last step shorter than this share of a step is rounding of end / step, and none.
+inline constexpr double step_count = 1e-9;
+
+static_assert(closed_gap < contact_slack);
+static_assert(restitution_threshold > 0.5);
+
+// Narrow phase. Lengths are of the smaller smallest_size of the pair.
+
+/// Distance of two sphere centres under which their direction is rounding noise (of the sum of the radii).
+inline constexpr double coincident = 1e-14;
+
+/// Sine of the angle under which the cross product of two box edges is too short to be a separating axis. The
+/// overlap along any axis is exact whatever its rounding; a smaller value only adds axes that repeat the
+/// faces'.
+inline constexpr double parallel_axes = 1e-6;
+/// Sine of the angle under which two box edges in contact count as parallel: their closest points are then
+/// badly placed, and faces carry the contact. Must exceed parallel_axes.
+inline constexpr double parallel_edges = 1e-3;
+
+/// By how much an axis must separate two boxes better than a preferred one to replace it: a share of the
+/// preferred separation, plus a length. Faces are preferred to edges and the first body's to the second's, so
+/// that noise in a resting stack does not change the manifold. Larger: steadier, but overlaps are
+/// overestimated by as much. The length must exceed same_feature.
+inline constexpr double axis_preference = 0.05;
+inline constexpr double axis_preference_length = 1e-4;
+
+/// Length under which two points of a box-box contact count as equally deep, and a vertex as still over a
+/// face that it has left: noise in aligned stacks does not change the features.
+inline constexpr double same_feature = 1e-6;
+
+/// Overlap that libccd's direction may have beyond the smallest of the 15 axes before it is refused.
+inline constexpr double ccd_excess = 1e-6;
+
+static_assert(parallel_axes < parallel_edges);
+static_assert(same_feature < axis_preference_length);
+
+}  // namespace scree::tolerance

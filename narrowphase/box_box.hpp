@@ -1,0 +1,55 @@
+// Two boxes: the axis that parts them best, then the contact along it.
+#pragma once
+
+#include "narrowphase/box_edges.hpp"
+#include "narrowphase/box_face.hpp"
+#include "narrowphase/box_pair.hpp"
+
+namespace scree {
+
+namespace detail {
+
+SCREE_HD inline double smallest_gap(const Manifold& manifold) {
+  double gap = manifold.points[0].gap;
+  for (int k = 1; k < manifold.count; ++k) gap = fmin(gap, manifold.points[k].gap);
+  return gap;
+}
+
+}  // namespace detail
+
+/// The contact of two boxes with a choice of reference face: the face, or the edges if they are clearly
+/// better. No state is kept from step to step: the preferences of clearly_better() hold the choice steady
+/// instead.
+///
+/// A face must have a point as close as the axes say the boxes are; if the other box's lowest vertex is
+/// beside it, an edge or a vertex is closer, and takes its place. For boxes that are apart that is one point
+/// with the true distance and direction: the separation along an axis would be a lower bound only, and its
+/// normal would stop boxes that pass beside each other.
+SCREE_HD inline bool contact_along(const BoxPair& pair, const BoxAxes& axes, const BoxAxis& face,
+                                   double margin, Manifold& out) {
+  if (clearly_better(axes.edges.separation, face.separation, pair.smallest) &&
+      edge_contact(pair, axes.edges, out))
+    return true;
+  const double close = axes.separation + preference(axes.separation, pair.smallest);
+  const BoxAxis* faces[2] = {&face, &axes.face[1 - face.box]};
+  for (const BoxAxis* reference : faces) {
+    if (clearly_better(axes.separation, reference->separation, pair.smallest)) continue;
+    if (face_contact(pair, *reference, margin, out) && detail::smallest_gap(out) <= close) return true;
+  }
+  if (axes.separation > 0.0) return closest_edges(pair, axes, margin, out);
+  if (axes.edges.separation > -HUGE_VAL) return edge_contact(pair, axes.edges, out);
+  return face_contact(pair, face, margin, out);
+}
+
+SCREE_HD inline const BoxAxis& preferred_face(const BoxPair& pair, const BoxAxes& axes) {
+  return axes.face[clearly_better(axes.face[1].separation, axes.face[0].separation, pair.smallest) ? 1 : 0];
+}
+
+SCREE_HD inline bool box_box(const Solid& a, const Solid& b, double margin, Manifold& out) {
+  const BoxPair pair(a, b);
+  const BoxAxes axes = separating_axes(pair, margin);
+  if (axes.separation > margin) return false;
+  return contact_along(pair, axes, preferred_face(pair, axes), margin, out);
+}
+
+}  // namespace scree

@@ -1,0 +1,118 @@
+// Two boxes and the 15 axes that can separate them (Gottschalk, Lin, Manocha 1996, sec. 5), with edge axes as
+// true normalised cross products: the usual shortcut 1 - C_ij^2 for their length loses half of the digits.
+#pragma once
+
+#include "core/tolerances.hpp"
+#include "narrowphase/solid.hpp"
+
+namespace scree {
+
+struct BoxPair {
+  Vec3 position[2];
+  Mat3 axes[2];  ///< columns are the axes of the box in the world
+  Vec3 half[2];
+  Vec3 offset;      ///< from the first centre to the second
+  Mat3 turn;        ///< axes[0]^T axes[1]
+  double smallest;  ///< half extent of both: what tolerances are relative to (m)
+
+  SCREE_HD BoxPair(const Solid& a, const Solid& b)
+      : position{a.position, b.position},
+        axes{a.orientation.toRotationMatrix(), b.orientation.toRotationMatrix()},
+        half{a.size, b.size},
+        offset(b.position - a.position),
+        turn(axes[0].transpose() * axes[1]),
+        smallest(fmin(a.size.minCoeff(), b.size.minCoeff())) {}
+
+  /// Signed distance of the boxes' shadows on a unit direction (world); negative: overlap.
+  SCREE_HD double separation_along(const Vec3& direction) const {
+    return fabs(direction.dot(offset)) - half[0].dot((axes[0].transpose() * direction).cwiseAbs()) -
+           half[1].dot((axes[1].transpose() * direction).cwiseAbs());
+  }
+};
+
+/// A face's normal, or the common normal of two edges.
+struct BoxAxis {
+  int box;            ///< whose face; -1 for edges
+  int index[2];       ///< face: the axis of its box, twice; edges: the axis of either box along its edge
+  double separation;  ///< along this axis (m)
+};
+
+/// The axes that part two boxes most, of each kind. Where several do equally, the first.
+struct BoxAxes {
+  BoxAxis face[2];    ///< of the faces of the first and the second box
+  BoxAxis edges;      ///< of the pairs of edges that are not nearly parallel
+  double separation;  ///< largest of all 15; negative: minus the penetration depth
+};
+
+namespace detail {
+
+SCREE_HD inline void face_axis(const BoxPair& pair, int box, BoxAxis& best) {
+  const Vec3 offset = pair.axes[box].transpose() * pair.offset;
+  best.separation = -HUGE_VAL;
+  for (int k = 0; k < 3; ++k) {
+    double reach = pair.half[box][k];
+    for (int m = 0; m < 3; ++m) {
+      reach += pair.half[1 - box][m] * fabs(box == 0 ? pair.turn(k, m) : pair.turn(m, k));
+    }
+    const double separation = fabs(offset[k]) - reach;
+    if (separation > best.separation) best = {box, {k, k}, separation};
+  }
+}
+
+/// The axis along edge i of the first box times edge j of the second. In the frame of the first, of the
+/// components of e_i x C_j only those along i1 and i2 are not 0, and it is exactly normal to both edges.
+SCREE_HD inline void edge_axis(const BoxPair& pair, const Vec3& offset, int i, int j, BoxAxes& best) {
+  const int i1 = (i + 1) % 3, i2 = (i + 2) % 3, j1 = (j + 1) % 3, j2 = (j + 2) % 3;
+  const Mat3& C = pair.turn;
+  const double n1 = -C(i2, j), n2 = C(i1, j);
+  const double sine = sqrt(n1 * n1 + n2 * n2);
+  if (sine < tolerance::parallel_axes) return;
+  const double reach_a = pair.half[0][i1] * fabs(n1) + pair.half[0][i2] * fabs(n2);
+  const double reach_b = pair.half[1][j1] * fabs(n1 * C(i1, j1) + n2 * C(i2, j1)) +
+                         pair.half[1][j2] * fabs(n1 * C(i1, j2) + n2 * C(i2, j2));
+  const double separation = (fabs(n1 * offset[i1] + n2 * offset[i2]) - (reach_a + reach_b)) / sine;
+  best.separation = fmax(best.separation, separation);
+  if (sine >= tolerance::parallel_edges && separation > best.edges.separation) {
+    best.edges = {-1, {i, j}, separation};
+  }
+}
+
+}  // namespace detail
+
+/// The best axes of two boxes. Gives up as soon as one separates them by more than `margin`; then
+/// `separation` > margin and nothing else is meant.
+SCREE_HD inline BoxAxes separating_axes(const BoxPair& pair, double margin) {
+  BoxAxes best;
+  detail::face_axis(pair, 0, best.face[0]);
+  detail::face_axis(pair, 1, best.face[1]);
+  best.separation = fmax(best.face[0].separation, best.face[1].separation);
+  best.edges = {-1, {0, 0}, -HUGE_VAL};
+  const Vec3 offset = pair.axes[0].transpose() * pair.offset;
+  for (int ij = 0; ij < 9 && best.separation <= margin; ++ij) {
+    detail::edge_axis(pair, offset, ij / 3, ij % 3, best);
+  }
+  return best;
+}
+
+/// The unit normal of an axis, from the first box to the second.
+SCREE_HD inline Vec3 normal_of(const BoxPair& pair, const BoxAxis& axis) {
+  Vec3 normal;
+  if (axis.box < 0) {
+    normal = pair.axes[0].col(axis.index[0]).cross(pair.axes[1].col(axis.index[1])).normalized();
+  } else {
+    normal = pair.axes[axis.box].col(axis.index[0]);
+  }
+  return sign_of(normal.dot(pair.offset)) * normal;
+}
+
+/// What a separation is worth more if it belongs to a preferred axis (m).
+SCREE_HD inline double preference(double separation, double smallest) {
+  return tolerance::axis_preference * fabs(separation) + tolerance::axis_preference_length * smallest;
+}
+
+/// Whether one separation is so much better than a preferred one that its axis replaces the other.
+SCREE_HD inline bool clearly_better(double separation, double preferred, double smallest) {
+  return separation > preferred + preference(preferred, smallest);
+}
+
+}  // namespace scree

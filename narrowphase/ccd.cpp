@@ -1,0 +1,65 @@
+// The faults of libccd 2.1 that this file keeps in are listed where each is met.
+#include "narrowphase/ccd.hpp"
+
+#include <ccd/ccd.h>
+
+namespace scree::ccd {
+
+namespace {
+
+struct Box {
+  Vec3 centre;
+  Mat3 axes;
+  Vec3 half;
+  int* supports_left;
+};
+
+const Box& box_of(const void* object) { return *static_cast<const Box*>(object); }
+Vec3 vector_of(const ccd_vec3_t& v) { return Vec3(v.v[0], v.v[1], v.v[2]); }
+void set(ccd_vec3_t* to, const Vec3& v) { ccdVec3Set(to, v.x(), v.y(), v.z()); }
+
+void centre(const void* object, ccd_vec3_t* out) { set(out, box_of(object).centre); }
+
+/// The vertex farthest along a direction. A component that is exactly 0 picks the positive side: the middle
+/// of a face would be no vertex, and makes EPA return NaN for aligned boxes.
+///
+/// When the budget is spent, the answer lies behind instead. Every loop of libccd 2.1 takes a support that
+/// is behind its direction for the sign that nothing is left to find, and ends. Leaving by exception or
+/// longjmp would leak the polytope.
+void support(const void* object, const ccd_vec3_t* direction, ccd_vec3_t* out) {
+  const Box& box = box_of(object);
+  const Vec3 along = vector_of(*direction);
+  if (--*box.supports_left < 0) {
+    set(out, -along);
+    return;
+  }
+  const Vec3 local = box.axes.transpose() * along;
+  const Vec3 vertex = (local.array() < 0.0).select(-box.half, box.half);
+  set(out, box.centre + box.axes * vertex);
+}
+
+}  // namespace
+
+std::optional<Vec3> parting_direction(const Boxes& boxes, Method method, int budget) {
+  int supports_left = 2 * budget;  // each is asked of both boxes
+  const Box a{Vec3::Zero(), Mat3::Identity(), boxes.half[0], &supports_left};
+  const Box b{boxes.offset, boxes.turn, boxes.half[1], &supports_left};
+
+  ccd_t ccd;
+  CCD_INIT(&ccd);
+  ccd.support1 = ccd.support2 = support;
+  ccd.center1 = ccd.center2 = centre;
+  ccd.max_iterations = 100;
+  ccd.epa_tolerance = ccd.mpr_tolerance = 1e-10;  // EPA compares it with squares: 1e-5 of a length
+
+  ccd_real_t depth;
+  ccd_vec3_t direction{}, position;  // EPA leaves the direction as it is if it has none, and says success
+  const auto penetration = method == Method::gjk ? ccdGJKPenetration : ccdMPRPenetration;
+  if (penetration(&a, &b, &ccd, &depth, &direction, &position) != 0) return std::nullopt;
+  // Touching boxes make libccd normalise a zero vector: NaN, with the return code of success.
+  const double length = vector_of(direction).norm();
+  if (!(length > 0.5 && length < 2.0)) return std::nullopt;
+  return vector_of(direction) / length;
+}
+
+}  // namespace scree::ccd

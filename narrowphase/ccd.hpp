@@ -1,0 +1,33 @@
+// libccd behind a wall: the direction in which two overlapping boxes part, if libccd finds one.
+#pragma once
+
+#include "core/math.hpp"
+
+#include <optional>
+
+namespace scree::ccd {
+
+enum class Method {
+  gjk,  ///< Gilbert-Johnson-Keerthi, then the expanding polytope
+  mpr,  ///< Minkowski portal refinement
+};
+
+/// Two boxes in the frame of the first one: the second has centre `offset` and axes the columns of `turn`.
+/// All lengths are in units of the smaller box's largest half extent: libccd compares with absolute lengths.
+struct Boxes {
+  Vec3 half[2];
+  Vec3 offset;
+  Mat3 turn;
+};
+
+/// Support points that libccd may ask for. The loops of EPA and of the portal have no bound of their own and
+/// are known to run for ever on nearly flat polytopes. The Minkowski difference of two boxes has at most 64
+/// vertices, and an honest search meets a part of them.
+inline constexpr int support_budget = 64;
+
+/// A unit direction along which moving the second box parts them soonest, as libccd sees it; none if it
+/// sees no overlap or has no usable answer. Bounded in time, never NaN; whether the answer is right is for
+/// the caller to check, for it often is not.
+std::optional<Vec3> parting_direction(const Boxes& boxes, Method method, int budget = support_budget);
+
+}  // namespace scree::ccd

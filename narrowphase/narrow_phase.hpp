@@ -1,0 +1,56 @@
+// The narrow phase: pairs of the PCS in, manifolds out.
+#pragma once
+
+#include "broadphase/broad_phase.hpp"
+#include "core/array.hpp"
+#include "core/bodies.hpp"
+#include "narrowphase/contact.hpp"
+#include "narrowphase/settings.hpp"
+
+#include <cstdint>
+
+namespace scree {
+
+struct NarrowPhaseStats {
+  std::int64_t tested = 0;        ///< pairs tested, planes included
+  std::int64_t ccd_calls = 0;     ///< box-box pairs given to libccd
+  std::int64_t ccd_rejected = 0;  ///< of these, answers that the certificate refused (SAT then decided)
+};
+
+namespace detail {
+/// Stands for a manifold while they are put in order.
+struct ManifoldSlot {
+  std::int32_t j;
+  std::int64_t source;  ///< its place among those found
+};
+}  // namespace detail
+
+/// Finds the contacts of bodies on the host.
+class NarrowPhase {
+ public:
+  explicit NarrowPhase(const NarrowPhaseSettings& settings) : settings_(settings) {}
+
+  /// All manifolds with a gap of at most margin[i] + margin[j] (m), for the pairs given and for every
+  /// plane with every body that is not fixed; ordered by (i, j), each pair once. Bodies that are not free
+  /// make no contact with each other. The view is valid until the next call.
+  ConstView<Manifold> find(const ConstBodyView& bodies, ConstView<Pair> pairs, ConstView<double> margin);
+
+  const NarrowPhaseStats& stats() const { return stats_; }
+
+ private:
+  void list_planes(const ConstBodyView& bodies);
+  /// Fills manifolds_ with the first `count` of found_.
+  void sort_by_pair(std::int64_t body_count, std::int64_t count);
+
+  NarrowPhaseSettings settings_;
+  NarrowPhaseStats stats_;
+  // Buffers that keep their capacity from step to step.
+  Array<std::int32_t, Host> planes_;
+  Array<Manifold, Host> found_;        ///< in the order of finding; grows to the most found so far
+  Array<std::int32_t, Host> counts_;   ///< manifolds of each first body
+  Array<std::int64_t, Host> offsets_;  ///< where its manifolds begin
+  Array<detail::ManifoldSlot, Host> slots_;
+  Array<Manifold, Host> manifolds_;
+};
+
+}  // namespace scree

@@ -1,0 +1,47 @@
+// What a pair function knows of a body, and how the features of a box are named.
+#pragma once
+
+#include "core/math.hpp"
+#include "narrowphase/contact.hpp"
+
+#include <cstdint>
+
+namespace scree {
+
+/// A shape in place. `size` as in Bodies: x is a sphere's radius, or all half extents of a box (m).
+struct Solid {
+  Vec3 position;
+  Quat orientation;
+  Vec3 size;
+};
+
+// Every pair function has the form
+//   bool pair(const Solid& a, const Solid& b, double margin, Manifold& out)
+// It tells whether a and b have contact points with gaps of at most `margin`, and sets normal (from a to b),
+// count and points of `out`. The offset b - a is formed in double before anything else: far from the origin
+// nothing is lost but what the positions themselves have lost.
+
+/// The sign of x, never 0.
+SCREE_HD inline double sign_of(double x) { return x < 0.0 ? -1.0 : 1.0; }
+
+/// A vertex, edge or face of a box, as two bits for each axis: 0 free, 1 the negative side, 2 the positive
+/// side. A vertex leaves no axis free, an edge one, a face two. So `p & q` is the smallest feature that holds
+/// both.
+using BoxFeature = std::uint32_t;
+
+SCREE_HD inline BoxFeature box_side(int axis, double side) { return (side < 0.0 ? 1u : 2u) << (2 * axis); }
+
+/// Names a contact of feature `a` of the first body with feature `b` of the second: the same for one pair of
+/// features, whichever body gave the reference face.
+SCREE_HD inline std::uint32_t contact_feature(BoxFeature a, BoxFeature b) { return a << 6 | b; }
+
+/// A pair that has at most one point needs no name to find it again.
+inline constexpr std::uint32_t only_feature = 0;
+
+SCREE_HD inline void set_single(Manifold& out, const Vec3& normal, const ContactPoint& point) {
+  out.normal = normal;
+  out.count = 1;
+  out.points[0] = point;
+}
+
+}  // namespace scree

@@ -1,0 +1,13 @@
+// The texts of shaders/*.glsl; the build makes the definitions (render/CMakeLists.txt).
+#pragma once
+
+#include <string_view>
+
+namespace scree::render::gl::shaders {
+
+extern const std::string_view common, sphere, plane, surface;
+extern const std::string_view sphere_vert, box_vert, plane_vert, picture_vert;
+extern const std::string_view sphere_frag, flat_frag, plane_frag;
+extern const std::string_view geometry_frag, occlusion_frag, smooth_frag, shade_frag;
+
+}  // namespace scree::render::gl::shaders

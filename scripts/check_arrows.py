@@ -1,0 +1,152 @@
+#!/usr/bin/env python3
+"""Holds every include of scree to the arrows of its structure. There is no list of exceptions.
+
+    check_arrows.py                     checks the tree; prints one line per breach; exit status 1 if there is any
+    check_arrows.py --self-test         the same, after showing that each rule refuses a breach of it
+    check_arrows.py --parallel-headers  the headers that reach Thrust
+"""
+import re
+import sys
+import tempfile
+from pathlib import Path
+
+# Who may include what; the row with the longest matching prefix holds. Paths under tests/ may include anything.
+ARROWS = {
+    "core/": ["core/"],
+    "broadphase/": ["core/", "broadphase/"],
+    "narrowphase/": ["core/", "broadphase/", "narrowphase/"],
+    "render/": ["core/", "render/"],
+    "sim/observation.hpp": ["core/"],
+    "sim/scene/": ["core/", "broadphase/settings.hpp", "narrowphase/settings.hpp", "sim/observation.hpp",
+                   "sim/scene/"],
+    "sim/model.": ["core/", "sim/scene/", "sim/model.hpp"],
+    "sim/pair_finder.": ["core/", "broadphase/", "sim/pair_finder.hpp"],
+    "sim/measurement.": ["core/", "narrowphase/contact.hpp", "sim/dynamics/", "sim/observation.hpp",
+                         "sim/measurement.hpp"],
+    "sim/dynamics/": ["core/", "narrowphase/", "sim/observation.hpp", "sim/scene/scene.hpp", "sim/dynamics/"],
+    "sim/record/": ["core/", "sim/observation.hpp", "sim/scene/", "sim/simulation.hpp", "sim/record/"],
+    "sim/simulation.hpp": ["core/", "sim/observation.hpp", "sim/scene/"],
+    "sim/simulation.cpp": ["core/", "broadphase/", "narrowphase/", "sim/observation.hpp", "sim/measurement.hpp",
+                           "sim/model.hpp", "sim/pair_finder.hpp", "sim/scene/", "sim/dynamics/",
+                           "sim/simulation.hpp"],
+    "sim/cli/": ["core/", "broadphase/", "narrowphase/", "render/", "sim/observation.hpp", "sim/model.hpp",
+                 "sim/scene/", "sim/simulation.hpp", "sim/record/", "sim/cli/"],
+    "bench/": ["core/", "broadphase/", "narrowphase/", "sim/", "render/", "bench/"],
+    "tests/": [""],
+}
+FOLDERS = ["core", "broadphase", "narrowphase", "sim", "render", "bench", "tests"]
+
+# Each library has one or two files that know it, so that it can be replaced.
+LIBRARIES = {
+    "yaml-cpp": r"yaml-cpp/", "libccd": r"ccd/", "OpenGL and OSMesa": r"(GL|EGL)/", "libpng": r"png\.h",
+    "CLI11": r"CLI/", "nlohmann-json": r"nlohmann/", "xxHash": r"xxhash\.h",
+}
+THRUST_HEADERS = ["core/parallel.hpp", "core/space_policy.hpp"]
+THRUST = re.compile(r"(thrust|cub|cuda)/")
+
+INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]', re.M)
+CONDITIONAL = re.compile(r"^\s*#\s*(if|ifdef|ifndef|elif)\b", re.M)
+TARGET = re.compile(r"\b(add_(?:parallel_)?library|add_executable|scree_(?:parallel_)?test|scree_parallel_target)"
+                    r"\s*\(\s*([^\s()]+)([^)]*)\)")
+
+
+class Tree:
+    def __init__(self, root):
+        self.root = Path(root)
+        files = sorted(f for folder in FOLDERS for f in (self.root / folder).rglob("*.[ch]pp"))
+        self.text = {f.relative_to(self.root).as_posix(): f.read_text() for f in files}
+        self.includes = {name: INCLUDE.findall(text) for name, text in self.text.items()}
+        self.reach = {}
+
+    def reaches_thrust(self, name):
+        """Whether a file includes one of the Thrust headers, itself or through others."""
+        if name not in self.reach:
+            self.reach[name] = name in THRUST_HEADERS  # also what ends a cycle of includes
+            self.reach[name] |= any(self.reaches_thrust(to) for _, to in self.includes.get(name, []))
+        return self.reach[name]
+
+    def sources_by_kind(self):
+        """The sources that the CMake files give to parallel targets, and those that they give to plain ones."""
+        parallel, plain = set(), set()
+        for lists in sorted(f for folder in FOLDERS for f in (self.root / folder).rglob("CMakeLists.txt")):
+            targets = TARGET.findall(re.sub(r"#.*", "", lists.read_text()))
+            made_parallel = {name for command, name, _ in targets if command == "scree_parallel_target"}
+            for command, name, arguments in targets:
+                kind = parallel if "parallel" in command or name in made_parallel else plain
+                for source in re.findall(r"(?<=\s)[\w./-]+\.cpp", arguments):
+                    kind.add((lists.parent / source).resolve().relative_to(self.root.resolve()).as_posix())
+        return parallel, plain
+
+    def breaches(self):
+        yield from self.bad_arrows()
+        yield from self.bad_libraries()
+        for name, text in self.text.items():
+            if not name.startswith("core/space") and (found := CONDITIONAL.search(text)):
+                yield f"{name}: #{found[1]}: preprocessor conditionals stand in core/space* alone"
+        parallel, plain = self.sources_by_kind()
+        for name in self.text:
+            if name.endswith(".cpp") and self.reaches_thrust(name) and (name in plain or name not in parallel):
+                yield f"{name} reaches core/parallel.hpp: its target must be parallel (add_parallel_library)"
+
+    def bad_arrows(self):
+        for name, includes in self.includes.items():
+            allowed = ARROWS[row] if (row := max(filter(name.startswith, ARROWS), key=len, default="")) else []
+            if not row:
+                yield f"{name}: no row of ARROWS says what it may include"
+            for mark, to in includes:
+                if mark == '"' and "/" in to and not any(map(to.startswith, allowed)):
+                    yield f'{name} includes "{to}": not along an arrow'
+                if mark == '"' and (Path(name).parent / to).as_posix() in self.text:
+                    yield f'{name} includes "{to}": write the path from the root'
+                if THRUST.match(to) and name not in THRUST_HEADERS:
+                    yield f"{name} includes <{to}>: only {' and '.join(THRUST_HEADERS)} do"
+
+    def bad_libraries(self):
+        for library, pattern in LIBRARIES.items():
+            users = [name for name, includes in self.includes.items() if not name.startswith(("tests/", "bench/"))
+                     and any(re.match(pattern, to) for _, to in includes)]
+            if len(users) > 2:
+                yield f"{library} is included in {len(users)} files, two at most: {', '.join(users)}"
+
+
+def self_test():
+    """Each small tree breaks one rule, and the words show that it is that rule which refuses it."""
+    lib = {"core/CMakeLists.txt": "add_library(a core.cpp)"}
+    trees = [
+        ("not along an arrow", {"core/a.hpp": '#include "sim/simulation.hpp"'}),
+        ("not along an arrow", {"broadphase/a.cpp": '#include "narrowphase/contact.hpp"'}),
+        ("not along an arrow", {"render/a.cpp": '#include "sim/scene/scene.hpp"'}),
+        ("not along an arrow", {"sim/dynamics/a.cpp": '  #  include "sim/record/metrics.hpp"'}),
+        ("not along an arrow", {"sim/scene/a.hpp": '#include "narrowphase/narrow_phase.hpp"'}),
+        ("the path from the root", {"core/a.hpp": '#include "b.hpp"', "core/b.hpp": ""}),
+        ("no row of ARROWS", {"sim/other.cpp": ""}),
+        ("<thrust/sort.h>", {"broadphase/a.cpp": "#include <thrust/sort.h>"}),
+        ("yaml-cpp is included in 3", {f"sim/scene/{n}.cpp": "#include <yaml-cpp/yaml.h>" for n in "abc"}),
+        ("#ifdef", {"render/a.cpp": "int x;\n# ifdef NDEBUG\n"}),
+        ("must be parallel", {"core/core.cpp": '#include "core/a.hpp"', "core/a.hpp": '#include "core/b.hpp"',
+                              "core/b.hpp": '#include "core/parallel.hpp"', **lib}),
+        ("must be parallel", {"core/lost.cpp": '#include "core/parallel.hpp"', **lib}),
+        ("", {"core/core.cpp": '#include "core/parallel.hpp"\n#include <vector>',
+              "core/space.cpp": "#if X\n#endif", "tests/a.cpp": '#include "sim/cli/run.hpp"',
+              "core/CMakeLists.txt": "add_library(a ${D}/made.cpp core.cpp) # b.cpp\nscree_parallel_target(a)\nf(a)"}),
+    ]
+    for expected, files in trees:
+        with tempfile.TemporaryDirectory() as root:
+            for name, text in files.items():
+                (Path(root) / name).parent.mkdir(parents=True, exist_ok=True)
+                (Path(root) / name).write_text(text)
+            found = "\n".join(Tree(root).breaches())
+            if found.count("\n") or (expected not in found if expected else found):
+                sys.exit(f"check_arrows.py --self-test: expected {expected!r} and got {found!r}")
+
+
+if __name__ == "__main__":
+    tree = Tree(Path(__file__).resolve().parent.parent)
+    if "--parallel-headers" in sys.argv:
+        print("\n".join(name for name in tree.text if name.endswith(".hpp") and tree.reaches_thrust(name)))
+        sys.exit()
+    if "--self-test" in sys.argv:
+        self_test()
+    breaches = list(tree.breaches())
+    print("\n".join(breaches), end="\n" if breaches else "")
+    sys.exit(bool(breaches))

@@ -1,0 +1,37 @@
+#include "sim/cli/check_table.hpp"
+
+#include <fmt/format.h>
+
+#include <array>
+
+namespace scree::cli {
+
+namespace {
+
+/// In the order of Verdict.
+constexpr std::array<const char*, 3> verdict_words = {"pass", "FAIL", "ERROR"};
+constexpr const char* row = "  {:<5}  {:<48}  {:>16}  {:>24}  {:>10}  {:>10}";
+
+}  // namespace
+
+std::string check_header() {
+  return fmt::format(row, "", "check", "measured", "expected", "tolerance", "margin");
+}
+
+std::vector<std::string> check_lines(const std::vector<CheckResult>& checks) {
+  std::vector<std::string> lines;
+  for (const CheckResult& check : checks) {
+    const char* verdict = verdict_words[static_cast<std::size_t>(check.verdict)];
+    if (check.verdict == Verdict::not_evaluated) {
+      lines.push_back(fmt::format("  {:<5}  {:<48}  {}", verdict, check.check, check.problem));
+      continue;
+    }
+    lines.push_back(fmt::format(row, verdict, check.check, fmt::format("{:.10g}", check.measured),
+                                check.expected,
+                                check.tolerance ? fmt::format("{:.3g}", *check.tolerance) : "-",
+                                fmt::format("{:.3g}", check.margin)));
+  }
+  return lines;
+}
+
+}  // namespace scree::cli

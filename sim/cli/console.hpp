@@ -1,0 +1,48 @@
+// What a run says: to the terminal, and as plain lines to log.txt.
+#pragma once
+
+#include "sim/record/files.hpp"
+
+#include <chrono>
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace scree::cli {
+
+class Console {
+ public:
+  explicit Console(const std::filesystem::path& log);
+
+  void say(std::string_view line);
+  /// To stderr, and kept for the manifest.
+  void warn(std::string_view line);
+  /// What ended the run, to stderr.
+  void error(std::string_view line);
+  const std::vector<std::string>& warnings() const { return warnings_; }
+
+  /// Whether enough wall time has passed since the last progress line for another.
+  bool wants_progress() const;
+  /// A line that the next one replaces on a terminal; elsewhere a line like any other.
+  void progress(std::string_view line);
+
+  /// The log is complete.
+  void close();
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  void clear_progress();
+  void complain(std::string_view line);
+
+  AtomicFile log_;
+  bool terminal_;
+  bool showing_progress_ = false;
+  Clock::time_point last_progress_ = Clock::now();
+  std::vector<std::string> warnings_;
+};
+
+/// An error that ends the program, to stderr.
+void print_error(std::string_view message);
+
+}  // namespace scree::cli

@@ -1,0 +1,136 @@
+// The command line: arguments to commands, errors to exit statuses.
+#include "core/error.hpp"
+#include "sim/cli/commands.hpp"
+#include "sim/cli/console.hpp"
+#include "sim/record/outcome.hpp"
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include <exception>
+#include <functional>
+#include <map>
+#include <new>
+
+namespace {
+
+using namespace scree;
+using namespace scree::cli;
+
+/// One command's options, and what it does once they are known.
+using Command = std::function<int()>;
+
+void add_overrides(CLI::App& command, std::vector<Override>& overrides) {
+  const auto take = [&overrides](const std::vector<std::string>& settings) {
+    for (const std::string& setting : settings) {
+      const std::size_t equals = setting.find('=');
+      if (equals == 0 || equals == std::string::npos)
+        throw CLI::ValidationError("--set", setting + ": not KEY=VALUE");
+      overrides.push_back({setting.substr(0, equals), setting.substr(equals + 1)});
+    }
+    return true;
+  };
+  command
+      .add_option("--set", CLI::callback_t(take), "Set any key of the scene, e.g. bodies[2].velocity[0]=3")
+      ->type_name("KEY=VALUE")
+      ->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+}
+
+void add_simulation(CLI::App& command, SimulationOptions& options, const char* threads) {
+  static const std::map<std::string, SpaceChoice> spaces = {
+      {"auto", SpaceChoice::automatic}, {"host", SpaceChoice::host}, {"cuda", SpaceChoice::cuda}};
+  command.add_option("--device", options.space, "Where to run: auto, host or cuda")
+      ->transform(CLI::Transformer(spaces))
+      ->type_name("DEVICE");
+  command.add_option("--threads", options.threads, threads)->check(CLI::PositiveNumber)->type_name("N");
+}
+
+CLI::App* add_run(CLI::App& app, RunArguments& arguments) {
+  CLI::App* command = app.add_subcommand("run", "Run a scene; writes output/NAME/");
+  command->add_option("scene", arguments.scene, "Scene file")->required()->type_name("SCENE");
+  command->add_option("-o,--output", arguments.output, "Run folder instead of output/NAME")->type_name("DIR");
+  add_overrides(*command, arguments.overrides);
+  add_simulation(*command, arguments.simulation,
+                 "Threads to use (default: all cores); never changes the result");
+  command->add_option("--until", arguments.until, "Stop at this time (s) instead of the scene's end")
+      ->check(CLI::NonNegativeNumber)
+      ->type_name("T");
+  command->add_flag("!--no-render", arguments.draw, "Draw nothing");
+  command->add_flag("--overwrite", arguments.overwrite, "Replace an earlier run in the folder");
+  command->add_flag("--resume", arguments.resume, "Continue from a checkpoint (not in this version)");
+  return command;
+}
+
+CLI::App* add_plan(CLI::App& app, PlanArguments& arguments, bool& schema, bool& reference) {
+  CLI::App* command =
+      app.add_subcommand("plan", "Say what a scene will model and what it needs; runs nothing");
+  CLI::Option* scene = command->add_option("scene", arguments.scene, "Scene file")->type_name("SCENE");
+  add_overrides(*command, arguments.overrides);
+  CLI::Option* schema_flag =
+      command->add_flag("--schema", schema, "Print the JSON Schema of the scene language");
+  CLI::Option* reference_flag =
+      command->add_flag("--reference", reference, "Print the reference of the scene language");
+  command->final_callback([=] {
+    if (scene->count() + schema_flag->count() + reference_flag->count() != 1) {
+      throw CLI::RequiredError("one of SCENE, --schema, --reference");
+    }
+  });
+  return command;
+}
+
+CLI::App* add_verify(CLI::App& app, VerifyArguments& arguments) {
+  CLI::App* command = app.add_subcommand("verify", "Run every scene that has checks; writes no run folder");
+  command->add_option("paths", arguments.paths, "Scene files, or folders to search")
+      ->required()
+      ->type_name("PATH");
+  add_overrides(*command, arguments.overrides);
+  add_simulation(*command, arguments.simulation,
+                 "Threads for each scene (default: 1, and as many scenes as cores)");
+  command->add_option("--json", arguments.json, "Write the table there too")->type_name("FILE");
+  CLI::Option* label =
+      command->add_option("--label", arguments.label, "Only scenes with this label")->type_name("LABEL");
+  command->add_flag("--all", arguments.all, "Scenes labelled long too")->excludes(label);
+  return command;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app(
+      "scree simulates rigid particles, spheres and boxes, from a YAML scene to pictures and numbers.",
+      "scree");
+  app.footer("Exit status: 0 done; 1 a check failed; 2 bad input; 3 the run failed; 130 interrupted.");
+  app.require_subcommand(1);
+
+  RunArguments run_arguments;
+  PlanArguments plan_arguments;
+  VerifyArguments verify_arguments;
+  bool schema = false, reference = false;
+  const CLI::App* run_command = add_run(app, run_arguments);
+  const CLI::App* plan_command = add_plan(app, plan_arguments, schema, reference);
+  const CLI::App* verify_command = add_verify(app, verify_arguments);
+  app.add_subcommand("info", "Say what this program is and what it finds on this machine");
+
+  try {
+    app.parse(argc, argv);
+    if (run_command->parsed()) return run(run_arguments);
+    if (verify_command->parsed()) return verify(verify_arguments);
+    if (plan_command->parsed())
+      return schema ? print_schema() : reference ? print_reference() : plan(plan_arguments);
+    return info();
+  } catch (const CLI::ParseError& error) {
+    if (error.get_exit_code() == 0) return app.exit(error);  // --help
+    print_error(fmt::format("{}; see scree --help", error.what()));
+    return status_bad_input;
+  } catch (const InputError& error) {
+    print_error(error.what());
+    return status_bad_input;
+  } catch (const std::bad_alloc&) {
+    print_error("out of memory; `scree plan` says what a scene needs");
+    return status_run_failed;
+  } catch (const std::exception& error) {
+    print_error(error.what());
+    return status_run_failed;
+  }
+}

@@ -1,0 +1,45 @@
+#include "sim/cli/recorder.hpp"
+
+#include <algorithm>
+
+namespace scree::cli {
+
+Probe probe_of(Simulation& simulation) {
+  return {.observe = [&simulation]() -> const Observation& { return simulation.observe(); },
+          .body = [&simulation](std::int32_t id) { return simulation.body(id); }};
+}
+
+Recorder::Recorder(const Scene& scene, const RunFolder& folder, Console& console, bool draw)
+    : checks_(scene, TimeGrid(scene.time)),
+      rows_due_(TimeGrid(scene.time), scene.record.metrics_every),
+      metrics_(scene, folder / "metrics.csv"),
+      timing_(folder / "timing.csv") {
+  if (draw) film_.emplace(scene, folder, console);
+}
+
+void Recorder::write_rows(Simulation& simulation) {
+  const Probe probe = probe_of(simulation);
+  metrics_.write_row(probe);
+  timing_.write_rows(simulation.time());
+  newest_ = probe.observe();
+  last_row_ = newest_.step;
+  worst_penetration_ = std::max(worst_penetration_, newest_.penetration.max);
+}
+
+void Recorder::record(Simulation& simulation) {
+  checks_.record(simulation.steps(), probe_of(simulation));
+  if (rows_due_.due(simulation.steps()) > 0) write_rows(simulation);
+  if (film_) film_->record(simulation);
+}
+
+void Recorder::record_last(Simulation& simulation) {
+  if (last_row_ != simulation.steps()) write_rows(simulation);
+}
+
+void Recorder::finish() {
+  metrics_.commit();
+  timing_.commit();
+  if (film_) film_->finish();
+}
+
+}  // namespace scree::cli

@@ -1,0 +1,52 @@
+// Everything that a run writes as it goes: metrics, timing and frames at their cadences, and the checks.
+#pragma once
+
+#include "sim/cli/console.hpp"
+#include "sim/cli/film.hpp"
+#include "sim/record/checks.hpp"
+#include "sim/record/metrics.hpp"
+#include "sim/record/run_folder.hpp"
+#include "sim/record/time_grid.hpp"
+#include "sim/simulation.hpp"
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+namespace scree::cli {
+
+/// The present state of a simulation, as checks and metrics ask for it.
+Probe probe_of(Simulation& simulation);
+
+class Recorder {
+ public:
+  /// Starts the files in the folder. `draw`: whether to make frames.
+  Recorder(const Scene& scene, const RunFolder& folder, Console& console, bool draw);
+
+  /// What is due at the present state. To be called at t = 0 and after every step.
+  void record(Simulation& simulation);
+  /// A row for the present state, unless it has one.
+  void record_last(Simulation& simulation);
+  /// Every file gets its final name, and the frames become a movie.
+  void finish();
+
+  /// The newest observation made: at most one row of the metrics old.
+  const Observation& newest() const { return newest_; }
+  double worst_penetration() const { return worst_penetration_; }  ///< of all rows so far (m)
+  std::vector<CheckResult> check_results() const { return checks_.results(newest_.energy_scale); }
+  const Film* film() const { return film_ ? &*film_ : nullptr; }
+
+ private:
+  void write_rows(Simulation& simulation);
+
+  Checks checks_;
+  Cadence rows_due_;
+  MetricsFile metrics_;
+  TimingFile timing_;
+  std::optional<Film> film_;
+  Observation newest_;
+  std::int64_t last_row_ = -1;  ///< its step
+  double worst_penetration_ = 0;
+};
+
+}  // namespace scree::cli

@@ -1,0 +1,101 @@
+#include "sim/dynamics/correction.hpp"
+
+#include "core/parallel.hpp"
+#include "core/tolerances.hpp"
+#include "sim/dynamics/colored.hpp"
+#include "sim/dynamics/rotation.hpp"
+
+namespace scree {
+
+struct PositionCorrector::Stage {
+  BodyView bodies;
+  ConstView<SolverBody> solver;
+  ConstView<Contact> contacts;
+  ConstView<ContactRow> rows;
+  View<Displacement> displacement;
+  double step;
+
+  /// Gap at the end of the substep, to first order in what moved since the midpoint.
+  SCREE_HD double gap_at_end(const Contact& c, const ContactRow& row) const {
+    const Vec3 u = row.relative_velocity(solver[c.i], solver[c.j]);
+    const Displacement& i = displacement[c.i];
+    const Displacement& j = displacement[c.j];
+    const Vec3 moved =
+        j.linear + j.angular.cross(row.arm_j) - i.linear - i.angular.cross(row.arm_i) + 0.5 * step * u;
+    return row.gap + c.normal.dot(moved);
+  }
+
+  SCREE_HD void move(std::int32_t body, const Vec3& arm, const Vec3& impulse) const {
+    const SolverBody& b = solver[body];
+    if (!b.is_free()) return;
+    displacement[body].linear += b.inverse_mass * impulse;
+    displacement[body].angular += b.inverse_inertia * arm.cross(impulse);
+  }
+};
+
+struct PositionCorrector::Sweep {
+  Stage stage;
+  std::int64_t first;
+  SCREE_HD void operator()(std::int64_t k) const {
+    const Contact& c = stage.contacts[first + k];
+    const double largest =
+        tolerance::correction_cap * fmin(smallest_size(stage.bodies.shape[c.i], stage.bodies.size[c.i]),
+                                         smallest_size(stage.bodies.shape[c.j], stage.bodies.size[c.j]));
+    for (int p = 0; p < c.count; ++p) {
+      const ContactRow& row = stage.rows[(first + k) * Manifold::max_points + p];
+      const double overlap = -stage.gap_at_end(c, row);
+      if (overlap <= 0) continue;
+      const double part = fmin(tolerance::correction_share * overlap, largest);
+      const Vec3 impulse = (part * row.normal_mass) * c.normal;
+      stage.move(c.i, row.arm_i, -impulse);
+      stage.move(c.j, row.arm_j, impulse);
+    }
+  }
+};
+
+/// Moves a body and says what that changed, at velocities that stay.
+struct PositionCorrector::Apply {
+  Stage stage;
+  Vec3 gravity;
+  bool rotation;
+  SCREE_HD Ledger operator()(std::int64_t k) const {
+    const Displacement& d = stage.displacement[k];
+    if (!stage.solver[k].is_free()) return {};
+    const double mass = 1.0 / stage.solver[k].inverse_mass;
+    const Vec3& spin = stage.bodies.spin[k];
+    const Vec3& inverse_inertia = stage.bodies.inverse_inertia[k];
+    Quat& q = stage.bodies.orientation[k];
+    Ledger ledger;
+    stage.bodies.position[k] += d.linear;
+    ledger.correction = mass * gravity.dot(d.linear);
+    ledger.angular_correction = mass * d.linear.cross(stage.bodies.velocity[k]);
+    if (rotation && !d.angular.isZero(0)) {
+      const double energy = rotational_energy(q, spin, inverse_inertia);
+      const Vec3 momentum = spin_momentum(q, spin, inverse_inertia);
+      q = (rotation_of(d.angular) * q).normalized();
+      ledger.correction -= rotational_energy(q, spin, inverse_inertia) - energy;
+      ledger.angular_correction += spin_momentum(q, spin, inverse_inertia) - momentum;
+    }
+    return ledger;
+  }
+};
+
+Ledger PositionCorrector::correct(double step, const ResponseParameters& parameters, BodyView bodies,
+                                  const Array<SolverBody, Host>& solver, ContactSet& set) {
+  displacement_.resize(solver.size());
+  if (set.contacts.empty()) return {};
+  parallel::fill("correction.reset", displacement_, Displacement{});
+  const Stage stage{bodies,
+                    solver.view(),
+                    std::as_const(set.contacts).view(),
+                    std::as_const(set.rows).view(),
+                    displacement_.view(),
+                    step};
+  for_each_color("correction.sweep", set.coloring, [&stage](std::int64_t first) {
+    return Sweep{stage, first};
+  });
+  return parallel::sum<Ledger, Host>("correction.apply", solver.size(),
+                                     Apply{stage, parameters.gravity, parameters.rotation});
+}
+
+}  // namespace scree

@@ -1,0 +1,48 @@
+// Free motion: the two half steps of Moreau's midpoint rule.
+#pragma once
+
+#include "core/array.hpp"
+#include "core/bodies.hpp"
+#include "sim/dynamics/state.hpp"
+
+namespace scree {
+
+/// Moves every body by its velocity and spin for the time dt (s), in place. Returns the drift of the
+/// rotational energy of the free bodies (J), which the ledger books as integration.
+double advance(Bodies<Host>& bodies, double dt, const ResponseParameters& parameters);
+
+/// How far contacts of each body must reach so that nothing it can meet within dt is missed (m):
+/// its travel, and a slack relative to its size.
+void contact_margins(const Bodies<Host>& bodies, double dt, const Vec3& gravity, Array<double, Host>& margin);
+
+/// Velocities and inverse masses at the present orientation, as the solver wants them.
+void load_solver_bodies(const Bodies<Host>& bodies, Array<SolverBody, Host>& solver);
+
+/// Sums over the free bodies.
+struct Totals {
+  double kinetic_linear = 0;
+  double kinetic_angular = 0;
+  double potential = 0;  ///< about the reference point
+  double mass = 0;
+  Vec3 momentum = Vec3::Zero();
+  Vec3 angular_momentum = Vec3::Zero();  ///< about the origin
+  double speed_squared = 0;
+  std::int64_t count = 0;
+
+  SCREE_HD friend Totals operator+(const Totals& a, const Totals& b) {
+    return {a.kinetic_linear + b.kinetic_linear,
+            a.kinetic_angular + b.kinetic_angular,
+            a.potential + b.potential,
+            a.mass + b.mass,
+            a.momentum + b.momentum,
+            a.angular_momentum + b.angular_momentum,
+            a.speed_squared + b.speed_squared,
+            a.count + b.count};
+  }
+};
+
+/// Potential energy is -m g.(x - reference).
+Totals totals_of(const Bodies<Host>& bodies, const Vec3& gravity, const Vec3& reference);
+double largest_speed(const Bodies<Host>& bodies);
+
+}  // namespace scree

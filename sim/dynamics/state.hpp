@@ -1,0 +1,55 @@
+// What the stages of one substep share.
+#pragma once
+
+#include "core/array.hpp"
+#include "core/bodies.hpp"
+#include "sim/dynamics/contact_row.hpp"
+#include "sim/observation.hpp"
+
+#include <cstdint>
+
+namespace scree {
+
+/// The settings of the response, resolved.
+struct ResponseParameters {
+  Vec3 gravity = Vec3::Zero();  ///< m/s^2
+  bool friction = true;
+  bool restitution = true;
+  bool rotation = true;
+  bool gyroscopic = true;
+  bool warm_start = true;
+  int iterations = 100;              ///< most sweeps
+  double tolerance = 1e-7;           ///< of the impulses' change in one sweep, relative
+  double restitution_threshold = 0;  ///< m/s
+};
+
+/// Counts of what happened in one substep; loops that hit their bound are counted, never silent.
+struct ResponseStats {
+  std::int64_t sweeps = 0;
+  std::int64_t impacts = 0;
+  std::int64_t unconverged = 0;  ///< substeps that used all sweeps
+  std::int64_t unfinished_impacts =
+      0;  ///< substeps whose chains of impacts hit the bound; resolved with e = 0
+
+  friend ResponseStats operator+(const ResponseStats& a, const ResponseStats& b) {
+    return {a.sweeps + b.sweeps, a.impacts + b.impacts, a.unconverged + b.unconverged,
+            a.unfinished_impacts + b.unfinished_impacts};
+  }
+};
+
+/// Energy that one impulse p on j (and -p on i) at a common point moves, from the relative velocities before
+/// and after: dE = p.(u- + u+)/2 exactly, when u is taken at one configuration (Moreau's midpoint). Its
+/// normal part is restitution's, its tangential part friction's; what a prescribed partner gives is work.
+SCREE_HD inline Ledger account(const Vec3& impulse, const Vec3& normal, const Vec3& before, const Vec3& after,
+                               const Vec3& driver_velocity, double driver_sign) {
+  const Vec3 mean = 0.5 * (before + after);
+  const double pn = impulse.dot(normal);
+  const double normal_part = pn * mean.dot(normal);
+  Ledger ledger;
+  ledger.restitution = -normal_part;
+  ledger.friction = -(impulse.dot(mean) - normal_part);
+  ledger.work = driver_sign * impulse.dot(driver_velocity);
+  return ledger;
+}
+
+}  // namespace scree

@@ -1,0 +1,89 @@
+#include "sim/measurement.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+namespace scree {
+
+void EnergyBaseline::start(const Totals& totals, double least_scale) {
+  first_potential_ = totals.potential;
+  first_total_ = totals.kinetic_linear + totals.kinetic_angular + totals.potential;
+  scale_ = least_scale;
+  extend(totals);
+}
+
+void EnergyBaseline::extend(const Totals& totals) {
+  const double kinetic = totals.kinetic_linear + totals.kinetic_angular;
+  last_total_ = kinetic + totals.potential;
+  scale_ = std::max(scale_, kinetic + std::abs(totals.potential - first_potential_));
+}
+
+bool EnergyBaseline::is_finite() const { return std::isfinite(last_total_); }
+
+void measure_totals(const Totals& totals, const EnergyBaseline& baseline, const Vec3& gravity,
+                    const Vec3& reference, Observation& out) {
+  out.kinetic_linear = totals.kinetic_linear;
+  out.kinetic_angular = totals.kinetic_angular;
+  out.potential = totals.potential - totals.mass * gravity.dot(reference);
+  out.momentum = totals.momentum;
+  out.angular_momentum = totals.angular_momentum;
+  out.speed_rms =
+      totals.count > 0 ? std::sqrt(totals.speed_squared / static_cast<double>(totals.count)) : 0.0;
+  out.energy_scale = baseline.scale();
+  const Ledger& l = out.ledger;
+  const double change =
+      totals.kinetic_linear + totals.kinetic_angular + totals.potential - baseline.first_total();
+  const double explained = l.work + l.integration - l.restitution - l.friction - l.correction;
+  out.unexplained = out.energy_scale > 0 ? (change - explained) / out.energy_scale : 0.0;
+}
+
+void measure_contacts(const ContactSet& contacts, std::int64_t free_bodies, Observation& out) {
+  out.contacts = 0;
+  double gaps = 0;
+  std::int64_t ends = 0;
+  for (std::int64_t c = 0; c < contacts.contacts.size(); ++c) {
+    const Contact& contact = contacts.contacts.view()[c];
+    bool loaded = false;
+    for (int k = 0; k < contact.count; ++k) {
+      const ContactRow& row = contacts.rows.view()[c * Manifold::max_points + k];
+      if (row.impulse.isZero(0)) continue;
+      ++out.contacts;
+      gaps += std::abs(row.gap);
+      loaded = true;
+    }
+    if (loaded) ends += contact.free_ends;
+  }
+  out.gap_mean = out.contacts > 0 ? gaps / static_cast<double>(out.contacts) : 0.0;
+  out.coordination_mean =
+      free_bodies > 0 ? static_cast<double>(ends) / static_cast<double>(free_bodies) : 0.0;
+}
+
+void measure_penetration(ConstView<Manifold> manifolds, const ConstBodyView& bodies, Penetration& out) {
+  out = {};
+  std::vector<double> depths;
+  double sum = 0;
+  double relative_sum = 0;
+  for (const Manifold& m : manifolds) {
+    double depth = 0;
+    for (int k = 0; k < m.count; ++k) depth = std::max(depth, -m.points[k].gap);
+    if (depth <= 0) continue;
+    const double relative = depth / std::min(smallest_size(bodies.shape[m.i], bodies.size[m.i]),
+                                             smallest_size(bodies.shape[m.j], bodies.size[m.j]));
+    depths.push_back(depth);
+    sum += depth;
+    relative_sum += relative;
+    out.relative_max = std::max(out.relative_max, relative);
+  }
+  if (depths.empty()) return;
+  const auto n = static_cast<double>(depths.size());
+  // The smallest depth that at least 99 % of the pairs do not exceed.
+  const auto rank = static_cast<std::ptrdiff_t>(std::ceil(0.99 * n)) - 1;
+  std::nth_element(depths.begin(), depths.begin() + rank, depths.end());
+  out.p99 = depths[static_cast<std::size_t>(rank)];
+  out.max = *std::max_element(depths.begin(), depths.end());
+  out.mean = sum / n;
+  out.relative_mean = relative_sum / n;
+}
+
+}  // namespace scree

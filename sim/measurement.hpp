@@ -1,0 +1,41 @@
+// From the state to the quantities of an Observation.
+#pragma once
+
+#include "core/bodies.hpp"
+#include "narrowphase/contact.hpp"
+#include "sim/dynamics/contact_set.hpp"
+#include "sim/dynamics/motion.hpp"
+#include "sim/observation.hpp"
+
+namespace scree {
+
+/// What the energies of a run are compared with: their values at t = 0, and the largest K + |U - U0| since,
+/// but at least what lifts every free body by its own size. A scene in which nothing moves would else be
+/// measured against the rounding of its potential energy.
+class EnergyBaseline {
+ public:
+  void start(const Totals& totals, double least_scale);
+  void extend(const Totals& totals);
+  bool is_finite() const;
+  double scale() const { return scale_; }
+  double first_total() const { return first_total_; }
+
+ private:
+  double first_total_ = 0;
+  double first_potential_ = 0;
+  double last_total_ = 0;
+  double scale_ = 0;
+};
+
+/// Energies, momenta, speeds, and what the ledger (already in `out`) does not explain. `totals` are about
+/// `reference`; the potential energy reported is about the origin.
+void measure_totals(const Totals& totals, const EnergyBaseline& baseline, const Vec3& gravity,
+                    const Vec3& reference, Observation& out);
+
+/// Counts and gaps of the contacts that carried an impulse in the last substep.
+void measure_contacts(const ContactSet& contacts, std::int64_t free_bodies, Observation& out);
+
+/// Penetration over all manifolds with a negative gap: per pair its deepest point.
+void measure_penetration(ConstView<Manifold> manifolds, const ConstBodyView& bodies, Penetration& out);
+
+}  // namespace scree

@@ -1,0 +1,27 @@
+// What a scene needs to have modelled, and what cannot matter in it.
+#pragma once
+
+#include "sim/scene/scene.hpp"
+
+#include <string>
+
+namespace scree {
+
+/// One feature of the model: computed or left out, and why.
+struct Feature {
+  bool on = true;
+  std::string reason;
+};
+
+/// Leaving a feature out where its reason holds changes no result.
+struct ModelPlan {
+  Feature friction;                  ///< tangential impulses
+  Feature restitution;               ///< impacts that bounce
+  Feature rotation;                  ///< orientations
+  Feature gyroscopic;                ///< free rotation of bodies with unequal moments of inertia
+  double restitution_threshold = 0;  ///< m/s; slower approaches do not bounce
+};
+
+ModelPlan plan_model(const Scene& scene);
+
+}  // namespace scree

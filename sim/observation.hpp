@@ -1,0 +1,69 @@
+// What a run knows about itself at one instant: the quantities behind the measures of the scene language.
+#pragma once
+
+#include "core/math.hpp"
+
+#include <cstdint>
+
+namespace scree {
+
+/// Named ways in which energy leaves or enters, accumulated since t = 0 (J). Each is computed from its own
+/// definition (docs/method.md), none as a remainder. Dissipated amounts count positive when energy is lost.
+struct Ledger {
+  double restitution = 0;                  ///< dissipated by normal impulses
+  double friction = 0;                     ///< dissipated by tangential impulses
+  double correction = 0;                   ///< dissipated by position correction (negative: it lifted bodies)
+  double work = 0;                         ///< done on the bodies by prescribed ones
+  double integration = 0;                  ///< drift of the free rotation
+  Vec3 angular_correction = Vec3::Zero();  ///< angular momentum added by position correction (kg m^2/s)
+
+  SCREE_HD friend Ledger operator+(const Ledger& a, const Ledger& b) {
+    return {a.restitution + b.restitution, a.friction + b.friction,
+            a.correction + b.correction,   a.work + b.work,
+            a.integration + b.integration, a.angular_correction + b.angular_correction};
+  }
+};
+
+/// Over all overlapping pairs at the end of the step, true geometry, planes included (m). `relative`: by the
+/// smaller body's size.
+struct Penetration {
+  double max = 0;
+  double mean = 0;
+  double p99 = 0;
+  double relative_max = 0;
+  double relative_mean = 0;
+};
+
+struct Observation {
+  double time = 0;
+  std::int64_t step = 0;
+  double kinetic_linear = 0;  ///< of the free bodies (J)
+  double kinetic_angular = 0;
+  double potential = 0;  ///< -sum m g.x
+  Ledger ledger;
+  double energy_scale = 0;  ///< largest K + |U - U0| so far (J)
+  double unexplained = 0;   ///< energy change that the ledger does not explain, over energy_scale
+  Vec3 momentum = Vec3::Zero();
+  Vec3 angular_momentum = Vec3::Zero();  ///< about the origin
+  Penetration penetration;
+  double gap_mean = 0;        ///< mean |gap| of loaded contact points (m)
+  std::int64_t contacts = 0;  ///< contact points that carried an impulse in the last step
+  std::int64_t pairs = 0;     ///< size of the PCS
+  std::int64_t bodies = 0;
+  double speed_max = 0;  ///< of the free bodies (m/s)
+  double speed_rms = 0;
+  double coordination_mean = 0;  ///< loaded contacts per free body, counted for each of its two
+
+  double kinetic() const { return kinetic_linear + kinetic_angular; }
+  double total() const { return kinetic() + potential; }
+};
+
+/// One body at one instant.
+struct BodyState {
+  Vec3 position, velocity, spin;
+  Quat orientation, start_orientation;
+  Vec3 acceleration;  ///< change of velocity over the last step / step
+  Vec3 force;         ///< contact impulse on it over the last step / step (N)
+};
+
+}  // namespace scree

@@ -1,0 +1,68 @@
+#include "sim/pair_finder.hpp"
+
+#include "broadphase/bounds.hpp"
+#include "core/error.hpp"
+
+#include <type_traits>
+#include <utility>
+
+namespace scree {
+
+namespace {
+
+template <class Space>
+class PairFinderIn final : public PairFinder {
+ public:
+  PairFinderIn(const BroadPhaseSettings& settings, const Vec3& origin)
+      : broad_phase_(make_broad_phase<Space>(settings)), origin_(origin) {}
+
+  ConstView<Pair> find(const Bodies<Host>& bodies, const Array<double, Host>& margin) override {
+    host_bounds_.resize(bodies.count());
+    compute_bounds<Host>(view_of(bodies), margin.view(), origin_, host_bounds_.view());
+    if constexpr (std::is_same_v<Space, Host>) {
+      return broad_phase_->find(std::as_const(host_bounds_).view(), bodies.mobility.view());
+    } else {
+      copy(bounds_, host_bounds_);
+      copy(mobility_, bodies.mobility);
+      const ConstView<Pair> found =
+          broad_phase_->find(std::as_const(bounds_).view(), std::as_const(mobility_).view());
+      pairs_.resize(found.size());
+      copy_bytes<Host, Space>(pairs_.data(), found.data(),
+                              static_cast<std::size_t>(found.size()) * sizeof(Pair));
+      return std::as_const(pairs_).view();
+    }
+  }
+
+  const char* space_name() const override { return Space::name; }
+
+ private:
+  std::unique_ptr<BroadPhase<Space>> broad_phase_;
+  Vec3 origin_;
+  Array<Aabb, Host> host_bounds_;
+  // On their way to the space and back.
+  Array<Aabb, Space> bounds_;
+  Array<Mobility, Space> mobility_;
+  Array<Pair, Host> pairs_;
+};
+
+/// Picks Device only where the build has it: the last of the spaces is Device there, Host elsewhere.
+template <class First, class... Rest>
+struct Last {
+  using type = typename Last<Rest...>::type;
+};
+template <class Only>
+struct Last<Only> {
+  using type = Only;
+};
+
+}  // namespace
+
+std::unique_ptr<PairFinder> make_pair_finder(const BroadPhaseSettings& settings, bool on_device,
+                                             const Vec3& origin) {
+  if (!on_device) return std::make_unique<PairFinderIn<Host>>(settings, origin);
+  const DeviceInfo info = device_info();
+  if (!info.available) throw InputError("--device cuda: there is no GPU to run on: " + info.name);
+  return std::make_unique<PairFinderIn<Last<SCREE_SPACES>::type>>(settings, origin);
+}
+
+}  // namespace scree

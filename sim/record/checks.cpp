@@ -1,0 +1,164 @@
+#include "sim/record/checks.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+namespace scree {
+
+namespace {
+
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+
+/// In the order of Reduce.
+constexpr std::array<const char*, 7> reduce_words = {"",          "max of ",   "min of ",      "mean of ",
+                                                     "drift of ", "range of ", "crossings of "};
+
+std::string describe(const Check& check) {
+  std::string words = reduce_words[static_cast<std::size_t>(check.reduce)] + check.measure;
+  if (check.reduce == Reduce::crossings) words += fmt::format(" through {}", check.level);
+  if (check.over) return words + fmt::format(" over {} to {}", (*check.over)[0], (*check.over)[1]);
+  return words + (check.at ? fmt::format(" at {}", *check.at) : " at the end");
+}
+
+std::string describe_expectation(const Check& check) {
+  std::string words;
+  const auto add = [&words](const std::string& part) { words += (words.empty() ? "" : ", ") + part; };
+  if (check.expect) add(fmt::format("{}", *check.expect));
+  if (check.above) add(fmt::format("above {}", *check.above));
+  if (check.below) add(fmt::format("below {}", *check.below));
+  return words;
+}
+
+bool is_energy(const Measure& measure) {
+  const auto& table = measure_table();
+  return std::ranges::find(table, measure.kind, &MeasureInfo::kind)->unit == "J";
+}
+
+/// The larger of the tolerances given; none means equality to the bit.
+double allowance(const Check& check, double unit) {
+  return std::max(check.tolerance.value_or(0), check.relative.value_or(0) * unit);
+}
+
+}  // namespace
+
+double Probe::value(const Measure& measure) const {
+  const bool of_body = measure.body >= 0;
+  return evaluate(measure, of_body ? Observation{} : observe(), body);
+}
+
+void Series::add(double time, double value) {
+  if (!std::isfinite(value)) {
+    if (!bad_time_) bad_time_ = time;
+    return;
+  }
+  if (count_++ == 0) first_ = min_ = max_ = value;
+  latest_ = value;
+  min_ = std::min(min_, value);
+  max_ = std::max(max_, value);
+  sum_ += value;
+  // A value on the level is on neither side: touching it and turning back is no crossing.
+  const int side = (value > level_) - (value < level_);
+  if (side != 0 && side_ != 0 && side != side_) ++crossings_;
+  if (side != 0) side_ = side;
+}
+
+double Series::result() const {
+  if (count_ == 0) return nan;
+  switch (reduce_) {
+    case Reduce::none:
+      break;
+    case Reduce::max:
+      return max_;
+    case Reduce::min:
+      return min_;
+    case Reduce::mean:
+      return sum_ / static_cast<double>(count_);
+    case Reduce::drift:
+      return std::max(max_ - first_, first_ - min_);
+    case Reduce::range:
+      return max_ - min_;
+    case Reduce::crossings:
+      return static_cast<double>(crossings_);
+  }
+  return latest_;
+}
+
+Checks::Checks(const Scene& scene, const TimeGrid& grid) : grid_(grid) {
+  for (const Check& check : scene.checks) {
+    const double from = check.over ? (*check.over)[0] : check.at.value_or(scene.time.end);
+    const double to = check.over ? (*check.over)[1] : from;
+    watches_.push_back({.check = check,
+                        .measure = parse_measure(check.measure, scene.body_names),
+                        .first = check.over ? grid.first_in(from) : grid.nearest(from),
+                        .last = check.over ? grid.last_in(to) : grid.nearest(to),
+                        .within_run = grid.covers(to),
+                        .series = Series(check.reduce, check.level)});
+  }
+}
+
+void Checks::record(std::int64_t step, const Probe& probe) {
+  for (Watch& watch : watches_) {
+    if (watch.first <= step && step <= watch.last) {
+      watch.series.add(grid_.time(step), probe.value(watch.measure));
+    }
+  }
+}
+
+std::vector<CheckResult> Checks::results(double energy_scale) const {
+  std::vector<CheckResult> results;
+  for (const Watch& watch : watches_) results.push_back(judge(watch, energy_scale));
+  return results;
+}
+
+CheckResult Checks::judge(const Watch& watch, double energy_scale) {
+  const Check& check = watch.check;
+  CheckResult result{.check = describe(check),
+                     .expected = describe_expectation(check),
+                     .tolerance = {},
+                     .measured = nan,
+                     .margin = nan,
+                     .verdict = Verdict::not_evaluated,
+                     .problem = {}};
+  if (!watch.within_run) {
+    result.problem = "the scene ends before that";
+  } else if (watch.first > watch.last) {
+    result.problem = "no step in that interval";
+  } else if (const auto time = watch.series.bad_time()) {
+    result.problem = fmt::format("not a finite number at {} s", *time);
+  } else if (watch.series.count() < watch.last - watch.first + 1) {
+    result.problem = "the run stopped before that";
+  }
+  if (!result.problem.empty()) return result;
+
+  // Energies have no natural zero to be relative to: they compare relative to the run's energy scale.
+  double unit = std::abs(check.expect.value_or(0));
+  result.measured = watch.series.result();
+  if (is_energy(watch.measure)) {
+    const bool in_units_of_scale = check.reduce == Reduce::drift && result.measured != 0;
+    if (in_units_of_scale) result.measured /= energy_scale;
+    unit = check.reduce == Reduce::drift ? 1 : energy_scale;
+  }
+
+  double margin = std::numeric_limits<double>::infinity();
+  bool passed = true;
+  if (check.expect) {
+    result.tolerance = allowance(check, unit);
+    margin = *result.tolerance - std::abs(result.measured - *check.expect);
+    passed = margin >= 0;
+  }
+  const auto limit = [&](double slack) {
+    margin = std::min(margin, slack);
+    passed = passed && slack > 0;
+  };
+  if (check.below) limit(*check.below - result.measured);
+  if (check.above) limit(result.measured - *check.above);
+  result.margin = margin;
+  result.verdict = passed ? Verdict::passed : Verdict::failed;
+  return result;
+}
+
+}  // namespace scree

@@ -1,0 +1,71 @@
+#include "sim/record/files.hpp"
+
+#include "core/error.hpp"
+
+#include <fmt/format.h>
+
+#include <cerrno>
+#include <cstring>
+#include <fcntl.h>
+#include <unistd.h>
+#include <utility>
+
+namespace scree {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+[[noreturn]] void fail(const char* what, const fs::path& file) {
+  throw RunError(fmt::format("cannot {} {}: {}", what, file.string(), std::strerror(errno)));
+}
+
+/// A rename is on the disk only once its folder is.
+void sync_folder(const fs::path& folder) {
+  const int descriptor = ::open(folder.c_str(), O_RDONLY | O_CLOEXEC);
+  if (descriptor < 0) fail("open", folder);
+  // Some network file systems cannot sync a folder and say EINVAL; the file itself is safe by then.
+  const bool failed = ::fsync(descriptor) != 0 && errno != EINVAL;
+  ::close(descriptor);
+  if (failed) fail("bring to the disk", folder);
+}
+
+fs::path part_of(const fs::path& file) { return fs::path(file) += ".part"; }
+
+}  // namespace
+
+AtomicFile::AtomicFile(fs::path file) : file_(std::move(file)) {
+  descriptor_ = ::open(part_of(file_).c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+  if (descriptor_ < 0) fail("create", part_of(file_));
+}
+
+AtomicFile::~AtomicFile() {
+  if (descriptor_ >= 0) ::close(descriptor_);
+}
+
+void AtomicFile::write(std::string_view text) {
+  while (!text.empty()) {
+    const ssize_t written = ::write(descriptor_, text.data(), text.size());
+    if (written < 0 && errno == EINTR) continue;
+    if (written < 0) fail("write", part_of(file_));
+    text.remove_prefix(static_cast<std::size_t>(written));
+  }
+}
+
+void AtomicFile::commit() {
+  if (::fsync(descriptor_) != 0) fail("bring to the disk", part_of(file_));
+  if (::close(std::exchange(descriptor_, -1)) != 0) fail("write", part_of(file_));
+  if (::rename(part_of(file_).c_str(), file_.c_str()) != 0) fail("rename to", file_);
+  sync_folder(file_.has_parent_path() ? file_.parent_path() : ".");
+}
+
+void write_file(const fs::path& file, std::string_view text) try {
+  AtomicFile whole(file);
+  whole.write(text);
+  whole.commit();
+} catch (const RunError&) {
+  ::unlink(part_of(file).c_str());
+  throw;
+}
+
+}  // namespace scree

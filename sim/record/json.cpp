@@ -1,0 +1,42 @@
+#include "sim/record/json.hpp"
+
+#include <array>
+#include <limits>
+
+namespace scree {
+
+namespace {
+
+/// In the order of Verdict.
+constexpr std::array<const char*, 3> verdict_words = {"passed", "failed", "not evaluated"};
+
+double number_or_nan(const Json& json) {
+  return json.is_null() ? std::numeric_limits<double>::quiet_NaN() : json.get<double>();
+}
+
+}  // namespace
+
+Json json_of(const CheckResult& result) {
+  Json json = {{"check", result.check}, {"measured", result.measured}, {"expected", result.expected}};
+  if (result.tolerance) json["tolerance"] = *result.tolerance;
+  json["margin"] = result.margin;
+  json["verdict"] = verdict_words[static_cast<std::size_t>(result.verdict)];
+  if (!result.problem.empty()) json["problem"] = result.problem;
+  return json;
+}
+
+CheckResult check_result_from(const Json& json) {
+  CheckResult result;
+  result.check = json.at("check");
+  result.expected = json.at("expected");
+  if (json.contains("tolerance")) result.tolerance = number_or_nan(json["tolerance"]);
+  result.measured = number_or_nan(json.at("measured"));
+  result.margin = number_or_nan(json.at("margin"));
+  for (std::size_t k = 0; k < verdict_words.size(); ++k) {
+    if (json.at("verdict") == verdict_words[k]) result.verdict = static_cast<Verdict>(k);
+  }
+  result.problem = json.value("problem", "");
+  return result;
+}
+
+}  // namespace scree

@@ -1,0 +1,98 @@
+#include "sim/record/manifest.hpp"
+
+#include "core/timing.hpp"
+#include "sim/record/build_info.hpp"
+#include "sim/record/json.hpp"
+
+#include <fmt/format.h>
+#include <xxhash.h>
+
+namespace scree {
+
+namespace {
+
+Json json_of(const Vec3& v) { return {v.x(), v.y(), v.z()}; }
+
+Json json_of(const Observation& o) {
+  return {{"time", o.time},
+          {"step", o.step},
+          {"energy",
+           {{"total", o.total()},
+            {"linear", o.kinetic_linear},
+            {"angular", o.kinetic_angular},
+            {"potential", o.potential},
+            {"unexplained", o.unexplained},
+            {"scale", o.energy_scale},
+            {"dissipated",
+             {{"restitution", o.ledger.restitution},
+              {"friction", o.ledger.friction},
+              {"correction", o.ledger.correction}}},
+            {"work", o.ledger.work},
+            {"integration", o.ledger.integration}}},
+          {"momentum", json_of(o.momentum)},
+          {"angular_momentum", json_of(o.angular_momentum)},
+          {"penetration",
+           {{"max", o.penetration.max},
+            {"mean", o.penetration.mean},
+            {"p99", o.penetration.p99},
+            {"relative_max", o.penetration.relative_max},
+            {"relative_mean", o.penetration.relative_mean}}},
+          {"gap_mean", o.gap_mean},
+          {"contacts", o.contacts},
+          {"pairs", o.pairs},
+          {"bodies", o.bodies},
+          {"speed", {{"max", o.speed_max}, {"rms", o.speed_rms}}},
+          {"coordination_mean", o.coordination_mean}};
+}
+
+Json machine() {
+  const MachineInfo info = machine_info();
+  Json json = {{"cpu", info.cpu}, {"cores", info.cores}};
+  const DeviceInfo gpu = device_info();
+  if (gpu.available) json["gpu"] = gpu.name;
+  return json;
+}
+
+Json stage_times() {
+  Json json = Json::object();
+  for (const timing::Entry& entry : timing::entries()) {
+    json[entry.label] = {{"seconds", entry.seconds}, {"calls", entry.calls}};
+  }
+  return json;
+}
+
+}  // namespace
+
+std::string hex(std::uint64_t hash) { return fmt::format("{:016x}", hash); }
+
+std::string manifest_of(const Scene& scene, const RunSummary& run) {
+  const BuildInfo build = build_info();
+  Json json = {{"status", run.status}};
+  if (!run.error.empty()) json["error"] = run.error;
+  json["scene"] = {{"name", scene.name},
+                   {"source", scene.source.string()},
+                   {"hash", hex(XXH3_64bits(scene.resolved.data(), scene.resolved.size()))},
+                   {"seed", scene.seed}};
+  json["program"] = {{"version", build.version},
+                     {"commit", build.commit},
+                     {"build", build.build_type},
+                     {"compiler", build.compiler}};
+  json["machine"] = machine();
+  json["space"] = run.space;
+  json["precision"] = "double";
+  json["steps"] = run.steps;
+  json["steps_total"] = run.steps_total;
+  json["time"] = run.time;
+  json["state_hash"] = hex(run.state_hash);
+  json["checks"] = Json::array();
+  for (const CheckResult& check : run.checks) json["checks"].push_back(scree::json_of(check));
+  json["observation"] = json_of(run.last);
+  json["frames"] = run.frames;
+  if (!run.movie.empty()) json["movie"] = run.movie;
+  json["warnings"] = run.warnings;
+  json["wall_s"] = run.wall;
+  json["stages"] = stage_times();
+  return json.dump(2) + '\n';
+}
+
+}  // namespace scree

@@ -1,0 +1,80 @@
+#include "sim/record/metrics.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <iterator>
+#include <utility>
+
+namespace scree {
+
+namespace {
+
+std::vector<std::string> single_bodies(const Scene& scene) {
+  std::vector<std::pair<std::int32_t, std::string>> bodies;
+  for (const auto& [name, id] : scene.body_names) {
+    if (!name.ends_with(']')) bodies.emplace_back(id, name);
+  }
+  std::ranges::sort(bodies);
+  std::vector<std::string> names;
+  for (auto& [id, name] : bodies) names.push_back(std::move(name));
+  return names;
+}
+
+/// The names of a measure's values: itself, or its components.
+void append_names(std::vector<std::string>& names, const std::string& measure, bool is_vector) {
+  if (!is_vector) return names.push_back(measure);
+  for (const char* component : {".x", ".y", ".z"}) names.push_back(measure + component);
+}
+
+}  // namespace
+
+std::vector<std::string> metric_names(const Scene& scene) {
+  std::vector<std::string> names;
+  for (const MeasureInfo& info : measure_table()) {
+    if (!info.of_body) append_names(names, std::string(info.name), info.is_vector);
+  }
+  for (const std::string& body : single_bodies(scene)) {
+    for (const char* measure : {".position", ".velocity", ".spin"}) append_names(names, body + measure, true);
+  }
+  return names;
+}
+
+MetricsFile::MetricsFile(const Scene& scene, const std::filesystem::path& file) : file_(file) {
+  std::string header = "time,step";
+  for (std::string name : metric_names(scene)) {
+    measures_.push_back(parse_measure(name, scene.body_names));
+    std::ranges::replace(name, '.', '_');
+    header += ',' + name;
+  }
+  file_.write(header + '\n');
+}
+
+void MetricsFile::write_row(const Probe& probe) {
+  const Observation& now = probe.observe();
+  std::string row = fmt::format("{},{}", now.time, now.step);
+  for (const Measure& measure : measures_)
+    fmt::format_to(std::back_inserter(row), ",{}", probe.value(measure));
+  file_.write(row + '\n');
+}
+
+TimingFile::TimingFile(const std::filesystem::path& file) : file_(file) {
+  file_.write("time,wall,stage,seconds,calls\n");
+}
+
+void TimingFile::write_rows(double time) {
+  const double wall = std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+  const std::vector<timing::Entry>& entries = timing::entries();
+  written_.resize(entries.size());  // accounts are only ever added, at the end
+  std::string rows;
+  for (std::size_t k = 0; k < entries.size(); ++k) {
+    const std::int64_t calls = entries[k].calls - written_[k].calls;
+    if (calls == 0) continue;
+    fmt::format_to(std::back_inserter(rows), "{},{:.6f},{},{:.9f},{}\n", time, wall, entries[k].label,
+                   entries[k].seconds - written_[k].seconds, calls);
+  }
+  written_ = entries;
+  file_.write(rows);
+}
+
+}  // namespace scree

@@ -1,0 +1,48 @@
+// metrics.csv: what the run measured, in the same bytes whatever the machine; timing.csv: what it cost there.
+#pragma once
+
+#include "core/timing.hpp"
+#include "sim/record/checks.hpp"
+#include "sim/record/files.hpp"
+#include "sim/scene/measure.hpp"
+
+#include <chrono>
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace scree {
+
+/// The measures of a scene's columns: all global ones; then position, velocity and spin of each body that was
+/// named on its own, in the order of the scene. Members of a repeat have no columns: they can be a million.
+std::vector<std::string> metric_names(const Scene& scene);
+
+/// One row per call: time, step, then the measures, with _ for . in their names. Numbers are the shortest
+/// that read back to the same double.
+class MetricsFile {
+ public:
+  MetricsFile(const Scene& scene, const std::filesystem::path& file);
+  void write_row(const Probe& probe);
+  void commit() { file_.commit(); }
+
+ private:
+  AtomicFile file_;
+  std::vector<Measure> measures_;
+};
+
+/// Rows of time, wall, stage, seconds, calls: what each stage took since the row before (s). One stage per
+/// row, because a stage can run for the first time late in a run.
+class TimingFile {
+ public:
+  explicit TimingFile(const std::filesystem::path& file);
+  void write_rows(double time);
+  void commit() { file_.commit(); }
+
+ private:
+  AtomicFile file_;
+  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+  std::vector<timing::Entry> written_;
+};
+
+}  // namespace scree

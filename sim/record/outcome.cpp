@@ -1,0 +1,64 @@
+#include "sim/record/outcome.hpp"
+
+#include "core/error.hpp"
+#include "sim/record/json.hpp"
+
+#include <algorithm>
+
+namespace scree {
+
+namespace {
+
+Json json_of(const SceneOutcome& outcome) {
+  Json json = {{"scene", outcome.scene}, {"status", outcome.status}, {"wall_s", outcome.wall}};
+  if (!outcome.message.empty()) json["message"] = outcome.message;
+  if (!outcome.left_out.empty()) json["left_out"] = outcome.left_out;
+  json["checks"] = Json::array();
+  for (const CheckResult& check : outcome.checks) json["checks"].push_back(json_of(check));
+  return json;
+}
+
+}  // namespace
+
+int status_of(const std::vector<CheckResult>& checks) {
+  const bool passed = std::ranges::all_of(checks, [](auto& c) { return c.verdict == Verdict::passed; });
+  return passed ? status_done : status_check_failed;
+}
+
+std::string to_json(const SceneOutcome& outcome) { return json_of(outcome).dump(); }
+
+SceneOutcome outcome_from_json(const std::string& text) try {
+  const Json json = Json::parse(text);
+  SceneOutcome outcome{.scene = json.at("scene"),
+                       .status = json.at("status"),
+                       .message = json.value("message", ""),
+                       .left_out = json.value("left_out", ""),
+                       .wall = json.at("wall_s"),
+                       .checks = {}};
+  for (const Json& check : json.at("checks")) outcome.checks.push_back(check_result_from(check));
+  return outcome;
+} catch (const Json::exception& error) {
+  throw RunError(std::string("a scene's process did not report: ") + error.what());
+}
+
+Tally tally_of(const std::vector<SceneOutcome>& outcomes) {
+  Tally tally;
+  for (const SceneOutcome& outcome : outcomes) {
+    for (const CheckResult& check : outcome.checks) {
+      ++(check.verdict == Verdict::passed ? tally.passed : tally.failed);
+    }
+    if (!outcome.message.empty()) ++tally.failed;
+    if (!outcome.left_out.empty()) ++tally.left_out;
+  }
+  return tally;
+}
+
+std::string to_json(const std::vector<SceneOutcome>& outcomes) {
+  const Tally tally = tally_of(outcomes);
+  Json json = {{"passed", tally.passed}, {"failed", tally.failed}, {"left_out", tally.left_out}};
+  json["scenes"] = Json::array();
+  for (const SceneOutcome& outcome : outcomes) json["scenes"].push_back(json_of(outcome));
+  return json.dump(2) + '\n';
+}
+
+}  // namespace scree

@@ -1,0 +1,110 @@
+#include "sim/record/run_folder.hpp"
+
+#include "core/error.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <cstring>
+#include <fcntl.h>
+#include <string_view>
+#include <sys/file.h>
+#include <system_error>
+#include <unistd.h>
+#include <utility>
+#include <vector>
+
+namespace scree {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::string_view lock_name = ".lock";
+constexpr std::array<std::string_view, 6> file_names = {"manifest.json", "scene.yaml", "metrics.csv",
+                                                        "timing.csv",    "movie.mp4",  "log.txt"};
+
+/// Whether a run wrote this entry of its folder: a final name, or the part of one that did not get that far.
+bool is_written_by_a_run(const fs::path& entry) {
+  std::string name = entry.filename().string();
+  if (name.ends_with(".part")) name.resize(name.size() - std::strlen(".part"));
+  return std::ranges::find(file_names, name) != file_names.end() || name == "frames";
+}
+
+bool is_frame(const fs::path& entry) {
+  const std::string name = entry.filename().string();
+  return name.ends_with(".png") || name.ends_with(".png.part");
+}
+
+std::vector<fs::path> entries_of(const fs::path& folder) {
+  std::vector<fs::path> entries;
+  for (const auto& entry : fs::directory_iterator(folder)) {
+    if (entry.path().filename() != lock_name) entries.push_back(entry.path());
+  }
+  return entries;
+}
+
+void remove_earlier_run(const std::vector<fs::path>& entries) {
+  for (const fs::path& entry : entries) {
+    if (entry.filename() != "frames") {
+      fs::remove(entry);
+      continue;
+    }
+    for (const fs::path& frame : entries_of(entry)) {
+      if (is_frame(frame)) fs::remove(frame);
+    }
+  }
+}
+
+}  // namespace
+
+RunFolder::RunFolder(fs::path folder, bool overwrite) : folder_(std::move(folder)) {
+  try {
+    if (fs::exists(folder_) && !fs::is_directory(folder_)) {
+      throw InputError(fmt::format("{}: is not a folder; give another one with -o", folder_.string()));
+    }
+    const std::vector<fs::path> found = fs::exists(folder_) ? entries_of(folder_) : std::vector<fs::path>{};
+    const auto foreign = std::ranges::find_if_not(found, is_written_by_a_run);
+    if (foreign != found.end()) {
+      throw InputError(fmt::format("{}: holds {}, which no run has written; give another folder with -o",
+                                   folder_.string(), foreign->filename().string()));
+    }
+    if (!found.empty() && !overwrite) {
+      throw InputError(fmt::format("{}: holds an earlier run; --overwrite replaces it, -o DIR keeps it",
+                                   folder_.string()));
+    }
+    fs::create_directories(folder_);
+    lock();
+    remove_earlier_run(found);
+  } catch (const fs::filesystem_error& error) {
+    throw RunError(
+        fmt::format("cannot make the run folder {}: {}", folder_.string(), error.code().message()));
+  }
+}
+
+fs::path RunFolder::frames() const {
+  const fs::path frames = folder_ / "frames";
+  std::error_code error;
+  fs::create_directory(frames, error);
+  if (error) throw RunError(fmt::format("cannot make {}: {}", frames.string(), error.message()));
+  return frames;
+}
+
+void RunFolder::lock() {
+  const fs::path file = folder_ / lock_name;
+  // Close-on-exec: ffmpeg, started by a run, must not keep the lock of a run that died.
+  lock_ = ::open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
+  if (lock_ < 0) throw RunError(fmt::format("cannot create {}: {}", file.string(), std::strerror(errno)));
+  if (::flock(lock_, LOCK_EX | LOCK_NB) == 0) return;
+  const int reason = errno;
+  ::close(lock_);
+  if (reason == EWOULDBLOCK)
+    throw InputError(fmt::format("{}: another run is writing here", folder_.string()));
+  throw RunError(fmt::format("cannot lock {}: {}", file.string(), std::strerror(reason)));
+}
+
+RunFolder::~RunFolder() { ::close(lock_); }
+
+}  // namespace scree

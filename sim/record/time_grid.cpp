@@ -1,0 +1,54 @@
+#include "sim/record/time_grid.hpp"
+
+#include "core/tolerances.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace scree {
+
+namespace {
+
+// 3 * 0.1 is above 0.3: what rounding does must not decide which steps there are.
+constexpr double rounding = tolerance::step_count;
+
+std::int64_t count_steps(const TimeSettings& time) {
+  return static_cast<std::int64_t>(std::ceil(time.end / time.step * (1 - rounding)));
+}
+
+}  // namespace
+
+TimeGrid::TimeGrid(const TimeSettings& time) : step_(time.step), end_(time.end), last_(count_steps(time)) {}
+
+double TimeGrid::time(std::int64_t step) const {
+  return step >= last_ ? end_ : static_cast<double>(step) * step_;
+}
+
+std::int64_t TimeGrid::nearest(double t) const {
+  const auto last = static_cast<double>(last_);
+  const auto before = static_cast<std::int64_t>(std::clamp(std::floor(t / step_), 0.0, last));
+  const std::int64_t after = std::min(before + 1, last_);
+  return std::abs(time(after) - t) < std::abs(time(before) - t) ? after : before;
+}
+
+std::int64_t TimeGrid::first_in(double from) const {
+  const std::int64_t near = nearest(from);
+  return time(near) < from * (1 - rounding) ? near + 1 : near;
+}
+
+std::int64_t TimeGrid::last_in(double to) const {
+  const std::int64_t near = nearest(to);
+  return time(near) > to * (1 + rounding) ? near - 1 : near;
+}
+
+std::int64_t Cadence::due(std::int64_t step) {
+  const bool repeats = period_ > 0 && std::isfinite(period_);
+  std::int64_t count = 0;
+  for (;; ++next_, ++count) {
+    if (next_ > 0 && !repeats) return count;
+    const double time = static_cast<double>(next_) * (repeats ? period_ : 0.0);
+    if (!grid_.covers(time) || grid_.nearest(time) > step) return count;
+  }
+}
+
+}  // namespace scree

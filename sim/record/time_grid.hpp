@@ -1,0 +1,48 @@
+// The instants of a run: which step is nearest to a time, and which steps lie in an interval.
+#pragma once
+
+#include "sim/scene/scene.hpp"
+
+#include <cstdint>
+
+namespace scree {
+
+class TimeGrid {
+ public:
+  explicit TimeGrid(const TimeSettings& time);
+
+  /// Number of the last step; the state at t = 0 is step 0.
+  std::int64_t last() const { return last_; }
+  /// Time after a step (s); the last one ends at time.end exactly.
+  double time(std::int64_t step) const;
+  /// The step nearest to a time; of two as near, the earlier one. Times beyond the run give its first or last
+  /// step.
+  std::int64_t nearest(double time) const;
+  /// First and last step in the closed interval [from, to]; the first is the greater where there is none.
+  std::int64_t first_in(double from) const;
+  std::int64_t last_in(double to) const;
+  /// Whether a time is nearer to the run's last step than to the one that would follow.
+  bool covers(double time) const { return time <= end_ + 0.5 * step_; }
+
+ private:
+  double step_;
+  double end_;
+  std::int64_t last_;
+};
+
+/// Things that happen every `period` of simulated time, each at the step nearest to its time, from t = 0 on.
+class Cadence {
+ public:
+  /// A period of 0 or less, or an infinite one, happens at t = 0 alone.
+  Cadence(const TimeGrid& grid, double period) : grid_(grid), period_(period) {}
+
+  /// How many are due at a step, each counted once. Steps must come in ascending order.
+  std::int64_t due(std::int64_t step);
+
+ private:
+  TimeGrid grid_;
+  double period_;
+  std::int64_t next_ = 0;
+};
+
+}  // namespace scree

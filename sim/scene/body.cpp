@@ -1,0 +1,103 @@
+#include "sim/scene/body.hpp"
+
+#include <cmath>
+
+namespace scree {
+namespace {
+
+Vec3 place_of(const BodyEntry& entry, std::int64_t k, Random& random) {
+  Vec3 at = entry.at.value_or(Vec3::Zero());
+  if (!entry.repeat) return at;
+  const RepeatEntry& repeat = *entry.repeat;
+  const auto& n = repeat.count;
+  const Vec3 cell(static_cast<double>(k % n[0]), static_cast<double>(k / n[0] % n[1]),
+                  static_cast<double>(k / n[0] / n[1]));
+  at += cell.cwiseProduct(repeat.spacing);
+  for (int c = 0; c < 3; ++c) at[c] += random.uniform(-repeat.jitter, repeat.jitter);
+  return at;
+}
+
+/// Uniform over all rotations (Shoemake 1992, "Uniform random rotations", Graphics Gems III).
+Quat random_orientation(Random& random) {
+  const double u = random.uniform();
+  const double a = 2 * pi * random.uniform();
+  const double b = 2 * pi * random.uniform();
+  const double s = std::sqrt(1 - u);
+  const double t = std::sqrt(u);
+  return Quat(t * std::cos(b), s * std::sin(a), s * std::cos(a), t * std::sin(b));
+}
+
+Quat orientation_of(const BodyEntry& entry, Random& random) {
+  if (entry.orientation) {
+    const auto& q = *entry.orientation;
+    const Eigen::Vector4d unit = Eigen::Vector4d(q[0], q[1], q[2], q[3]).stableNormalized();
+    return Quat(unit[0], unit[1], unit[2], unit[3]);
+  }
+  if (entry.rotate) {
+    const double angle = entry.rotate->degrees ? *entry.rotate->degrees * pi / 180 : *entry.rotate->radians;
+    return Quat(Eigen::AngleAxisd(angle, entry.rotate->axis.stableNormalized()));
+  }
+  return entry.scatter ? random_orientation(random) : Quat::Identity();
+}
+
+/// Of a solid sphere or cuboid (size as in Shape), about the principal axes (kg m^2).
+Vec3 inertia_of(Shape shape, const Vec3& size, double mass) {
+  if (shape == Shape::sphere) return Vec3::Constant(0.4 * mass * size.x() * size.x());
+  const Vec3 squares = size.cwiseProduct(size);
+  return mass / 3 * Vec3(squares.y() + squares.z(), squares.z() + squares.x(), squares.x() + squares.y());
+}
+
+double volume_of(Shape shape, const Vec3& size) {
+  return shape == Shape::sphere ? 4.0 / 3.0 * pi * size.x() * size.x() * size.x() : 8 * size.prod();
+}
+
+bool is_usable(double x) { return x > 0 && std::isfinite(x) && std::isfinite(1 / x); }
+
+/// A turn of +z to the unit vector n. Exact along the axes; past the horizon it goes by way of -z,
+/// where 1 + n.z would cancel.
+Quat turn_to(const Vec3& n) {
+  if (n.z() >= 0) return Quat(1 + n.z(), -n.y(), n.x(), 0).normalized();
+  return Quat(1 - n.z(), n.y(), -n.x(), 0).normalized() * Quat(0, 1, 0, 0);
+}
+
+void make_plane(const PlaneEntry& plane, std::size_t b, BodyTable& bodies) {
+  const Vec3 normal = plane.normal.stableNormalized();
+  bodies.shape[b] = Shape::plane;
+  bodies.mobility[b] = Mobility::fixed;
+  bodies.size[b] = Vec3::Zero();
+  bodies.position[b] = normal * plane.offset;
+  bodies.orientation[b] = turn_to(normal);
+}
+
+}  // namespace
+
+bool make_body(const BodyEntry& entry, std::int64_t k, std::int32_t id, std::uint64_t seed, double density,
+               BodyTable& bodies) {
+  const auto b = static_cast<std::size_t>(id);
+  bodies.id[b] = id;
+  bodies.velocity[b] = bodies.spin[b] = bodies.inverse_inertia[b] = Vec3::Zero();
+  bodies.inverse_mass[b] = 0;
+  if (entry.plane) {
+    make_plane(*entry.plane, b, bodies);
+    return true;
+  }
+  Random random(seed, b);
+  bodies.shape[b] = entry.sphere ? Shape::sphere : Shape::box;
+  bodies.size[b] = entry.sphere ? Vec3(draw(entry.sphere->radius, random), 0, 0)
+                                : Vec3(0.5 * draw(entry.box->size, random));
+  bodies.position[b] = place_of(entry, k, random);
+  bodies.orientation[b] = orientation_of(entry, random);
+  bodies.velocity[b] = entry.motion ? entry.motion->velocity : entry.velocity.value_or(Vec3::Zero());
+  bodies.spin[b] = entry.motion ? entry.motion->spin : entry.spin.value_or(Vec3::Zero());
+  bodies.mobility[b] = entry.fixed.value_or(false) ? Mobility::fixed
+                       : entry.motion              ? Mobility::prescribed
+                                                   : Mobility::free;
+  if (bodies.mobility[b] != Mobility::free) return true;
+  const double mass = entry.mass.value_or(density * volume_of(bodies.shape[b], bodies.size[b]));
+  const Vec3 inertia = inertia_of(bodies.shape[b], bodies.size[b], mass);
+  bodies.inverse_mass[b] = 1 / mass;
+  bodies.inverse_inertia[b] = inertia.cwiseInverse();
+  return is_usable(mass) && is_usable(inertia.minCoeff()) && is_usable(inertia.maxCoeff());
+}
+
+}  // namespace scree

@@ -1,0 +1,17 @@
+// From one item of `bodies` to the state of one body.
+#pragma once
+
+#include "core/bodies.hpp"
+#include "sim/scene/keys.hpp"
+
+#include <cstdint>
+
+namespace scree {
+
+/// Writes body `id` of the table, the k-th of the entry: everything but its material. The place of a
+/// scattered body stays open. All draws are from the stream of (seed, id). False if a free body's mass or
+/// inertia, or the inverse of one, is not a positive finite number.
+bool make_body(const BodyEntry& entry, std::int64_t k, std::int32_t id, std::uint64_t seed, double density,
+               BodyTable& bodies);
+
+}  // namespace scree

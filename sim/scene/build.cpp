@@ -1,0 +1,261 @@
+#include "sim/scene/build.hpp"
+
+#include "sim/scene/body.hpp"
+#include "sim/scene/measure.hpp"
+#include "sim/scene/scatter.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <unistd.h>
+#include <unordered_map>
+
+namespace scree {
+namespace {
+
+/// The bodies that one entry stands for.
+struct Slot {
+  const BodyEntry* entry;
+  std::size_t index;  ///< of the entry in `bodies`
+  std::int64_t first;
+  std::int64_t count;
+  std::int32_t material;
+};
+
+/// A product of counts may exceed every integer, but not the doubles.
+double count_of(const BodyEntry& entry) {
+  if (entry.scatter) return static_cast<double>(entry.scatter->count);
+  if (!entry.repeat) return 1;
+  const auto& n = entry.repeat->count;
+  return static_cast<double>(n[0]) * static_cast<double>(n[1]) * static_cast<double>(n[2]);
+}
+
+double bytes_per_body() {
+  std::size_t bytes = 0;
+  const BodyTable table;
+  for_each_field([&](const char*, const auto& field) { bytes += sizeof(field[0]); }, table);
+  return static_cast<double>(bytes);
+}
+
+double machine_memory() {
+  return static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGESIZE));
+}
+
+class Builder {
+ public:
+  Builder(SceneEntry& entry, Reader& reader) : entry_(entry), reader_(reader) {}
+
+  void build(Scene& scene) {
+    find_materials(scene);
+    find_laws(scene);
+    reserve(scene);
+    for (const Slot& slot : slots_) make_bodies(slot, scene);
+    for (const Slot& slot : slots_)
+      if (slot.entry->scatter) scatter_bodies(slot, scene);
+    find_checks(scene);
+  }
+
+ private:
+  void find_materials(Scene& scene) {
+    for (const MaterialEntry& material : entry_.materials) {
+      material_of_.emplace(material.name, static_cast<std::int32_t>(scene.materials.size()));
+      scene.materials.push_back(material);
+    }
+  }
+
+  /// `where` is the value that names the material.
+  std::int32_t material(const std::string& name, const Node& where) const {
+    const auto found = material_of_.find(name);
+    if (found != material_of_.end()) return found->second;
+    std::vector<std::string_view> known;
+    for (const MaterialEntry& m : entry_.materials) known.push_back(m.name);
+    reader_.fail(where.mark, fmt::format("there is no material {}{}", name, suggestion(name, known)));
+  }
+
+  void find_laws(Scene& scene) {
+    const std::size_t n = scene.materials.size();
+    if (static_cast<double>(n * n * sizeof(ContactLaw)) > machine_memory())
+      reader_.fail({1, 1}, fmt::format("{} materials make more pairs than this machine can hold", n));
+    scene.laws.resize(n * n);
+    for (std::size_t a = 0; a < n; ++a)
+      for (std::size_t b = 0; b < n; ++b) {
+        const Material& first = scene.materials[a];
+        const Material& second = scene.materials[b];
+        scene.laws[a * n + b] = {std::sqrt(first.restitution) * std::sqrt(second.restitution),
+                                 std::sqrt(first.friction) * std::sqrt(second.friction)};
+      }
+    const Reader::Step step(reader_, "contacts");
+    std::map<std::array<std::int32_t, 2>, SourceMark> listed;
+    for (std::size_t i = 0; i < entry_.contacts.size(); ++i) {
+      const Reader::Step item(reader_, i);
+      ContactEntry& contact = entry_.contacts[i];
+      const Node& between = *contact.node->find("between");
+      const Reader::Step key(reader_, "between");
+      const std::int32_t a = material(contact.between[0], between.items[0]);
+      const std::int32_t b = material(contact.between[1], between.items[1]);
+      const auto [first, fresh] = listed.emplace(std::array{std::min(a, b), std::max(a, b)}, between.mark);
+      if (!fresh)
+        reader_.fail(between.mark, "the pair is listed already, at " + reader_.place(first->second));
+      ContactLaw law = scene.law(a, b);
+      if (!contact.restitution) contact.restitution = law.restitution;
+      if (!contact.friction) contact.friction = law.friction;
+      law = {*contact.restitution, *contact.friction};
+      scene.laws[static_cast<std::size_t>(a) * n + static_cast<std::size_t>(b)] = law;
+      scene.laws[static_cast<std::size_t>(b) * n + static_cast<std::size_t>(a)] = law;
+    }
+  }
+
+  /// Counts the bodies and checks their number before anything is allocated for them.
+  void reserve(Scene& scene) {
+    const Reader::Step step(reader_, "bodies");
+    std::unordered_map<std::string_view, SourceMark> names;
+    double total = 0;
+    double bytes = 0;
+    for (std::size_t i = 0; i < entry_.bodies.size(); ++i) {
+      const Reader::Step item(reader_, i);
+      const BodyEntry& body = entry_.bodies[i];
+      const double count = count_of(body);
+      // A name in a map costs about this much besides its letters.
+      const double name_bytes = body.name.empty() ? 0 : 96 + static_cast<double>(body.name.size());
+      total += count;
+      bytes += count * (bytes_per_body() + name_bytes);
+      const char* cause = body.repeat ? "repeat" : "scatter";
+      if (total > std::numeric_limits<std::int32_t>::max())
+        reader_.fail_at(cause, *body.node,
+                        fmt::format("the scene would have {} bodies; at most {} are possible", total,
+                                    std::numeric_limits<std::int32_t>::max()));
+      if (bytes > machine_memory())
+        reader_.fail_at(
+            cause, *body.node,
+            fmt::format("the scene's {:.0f} bodies need {:.0f} bytes, but this machine has {:.0f}", total,
+                        bytes, machine_memory()));
+      claim_name(body, names);
+      slots_.push_back({&body, i, static_cast<std::int64_t>(total - count), static_cast<std::int64_t>(count),
+                        find_material(body)});
+    }
+    for_each_field([&](const char*, auto& field) { field.resize(static_cast<std::size_t>(total)); },
+                   scene.bodies);
+  }
+
+  std::int32_t find_material(const BodyEntry& body) {
+    const Reader::Step step(reader_, "material");
+    return material(body.material, *body.node->find("material"));
+  }
+
+  void claim_name(const BodyEntry& body, std::unordered_map<std::string_view, SourceMark>& names) {
+    if (body.name.empty()) return;
+    const SourceMark mark = body.node->find("name")->mark;
+    const auto [first, fresh] = names.emplace(body.name, mark);
+    if (!fresh)
+      reader_.fail_at(
+          "name", *body.node,
+          fmt::format("{} is the name of a body already, at {}", body.name, reader_.place(first->second)));
+    if (is_measure_word(body.name))
+      reader_.fail_at("name", *body.node, fmt::format("{} is a word of measures; choose another", body.name));
+  }
+
+  void make_bodies(const Slot& slot, Scene& scene) {
+    const Reader::Step step(reader_, "bodies");
+    const Reader::Step item(reader_, slot.index);
+    const BodyEntry& entry = *slot.entry;
+    for (std::int64_t k = 0; k < slot.count; ++k) {
+      const auto id = static_cast<std::int32_t>(slot.first + k);
+      const Material& material = scene.materials[static_cast<std::size_t>(slot.material)];
+      scene.bodies.material[static_cast<std::size_t>(id)] = slot.material;
+      if (!make_body(entry, k, id, scene.seed, material.density, scene.bodies))
+        reader_.fail(entry.node->mark, "its mass and inertia are beyond what numbers can hold");
+      if (entry.motion) scene.motions.push_back({id, entry.motion->velocity, entry.motion->spin});
+      if (entry.name.empty()) continue;
+      const bool many = entry.repeat || entry.scatter;
+      scene.body_names.emplace(many ? fmt::format("{}[{}]", entry.name, k) : entry.name, id);
+    }
+  }
+
+  /// Obstacles are the bodies with a place: those of no scatter, and of scatters before this one.
+  void scatter_bodies(const Slot& slot, Scene& scene) {
+    std::vector<std::int32_t> obstacles;
+    for (const Slot& other : slots_)
+      if (!other.entry->scatter || other.first < slot.first)
+        for (std::int64_t k = 0; k < other.count; ++k)
+          obstacles.push_back(static_cast<std::int32_t>(other.first + k));
+    const std::int64_t fitted =
+        scatter(scene.bodies, slot.first, slot.count, *slot.entry->scatter, obstacles, scene.seed);
+    if (fitted == slot.count) return;
+    const Reader::Step step(reader_, "bodies");
+    const Reader::Step item(reader_, slot.index);
+    reader_.fail_at("scatter", *slot.entry->node,
+                    fmt::format("only {} of {} bodies fit without overlap; make the region larger or the "
+                                "bodies fewer or smaller",
+                                fitted, slot.count));
+  }
+
+  void find_checks(Scene& scene) {
+    const Reader::Step step(reader_, "checks");
+    for (std::size_t i = 0; i < entry_.checks.size(); ++i) {
+      const Reader::Step item(reader_, i);
+      const CheckEntry& check = entry_.checks[i];
+      try {
+        parse_measure(check.measure, scene.body_names);
+      } catch (const InputError& error) {
+        reader_.fail_at("measure", *check.node, error.what());
+      }
+      const double end = scene.time.end;
+      if (check.at.value_or(0) > end)
+        reader_.fail_at("at", *check.node,
+                        fmt::format("must be at most the end, {} s, not {} s", end, *check.at));
+      if (check.over && (*check.over)[1] > end)
+        reader_.fail_at(
+            "over", *check.node,
+            fmt::format("must end at the end, {} s, or before, not at {} s", end, (*check.over)[1]));
+      scene.checks.push_back(check);
+    }
+  }
+
+  SceneEntry& entry_;
+  Reader& reader_;
+  std::vector<Slot> slots_;
+  std::unordered_map<std::string_view, std::int32_t> material_of_;
+};
+
+/// Writes the defaults that depend on other keys into the entry.
+void fill_defaults(BodyEntry& body) {
+  if (body.plane) return;
+  const bool free = !body.fixed.value_or(false) && !body.motion;
+  if (!body.fixed) body.fixed = false;
+  if (!body.scatter) {
+    if (!body.at) body.at = Vec3::Zero();
+    if (!body.rotate && !body.orientation) body.orientation = {1, 0, 0, 0};
+  }
+  if (free && !body.velocity) body.velocity = Vec3::Zero();
+  if (free && !body.spin) body.spin = Vec3::Zero();
+}
+
+}  // namespace
+
+Scene build_scene(SceneEntry entry, const std::filesystem::path& source, Reader& reader) {
+  if (entry.name.empty()) entry.name = source.stem().string();
+  if (!is_file_name(entry.name))
+    reader.fail({1, 1},
+                fmt::format("the file's stem, {}, cannot name the run folder; give a name", entry.name));
+  Scene scene;
+  scene.name = entry.name;
+  scene.label = entry.label;
+  scene.source = source;
+  scene.seed = entry.seed;
+  scene.gravity = entry.gravity;
+  scene.time = entry.time;
+  scene.response = entry.response;
+  scene.broadphase = entry.broadphase;
+  scene.narrowphase = entry.narrowphase;
+  scene.model = entry.model;
+  scene.render = entry.render;
+  scene.record = entry.record;
+  Builder(entry, reader).build(scene);
+  for (BodyEntry& body : entry.bodies) fill_defaults(body);
+  scene.resolved = to_yaml(*scene_codec().write(entry));
+  return scene;
+}
+
+}  // namespace scree

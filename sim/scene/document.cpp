@@ -1,0 +1,320 @@
+#include "sim/scene/document.hpp"
+
+#include <fmt/format.h>
+#include <yaml-cpp/eventhandler.h>
+#include <yaml-cpp/exceptions.h>
+#include <yaml-cpp/parser.h>
+
+#include <algorithm>
+#include <map>
+#include <sstream>
+#include <utility>
+
+namespace scree {
+namespace {
+
+constexpr int max_depth = 32;
+constexpr std::int64_t max_aliased_nodes = 1'000'000;
+
+SourceMark to_mark(const YAML::Mark& mark) {
+  return {std::max(mark.line, 0) + 1, std::max(mark.column, 0) + 1};
+}
+
+/// Length of the UTF-8 sequence that starts at `at`, or 0 if there is none (RFC 3629, section 4).
+std::size_t utf8_length(std::string_view text, std::size_t at) {
+  const auto byte = [&](std::size_t i) {
+    return at + i < text.size() ? static_cast<unsigned char>(text[at + i]) : 0u;
+  };
+  const auto continues = [&](std::size_t i) { return (byte(i) & 0xC0u) == 0x80u; };
+  const unsigned lead = byte(0);
+  if (lead < 0x80) return 1;
+  if (lead >= 0xC2 && lead <= 0xDF && continues(1)) return 2;
+  // The second byte's range excludes overlong forms, surrogates and what lies beyond U+10FFFF.
+  if (lead >= 0xE0 && lead <= 0xEF && continues(1) && continues(2) && !(lead == 0xE0 && byte(1) < 0xA0) &&
+      !(lead == 0xED && byte(1) > 0x9F))
+    return 3;
+  if (lead >= 0xF0 && lead <= 0xF4 && continues(1) && continues(2) && continues(3) &&
+      !(lead == 0xF0 && byte(1) < 0x90) && !(lead == 0xF4 && byte(1) > 0x8F))
+    return 4;
+  return 0;
+}
+
+/// yaml-cpp replaces bad bytes, stops at a control-D and is lax about tabs, all without a word.
+void check_characters(std::string_view text) {
+  SourceMark mark{1, 1};
+  bool indentation = true;
+  for (std::size_t at = 0; at < text.size();) {
+    const std::size_t length = utf8_length(text, at);
+    if (length == 0)
+      throw SyntaxError{mark,
+                        fmt::format("byte 0x{:02X} is not UTF-8 text", static_cast<unsigned char>(text[at]))};
+    const char c = text[at];
+    if ((c >= 0 && c < ' ' && c != '\t' && c != '\n' && c != '\r') || c == 0x7F)
+      throw SyntaxError{mark, fmt::format("control character 0x{:02X} in the text", static_cast<int>(c))};
+    if (c == '\t' && indentation) {
+      const std::size_t next = text.find_first_not_of(" \t\r", at);
+      if (next != std::string_view::npos && text[next] != '\n' && text[next] != '#')
+        throw SyntaxError{mark, "a tab in the indentation; YAML is indented with spaces"};
+    }
+    if (c != ' ' && c != '\t') indentation = false;
+    at += length;
+    ++mark.column;
+    if (c == '\n') {
+      mark = {mark.line + 1, 1};
+      indentation = true;
+    }
+  }
+}
+
+struct Extent {
+  std::int64_t nodes = 1;
+  int depth = 1;
+};
+
+Extent extent_of(const Node& node) {
+  Extent extent;
+  for (const Node& item : node.items) {
+    const Extent part = extent_of(item);
+    extent.nodes += part.nodes;
+    extent.depth = std::max(extent.depth, 1 + part.depth);
+  }
+  return extent;
+}
+
+void refuse_duplicates(const Node& map) {
+  std::vector<const Node*> sorted;
+  sorted.reserve(map.items.size());
+  for (const Node& item : map.items) sorted.push_back(&item);
+  std::stable_sort(sorted.begin(), sorted.end(),
+                   [](const Node* a, const Node* b) { return a->key < b->key; });
+  const auto twice = std::adjacent_find(sorted.begin(), sorted.end(),
+                                        [](const Node* a, const Node* b) { return a->key == b->key; });
+  if (twice == sorted.end()) return;
+  const SourceMark first = twice[0]->key_mark;
+  throw SyntaxError{twice[1]->key_mark, fmt::format("{}: duplicate key, already given at {}:{}",
+                                                    twice[0]->key, first.line, first.column)};
+}
+
+/// Builds the tree from the parser's events. Copies of aliases are bounded, so no file can make the tree
+/// much larger than itself.
+class TreeBuilder final : public YAML::EventHandler {
+ public:
+  Node root;
+
+  void OnDocumentStart(const YAML::Mark&) override {}
+  void OnDocumentEnd() override {}
+  void OnNull(const YAML::Mark& mark, YAML::anchor_t anchor) override { add(leaf(mark), anchor); }
+  void OnAlias(const YAML::Mark& mark, YAML::anchor_t anchor) override {
+    const auto found = anchored_.find(anchor);
+    if (found == anchored_.end()) throw SyntaxError{to_mark(mark), "an alias inside its own anchor"};
+    const auto& [node, extent] = found->second;
+    aliased_ += extent.nodes;
+    if (aliased_ > max_aliased_nodes)
+      throw SyntaxError{to_mark(mark), fmt::format("aliases add more than {} nodes", max_aliased_nodes)};
+    check_depth(to_mark(mark), extent.depth);
+    add(node, 0);
+  }
+  void OnScalar(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor,
+                const std::string& value) override {
+    const bool quoted = tag == "!";  // yaml-cpp's way to tell quoted scalars from plain ones, "?"
+    if (!quoted) refuse_tag(mark, tag);
+    Node node = leaf(mark);
+    node.kind = Node::Kind::scalar;
+    node.quoted = quoted;
+    node.text = value;
+    add(std::move(node), anchor);
+  }
+  void OnSequenceStart(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor,
+                       YAML::EmitterStyle::value) override {
+    open(mark, tag, anchor, Node::Kind::list);
+  }
+  void OnSequenceEnd() override { close(); }
+  void OnMapStart(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor,
+                  YAML::EmitterStyle::value) override {
+    open(mark, tag, anchor, Node::Kind::map);
+  }
+  void OnMapEnd() override { close(); }
+
+ private:
+  struct Open {
+    Node node;
+    YAML::anchor_t anchor = 0;
+    std::optional<Node> key;  ///< of the map item whose value comes next
+  };
+
+  static Node leaf(const YAML::Mark& mark) {
+    Node node;
+    node.mark = to_mark(mark);
+    return node;
+  }
+  static void refuse_tag(const YAML::Mark& mark, const std::string& tag) {
+    if (!tag.empty() && tag != "?")
+      throw SyntaxError{to_mark(mark), fmt::format("tag {} (the scene language has no tags)", tag)};
+  }
+  void check_depth(const SourceMark& mark, int more) const {
+    if (static_cast<int>(open_.size()) + more > max_depth)
+      throw SyntaxError{mark, fmt::format("nested deeper than {} levels", max_depth)};
+  }
+  void open(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor, Node::Kind kind) {
+    refuse_tag(mark, tag);
+    check_depth(to_mark(mark), 1);
+    open_.push_back({leaf(mark), anchor, {}});
+    open_.back().node.kind = kind;
+  }
+  void close() {
+    Open done = std::move(open_.back());
+    open_.pop_back();
+    if (done.node.kind == Node::Kind::map) refuse_duplicates(done.node);
+    add(std::move(done.node), done.anchor);
+  }
+  void add(Node node, YAML::anchor_t anchor) {
+    if (anchor != 0) anchored_[anchor] = {node, extent_of(node)};
+    if (open_.empty()) {
+      root = std::move(node);
+      return;
+    }
+    Open& parent = open_.back();
+    if (parent.node.kind == Node::Kind::map) {
+      if (!parent.key) {
+        if (node.kind != Node::Kind::scalar) throw SyntaxError{node.mark, "a key must be a name"};
+        parent.key = std::move(node);
+        return;
+      }
+      node.key = std::move(parent.key->text);
+      node.key_mark = parent.key->mark;
+      parent.key.reset();
+    }
+    parent.node.items.push_back(std::move(node));
+  }
+
+  std::vector<Open> open_;
+  std::map<YAML::anchor_t, std::pair<Node, Extent>> anchored_;
+  std::int64_t aliased_ = 0;
+};
+
+void append_flow(std::string& out, const Node& node) {
+  switch (node.kind) {
+    case Node::Kind::null:
+      out += "null";
+      return;
+    case Node::Kind::scalar:
+      if (!node.quoted) {
+        out += node.text;
+        return;
+      }
+      out += '"';
+      for (const char c : node.text) {
+        if (c == '"' || c == '\\') out += '\\';
+        if (c == '\n') {
+          out += "\\n";
+        } else if (c == '\t') {
+          out += "\\t";
+        } else if (c == '\r') {
+          out += "\\r";
+        } else {
+          out += c;
+        }
+      }
+      out += '"';
+      return;
+    case Node::Kind::list:
+    case Node::Kind::map: {
+      const bool map = node.kind == Node::Kind::map;
+      out += map ? '{' : '[';
+      for (const Node& item : node.items) {
+        if (&item != node.items.data()) out += ", ";
+        if (map) (out += item.key) += ": ";
+        append_flow(out, item);
+      }
+      out += map ? '}' : ']';
+      return;
+    }
+  }
+}
+
+bool holds_maps(const Node& node) {
+  return std::any_of(node.items.begin(), node.items.end(),
+                     [](const Node& item) { return item.kind == Node::Kind::map; });
+}
+
+}  // namespace
+
+const Node* Node::find(std::string_view name) const {
+  if (kind != Kind::map) return nullptr;
+  const auto found =
+      std::find_if(items.begin(), items.end(), [&](const Node& item) { return item.key == name; });
+  return found == items.end() ? nullptr : &*found;
+}
+
+Node* Node::find(std::string_view name) { return const_cast<Node*>(std::as_const(*this).find(name)); }
+
+Node Node::scalar(std::string text, bool quoted) {
+  Node node;
+  node.kind = Kind::scalar;
+  node.quoted = quoted;
+  node.text = std::move(text);
+  return node;
+}
+
+Node Node::list(std::vector<Node> items) {
+  Node node;
+  node.kind = Kind::list;
+  node.items = std::move(items);
+  return node;
+}
+
+Node Node::map(std::vector<Node> items) {
+  Node node = list(std::move(items));
+  node.kind = Kind::map;
+  return node;
+}
+
+Node Node::named(std::string name) && {
+  key = std::move(name);
+  return std::move(*this);
+}
+
+Node parse_document(const std::string& text) {
+  check_characters(text);
+  TreeBuilder builder;
+  try {
+    std::istringstream stream(text);
+    YAML::Parser parser(stream);
+    if (parser.HandleNextDocument(builder)) {
+      TreeBuilder second;
+      if (parser.HandleNextDocument(second))
+        throw SyntaxError{second.root.mark, "a second YAML document; a scene is one document"};
+    }
+  } catch (const YAML::Exception& error) {
+    throw SyntaxError{to_mark(error.mark), "broken YAML: " + error.msg};
+  }
+  return std::move(builder.root);
+}
+
+std::string to_flow_yaml(const Node& node) {
+  std::string out;
+  append_flow(out, node);
+  return out;
+}
+
+std::string to_yaml(const Node& node) {
+  std::string out;
+  for (const Node& section : node.items) {
+    out += section.key + ":";
+    if (!holds_maps(section)) {
+      out += ' ';
+      append_flow(out, section);
+      out += '\n';
+      continue;
+    }
+    out += '\n';
+    for (const Node& item : section.items) {
+      out += section.kind == Node::Kind::map ? "  " + item.key + ": " : "  - ";
+      append_flow(out, item);
+      out += '\n';
+    }
+  }
+  return out;
+}
+
+}  // namespace scree

@@ -1,0 +1,51 @@
+// YAML text as a tree that knows where everything stands. Stricter than YAML: see parse_document().
+#pragma once
+
+#include "sim/scene/scene.hpp"
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace scree {
+
+struct Node {
+  enum class Kind { null, scalar, list, map };
+
+  Kind kind = Kind::null;
+  bool quoted = false;  ///< a scalar in quotes: text, whatever it looks like
+  SourceMark mark;
+  std::string text{};         ///< of a scalar
+  std::vector<Node> items{};  ///< of a list or map
+  std::string key;            ///< name of this node in the map that holds it
+  SourceMark key_mark;
+
+  /// The item of a map with this key, or null.
+  const Node* find(std::string_view name) const;
+  Node* find(std::string_view name);
+
+  static Node scalar(std::string text, bool quoted = false);
+  static Node list(std::vector<Node> items);
+  static Node map(std::vector<Node> items);
+  Node named(std::string name) &&;
+};
+
+/// A fault of the text itself; `what` names no file, `mark` says where.
+struct SyntaxError {
+  SourceMark mark;
+  std::string what;
+};
+
+/// Parses one YAML document. Throws SyntaxError for broken YAML, and for what YAML allows but a scene does
+/// not: bytes that are not UTF-8, control characters, tabs in indentation, duplicate keys, keys that are not
+/// names, tags, a second document, depth beyond 32, aliases that add more than a million nodes.
+Node parse_document(const std::string& text);
+
+/// The tree as YAML that parses to the same tree: long lists and maps one item per line, the rest in braces.
+std::string to_yaml(const Node& node);
+
+/// The same on one line.
+std::string to_flow_yaml(const Node& node);
+
+}  // namespace scree

@@ -1,0 +1,118 @@
+// A scene as it is written, key for key, and the table that binds the two.
+#pragma once
+
+#include "sim/scene/codec.hpp"
+#include "sim/scene/distribution.hpp"
+#include "sim/scene/scene.hpp"
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace scree {
+
+struct MaterialEntry : Material {
+  const Node* node = nullptr;
+};
+
+struct ContactEntry {
+  std::array<std::string, 2> between;
+  std::optional<double> restitution;
+  std::optional<double> friction;
+  const Node* node = nullptr;
+};
+
+struct PlaneEntry {
+  Vec3 normal = Vec3::UnitZ();
+  double offset = 0;
+};
+
+struct SphereEntry {
+  Distribution<double> radius;
+};
+
+struct BoxEntry {
+  Distribution<Vec3> size;  ///< full edge lengths
+};
+
+struct RotationEntry {
+  Vec3 axis = Vec3::UnitZ();
+  std::optional<double> degrees;
+  std::optional<double> radians;
+};
+
+struct MotionEntry {
+  Vec3 velocity = Vec3::Zero();
+  Vec3 spin = Vec3::Zero();
+};
+
+struct RepeatEntry {
+  std::array<std::int64_t, 3> count{1, 1, 1};
+  Vec3 spacing = Vec3::Zero();
+  double jitter = 0;
+};
+
+struct ScatterEntry {
+  std::int64_t count = 0;
+  Vec3 from = Vec3::Zero();
+  Vec3 to = Vec3::Zero();
+};
+
+/// One item of `bodies`; stands for many bodies if it repeats or scatters. What does not apply to the item
+/// (the velocity of a plane, say) must be absent.
+struct BodyEntry {
+  std::optional<PlaneEntry> plane;
+  std::optional<SphereEntry> sphere;
+  std::optional<BoxEntry> box;
+  std::string name;
+  std::string material;
+  std::optional<double> mass;
+  std::optional<Vec3> at;
+  std::optional<std::array<double, 4>> orientation;
+  std::optional<RotationEntry> rotate;
+  std::optional<Vec3> velocity;
+  std::optional<Vec3> spin;
+  std::optional<bool> fixed;
+  std::optional<MotionEntry> motion;
+  std::optional<RepeatEntry> repeat;
+  std::optional<ScatterEntry> scatter;
+  const Node* node = nullptr;
+};
+
+struct CheckEntry : Check {
+  const Node* node = nullptr;
+};
+
+enum class Precision { double_precision };
+enum class Trajectory { none };
+
+struct RecordEntry : RecordSettings {
+  Trajectory trajectory = Trajectory::none;
+};
+
+struct SceneEntry {
+  int format = 1;
+  std::string name;
+  std::string label;
+  std::uint64_t seed = 0;
+  Vec3 gravity = Vec3::Zero();
+  TimeSettings time;
+  std::vector<MaterialEntry> materials;
+  std::vector<ContactEntry> contacts;
+  std::vector<BodyEntry> bodies;
+  ResponseSettings response;
+  BroadPhaseSettings broadphase;
+  NarrowPhaseSettings narrowphase;
+  Precision precision = Precision::double_precision;
+  ModelSettings model;
+  RenderSettings render;
+  RecordEntry record;
+  std::vector<CheckEntry> checks;
+};
+
+/// The table: every key of the scene language.
+const Codec<SceneEntry>& scene_codec();
+
+}  // namespace scree

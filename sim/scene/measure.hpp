@@ -1,0 +1,81 @@
+// The measures of the scene language: their grammar, and what each is worth.
+#pragma once
+
+#include "sim/observation.hpp"
+
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace scree {
+
+enum class MeasureKind {
+  // Of one body; see BodyState.
+  position,
+  velocity,
+  spin,
+  acceleration,
+  force,
+  tilt,
+  // Of the whole run; see Observation.
+  energy_total,
+  energy_kinetic,
+  energy_linear,
+  energy_angular,
+  energy_potential,
+  energy_unexplained,
+  energy_work,
+  energy_integration,
+  dissipated_restitution,
+  dissipated_friction,
+  dissipated_correction,
+  momentum,
+  angular_momentum,
+  penetration_max,
+  penetration_mean,
+  penetration_p99,
+  penetration_relative_max,
+  penetration_relative_mean,
+  gap_mean,
+  contacts_count,
+  pairs_count,
+  bodies_count,
+  speed_max,
+  speed_rms,
+  coordination_mean,
+};
+
+enum class Component { x, y, z, norm };
+
+struct Measure {
+  MeasureKind kind = MeasureKind::energy_total;
+  std::int32_t body = -1;                 ///< its number in the scene; -1 for measures of the whole run
+  Component component = Component::norm;  ///< of a vector
+};
+
+/// What there is to measure, for the parser and for the reference.
+struct MeasureInfo {
+  MeasureKind kind;
+  std::string_view name;  ///< without the body's name and without the component
+  bool of_body;
+  bool is_vector;
+  std::string_view unit;
+  std::string_view help;
+};
+const std::vector<MeasureInfo>& measure_table();
+
+/// True for the first words of measures of the whole run (energy, speed ...): no body may be called so.
+bool is_measure_word(std::string_view name);
+
+/// Parses energy.total, momentum.x, puck.velocity.norm, bed[3].tilt. `bodies` are Scene::body_names. Throws
+/// InputError, without a place, that names what is unknown and the nearest known word.
+Measure parse_measure(std::string_view text, const std::map<std::string, std::int32_t>& bodies);
+
+/// The measure's value in SI units. `body` is asked for the state of the body only for measures of one.
+double evaluate(const Measure& measure, const Observation& observation,
+                const std::function<BodyState(std::int32_t)>& body);
+
+}  // namespace scree

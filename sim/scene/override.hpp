@@ -1,0 +1,16 @@
+// --set key.path=value: changes to the tree of a scene before it is read.
+#pragma once
+
+#include "sim/scene/reader.hpp"
+#include "sim/scene/type.hpp"
+
+#include <vector>
+
+namespace scree {
+
+/// Applies the overrides in order. Keys that the table knows are created where they are absent, with their
+/// default as the start; list items and named entries must exist. Throws InputError that names the part of
+/// the path that is unknown.
+void apply_overrides(Node& root, const Type& type, const std::vector<Override>& overrides);
+
+}  // namespace scree

@@ -1,0 +1,75 @@
+// Where the reader of a scene stands, and how it says what is wrong there.
+#pragma once
+
+#include "core/error.hpp"
+#include "sim/scene/document.hpp"
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace scree {
+
+/// The candidate nearest to the word by edit distance, or empty if none is near enough to be meant.
+std::string_view nearest(std::string_view word, const std::vector<std::string_view>& candidates);
+
+/// " (did you mean x?)", or nothing.
+std::string suggestion(std::string_view word, const std::vector<std::string_view>& candidates);
+
+/// One part of a path such as bodies[2].velocity: a key, or an index into a list.
+struct PathPart {
+  std::string_view key;
+  std::int64_t index = -1;  ///< negative: a key
+};
+
+std::string to_text(const std::vector<PathPart>& path);
+
+class Reader {
+ public:
+  Reader(std::string file, std::vector<Override> overrides)
+      : file_(std::move(file)), overrides_(std::move(overrides)) {}
+
+  /// While it lives, messages are about this key or list item of what they were about before.
+  class [[nodiscard]] Step {
+   public:
+    Step(Reader& reader, std::string_view key) : path_(reader.path_) { path_.push_back({key, -1}); }
+    Step(Reader& reader, std::size_t index) : path_(reader.path_) {
+      path_.push_back({{}, static_cast<std::int64_t>(index)});
+    }
+    ~Step() { path_.pop_back(); }
+    Step(const Step&) = delete;
+    Step& operator=(const Step&) = delete;
+
+   private:
+    std::vector<PathPart>& path_;
+  };
+
+  /// Throws InputError: file:line:column: key: what.
+  [[noreturn]] void fail(const SourceMark& mark, std::string_view what) const;
+
+  /// The same about an item of the map given, at the map's own place if the item is absent.
+  [[noreturn]] void fail_at(std::string_view key, const Node& map, std::string_view what);
+
+  /// Keeps an error, so that more can be found.
+  void note(const InputError& error);
+  std::size_t errors() const { return errors_; }
+  /// Throws InputError with the first few errors noted, if there are any.
+  void finish() const;
+
+  /// "file:line:column", or the --set that brought the value in.
+  std::string place(const SourceMark& mark) const;
+
+  /// Marks a value and all in it as brought in by an override.
+  static void mark_override(Node& node, std::size_t index);
+
+ private:
+  friend class Step;
+  std::string file_;
+  std::vector<Override> overrides_;
+  std::vector<PathPart> path_;
+  std::vector<std::string> told_;
+  std::size_t errors_ = 0;
+};
+
+}  // namespace scree

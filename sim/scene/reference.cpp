@@ -1,0 +1,113 @@
+// The reference page of the scene language, written from the table of keys and the table of measures.
+#include "sim/scene/keys.hpp"
+#include "sim/scene/measure.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+namespace scree {
+namespace {
+
+constexpr const char* introduction = R"(# Scene reference
+
+<!-- Generated from the table of keys in sim/scene/keys.cpp; test_scene compares, and writes with SCREE_WRITE=1. -->
+
+A scene is one YAML file. Units are SI, angles are radians unless a key says degrees, and gravity alone decides what
+is up. Unknown keys, wrong types and values without sense are errors with file, line, column and the nearest known key.
+Every random choice follows from `seed` and the body's number.
+
+```yaml
+format: 1
+gravity: [0, 0, -9.81]
+time: {end: 3, step: 0.002}
+materials:
+  ground: {friction: 0.5, restitution: 0.2}
+  glass: {density: 2500, friction: 0.3, restitution: 0.6}
+bodies:
+  - {plane: {normal: [0, 0, 1]}, material: ground}
+  - {sphere: {radius: 0.1}, name: puck, at: [0, 0, 1], velocity: [1, 0, 0], material: glass}
+  - box: {size: {uniform: [[0.05, 0.05, 0.05], [0.1, 0.1, 0.1]]}}
+    scatter: {count: 50, from: [-1, -1, 2], to: [1, 1, 3]}
+    material: glass
+checks:
+  - {measure: puck.position.z, above: 0.09}
+  - {measure: energy.unexplained, over: [0, 3], reduce: max, below: 1e-9}
+```
+
+Any key can be changed on the command line: `--set time.step=0.001 --set "bodies[1].velocity[0]=3"`. The part of a
+path that the file does not give is created, with its default; list items and names of your own must be in the file.
+)";
+
+/// A | within a cell would end it.
+std::string cell(std::string_view text) {
+  std::string out;
+  for (const char c : text) {
+    if (c == '|') out += '\\';
+    out += c;
+  }
+  return out;
+}
+
+std::string kind_of(const Type& type) {
+  if (type.kind == Type::Kind::section) return "map, see below";
+  if (type.kind == Type::Kind::named) return "map of maps, see below";
+  if (type.kind == Type::Kind::list && type.parts[0].kind == Type::Kind::section)
+    return "list of maps, see below";
+  if (type.kind == Type::Kind::any_of) {
+    std::vector<std::string> parts;
+    for (const Type& part : type.parts) parts.push_back(kind_of(part));
+    return fmt::format("{}", fmt::join(parts, ", or "));
+  }
+  return words_of(type);
+}
+
+void append_section(std::string& page, const SectionType& section);
+
+void append_sections_in(std::string& page, const Type& type) {
+  if (type.section) append_section(page, *type.section);
+  for (const Type& part : type.parts) append_sections_in(page, part);
+}
+
+void append_section(std::string& page, const SectionType& section) {
+  page += fmt::format("\n## {}\n\n{}\n\n| key | value | meaning | default |\n|---|---|---|---|\n",
+                      section.name, section.help);
+  std::vector<std::string> later;
+  for (const KeyType& key : section.keys) {
+    if (key.presence == Presence::future) {
+      later.push_back(fmt::format("`{}` ({})", key.name, key.help));
+      continue;
+    }
+    const std::string fallback = key.presence == Presence::required ? "**required**"
+                                 : key.fallback.empty()             ? ""
+                                                                    : fmt::format("`{}`", key.fallback);
+    page +=
+        fmt::format("| `{}` | {} | {} | {} |\n", key.name, cell(kind_of(key.type)), cell(key.help), fallback);
+    for (const std::string& word : key.type.future) later.push_back(fmt::format("`{}: {}`", key.name, word));
+  }
+  if (!later.empty())
+    page += fmt::format("\nPart of the language, but not in this version: {}.\n", fmt::join(later, ", "));
+  for (const KeyType& key : section.keys) append_sections_in(page, key.type);
+}
+
+void append_measures(std::string& page, bool of_body) {
+  page += "\n| measure | unit | meaning |\n|---|---|---|\n";
+  for (const MeasureInfo& info : measure_table())
+    if (info.of_body == of_body)
+      page += fmt::format("| `{}{}{}` | {} | {} |\n", of_body ? "<body>." : "", info.name,
+                          info.is_vector ? ".{x,y,z,norm}" : "", info.unit, cell(info.help));
+}
+
+}  // namespace
+
+std::string scene_reference() {
+  std::string page = introduction;
+  append_section(page, *scene_codec().type.section);
+  page +=
+      "\n## Measures\n\nOf one body, by its name; `bed[3]` is a body of a repeat or scatter. World frame.\n";
+  append_measures(page, true);
+  page += "\nOf the whole run. `region.<name>.*` is part of the language, but not in this version.\n";
+  append_measures(page, false);
+  return page;
+}
+
+}  // namespace scree

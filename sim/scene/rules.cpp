@@ -1,0 +1,130 @@
+#include "sim/scene/rules.hpp"
+
+#include <fmt/format.h>
+
+namespace scree {
+namespace {
+
+/// Keys that mean the same or contradict each other.
+void exclude(const char* first, const char* second, const Node& node, Reader& reader) {
+  const Node* item = node.find(second);
+  if (!node.find(first) || !item) return;
+  const Reader::Step step(reader, second);
+  reader.fail(item->key_mark, fmt::format("cannot stand together with {}", first));
+}
+
+bool is_direction(const Vec3& v) {
+  const double length = v.stableNorm();
+  return length > 0 && std::isfinite(length);
+}
+
+/// The number of the keys that are given.
+int given(std::initializer_list<const char*> keys, const Node& node) {
+  int count = 0;
+  for (const char* key : keys) count += node.find(key) != nullptr;
+  return count;
+}
+
+void check_plane_body(const Node& node, Reader& reader) {
+  for (const char* key :
+       {"mass", "at", "orientation", "rotate", "velocity", "spin", "fixed", "motion", "repeat", "scatter"})
+    if (const Node* item = node.find(key)) {
+      const Reader::Step step(reader, key);
+      reader.fail(item->key_mark, "does not go with a plane, which is fixed where its normal and offset say");
+    }
+}
+
+}  // namespace
+
+void check_time(const TimeSettings& time, const Node& node, Reader& reader) {
+  if (time.step > time.end)
+    reader.fail_at("step", node, fmt::format("must be at most the end, {} s, not {} s", time.end, time.step));
+  // Step numbers are kept exactly in doubles and in 64-bit integers.
+  if (time.end / time.step > 0x1p53)
+    reader.fail_at("step", node, "is so short that the run would have more than 2^53 steps");
+}
+
+void check_plane(const PlaneEntry& plane, const Node& node, Reader& reader) {
+  if (!is_direction(plane.normal)) reader.fail_at("normal", node, "must not be zero");
+}
+
+void check_rotation(const RotationEntry& rotation, const Node& node, Reader& reader) {
+  if (!is_direction(rotation.axis)) reader.fail_at("axis", node, "must not be zero");
+  exclude("degrees", "radians", node, reader);
+  if (given({"degrees", "radians"}, node) == 0) reader.fail(node.mark, "needs degrees or radians");
+}
+
+void check_scatter(const ScatterEntry& scatter, const Node& node, Reader& reader) {
+  for (int k = 0; k < 3; ++k)
+    if (scatter.from[k] > scatter.to[k])
+      reader.fail_at("to", node,
+                     fmt::format("must be at least `from` in each component, but {} < {}", scatter.to[k],
+                                 scatter.from[k]));
+}
+
+void check_body(const BodyEntry& body, const Node& node, Reader& reader) {
+  const int shapes = given({"plane", "sphere", "box"}, node);
+  if (shapes != 1)
+    reader.fail(node.mark, fmt::format("must have exactly one shape (plane, sphere or box), not {}",
+                                       shapes == 0 ? "none" : std::to_string(shapes)));
+  if (body.plane) return check_plane_body(node, reader);
+  exclude("orientation", "rotate", node, reader);
+  exclude("motion", "velocity", node, reader);
+  exclude("motion", "spin", node, reader);
+  exclude("repeat", "scatter", node, reader);
+  exclude("at", "scatter", node, reader);
+  if (body.fixed.value_or(false))
+    for (const char* key : {"motion", "velocity", "spin"}) exclude("fixed", key, node, reader);
+  if (body.orientation) {
+    const auto& q = *body.orientation;
+    const double length = Eigen::Vector4d(q[0], q[1], q[2], q[3]).stableNorm();
+    if (!(length > 0) || !std::isfinite(length)) reader.fail_at("orientation", node, "must not be zero");
+  }
+}
+
+void check_camera(const CameraSettings& camera, const Node& node, Reader& reader) {
+  if (camera.from == camera.to) reader.fail(node.mark, "`from` and `to` must not be the same point");
+}
+
+void check_check(const CheckEntry& check, const Node& node, Reader& reader) {
+  exclude("at", "over", node, reader);
+  exclude("tolerance", "relative", node, reader);
+  if (given({"expect", "below", "above"}, node) == 0)
+    reader.fail(node.mark, "expects nothing; it needs expect, below or above");
+  if (check.expect && !check.tolerance && !check.relative)
+    reader.fail_at("expect", node, "needs tolerance or relative");
+  for (const char* key : {"tolerance", "relative"})
+    if (!check.expect && node.find(key)) reader.fail_at(key, node, "needs expect");
+  if (check.over && check.reduce == Reduce::none) reader.fail_at("over", node, "needs reduce");
+  if (!check.over && check.reduce != Reduce::none) reader.fail_at("reduce", node, "needs over");
+  if (check.over && (*check.over)[0] > (*check.over)[1])
+    reader.fail_at("over", node, "must be [start, end] with start <= end");
+  if (node.find("level") && check.reduce != Reduce::crossings)
+    reader.fail_at("level", node, "needs reduce: crossings");
+}
+
+template <class T>
+void check_distribution(const Distribution<T>& sizes, const Node& node, Reader& reader) {
+  if (given({"uniform", "powerlaw", "choose"}, node) != 1)
+    reader.fail(node.mark, "must have exactly one of uniform, powerlaw, choose");
+  if (sizes.uniform) {
+    const auto& [low, high] = *sizes.uniform;
+    bool ordered;
+    if constexpr (std::is_same_v<T, double>) {
+      ordered = low <= high;
+    } else {
+      ordered = (low.array() <= high.array()).all();
+    }
+    if (!ordered) reader.fail_at("uniform", node, "must be [low, high] with low <= high");
+  }
+  if (sizes.powerlaw) {
+    const auto& [low, high, exponent] = *sizes.powerlaw;
+    if (!(low > 0 && low <= high))
+      reader.fail_at("powerlaw", node, "must be [min, max, exponent] with 0 < min <= max");
+  }
+}
+
+template void check_distribution(const Distribution<double>&, const Node&, Reader&);
+template void check_distribution(const Distribution<Vec3>&, const Node&, Reader&);
+
+}  // namespace scree

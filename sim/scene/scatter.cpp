@@ -1,0 +1,151 @@
+#include "sim/scene/scatter.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+namespace scree {
+namespace {
+
+// A region that one body cannot enter in this many tries is full for practical purposes: at random sequential
+// packing's limit the free share of the volume falls under 1/1000.
+constexpr int most_tries = 2000;
+
+double radius_of(const BodyTable& bodies, std::size_t b) {
+  return bounding_radius(bodies.shape[b], bodies.size[b]);
+}
+
+/// Bodies by the cells that their bounds touch. Cells at the rim reach to infinity, so bodies of any size and
+/// place are found.
+class CellGrid {
+ public:
+  CellGrid(const Vec3& low, const Vec3& high, std::int64_t count) : low_(low) {
+    const Vec3 extent = high - low;
+    // Bodies per cell stay few for any shape of the region; flat ones have one layer.
+    double edge =
+        std::max(extent.maxCoeff() / static_cast<double>(count), std::numeric_limits<double>::min());
+    do {
+      for (int k = 0; k < 3; ++k)
+        cells_[k] = static_cast<std::int64_t>(std::clamp(extent[k] / edge, 1.0, static_cast<double>(count)));
+      edge *= 1.25;
+    } while (cells_[0] * cells_[1] > 2 * count || cells_[0] * cells_[1] * cells_[2] > 2 * count);
+    for (int k = 0; k < 3; ++k)
+      inverse_edge_[k] = extent[k] > 0 ? static_cast<double>(cells_[k]) / extent[k] : 0;
+    heads_.assign(static_cast<std::size_t>(cells_[0] * cells_[1] * cells_[2]), -1);
+  }
+
+  void insert(std::int32_t body, const Vec3& low, const Vec3& high) {
+    visit(low, high, [&](std::int32_t& head) {
+      links_.push_back({body, head});
+      head = static_cast<std::int32_t>(links_.size()) - 1;
+      return true;
+    });
+  }
+
+  /// True if f(body) holds for every body that may touch the bounds.
+  template <class F>
+  bool all_of(const Vec3& low, const Vec3& high, F&& f) {
+    return visit(low, high, [&](std::int32_t head) {
+      for (; head >= 0; head = links_[static_cast<std::size_t>(head)].next)
+        if (!f(links_[static_cast<std::size_t>(head)].body)) return false;
+      return true;
+    });
+  }
+
+ private:
+  struct Link {
+    std::int32_t body;
+    std::int32_t next;
+  };
+
+  std::int64_t cell(double x, int k) const {
+    const double at = std::floor((x - low_[k]) * inverse_edge_[k]);
+    return static_cast<std::int64_t>(std::clamp(at, 0.0, static_cast<double>(cells_[k] - 1)));
+  }
+
+  template <class F>
+  bool visit(const Vec3& low, const Vec3& high, F&& f) {
+    std::array<std::int64_t, 3> first{};
+    std::array<std::int64_t, 3> last{};
+    for (int k = 0; k < 3; ++k) {
+      first[k] = cell(low[k], k);
+      last[k] = cell(high[k], k);
+    }
+    for (std::int64_t z = first[2]; z <= last[2]; ++z)
+      for (std::int64_t y = first[1]; y <= last[1]; ++y)
+        for (std::int64_t x = first[0]; x <= last[0]; ++x)
+          if (!f(heads_[static_cast<std::size_t>(x + cells_[0] * (y + cells_[1] * z))])) return false;
+    return true;
+  }
+
+  Vec3 low_;
+  std::array<std::int64_t, 3> cells_{};
+  std::array<double, 3> inverse_edge_{};
+  std::vector<std::int32_t> heads_;
+  std::vector<Link> links_;
+};
+
+}  // namespace
+
+double distance_to(const BodyTable& bodies, std::size_t b, const Vec3& point) {
+  const Vec3 local = bodies.orientation[b].conjugate() * (point - bodies.position[b]);
+  switch (bodies.shape[b]) {
+    case Shape::sphere:
+      return local.norm() - bodies.size[b].x();
+    case Shape::box:
+      return (local.cwiseAbs() - bodies.size[b]).cwiseMax(0.0).norm();
+    case Shape::plane:
+      return local.z();
+  }
+  return 0;
+}
+
+std::int64_t scatter(BodyTable& bodies, std::int64_t first, std::int64_t count, const ScatterEntry& box,
+                     const std::vector<std::int32_t>& obstacles, std::uint64_t seed) {
+  std::vector<std::int32_t> order(static_cast<std::size_t>(count));
+  std::iota(order.begin(), order.end(), static_cast<std::int32_t>(first));
+  const auto radius = [&](std::int32_t b) { return radius_of(bodies, static_cast<std::size_t>(b)); };
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::int32_t a, std::int32_t b) { return radius(a) > radius(b); });
+
+  CellGrid grid(box.from, box.to, count);
+  std::vector<std::int32_t> planes;
+  const auto insert = [&](std::int32_t b) {
+    const Vec3& at = bodies.position[static_cast<std::size_t>(b)];
+    grid.insert(b, at.array() - radius(b), at.array() + radius(b));
+  };
+  const double reach = radius(order.front());
+  for (const std::int32_t b : obstacles) {
+    const auto o = static_cast<std::size_t>(b);
+    if (bodies.shape[o] == Shape::plane) {
+      planes.push_back(b);
+    } else if ((bodies.position[o].cwiseMax(box.from).cwiseMin(box.to) - bodies.position[o]).norm() <=
+               reach + radius(b)) {
+      insert(b);
+    }
+  }
+
+  for (std::int64_t fitted = 0; fitted < count; ++fitted) {
+    const std::int32_t b = order[static_cast<std::size_t>(fitted)];
+    const double r = radius(b);
+    Vec3& at = bodies.position[static_cast<std::size_t>(b)];
+    const auto clear = [&](std::int32_t other) {
+      return distance_to(bodies, static_cast<std::size_t>(other), at) >= r;
+    };
+    // Places have a stream of their own, so that what else is drawn for a body does not move it.
+    Random random(seed, static_cast<std::uint64_t>(b) + (std::uint64_t{1} << 32));
+    bool placed = false;
+    for (int tries = 0; tries < most_tries && !placed; ++tries) {
+      for (int k = 0; k < 3; ++k) at[k] = random.uniform(box.from[k], box.to[k]);
+      placed = std::all_of(planes.begin(), planes.end(), clear) &&
+               grid.all_of(at.array() - r, at.array() + r, clear);
+    }
+    if (!placed) return fitted;
+    insert(b);
+  }
+  return count;
+}
+
+}  // namespace scree

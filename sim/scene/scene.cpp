@@ -1,0 +1,59 @@
+// Reading a scene: text -> tree -> overrides -> entry (the table) -> bodies.
+#include "sim/scene/scene.hpp"
+
+#include "core/error.hpp"
+#include "sim/scene/build.hpp"
+#include "sim/scene/override.hpp"
+
+#include <fmt/format.h>
+
+#include <cerrno>
+#include <cstring>
+#include <fstream>
+#include <iterator>
+
+namespace scree {
+namespace {
+
+std::string read_text(const std::filesystem::path& file) {
+  std::error_code ignored;
+  if (std::filesystem::is_directory(file, ignored))
+    throw InputError(fmt::format("{}: is a directory, not a scene file", file.string()));
+  errno = 0;
+  std::ifstream stream(file, std::ios::binary);
+  std::string text{std::istreambuf_iterator<char>(stream), {}};
+  if (!stream.is_open() || stream.bad())
+    throw InputError(fmt::format("{}: cannot be read: {}", file.string(), std::strerror(errno)));
+  return text;
+}
+
+}  // namespace
+
+Scene parse_scene(const std::string& text, const std::filesystem::path& name,
+                  const std::vector<Override>& overrides) {
+  Reader reader(name.string(), overrides);
+  Node root;
+  try {
+    root = parse_document(text);
+  } catch (const SyntaxError& error) {
+    reader.fail(error.mark, error.what);
+  }
+  if (root.kind == Node::Kind::null)
+    reader.fail({1, 1}, "the file is empty; a scene begins with `format: 1`");
+  const Codec<SceneEntry>& codec = scene_codec();
+  SceneEntry entry;
+  if (root.kind == Node::Kind::map) apply_overrides(root, codec.type, overrides);
+  try {
+    codec.read(entry, root, reader);
+  } catch (const InputError& error) {
+    reader.note(error);
+  }
+  reader.finish();
+  return build_scene(std::move(entry), name, reader);
+}
+
+Scene read_scene(const std::filesystem::path& file, const std::vector<Override>& overrides) {
+  return parse_scene(read_text(file), file, overrides);
+}
+
+}  // namespace scree

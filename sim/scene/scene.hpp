@@ -1,0 +1,152 @@
+// A scene, read and checked: plain data that the rest of sim works from. The language is described by the
+// table in keys.cpp, of which the parser, its messages, the JSON Schema and docs/scene.md are made.
+#pragma once
+
+#include "broadphase/settings.hpp"
+#include "core/bodies.hpp"
+#include "narrowphase/settings.hpp"
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace scree {
+
+struct Material {
+  std::string name;
+  double density = 1000;   ///< kg/m^3
+  double restitution = 0;  ///< 0 to 1
+  double friction = 0;     ///< Coulomb's coefficient
+};
+
+/// How a pair of materials meets.
+struct ContactLaw {
+  double restitution = 0;
+  double friction = 0;
+};
+
+struct TimeSettings {
+  double end = 0;    ///< s
+  double step = 0;   ///< s; the last step is shorter if `end` is no multiple
+  int substeps = 1;  ///< contacts are found and solved this many times per step
+};
+
+/// Prescribed motion: constant velocity, and constant spin about `about` (the body's own position if absent).
+struct Motion {
+  std::int32_t body = 0;
+  Vec3 velocity = Vec3::Zero();  ///< m/s
+  Vec3 spin = Vec3::Zero();      ///< rad/s
+};
+
+enum class ResponseMode { standard };  ///< `default` in the scene language
+
+struct ResponseSettings {
+  ResponseMode mode = ResponseMode::standard;
+  int iterations = 100;     ///< most sweeps over the contacts per substep
+  double tolerance = 1e-7;  ///< sweeps stop when they change the impulses by less than this share
+  bool warm_start = true;   ///< start from the last step's impulses
+  std::optional<double> restitution_threshold;  ///< m/s; absent: from gravity and step
+};
+
+/// Features to compute; absent: only if the scene needs them.
+struct ModelSettings {
+  std::optional<bool> rotation;
+  std::optional<bool> friction;
+  std::optional<bool> restitution;
+};
+
+enum class ColorBy { material, speed, size };
+
+struct CameraSettings {
+  Vec3 from = Vec3(3, -4, 2);  ///< m
+  Vec3 to = Vec3::Zero();      ///< m
+  double fov = 40;             ///< vertical, degrees
+};
+
+struct RenderSettings {
+  bool enabled = true;  ///< false if the scene has `render: false`
+  int width = 1280;
+  int height = 720;
+  double fps = 30;                       ///< frames per simulated second
+  std::optional<CameraSettings> camera;  ///< absent: chosen to see every body
+  ColorBy color = ColorBy::material;
+};
+
+struct RecordSettings {
+  double metrics_every = 0.01;  ///< s
+};
+
+/// Where in the scene file something stands, for messages; counted from 1.
+struct SourceMark {
+  int line = 0;
+  int column = 0;
+};
+
+enum class Reduce { none, max, min, mean, drift, range, crossings };
+
+/// One line of the scene's own acceptance test.
+struct Check {
+  std::string measure;
+  std::optional<double> at;                   ///< s; absent and no `over`: at the end
+  std::optional<std::array<double, 2>> over;  ///< s
+  Reduce reduce = Reduce::none;
+  double level = 0;  ///< of `crossings`
+  std::optional<double> expect;
+  std::optional<double> tolerance;  ///< absolute
+  std::optional<double> relative;
+  std::optional<double> below;
+  std::optional<double> above;
+  SourceMark mark;
+};
+
+struct Scene {
+  std::string name;
+  std::string label;             ///< `long` scenes are left out of verify unless asked
+  std::filesystem::path source;  ///< the file it was read from
+  std::uint64_t seed = 0;
+  Vec3 gravity = Vec3::Zero();  ///< m/s^2
+  TimeSettings time;
+  std::vector<Material> materials;
+  std::vector<ContactLaw> laws;                    ///< materials x materials, symmetric; see law()
+  BodyTable bodies;                                ///< at t = 0; id[k] = k
+  std::map<std::string, std::int32_t> body_names;  ///< named bodies, name[k] of a repeat included
+  std::vector<Motion> motions;                     ///< of the prescribed bodies, by ascending body
+  ResponseSettings response;
+  BroadPhaseSettings broadphase;
+  NarrowPhaseSettings narrowphase;
+  ModelSettings model;
+  RenderSettings render;
+  RecordSettings record;
+  std::vector<Check> checks;
+  std::string resolved;  ///< the scene as YAML with every default written out
+
+  const ContactLaw& law(std::int32_t a, std::int32_t b) const {
+    return laws[static_cast<std::size_t>(a) * materials.size() + static_cast<std::size_t>(b)];
+  }
+};
+
+/// `--set key.path=value` of the command line, applied before anything is checked.
+struct Override {
+  std::string path;   ///< bodies[2].velocity[0]
+  std::string value;  ///< YAML
+};
+
+/// Reads and checks a scene file. Throws InputError: file:line:column, the key, what is allowed, and the
+/// nearest known key where one is close. Nothing is written.
+Scene read_scene(const std::filesystem::path& file, const std::vector<Override>& overrides = {});
+
+/// The same from text; `name` stands for the file in messages.
+Scene parse_scene(const std::string& text, const std::filesystem::path& name,
+                  const std::vector<Override>& overrides = {});
+
+/// The JSON Schema (draft 2020-12) of the scene language, as text.
+std::string scene_schema();
+
+/// docs/scene.md, as text.
+std::string scene_reference();
+
+}  // namespace scree

@@ -1,0 +1,318 @@
+#include "sim/simulation.hpp"
+
+#include "core/error.hpp"
+#include "core/timing.hpp"
+#include "core/tolerances.hpp"
+#include "narrowphase/narrow_phase.hpp"
+#include "sim/dynamics/contact_set.hpp"
+#include "sim/dynamics/correction.hpp"
+#include "sim/dynamics/impact.hpp"
+#include "sim/dynamics/motion.hpp"
+#include "sim/dynamics/response.hpp"
+#include "sim/measurement.hpp"
+#include "sim/model.hpp"
+#include "sim/pair_finder.hpp"
+
+#include <fmt/format.h>
+#include <tbb/global_control.h>
+
+#include <cmath>
+#include <utility>
+
+namespace scree {
+
+namespace {
+
+ResponseParameters parameters_of(const Scene& scene) {
+  const ModelPlan plan = plan_model(scene);
+  return {.gravity = scene.gravity,
+          .friction = plan.friction.on,
+          .restitution = plan.restitution.on,
+          .rotation = plan.rotation.on,
+          .gyroscopic = plan.gyroscopic.on,
+          .warm_start = scene.response.warm_start,
+          .iterations = scene.response.iterations,
+          .tolerance = scene.response.tolerance,
+          .restitution_threshold = plan.restitution_threshold};
+}
+
+std::vector<PairLaw> table_of(const Scene& scene) {
+  std::vector<PairLaw> table;
+  for (const ContactLaw& law : scene.laws) table.push_back({law.restitution, law.friction});
+  return table;
+}
+
+/// Middle of the free bodies: where float bounds are finest.
+Vec3 middle_of(const BodyTable& bodies) {
+  Vec3 sum = Vec3::Zero();
+  double count = 0;
+  for (std::size_t k = 0; k < bodies.position.size(); ++k) {
+    if (bodies.mobility[k] != Mobility::free) continue;
+    sum += bodies.position[k];
+    count += 1;
+  }
+  return count > 0 ? Vec3(sum / count) : sum;
+}
+
+/// Energy that lifts every free body by its own size (J).
+double lifting_energy(const Scene& scene) {
+  double energy = 0;
+  const BodyTable& bodies = scene.bodies;
+  for (std::size_t k = 0; k < bodies.position.size(); ++k) {
+    if (bodies.mobility[k] != Mobility::free) continue;
+    energy += scene.gravity.norm() / bodies.inverse_mass[k] * smallest_size(bodies.shape[k], bodies.size[k]);
+  }
+  return energy;
+}
+
+/// The fields that a step changes, to go back to.
+struct MovingState {
+  std::vector<Vec3> position, velocity, spin;
+  std::vector<Quat> orientation;
+
+  void save(const Bodies<Host>& bodies) {
+    copy(position, bodies.position);
+    copy(velocity, bodies.velocity);
+    copy(spin, bodies.spin);
+    copy(orientation, bodies.orientation);
+  }
+  void restore(Bodies<Host>& bodies) const {
+    copy(bodies.position, position);
+    copy(bodies.velocity, velocity);
+    copy(bodies.spin, spin);
+    copy(bodies.orientation, orientation);
+  }
+};
+
+}  // namespace
+
+struct Simulation::Parts {
+  Scene scene;
+  tbb::global_control threads;
+  ResponseParameters parameters;
+  Vec3 origin;
+  Bodies<Host> bodies;
+  Array<PairLaw, Host> laws;
+  std::unique_ptr<PairFinder> pair_finder;
+  NarrowPhase narrow_phase;
+  NarrowPhase end_narrow_phase;  // for the penetration at the end of a step
+  ImpactSolver impacts;
+  ResponseSolver response;
+  PositionCorrector corrector;
+
+  std::int64_t step = 0;
+  double time = 0;
+  double last_step = 0;     // its length
+  double last_substep = 0;  // likewise; scales the remembered impulses
+  MovingState start;        // of the last step
+  std::vector<Quat> first_orientation;
+  std::vector<Vec3> contact_impulse;  // on each body that is not free, over the last step
+  ConstView<Pair> pairs;
+  Array<double, Host> pair_margin;  // of the boxes in `pairs`
+  Array<double, Host> contact_margin;
+  Array<SolverBody, Host> solver;
+  ContactSet contacts;
+  ImpulseMemory memory;
+  Ledger ledger;
+  ResponseStats stats;
+  EnergyBaseline baseline;
+  Observation observation;
+  bool observed = false;
+
+  Parts(const Scene& s, const SimulationOptions& options)
+      : scene(s),
+        threads(tbb::global_control::max_allowed_parallelism,
+                options.threads > 0
+                    ? static_cast<std::size_t>(options.threads)
+                    : tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism)),
+        parameters(parameters_of(s)),
+        origin(middle_of(s.bodies)),
+        narrow_phase(s.narrowphase),
+        end_narrow_phase(s.narrowphase) {
+    copy_bodies(bodies, scene.bodies);
+    copy(laws, table_of(scene));
+    const bool on_device = options.space == SpaceChoice::cuda ||
+                           (options.space == SpaceChoice::automatic && device_info().available);
+    pair_finder = make_pair_finder(scene.broadphase, on_device, origin);
+    first_orientation = scene.bodies.orientation;
+    start.save(bodies);
+    contact_impulse.assign(scene.bodies.position.size(), Vec3::Zero());
+    baseline.start(totals_of(bodies, parameters.gravity, origin), lifting_energy(scene));
+  }
+
+  double step_length() const {
+    const double rest = scene.time.end - static_cast<double>(step) * scene.time.step;
+    return std::min(scene.time.step, rest);
+  }
+
+  void find_pairs(double reach) {
+    const timing::Region region("broadphase");
+    contact_margins(bodies, reach, parameters.gravity, pair_margin);
+    pairs = pair_finder->find(bodies, pair_margin);
+    start_of_pairs.save(bodies);
+  }
+  MovingState start_of_pairs;
+
+  /// True if a body, moved since the boxes were made, could now touch something outside its box within h.
+  bool outran_pairs() const {
+    for (std::int64_t k = 0; k < bodies.count(); ++k) {
+      const Vec3& from = start_of_pairs.position[static_cast<std::size_t>(k)];
+      const double moved = (bodies.position.view()[k] - from).norm();
+      if (moved + contact_margin.view()[k] > pair_margin.view()[k]) return true;
+    }
+    return false;
+  }
+
+  ConstView<Manifold> find_contacts(double h, double remaining) {
+    {
+      const timing::Region region("narrowphase");
+      contact_margins(bodies, h, parameters.gravity, contact_margin);
+      if (!outran_pairs())
+        return narrow_phase.find(view_of(std::as_const(bodies)), pairs, contact_margin.view());
+    }
+    find_pairs(remaining + h);
+    const timing::Region region("narrowphase");
+    return narrow_phase.find(view_of(std::as_const(bodies)), pairs, contact_margin.view());
+  }
+
+  /// Moreau's midpoint step: free flight to the midpoint, contacts there, impulses, free flight to the end.
+  void substep(double h, double remaining) {
+    ledger.integration += timed_advance(0.5 * h);
+    const ConstView<Manifold> manifolds = find_contacts(h, remaining);
+    const timing::Region region("response");
+    const BodyView views = view_of(bodies);
+    load_solver_bodies(bodies, solver);
+    color_contacts(manifolds, std::as_const(bodies.mobility).view(), contacts.coloring);
+    const ContactLaws contact_laws{std::as_const(bodies.mobility).view(),
+                                   std::as_const(bodies.material).view(), std::as_const(laws).view(),
+                                   static_cast<std::int64_t>(scene.materials.size())};
+    const double scale = last_substep > 0 ? h / last_substep : 1.0;
+    prepare_contacts(manifolds, contact_laws, memory, scale, parameters, contacts);
+    ledger = ledger + impacts.resolve({manifolds, h, views}, parameters, solver, contacts, stats);
+    ledger = ledger + response.solve(manifolds, h, parameters, views, solver, contacts, stats);
+    ledger.integration += advance(bodies, 0.5 * h, parameters);
+    ledger = ledger + corrector.correct(h, parameters, views, solver, contacts);
+    remember_impulses(manifolds, contacts, memory);
+    add_impulses_on_driven_bodies();
+    last_substep = h;
+  }
+
+  double timed_advance(double dt) {
+    const timing::Region region("integration");
+    return advance(bodies, dt, parameters);
+  }
+
+  void add_impulses_on_driven_bodies() {
+    for (const Contact& c : std::as_const(contacts.contacts).view()) {
+      if (!solver.view()[c.i].is_free()) contact_impulse[static_cast<std::size_t>(c.i)] -= c.impulse;
+      if (!solver.view()[c.j].is_free()) contact_impulse[static_cast<std::size_t>(c.j)] += c.impulse;
+    }
+  }
+
+  void do_step() {
+    const double dt = step_length();
+    const double h = dt / scene.time.substeps;
+    start.save(bodies);
+    const Ledger ledger_before = ledger;
+    std::fill(contact_impulse.begin(), contact_impulse.end(), Vec3(Vec3::Zero()));
+    try {
+      find_pairs(dt + h);
+      for (int s = 0; s < scene.time.substeps; ++s) substep(h, dt - s * h);
+      baseline.extend(totals_of(bodies, parameters.gravity, origin));
+      if (!baseline.is_finite()) throw RunError(non_finite_body());
+    } catch (const RunError& error) {
+      start.restore(bodies);
+      ledger = ledger_before;
+      throw RunError(fmt::format("step {} (t = {} s): {}", step + 1, time, error.what()));
+    }
+    ++step;
+    last_step = dt;
+    time = step == total_steps() ? scene.time.end : static_cast<double>(step) * scene.time.step;
+    observed = false;
+  }
+
+  std::int64_t total_steps() const {
+    // A last step shorter than rounding of the division is none.
+    return static_cast<std::int64_t>(
+        std::ceil(scene.time.end / scene.time.step * (1 - tolerance::step_count)));
+  }
+
+  std::string non_finite_body() const {
+    for (std::int64_t k = 0; k < bodies.count(); ++k) {
+      const auto views = view_of(std::as_const(bodies));
+      if (views.position[k].allFinite() && views.velocity[k].allFinite() && views.spin[k].allFinite())
+        continue;
+      return fmt::format("the state of body {} is no longer finite; try a smaller time.step", views.id[k]);
+    }
+    return "the total energy is no longer finite; try a smaller time.step";
+  }
+};
+
+Simulation::Simulation(const Scene& scene, const SimulationOptions& options)
+    : parts_(std::make_unique<Parts>(scene, options)) {}
+Simulation::~Simulation() = default;
+Simulation::Simulation(Simulation&&) noexcept = default;
+
+void Simulation::step() { parts_->do_step(); }
+bool Simulation::finished() const { return parts_->step >= parts_->total_steps(); }
+double Simulation::time() const { return parts_->time; }
+std::int64_t Simulation::steps() const { return parts_->step; }
+std::int64_t Simulation::steps_total() const { return parts_->total_steps(); }
+const char* Simulation::space_name() const { return parts_->pair_finder->space_name(); }
+
+void Simulation::snapshot(Snapshot& out) const {
+  out.time = parts_->time;
+  out.step = parts_->step;
+  copy_bodies(out.bodies, parts_->bodies);
+}
+
+std::uint64_t Simulation::state_hash() const {
+  BodyTable table;
+  copy_bodies(table, parts_->bodies);
+  return hash_of(table);
+}
+
+BodyState Simulation::body(std::int32_t id) const {
+  const Parts& p = *parts_;
+  const auto k = static_cast<std::size_t>(id);
+  const ConstBodyView views = view_of(std::as_const(p.bodies));
+  BodyState state{.position = views.position[id],
+                  .velocity = views.velocity[id],
+                  .spin = views.spin[id],
+                  .orientation = views.orientation[id],
+                  .start_orientation = p.first_orientation[k],
+                  .acceleration = Vec3::Zero(),
+                  .force = Vec3::Zero()};
+  if (p.last_step == 0) return state;
+  state.acceleration = (state.velocity - p.start.velocity[k]) / p.last_step;
+  // On a free body the contact impulse is what gravity does not explain of the change of its momentum.
+  state.force = views.mobility[id] == Mobility::free
+                    ? Vec3((state.acceleration - p.scene.gravity) / views.inverse_mass[id])
+                    : Vec3(p.contact_impulse[k] / p.last_step);
+  return state;
+}
+
+const Observation& Simulation::observe() {
+  Parts& p = *parts_;
+  if (p.observed) return p.observation;
+  const timing::Region region("observation");
+  Observation& o = p.observation;
+  o.time = p.time;
+  o.step = p.step;
+  o.ledger = p.ledger;
+  o.bodies = p.bodies.count();
+  const Totals totals = totals_of(p.bodies, p.parameters.gravity, p.origin);
+  measure_totals(totals, p.baseline, p.parameters.gravity, p.origin, o);
+  o.speed_max = largest_speed(p.bodies);
+  measure_contacts(p.contacts, totals.count, o);
+  if (p.pairs.data() == nullptr) p.find_pairs(0);
+  o.pairs = p.pairs.size();
+  contact_margins(p.bodies, 0, Vec3::Zero(), p.contact_margin);
+  measure_penetration(
+      p.end_narrow_phase.find(view_of(std::as_const(p.bodies)), p.pairs, p.contact_margin.view()),
+      view_of(std::as_const(p.bodies)), o.penetration);
+  p.observed = true;
+  return o;
+}
+
+}  // namespace scree

@@ -1,0 +1,50 @@
+// A running scene: the step in order. Free of Thrust, so that every part of the program can include it.
+#pragma once
+
+#include "core/snapshot.hpp"
+#include "sim/observation.hpp"
+#include "sim/scene/scene.hpp"
+
+#include <cstdint>
+#include <memory>
+
+namespace scree {
+
+enum class SpaceChoice { automatic, host, cuda };
+
+struct SimulationOptions {
+  SpaceChoice space = SpaceChoice::automatic;  ///< automatic: Device if the machine has one, else Host
+  int threads = 0;                             ///< 0: all cores. Never changes the result.
+};
+
+class Simulation {
+ public:
+  /// Throws InputError if `cuda` is asked for and there is none.
+  explicit Simulation(const Scene& scene, const SimulationOptions& options = {});
+  ~Simulation();
+  Simulation(Simulation&&) noexcept;
+
+  /// One step of the scene's length; the last one ends at time.end exactly. Throws RunError, with the state
+  /// as it was before the step, if a body's state stops being finite.
+  void step();
+  bool finished() const;
+
+  double time() const;         ///< s
+  std::int64_t steps() const;  ///< steps done
+  std::int64_t steps_total() const;
+  const char* space_name() const;  ///< of the broad phase: "host" or "cuda"
+
+  /// The whole state, on the host.
+  void snapshot(Snapshot& out) const;
+  /// 64-bit hash of the state: the same for any number of threads, and for any broad phase.
+  std::uint64_t state_hash() const;
+  BodyState body(std::int32_t id) const;
+  /// Computed when asked for; costs a narrow phase for the penetration.
+  const Observation& observe();
+
+ private:
+  struct Parts;
+  std::unique_ptr<Parts> parts_;
+};
+
+}  // namespace scree

@@ -1,0 +1,201 @@
+// The parallel calls against serial loops, the sum against long double, and all of them for the same bits
+// whatever the number of threads.
+#include "core/parallel.hpp"
+
+#include "core/rng.hpp"
+#include "tests/core/spaces.hpp"
+
+#include <gtest/gtest.h>
+#include <tbb/global_control.h>
+#include <tbb/task_arena.h>
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <exception>
+#include <limits>
+#include <numeric>
+#include <vector>
+
+namespace scree {
+namespace {
+
+template <class Space>
+class ParallelTest : public test::InSpace<Space> {};
+TYPED_TEST_SUITE(ParallelTest, test::Spaces, test::SpaceName);
+
+// Around the serial threshold, the leaf of the sum, and the square of the leaf.
+constexpr std::int64_t sizes[] = {0, 1, 2, 255, 256, 257, 1000, 65535, 65536, 65537, 300000};
+
+struct Square {
+  std::int64_t* squares;
+  SCREE_HD void operator()(std::int64_t i) const { squares[i] = i * i; }
+};
+
+// Values over many magnitudes and of both signs, so that any change of grouping shows in the last bits.
+struct Wild {
+  SCREE_HD double operator()(std::int64_t i) const {
+    Random random(11, static_cast<std::uint64_t>(i));
+    const double fraction = random.uniform(-1, 1);
+    const int exponent = static_cast<int>(random.uniform(-30, 30));
+    return ldexp(fraction, exponent);
+  }
+};
+
+struct Load {
+  const std::int64_t* values;
+  SCREE_HD std::int64_t operator()(std::int64_t i) const { return values[i]; }
+};
+
+// Runs f with exactly this many threads allowed, on machines with fewer cores too.
+template <class F>
+auto with_threads(int threads, F f) {
+  const tbb::global_control limit(tbb::global_control::max_allowed_parallelism,
+                                  static_cast<std::size_t>(threads));
+  tbb::task_arena arena(threads);
+  return arena.execute(f);
+}
+
+TYPED_TEST(ParallelTest, ForEachVisitsEveryIndexOnce) {
+  for (const std::int64_t n : sizes) {
+    Array<std::int64_t, TypeParam> squares(n);
+    parallel::for_each<TypeParam>("test.square", n, Square{squares.data()});
+    const std::vector<std::int64_t> got = to_vector(squares);
+    for (std::int64_t i = 0; i < n; ++i) ASSERT_EQ(got[static_cast<std::size_t>(i)], i * i) << "n = " << n;
+  }
+}
+
+TYPED_TEST(ParallelTest, WorksOnAfterAnAllocationThatFailed) {
+  EXPECT_THROW((Array<double, TypeParam>(std::int64_t{1} << 50)), std::exception);
+  Array<std::int64_t, TypeParam> squares(1000);
+  parallel::for_each<TypeParam>("test.square", 1000, Square{squares.data()});
+  EXPECT_EQ(to_vector(squares)[999], 999 * 999);
+}
+
+TYPED_TEST(ParallelTest, FillSetsEveryValue) {
+  Array<std::int64_t, TypeParam> values;
+  copy(values, std::vector<std::int64_t>(1000, -1));
+  parallel::fill("test.fill", values, std::int64_t{7});
+  EXPECT_EQ(to_vector(values), std::vector<std::int64_t>(1000, 7));
+}
+
+TYPED_TEST(ParallelTest, SumAgreesWithLongDouble) {
+  for (const std::int64_t n : sizes) {
+    long double exact = 0;
+    long double magnitude = 0;
+    for (std::int64_t i = 0; i < n; ++i) {
+      exact += static_cast<long double>(Wild{}(i));
+      magnitude += std::fabs(static_cast<long double>(Wild{}(i)));
+    }
+    const double sum = parallel::sum<double, TypeParam>("test.sum", n, Wild{});
+    // Depth of the tree: at most 256 additions on each of at most three levels.
+    const double bound = 3 * 256 * std::numeric_limits<double>::epsilon() * static_cast<double>(magnitude);
+    EXPECT_NEAR(sum, static_cast<double>(exact), bound) << "n = " << n;
+  }
+}
+
+TYPED_TEST(ParallelTest, SumHasTheSameBitsForAnyNumberOfThreads) {
+  for (const std::int64_t n : sizes) {
+    const auto bits = [n] {
+      return std::bit_cast<std::uint64_t>(parallel::sum<double, TypeParam>("test.sum", n, Wild{}));
+    };
+    const std::uint64_t one = with_threads(1, bits);
+    EXPECT_EQ(with_threads(2, bits), one) << "n = " << n;
+    EXPECT_EQ(with_threads(4, bits), one) << "n = " << n;
+  }
+}
+
+TYPED_TEST(ParallelTest, SumHasTheBitsOfTheDocumentedTree) {
+  const std::int64_t n = 70000;
+  std::vector<double> level(static_cast<std::size_t>(n));
+  for (std::int64_t i = 0; i < n; ++i) level[static_cast<std::size_t>(i)] = Wild{}(i);
+  while (level.size() > 1) {
+    std::vector<double> next;
+    for (std::size_t first = 0; first < level.size(); first += 256) {
+      const std::size_t last = std::min(level.size(), first + 256);
+      next.push_back(std::accumulate(level.begin() + static_cast<std::ptrdiff_t>(first) + 1,
+                                     level.begin() + static_cast<std::ptrdiff_t>(last), level[first]));
+    }
+    level = next;
+  }
+  EXPECT_EQ((parallel::sum<double, TypeParam>("test.sum", n, Wild{})), level[0]);
+}
+
+TYPED_TEST(ParallelTest, MaxFindsTheLargest) {
+  const double lowest = -HUGE_VAL;
+  for (const std::int64_t n : sizes) {
+    double largest = lowest;
+    for (std::int64_t i = 0; i < n; ++i) largest = std::max(largest, Wild{}(i));
+    EXPECT_EQ((parallel::max<double, TypeParam>("test.max", n, Wild{}, lowest)), largest) << "n = " << n;
+  }
+}
+
+TYPED_TEST(ParallelTest, MaxOfNegativeValuesIsNotItsStart) {
+  Array<std::int64_t, TypeParam> values;
+  copy(values, std::vector<std::int64_t>{-5, -3, -9});
+  const auto lowest = std::numeric_limits<std::int64_t>::min();
+  EXPECT_EQ((parallel::max<std::int64_t, TypeParam>("test.max", 3, Load{values.data()}, lowest)), -3);
+}
+
+TYPED_TEST(ParallelTest, ExclusiveScanOffsets) {
+  for (const std::int64_t n : sizes) {
+    std::vector<std::uint32_t> counts(static_cast<std::size_t>(n));
+    for (std::size_t i = 0; i < counts.size(); ++i)
+      counts[i] = static_cast<std::uint32_t>(i * 2654435761u % 7);
+    Array<std::uint32_t, TypeParam> there;
+    copy(there, counts);
+    Array<std::int64_t, TypeParam> offsets;
+    const std::int64_t total = parallel::exclusive_scan("test.scan", there, offsets);
+
+    std::vector<std::int64_t> expected(counts.size() + 1, 0);
+    for (std::size_t i = 0; i < counts.size(); ++i) expected[i + 1] = expected[i] + counts[i];
+    EXPECT_EQ(to_vector(offsets), expected) << "n = " << n;
+    EXPECT_EQ(total, expected.back());
+  }
+}
+
+TYPED_TEST(ParallelTest, ExclusiveScanCountsBeyond32Bits) {
+  const std::uint32_t large = 4000000000u;
+  Array<std::uint32_t, TypeParam> counts;
+  copy(counts, std::vector<std::uint32_t>(1000, large));
+  Array<std::int64_t, TypeParam> offsets;
+  EXPECT_EQ(parallel::exclusive_scan("test.scan", counts, offsets), 1000 * std::int64_t{large});
+  EXPECT_EQ(to_vector(offsets)[2], 2 * std::int64_t{large});
+}
+
+// Sorts n pairs with keys of `bits` random bits and values that remember the order.
+template <class Space, class Key>
+void check_sort(std::int64_t n, int bits) {
+  std::vector<Key> keys(static_cast<std::size_t>(n));
+  std::vector<std::int32_t> order(keys.size());
+  for (std::size_t i = 0; i < keys.size(); ++i) {
+    const auto word = philox({static_cast<std::uint32_t>(i), 0, 0, 0}, {3, 5});
+    const std::uint64_t random = (std::uint64_t{word[0]} << 32) | word[1];
+    keys[i] = static_cast<Key>(random >> (64 - bits));
+    order[i] = static_cast<std::int32_t>(i);
+  }
+  std::vector<std::int32_t> expected = order;
+  std::stable_sort(expected.begin(), expected.end(), [&keys](std::int32_t a, std::int32_t b) {
+    return keys[static_cast<std::size_t>(a)] < keys[static_cast<std::size_t>(b)];
+  });
+
+  Array<Key, Space> keys_there;
+  Array<std::int32_t, Space> values;
+  copy(keys_there, keys);
+  copy(values, order);
+  parallel::sort_by_key("test.sort", keys_there, values, bits);
+  EXPECT_EQ(to_vector(values), expected) << "n = " << n << ", bits = " << bits;
+  std::sort(keys.begin(), keys.end());
+  EXPECT_EQ(to_vector(keys_there), keys) << "n = " << n << ", bits = " << bits;
+}
+
+TYPED_TEST(ParallelTest, SortIsStable) {
+  for (const std::int64_t n : sizes) {
+    for (const int bits : {1, 5, 17, 32}) check_sort<TypeParam, std::uint32_t>(n, bits);
+    for (const int bits : {1, 33, 64}) check_sort<TypeParam, std::uint64_t>(n, bits);
+  }
+}
+
+}  // namespace
+}  // namespace scree

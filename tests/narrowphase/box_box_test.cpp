@@ -1,0 +1,273 @@
+// Two boxes against the 15 axes and the closest points in long double (oracle.hpp).
+#include "narrowphase/box_box.hpp"
+
+#include "tests/narrowphase/oracle.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <set>
+
+namespace scree {
+namespace {
+
+using oracle::Family;
+using oracle::PairOfBoxes;
+
+class BoxBoxFamilies : public testing::TestWithParam<Family> {
+ protected:
+  static constexpr std::uint64_t draws = 12000;
+};
+std::string test_name(const testing::TestParamInfo<Family>& info) {
+  std::string name = oracle::name_of(info.param);
+  std::replace(name.begin(), name.end(), ' ', '_');
+  return name;
+}
+std::vector<Family> all_families() {
+  std::vector<Family> all;
+  for (int f = 0; f < static_cast<int>(Family::count); ++f) all.push_back(static_cast<Family>(f));
+  return all;
+}
+INSTANTIATE_TEST_SUITE_P(Each, BoxBoxFamilies, testing::ValuesIn(all_families()), test_name);
+
+double smallest_of(const PairOfBoxes& p) { return std::min(p.a.size.minCoeff(), p.b.size.minCoeff()); }
+
+TEST_P(BoxBoxFamilies, DepthIsThatOfLongDouble) {
+  for (std::uint64_t n = 0; n < draws; ++n) {
+    const PairOfBoxes p = oracle::make_pair(GetParam(), n);
+    const double found = separating_axes(BoxPair(p.a, p.b), HUGE_VAL).separation;
+    ASSERT_NEAR(found, static_cast<double>(oracle::separation(p.a, p.b)), 1e-12 * p.length) << "draw " << n;
+  }
+}
+
+TEST_P(BoxBoxFamilies, NothingIsMissedOrMadeUp) {
+  for (std::uint64_t n = 0; n < draws; ++n) {
+    const PairOfBoxes p = oracle::make_pair(GetParam(), n);
+    const double smallest = smallest_of(p);
+    const double margin = n % 4 ? 0.05 * smallest : 0.0;
+    const double separation = static_cast<double>(oracle::separation(p.a, p.b));
+    const double gap = separation > 0 ? static_cast<double>(oracle::distance(p.a, p.b)) : separation;
+
+    Manifold m;
+    const bool found = box_box(p.a, p.b, margin, m);
+    const double slack = 1e-12 * p.length;
+    const double given_away = preference(gap, smallest) * 1.06 + tolerance::same_feature * smallest;
+    if (gap < margin - given_away - slack) {
+      ASSERT_TRUE(found) << "draw " << n << " gap " << gap / smallest;
+    }
+    if (gap > margin + given_away + slack) {
+      ASSERT_FALSE(found) << "draw " << n << " gap " << gap / smallest;
+    }
+    if (!found) continue;
+
+    ASSERT_GE(m.count, 1);
+    ASSERT_LE(m.count, Manifold::max_points);
+    ASSERT_NEAR(m.normal.norm(), 1.0, 1e-12);
+    double smallest_gap = HUGE_VAL;
+    std::set<std::uint32_t> features;
+    for (int k = 0; k < m.count; ++k) {
+      ASSERT_TRUE(m.points[k].position.allFinite());
+      ASSERT_TRUE(std::isfinite(m.points[k].gap));
+      ASSERT_LE(m.points[k].gap, margin + slack);
+      smallest_gap = std::min(smallest_gap, m.points[k].gap);
+      features.insert(m.points[k].feature);
+    }
+    EXPECT_EQ(features.size(), static_cast<std::size_t>(m.count)) << "draw " << n;
+    ASSERT_NEAR(smallest_gap, gap, given_away + slack) << "draw " << n << " of " << smallest;
+    // The normal is nearly that of the least overlap, and the points lie in both boxes, grown by the gap.
+    const oracle::Box a(p.a), b(p.b);
+    const double along = static_cast<double>(oracle::separation_along(a, b, m.normal.cast<oracle::Real>()));
+    ASSERT_GE(along, separation - given_away - slack) << "draw " << n;
+    for (int k = 0; k < m.count; ++k) {
+      const oracle::Vec at = m.points[k].position.cast<oracle::Real>();
+      const double off = 0.5 * std::fabs(m.points[k].gap) + given_away + 1e-6 * smallest + slack;
+      ASSERT_LE(static_cast<double>((at - a.nearest(at)).norm()), off) << "draw " << n << " point " << k;
+      ASSERT_LE(static_cast<double>((at - b.nearest(at)).norm()), off) << "draw " << n << " point " << k;
+    }
+  }
+}
+
+TEST_P(BoxBoxFamilies, SwapTurnsTheNormal) {
+  int steady = 0, compared = 0;
+  for (std::uint64_t n = 0; n < draws; ++n) {
+    const PairOfBoxes p = oracle::make_pair(GetParam(), n);
+    const double smallest = smallest_of(p);
+    Manifold ab, ba;
+    const bool found = box_box(p.a, p.b, 0.05 * smallest, ab);
+    ASSERT_EQ(found, box_box(p.b, p.a, 0.05 * smallest, ba)) << "draw " << n;
+    if (!found) continue;
+    ++compared;
+    // Where the two faces are equally good the first body's is taken, so that the normals may differ by as
+    // much as the faces; else the result is the same.
+    if ((ab.normal + ba.normal).norm() > 1e-13) continue;
+    ++steady;
+    ASSERT_EQ(ab.count, ba.count) << "draw " << n;
+    std::vector<double> gaps[2];
+    for (int k = 0; k < ab.count; ++k) {
+      gaps[0].push_back(ab.points[k].gap);
+      gaps[1].push_back(ba.points[k].gap);
+    }
+    std::sort(gaps[0].begin(), gaps[0].end());
+    std::sort(gaps[1].begin(), gaps[1].end());
+    for (int k = 0; k < ab.count; ++k) {
+      ASSERT_NEAR(gaps[0][k], gaps[1][k], (1e-12 + 2 * tolerance::same_feature * (ab.count > 1)) * p.length);
+    }
+  }
+  if (GetParam() == Family::any) {
+    EXPECT_GT(steady, 0.9 * compared);
+  }
+}
+
+// Random pairs alone: degenerate ones choose among equals by rounding.
+TEST(BoxBox, MovesWithTheFrame) {
+  Random random(5, 0);
+  for (std::uint64_t n = 0; n < 3000; ++n) {
+    const PairOfBoxes p = oracle::make_pair(Family::any, n);
+    const double smallest = smallest_of(p);
+    const Quat turn = oracle::random_turn(random);
+    const Vec3 shift = 10 * oracle::random_unit(random);
+    const auto moved = [&](const Solid& s) {
+      return Solid{turn * s.position + shift, (turn * s.orientation).normalized(), s.size};
+    };
+    Manifold still, turned;
+    const bool found = box_box(p.a, p.b, 0.05 * smallest, still);
+    ASSERT_EQ(found, box_box(moved(p.a), moved(p.b), 0.05 * smallest, turned)) << "draw " << n;
+    if (!found) continue;
+    ASSERT_EQ(still.count, turned.count) << "draw " << n;
+    ASSERT_LT((turn * still.normal - turned.normal).norm(), 1e-7) << "draw " << n;
+    for (int k = 0; k < still.count; ++k) {
+      ASSERT_EQ(still.points[k].feature, turned.points[k].feature) << "draw " << n;
+      ASSERT_NEAR(still.points[k].gap, turned.points[k].gap, 2e-11);
+      ASSERT_LT((turn * still.points[k].position + shift - turned.points[k].position).norm(), 1e-9);
+    }
+  }
+}
+
+TEST_P(BoxBoxFamilies, UnitsDoNotMatter) {
+  for (std::uint64_t n = 0; n < draws / 4; ++n) {
+    const PairOfBoxes p = oracle::make_pair(GetParam(), n);
+    const double margin = 0.05 * smallest_of(p);
+    for (const double unit : {0x1p-20, 0x1p10}) {  // powers of 2: the same bits
+      const auto scaled = [unit](const Solid& s) {
+        return Solid{unit * s.position, s.orientation, unit * s.size};
+      };
+      Manifold one, other;
+      const bool found = box_box(p.a, p.b, margin, one);
+      ASSERT_EQ(found, box_box(scaled(p.a), scaled(p.b), unit * margin, other));
+      if (!found) continue;
+      ASSERT_EQ(one.count, other.count);
+      ASSERT_EQ(one.normal, other.normal);
+      for (int k = 0; k < one.count; ++k) {
+        ASSERT_EQ(one.points[k].feature, other.points[k].feature);
+        ASSERT_EQ(unit * one.points[k].gap, other.points[k].gap);
+        ASSERT_EQ(Vec3(unit * one.points[k].position), other.points[k].position);
+      }
+    }
+  }
+}
+
+double polygon_area(const Manifold& m, Vec3& centroid) {
+  // The 4 points of a manifold are in the order of their features; around the centre they make the polygon.
+  centroid = Vec3::Zero();
+  for (int k = 0; k < m.count; ++k) centroid += m.points[k].position / m.count;
+  const Vec3 u = tangent_of(m.normal), w = m.normal.cross(u);
+  std::vector<Vec3> around;
+  for (int k = 0; k < m.count; ++k) around.push_back(m.points[k].position - centroid);
+  std::sort(around.begin(), around.end(), [&](const Vec3& p, const Vec3& q) {
+    return std::atan2(w.dot(p), u.dot(p)) < std::atan2(w.dot(q), u.dot(q));
+  });
+  double area = 0;
+  for (int k = 0; k < m.count; ++k) {
+    area += 0.5 * m.normal.dot(around[k].cross(around[(k + 1) % m.count]));
+  }
+  return area;
+}
+
+TEST(BoxBox, AlignedFacesShareTheirRectangle) {
+  Random random(6, 0);
+  for (int n = 0; n < 2000; ++n) {
+    const Vec3 a = Vec3(0.5, 0.6, 0.7), b = Vec3(0.4, 0.8, 0.3);
+    const double x = random.uniform(-0.85, 0.85), y = random.uniform(-1.3, 1.3),
+                 depth = random.uniform(0, 1e-3);
+    const Quat turn = oracle::random_turn(random);
+    Manifold m;
+    ASSERT_TRUE(box_box({Vec3::Zero(), turn, a}, {turn * Vec3(x, y, 1.0 - depth), turn, b}, 0.0, m));
+    const double lo_x = std::max(-0.5, x - 0.4), hi_x = std::min(0.5, x + 0.4);
+    const double lo_y = std::max(-0.6, y - 0.8), hi_y = std::min(0.6, y + 0.8);
+    if (std::min(hi_x - lo_x, hi_y - lo_y) < 0.01) continue;  // a side face may be nearer
+    ASSERT_EQ(m.count, 4);
+    Vec3 centroid;
+    EXPECT_NEAR(polygon_area(m, centroid), (hi_x - lo_x) * (hi_y - lo_y), 1e-5);
+    EXPECT_LT((centroid - turn * Vec3(0.5 * (lo_x + hi_x), 0.5 * (lo_y + hi_y), 0.7 - 0.5 * depth)).norm(),
+              1e-6);
+    for (int k = 0; k < 4; ++k) EXPECT_NEAR(m.points[k].gap, -depth, 1e-12);
+  }
+}
+
+TEST(BoxBox, AStackKeepsItsManifoldUnderNoise) {
+  // Cubes with equal or offset footprints, and turned by 45 degrees, so that 8 points are reduced to 4.
+  const Vec3 cube = Vec3::Constant(0.5);
+  for (const double yaw : {0.0, pi / 4, 0.3}) {
+    for (const Vec3& offset : {Vec3(0, 0, 1), Vec3(0.2, 0.1, 1), Vec3(0.25, 0, 1)}) {
+      Random random(7, 0);
+      std::set<std::vector<std::uint32_t>> seen;
+      const Quat turn = rotation_of(yaw * Vec3::UnitZ());
+      for (int n = 0; n < 2000; ++n) {
+        const auto noise = [&random] { return Vec3(1e-9 * oracle::random_unit(random)); };
+        Manifold m;
+        ASSERT_TRUE(box_box({noise(), rotation_of(noise()), cube},
+                            {offset + noise(), (rotation_of(noise()) * turn).normalized(), cube}, 1e-3, m));
+        EXPECT_GT(m.normal.z(), 0.999999);
+        std::vector<std::uint32_t> features;
+        for (int k = 0; k < m.count; ++k) features.push_back(m.points[k].feature);
+        EXPECT_EQ(m.count, 4);
+        seen.insert(features);
+      }
+      EXPECT_EQ(seen.size(), 1u) << "yaw " << yaw << " offset " << offset.transpose();
+    }
+  }
+}
+
+TEST(BoxBox, DepthIsContinuousAlongASlide) {
+  const Solid a{Vec3::Zero(), rotation_of(Vec3(0.1, 0.05, 0.2)), Vec3(1, 0.7, 0.5)};
+  const double step = 5e-4;
+  double before = NAN;
+  int changes = 0;
+  std::vector<std::uint32_t> features_before;
+  for (int n = 0; n < 10000; ++n) {
+    const Solid b{Vec3(-2.5 + n * step, 0.1, 0.75), rotation_of(Vec3(0.3, -0.1, 0.7)), Vec3(0.4, 0.5, 0.3)};
+    Manifold m;
+    if (!box_box(a, b, 0.0, m)) {
+      before = NAN;
+      continue;
+    }
+    const double gap = detail::smallest_gap(m);
+    if (!std::isnan(before)) {
+      const double jump = 2 * step + preference(gap, 0.3);
+      EXPECT_NEAR(gap, before, jump) << "step " << n;
+    }
+    before = gap;
+    std::vector<std::uint32_t> features;
+    for (int k = 0; k < m.count; ++k) features.push_back(m.points[k].feature);
+    changes += features != features_before;
+    features_before = features;
+  }
+  EXPECT_GT(changes, 2);
+  EXPECT_LT(changes, 40);
+}
+
+TEST(BoxBox, BoxesBesideEachOtherDoNotBlock) {
+  // Diagonally above: the nearest features are two parallel edges, and the normal is the line between them.
+  const Vec3 cube = Vec3::Constant(0.5);
+  Manifold m;
+  ASSERT_TRUE(
+      box_box({Vec3::Zero(), Quat::Identity(), cube}, {Vec3(1.03, 0, 1.04), Quat::Identity(), cube}, 0.1, m));
+  ASSERT_EQ(m.count, 1);
+  EXPECT_NEAR(m.points[0].gap, 0.05, 1e-12);
+  EXPECT_LT((m.normal - Vec3(0.6, 0, 0.8)).norm(), 1e-12);
+  EXPECT_FALSE(box_box({Vec3::Zero(), Quat::Identity(), cube}, {Vec3(1.03, 0, 1.04), Quat::Identity(), cube},
+                       0.049, m));
+}
+
+}  // namespace
+}  // namespace scree

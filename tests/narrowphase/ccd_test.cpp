@@ -1,0 +1,109 @@
+// libccd behind its wall: whatever it answers, the manifold is as good as that of the 15 axes.
+#include "narrowphase/box_box_ccd.hpp"
+#include "tests/narrowphase/oracle.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <chrono>
+
+namespace scree {
+namespace {
+
+using oracle::Family;
+using oracle::PairOfBoxes;
+
+class CcdMethods : public testing::TestWithParam<ccd::Method> {};
+INSTANTIATE_TEST_SUITE_P(Each, CcdMethods, testing::Values(ccd::Method::gjk, ccd::Method::mpr),
+                         [](const auto& method) { return method.param == ccd::Method::gjk ? "gjk" : "mpr"; });
+
+TEST_P(CcdMethods, NothingIsMissedAndTheDepthIsRight) {
+  for (int f = 0; f < static_cast<int>(Family::count); ++f) {
+    const auto family = static_cast<Family>(f);
+    NarrowPhaseStats stats;
+    for (std::uint64_t n = 0; n < 5000; ++n) {
+      const PairOfBoxes p = oracle::make_pair(family, n);
+      const double smallest = std::min(p.a.size.minCoeff(), p.b.size.minCoeff());
+      const double margin = 0.05 * smallest;
+      Manifold by_ccd, by_axes;
+      const bool found = box_box_ccd(p.a, p.b, margin, GetParam(), by_ccd, stats);
+      ASSERT_EQ(found, box_box(p.a, p.b, margin, by_axes)) << oracle::name_of(family) << " " << n;
+      if (!found) continue;
+      for (int k = 0; k < by_ccd.count; ++k) {
+        ASSERT_TRUE(by_ccd.points[k].position.allFinite());
+        ASSERT_TRUE(std::isfinite(by_ccd.points[k].gap));
+      }
+      const double separation = static_cast<double>(oracle::separation(p.a, p.b));
+      if (separation > 0) continue;
+      const double allowed = preference(separation, smallest) * 1.06 + tolerance::same_feature * smallest;
+      const double slack = 1e-12 * p.length;
+      ASSERT_NEAR(detail::smallest_gap(by_ccd), separation, allowed + slack)
+          << oracle::name_of(family) << " " << n;
+      const oracle::Vec normal = by_ccd.normal.cast<oracle::Real>();
+      const double along =
+          static_cast<double>(oracle::separation_along(oracle::Box(p.a), oracle::Box(p.b), normal));
+      ASSERT_GE(along, separation - allowed - slack) << oracle::name_of(family) << " " << n;
+    }
+    std::printf("%-14s %6lld calls, %5.2f %% refused\n", oracle::name_of(family),
+                static_cast<long long>(stats.ccd_calls),
+                100.0 * static_cast<double>(stats.ccd_rejected) /
+                    static_cast<double>(std::max<std::int64_t>(1, stats.ccd_calls)));
+    EXPECT_GT(stats.ccd_calls, 0);
+    if (family == Family::any && GetParam() == ccd::Method::gjk) {
+      EXPECT_LT(stats.ccd_rejected, stats.ccd_calls / 10);  // else libccd is not asked properly
+    }
+  }
+}
+
+TEST_P(CcdMethods, ACertificateRefusesAWrongDirection) {
+  // Deep overlap is where MPR's portal ray is far from the shortest way out.
+  int refused = 0;
+  for (std::uint64_t n = 0; n < 3000; ++n) {
+    PairOfBoxes p = oracle::make_pair(Family::any, n);
+    p.b.position = p.a.position + 0.2 * (p.b.position - p.a.position);
+    const BoxPair pair(p.a, p.b);
+    const BoxAxes axes = separating_axes(pair, 0);
+    const auto direction = detail::certified_direction(pair, axes, GetParam());
+    if (!direction) {
+      ++refused;
+      continue;
+    }
+    const double along = static_cast<double>(
+        oracle::separation_along(oracle::Box(p.a), oracle::Box(p.b), direction->cast<oracle::Real>()));
+    ASSERT_GE(along, static_cast<double>(oracle::separation(p.a, p.b)) - 2 * tolerance::ccd_excess);
+  }
+  if (GetParam() == ccd::Method::mpr) {
+    EXPECT_GT(refused, 100);
+  }
+}
+
+TEST_P(CcdMethods, EveryCallEnds) {
+  // The families in which EPA runs for ever without the support budget: thin floors under small boxes.
+  Random random(4, 0);
+  double worst = 0;
+  for (int n = 0; n < 20000; ++n) {
+    ccd::Boxes boxes;
+    const double flat = std::pow(10.0, -random.uniform(0, 6)), wide = std::pow(10.0, random.uniform(0, 4));
+    boxes.half[0] = Vec3(wide, wide * random.uniform(0.1, 1), wide * flat);
+    boxes.half[1] = Vec3(1, random.uniform(0.1, 1), random.uniform(1e-3, 1));
+    const double tilt = n % 3 ? std::pow(10.0, -random.uniform(0, 15)) : 0.0;
+    boxes.turn = rotation_of(tilt * oracle::random_unit(random)).toRotationMatrix();
+    boxes.offset = Vec3(random.uniform(-wide, wide), random.uniform(-wide, wide),
+                        random.uniform(0, boxes.half[0].z() + boxes.half[1].z()));
+    if (n % 7 == 0) boxes.offset.setZero();
+    // With the budget that is used, and with budgets that run out in every phase of the search.
+    for (const int budget : {ccd::support_budget, n % 40}) {
+      const auto start = std::chrono::steady_clock::now();
+      const auto direction = ccd::parting_direction(boxes, GetParam(), budget);
+      worst =
+          std::max(worst, std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
+      if (direction) {
+        ASSERT_NEAR(direction->norm(), 1.0, 1e-12);
+      }
+    }
+  }
+  EXPECT_LT(worst, 1.0);  // s
+}
+
+}  // namespace
+}  // namespace scree

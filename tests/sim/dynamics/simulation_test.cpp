@@ -1,0 +1,187 @@
+// The whole step: what must not depend on how it is computed, and laws that hold for any scene.
+#include "sim/simulation.hpp"
+
+#include "core/error.hpp"
+#include "sim/model.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+
+namespace scree {
+namespace {
+
+Scene scene_of(const std::string& text) {
+  return parse_scene("format: 1\nrender: false\n" + text, "test.yaml");
+}
+
+const std::string heap = R"(
+gravity: [0, 0, -9.81]
+time: {end: 0.5, step: 0.005}
+materials: {a: {density: 1000, restitution: 0.3, friction: 0.5}}
+bodies:
+  - {plane: {normal: [0, 0, 1], offset: 0}, material: a}
+  - {sphere: {radius: 0.06}, at: [0, 0, 0.1], repeat: {count: [5, 5, 4], spacing: [0.13, 0.13, 0.13], jitter: 0.004}, material: a}
+  - {box: {size: [0.1, 0.12, 0.14]}, at: [0, 0, 0.7], repeat: {count: [4, 4, 3], spacing: [0.17, 0.17, 0.17], jitter: 0.004}, material: a}
+)";
+
+std::uint64_t hash_after(const Scene& scene, int steps, const SimulationOptions& options = {}) {
+  Simulation simulation(scene, options);
+  for (int k = 0; k < steps && !simulation.finished(); ++k) simulation.step();
+  return simulation.state_hash();
+}
+
+TEST(Simulation, SameBitsForAnyNumberOfThreads) {
+  const Scene scene = scene_of(heap);
+  const std::uint64_t one = hash_after(scene, 100, {SpaceChoice::host, 1});
+  EXPECT_EQ(one, hash_after(scene, 100, {SpaceChoice::host, 2}));
+  EXPECT_EQ(one, hash_after(scene, 100, {SpaceChoice::host, 4}));
+  EXPECT_EQ(one, hash_after(scene, 100, {SpaceChoice::host, 1}));
+}
+
+TEST(Simulation, SameBitsForAnyBroadPhase) {
+  const std::uint64_t grid = hash_after(scene_of(heap), 100, {SpaceChoice::host, 1});
+  for (const char* method : {"uniform_grid", "brute_force"}) {
+    const Scene scene = scene_of(heap + "broadphase: {method: " + method + "}\n");
+    EXPECT_EQ(grid, hash_after(scene, 100, {SpaceChoice::host, 1})) << method;
+  }
+}
+
+TEST(Simulation, LedgerExplainsTheEnergyAndNothingIsCreated) {
+  Simulation simulation(scene_of(heap), {SpaceChoice::host, 1});
+  while (!simulation.finished()) {
+    simulation.step();
+    const Observation& o = simulation.observe();
+    ASSERT_LT(std::abs(o.unexplained), 1e-12) << "t = " << o.time;
+  }
+  const Observation& o = simulation.observe();
+  EXPECT_GT(o.ledger.restitution, 0);
+  EXPECT_GT(o.ledger.friction, 0);
+  EXPECT_GT(o.contacts, 50);
+}
+
+TEST(Simulation, MomentumIsConservedWithoutGravityAndWalls) {
+  Scene scene = scene_of(R"(
+gravity: [0, 0, 0]
+time: {end: 1, step: 0.005}
+materials: {a: {density: 1000, restitution: 0.5, friction: 0.4}}
+bodies:
+  - {sphere: {radius: 0.1}, at: [-1, 0.05, 0], velocity: [3, 0, 0.1], spin: [0, 5, 9], material: a}
+  - {box: {size: [0.3, 0.2, 0.4]}, at: [0, 0, 0], spin: [1, 0.5, 0], material: a}
+  - {box: {size: [0.2, 0.2, 0.4]}, at: [0.5, 0.1, 0.1], velocity: [-1, 0, 0], material: a}
+)");
+  Simulation simulation(scene, {SpaceChoice::host, 1});
+  const Vec3 p0 = simulation.observe().momentum;
+  const Vec3 l0 = simulation.observe().angular_momentum;
+  while (!simulation.finished()) simulation.step();
+  const Observation& o = simulation.observe();
+  EXPECT_GT(o.ledger.restitution, 0) << "nothing met";
+  EXPECT_LT((o.momentum - p0).norm(), 1e-13 * p0.norm());
+  // What position correction moved is booked.
+  EXPECT_LT((o.angular_momentum - o.ledger.angular_correction - l0).norm(), 1e-12 * l0.norm());
+}
+
+TEST(Simulation, WorkOfAPrescribedBodyIsBooked) {
+  Simulation simulation(scene_of(R"(
+gravity: [0, 0, -9.81]
+time: {end: 2, step: 0.005}
+materials: {a: {density: 1000, restitution: 0.2, friction: 0.5}}
+bodies:
+  - {box: {size: [1, 1, 0.1]}, at: [0, 0, 0], motion: {velocity: [0.1, 0, 0.5], spin: [0, 0, 0.6]}, material: a}
+  - {sphere: {radius: 0.1}, name: ball, at: [0.2, 0, 0.15], material: a}
+  - {box: {size: [0.2, 0.2, 0.2]}, at: [-0.2, 0, 0.15], material: a}
+)"),
+                        {SpaceChoice::host, 1});
+  while (!simulation.finished()) {
+    simulation.step();
+    ASSERT_LT(std::abs(simulation.observe().unexplained), 1e-12);
+  }
+  const Observation& o = simulation.observe();
+  EXPECT_GT(o.ledger.work, 0.9 * o.potential);
+  EXPECT_GT(o.potential, 0);
+}
+
+TEST(Simulation, FeaturesThatCannotMatterChangeNothing) {
+  const std::string spheres = R"(
+gravity: [0, 0, -9.81]
+time: {end: 0.4, step: 0.005}
+materials: {a: {density: 1000}}
+bodies:
+  - {plane: {normal: [0, 0, 1], offset: 0}, material: a}
+  - {sphere: {radius: 0.06}, at: [0, 0, 0.1], repeat: {count: [4, 4, 3], spacing: [0.125, 0.125, 0.125], jitter: 0.002}, material: a}
+)";
+  const Scene lean = scene_of(spheres);
+  const ModelPlan plan = plan_model(lean);
+  EXPECT_FALSE(plan.friction.on);
+  EXPECT_FALSE(plan.restitution.on);
+  EXPECT_FALSE(plan.rotation.on);
+  EXPECT_FALSE(plan.gyroscopic.on);
+  const Scene full = scene_of(spheres + "model: {rotation: on, friction: on, restitution: on}\n");
+  EXPECT_EQ(hash_after(lean, 80, {SpaceChoice::host, 1}), hash_after(full, 80, {SpaceChoice::host, 1}));
+}
+
+TEST(Simulation, TheLastStepEndsAtTheEnd) {
+  Simulation simulation(scene_of(R"(
+time: {end: 1, step: 0.3}
+materials: {a: {density: 1000}}
+bodies:
+  - {sphere: {radius: 0.1}, velocity: [1, 0, 0], material: a}
+)"),
+                        {SpaceChoice::host, 1});
+  EXPECT_EQ(simulation.steps_total(), 4);
+  while (!simulation.finished()) simulation.step();
+  EXPECT_EQ(simulation.time(), 1.0);
+  EXPECT_NEAR(simulation.body(0).position.x(), 1.0, 1e-15);
+}
+
+TEST(Simulation, AStateThatStopsBeingFiniteFailsWithTheBodyAndTheLastGoodState) {
+  Scene scene = scene_of(R"(
+time: {end: 1, step: 0.1}
+materials: {a: {density: 1000}}
+bodies:
+  - {sphere: {radius: 0.1}, material: a}
+  - {sphere: {radius: 0.1}, at: [1, 0, 0], material: a}
+)");
+  scene.bodies.velocity[1] = Vec3(1e308, 0, 0);
+  Simulation simulation(scene, {SpaceChoice::host, 1});
+  const std::uint64_t before = simulation.state_hash();
+  try {
+    simulation.step();
+    FAIL() << "no error";
+  } catch (const RunError& error) {
+    EXPECT_NE(std::string(error.what()).find("step 1"), std::string::npos) << error.what();
+  }
+  EXPECT_EQ(simulation.state_hash(), before);
+}
+
+TEST(Simulation, MillimetresAndMetresGiveTheSameMotion) {
+  const auto scene = [](double unit) {
+    const auto n = [unit](double x) { return std::to_string(x * unit); };
+    return scene_of("gravity: [0, 0, " + n(-9.81) + R"(]
+time: {end: 1, step: 0.004}
+materials: {a: {density: 1000, restitution: 0.4, friction: 0.5}}
+bodies:
+  - {plane: {normal: [0, 0, 1], offset: 0}, material: a}
+  - {box: {size: [)" +
+                    n(1) + ", " + n(1) + ", " + n(0.5) + R"(]}, at: [0, 0, )" + n(0.75) +
+                    R"(], rotate: {axis: [1, 2, 0], degrees: 20}, material: a}
+  - {sphere: {radius: )" +
+                    n(0.25) + "}, at: [" + n(0.125) + ", 0, " + n(2) + R"(], material: a}
+)");
+  };
+  Simulation metres(scene(1), {SpaceChoice::host, 1});
+  Simulation small(scene(0.0078125), {SpaceChoice::host, 1});  // a power of two: scaling rounds nothing
+  while (!metres.finished()) {
+    metres.step();
+    small.step();
+  }
+  for (const int body : {1, 2}) {
+    const Vec3 a = metres.body(body).position;
+    const Vec3 b = small.body(body).position / 0.0078125;
+    EXPECT_LT((a - b).norm(), 1e-9) << "body " << body;
+  }
+}
+
+}  // namespace
+}  // namespace scree

@@ -1,0 +1,133 @@
+// The grammar of measures, and that each is worth what its name says.
+#include "sim/scene/measure.hpp"
+
+#include "core/error.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <set>
+
+namespace scree {
+namespace {
+
+const std::map<std::string, std::int32_t> names{{"puck", 4}, {"bed[0]", 7}, {"bed[12]", 19}};
+
+/// Every quantity a different number, so that no two measures can be confused.
+Observation numbered() {
+  Observation o;
+  o.kinetic_linear = 1;
+  o.kinetic_angular = 2;
+  o.potential = 4;
+  o.ledger = {8, 16, 32, 64, 128, Vec3::Zero()};
+  o.unexplained = 256;
+  o.momentum = {3, 4, 12};
+  o.angular_momentum = {30, 40, 120};
+  o.penetration = {512, 513, 514, 515, 516};
+  o.gap_mean = 517;
+  o.contacts = 518;
+  o.pairs = 519;
+  o.bodies = 520;
+  o.speed_max = 521;
+  o.speed_rms = 522;
+  o.coordination_mean = 523;
+  return o;
+}
+
+BodyState state_of(std::int32_t body) {
+  BodyState state;
+  state.position = {1.0 * body, 2, 3};
+  state.velocity = {4, 5, 6};
+  state.spin = {7, 8, 9};
+  state.acceleration = {10, 11, 12};
+  state.force = {6, 8, 24};
+  state.start_orientation = Quat(Eigen::AngleAxisd(0.3, Vec3::UnitX()));
+  state.orientation = Quat(Eigen::AngleAxisd(0.3 + 1e-9, Vec3::UnitX()));
+  return state;
+}
+
+double value(const char* text) { return evaluate(parse_measure(text, names), numbered(), state_of); }
+
+TEST(Measure, EachNameHasItsValue) {
+  const std::map<const char*, double> expected{
+      {"energy.total", 7},
+      {"energy.kinetic", 3},
+      {"energy.linear", 1},
+      {"energy.angular", 2},
+      {"energy.potential", 4},
+      {"energy.unexplained", 256},
+      {"energy.work", 64},
+      {"energy.integration", 128},
+      {"energy.dissipated.restitution", 8},
+      {"energy.dissipated.friction", 16},
+      {"energy.dissipated.correction", 32},
+      {"momentum.x", 3},
+      {"momentum.y", 4},
+      {"momentum.z", 12},
+      {"momentum.norm", 13},
+      {"angular_momentum.z", 120},
+      {"angular_momentum.norm", 130},
+      {"penetration.max", 512},
+      {"penetration.mean", 513},
+      {"penetration.p99", 514},
+      {"penetration.relative_max", 515},
+      {"penetration.relative_mean", 516},
+      {"gap.mean", 517},
+      {"contacts.count", 518},
+      {"pairs.count", 519},
+      {"bodies.count", 520},
+      {"speed.max", 521},
+      {"speed.rms", 522},
+      {"coordination.mean", 523},
+      {"puck.position.x", 4},
+      {"bed[0].position.x", 7},
+      {"bed[12].position.x", 19},
+      {"puck.velocity.y", 5},
+      {"puck.spin.z", 9},
+      {"puck.acceleration.x", 10},
+      {"puck.force.norm", 26},
+  };
+  std::set<MeasureKind> seen{MeasureKind::tilt};
+  for (const auto& [name, worth] : expected) {
+    EXPECT_EQ(value(name), worth) << name;
+    seen.insert(parse_measure(name, names).kind);
+  }
+  EXPECT_EQ(seen.size(), measure_table().size());
+}
+
+TEST(Measure, TiltIsExactForSmallAngles) { EXPECT_NEAR(value("puck.tilt"), 1e-9, 1e-16); }
+
+TEST(Measure, OfTheRunAsksForNoBody) {
+  const auto none = [](std::int32_t) -> BodyState { throw std::logic_error("asked for a body"); };
+  EXPECT_EQ(evaluate(parse_measure("energy.total", {}), numbered(), none), 7);
+  EXPECT_EQ(parse_measure("energy.total", {}).body, -1);
+}
+
+TEST(Measure, UnknownNamesAreErrors) {
+  const auto message = [](const char* text) {
+    try {
+      parse_measure(text, names);
+    } catch (const InputError& error) {
+      return std::string(error.what());
+    }
+    return std::string("no error");
+  };
+  EXPECT_EQ(message("pucks.tilt"),
+            "pucks.tilt is no measure: there is no body called pucks (did you mean puck?)");
+  EXPECT_EQ(message("enrgy.total"),
+            "enrgy.total is no measure: there is no body called enrgy (did you mean energy?)");
+  EXPECT_EQ(message("energy"), "energy is no measure: energy is unknown");
+  EXPECT_EQ(message("puck"), "puck is no measure: it says nothing about the body, such as .position.z");
+  EXPECT_EQ(message("puck.positon.z"),
+            "puck.positon.z is no measure: positon.z is unknown (did you mean position?)");
+  EXPECT_EQ(message("puck.position.w"), "puck.position.w is no measure: position needs .x, .y, .z or .norm");
+  EXPECT_EQ(message("momentum"), "momentum is no measure: momentum needs .x, .y, .z or .norm");
+  EXPECT_EQ(message("region.exit.flux"),
+            "region.exit.flux is part of the scene language but not in this version");
+  for (const char* text :
+       {"", ".", "puck.", ".x", "puck.tilt.x", "energy.total.x", "momentum.x.y", "bed.tilt"})
+    EXPECT_NE(message(text), "no error") << text;
+}
+
+}  // namespace
+}  // namespace scree

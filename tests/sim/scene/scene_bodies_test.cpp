@@ -1,0 +1,271 @@
+// The bodies that a scene makes, against closed forms and brute force.
+#include "core/error.hpp"
+#include "sim/scene/distribution.hpp"
+#include "sim/scene/scatter.hpp"
+#include "sim/scene/scene.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+namespace scree {
+namespace {
+
+Scene scene_of(const std::string& bodies, const std::string& more = "") {
+  return parse_scene(
+      "format: 1\ntime: {end: 1, step: 0.1}\nmaterials:\n"
+      "  glass: {density: 2500, restitution: 0.64, friction: 0.09}\n"
+      "  steel: {density: 8000, restitution: 0.25, friction: 0.36}\n" +
+          more + "bodies:\n" + bodies,
+      "test.yaml");
+}
+
+TEST(SceneBodies, SphereHasTheInertiaOfASolidBall) {
+  const Scene scene = scene_of("  - {sphere: {radius: 0.5}, material: glass}\n");
+  const double mass = 2500 * 4.0 / 3.0 * pi * 0.125;
+  EXPECT_NEAR(1 / scene.bodies.inverse_mass[0], mass, 1e-12 * mass);
+  for (int k = 0; k < 3; ++k)
+    EXPECT_NEAR(1 / scene.bodies.inverse_inertia[0][k], 0.4 * mass * 0.25, 1e-12 * mass);
+  EXPECT_TRUE(has_equal_moments(scene.bodies.inverse_inertia[0]));
+  EXPECT_EQ(scene.bodies.size[0].x(), 0.5);
+}
+
+TEST(SceneBodies, BoxHasTheInertiaOfACuboid) {
+  const Scene scene = scene_of("  - {box: {size: [1, 2, 3]}, mass: 12, material: glass}\n");
+  EXPECT_NEAR(1 / scene.bodies.inverse_mass[0], 12, 1e-12);
+  EXPECT_EQ(scene.bodies.size[0], Vec3(0.5, 1, 1.5));
+  const Vec3 inertia = scene.bodies.inverse_inertia[0].cwiseInverse();
+  EXPECT_LT((inertia - Vec3(4 + 9, 9 + 1, 1 + 4)).norm(), 1e-12);  // m/12 (b^2 + c^2)
+  const Scene dense =
+      scene_of("  - {box: {size: [1, 2, 3]}, material: steel}\n  - {box: {size: 2}, material: glass}\n");
+  EXPECT_NEAR(1 / dense.bodies.inverse_mass[0], 8000 * 6, 1e-8);
+  EXPECT_NEAR(1 / dense.bodies.inverse_mass[1], 2500 * 8, 1e-8);
+  EXPECT_TRUE(has_equal_moments(dense.bodies.inverse_inertia[1]));
+}
+
+TEST(SceneBodies, OnlyFreeBodiesHaveFiniteMass) {
+  const Scene scene = scene_of(
+      "  - {box: {size: 1}, fixed: true, material: glass}\n"
+      "  - {box: {size: 1}, motion: {velocity: [1, 2, 3], spin: [0, 0, 4]}, material: glass}\n"
+      "  - {box: {size: 1}, fixed: false, material: glass}\n");
+  EXPECT_EQ(scene.bodies.mobility[0], Mobility::fixed);
+  EXPECT_EQ(scene.bodies.mobility[1], Mobility::prescribed);
+  EXPECT_EQ(scene.bodies.mobility[2], Mobility::free);
+  for (int k = 0; k < 2; ++k) {
+    EXPECT_EQ(scene.bodies.inverse_mass[k], 0);
+    EXPECT_EQ(scene.bodies.inverse_inertia[k], Vec3(0, 0, 0));
+  }
+  EXPECT_GT(scene.bodies.inverse_mass[2], 0);
+  ASSERT_EQ(scene.motions.size(), 1u);
+  EXPECT_EQ(scene.motions[0].body, 1);
+  EXPECT_EQ(scene.bodies.velocity[1], Vec3(1, 2, 3));
+  EXPECT_EQ(scene.bodies.spin[1], Vec3(0, 0, 4));
+}
+
+TEST(SceneBodies, PlaneTurnsZToItsUnitNormal) {
+  for (const Vec3& normal : {Vec3(0, 0, 1), Vec3(0, 0, -3), Vec3(3, 4, 0), Vec3(-1, 2, -5)}) {
+    const Scene scene =
+        scene_of("  - {plane: {normal: [" + std::to_string(normal.x()) + ", " + std::to_string(normal.y()) +
+                 ", " + std::to_string(normal.z()) + "], offset: 2}, material: glass}\n");
+    const Vec3 unit = normal.normalized();
+    EXPECT_LT((scene.bodies.position[0] - 2 * unit).norm(), 1e-15);
+    EXPECT_LT((scene.bodies.orientation[0] * Vec3::UnitZ() - unit).norm(), 1e-15);
+    EXPECT_NEAR(scene.bodies.orientation[0].norm(), 1, 1e-15);
+    EXPECT_EQ(scene.bodies.mobility[0], Mobility::fixed);
+  }
+}
+
+TEST(SceneBodies, OrientationsAreUnitAndTurnByTheRightHand) {
+  const Scene scene = scene_of(
+      "  - {box: {size: 1}, rotate: {axis: [0, 0, 9], degrees: 90}, material: glass}\n"
+      "  - {box: {size: 1}, rotate: {axis: [2, 0, 0], radians: 0.5}, material: glass}\n"
+      "  - {box: {size: 1}, orientation: [1e200, 0, 0, 1e200], material: glass}\n");
+  EXPECT_LT((scene.bodies.orientation[0] * Vec3::UnitX() - Vec3::UnitY()).norm(), 1e-15);
+  EXPECT_LT((scene.bodies.orientation[1] * Vec3::UnitY() - Vec3(0, std::cos(0.5), std::sin(0.5))).norm(),
+            1e-15);
+  EXPECT_LT((scene.bodies.orientation[2] * Vec3::UnitX() - Vec3::UnitY()).norm(), 1e-15);
+}
+
+TEST(SceneBodies, RepeatRunsXFastest) {
+  const Scene scene = scene_of(
+      "  - {sphere: {radius: 0.1}, material: steel}\n"
+      "  - {sphere: {radius: 0.1}, name: b, at: [10, 0, 0], material: glass,\n"
+      "     repeat: {count: [2, 3, 4], spacing: [1, 2, 3]}}\n");
+  ASSERT_EQ(scene.bodies.count(), 25);
+  int k = 0;
+  for (int z = 0; z < 4; ++z)
+    for (int y = 0; y < 3; ++y)
+      for (int x = 0; x < 2; ++x, ++k) {
+        const std::int32_t id = scene.body_names.at("b[" + std::to_string(k) + "]");
+        EXPECT_EQ(id, 1 + k);
+        EXPECT_EQ(scene.bodies.id[static_cast<std::size_t>(id)], id);
+        EXPECT_EQ(scene.bodies.position[static_cast<std::size_t>(id)], Vec3(10 + x, 2 * y, 3 * z));
+        EXPECT_EQ(scene.bodies.material[static_cast<std::size_t>(id)], 0);
+      }
+  EXPECT_EQ(scene.body_names.size(), 24u);
+  EXPECT_EQ(scene.bodies.material[0], 1);
+}
+
+TEST(SceneBodies, JitterStaysInItsBoxAndFillsIt) {
+  const Scene scene = scene_of(
+      "  - {sphere: {radius: 0.1}, material: glass, repeat: {count: [10, 10, 10], spacing: [0, 0, 0], "
+      "jitter: 0.5}}\n");
+  Vec3 low = Vec3::Constant(1), high = Vec3::Constant(-1);
+  for (const Vec3& at : scene.bodies.position) {
+    low = low.cwiseMin(at);
+    high = high.cwiseMax(at);
+  }
+  EXPECT_GE(low.minCoeff(), -0.5);
+  EXPECT_LE(high.maxCoeff(), 0.5);
+  EXPECT_LT(low.maxCoeff(), -0.48);
+  EXPECT_GT(high.minCoeff(), 0.48);
+}
+
+// Random choices depend on the seed and on the body's number alone.
+TEST(SceneBodies, DrawsDoNotDependOnOtherBodies) {
+  const std::string drawn =
+      "  - {sphere: {radius: {uniform: [0.1, 0.2]}}, material: glass, "
+      "repeat: {count: [5, 1, 1], spacing: [1, 0, 0], jitter: 0.1}}\n";
+  const Scene a = scene_of("  - {sphere: {radius: 0.1}, material: glass}\n" + drawn);
+  const Scene b = scene_of("  - {box: {size: {choose: [1, 2]}}, material: steel}\n" + drawn);
+  const Scene c = scene_of("  - {sphere: {radius: 0.1}, material: glass}\n" + drawn, "seed: 1\n");
+  for (std::size_t k = 1; k < 6; ++k) {
+    EXPECT_EQ(a.bodies.position[k], b.bodies.position[k]);
+    EXPECT_EQ(a.bodies.size[k], b.bodies.size[k]);
+    EXPECT_NE(a.bodies.position[k], c.bodies.position[k]);
+    EXPECT_NE(a.bodies.size[k], c.bodies.size[k]);
+  }
+}
+
+/// Mean and standard error of the radii of 40,000 bodies.
+void expect_mean(const std::string& radius, double mean, double deviation) {
+  const Scene scene = scene_of("  - {sphere: {radius: " + radius +
+                               "}, material: glass, repeat: {count: [40000, 1, 1], spacing: [9, 0, 0]}}\n");
+  double sum = 0;
+  for (const Vec3& size : scene.bodies.size) sum += size.x();
+  // The seed is fixed; 4 standard errors leave room for an unlucky one.
+  EXPECT_NEAR(sum / 40000, mean, 4 * deviation / std::sqrt(40000)) << radius;
+}
+
+TEST(SceneBodies, DistributionsHaveTheirMeans) {
+  expect_mean("{uniform: [1, 3]}", 2, std::sqrt(4.0 / 12));
+  expect_mean("{choose: [1, 2, 6]}", 3, std::sqrt(14.0 / 3));
+  // The moments of x^-q on [a, b]: E x^n is the ratio of the integrals of x^(n-q) and x^-q.
+  for (const double q : {0.0, 1.0, 2.5, 3.5, -2.0}) {
+    const double a = 1, b = 5;
+    const auto integral = [&](double power) {
+      return power == -1 ? std::log(b / a) : (std::pow(b, power + 1) - std::pow(a, power + 1)) / (power + 1);
+    };
+    const double mean = integral(1 - q) / integral(-q);
+    const double square = integral(2 - q) / integral(-q);
+    expect_mean("{powerlaw: [1, 5, " + std::to_string(q) + "]}", mean, std::sqrt(square - mean * mean));
+  }
+}
+
+TEST(SceneBodies, PowerlawQuantileInvertsItsDistribution) {
+  const long double a = 0.01L, b = 10;
+  for (const double q : {-50.0, -1.0, 0.0, 0.999999999, 1.0, 1.000000001, 3.0, 80.0})
+    for (const double u : {0.0, 1e-9, 0.25, 0.5, 0.999}) {
+      const double x = powerlaw_quantile(static_cast<double>(a), static_cast<double>(b), q, u);
+      ASSERT_GE(x, 0.01);
+      ASSERT_LE(x, 10);
+      const long double s = 1 - static_cast<long double>(q);
+      const long double share = s == 0 ? std::log(x / a) / std::log(b / a)
+                                       : std::expm1(s * std::log(x / a)) / std::expm1(s * std::log(b / a));
+      // Where the law is steep a rounding of x moves its share by s times as much.
+      EXPECT_NEAR(static_cast<double>(share), u, 1e-13 * (1 + std::abs(static_cast<double>(s)))) << q;
+    }
+  EXPECT_TRUE(std::isfinite(powerlaw_quantile(1e-9, 1e9, 1000, 0.5)));
+  EXPECT_TRUE(std::isfinite(powerlaw_quantile(1e-9, 1e9, -1000, 0.5)));
+}
+
+// Brute force over all pairs: an independent statement of what scatter promises.
+TEST(SceneBodies, ScatteredBodiesKeepClear) {
+  const Scene scene = scene_of(
+      "  - {plane: {normal: [0, 1, 4], offset: 0.3}, material: glass}\n"
+      "  - {sphere: {radius: 0.3}, at: [0.5, 0.5, 1], material: glass}\n"
+      "  - {box: {size: [3, 0.1, 0.5]}, at: [0.5, 1, 1.4], rotate: {axis: [1, 2, 3], radians: 1}, fixed: "
+      "true, "
+      "material: glass}\n"
+      "  - {sphere: {radius: {powerlaw: [0.01, 0.1, 3]}}, material: glass, "
+      "scatter: {count: 1500, from: [0, 0, 0], to: [1, 2, 2]}}\n"
+      "  - {box: {size: {uniform: [0.02, 0.1]}}, material: steel, name: box, "
+      "scatter: {count: 300, from: [0, 0, 0], to: [1, 2, 2]}}\n");
+  const BodyTable& bodies = scene.bodies;
+  ASSERT_EQ(bodies.count(), 1803);
+  for (std::size_t i = 3; i < 1803; ++i) {
+    const double reach = bounding_radius(bodies.shape[i], bodies.size[i]);
+    const Vec3& at = bodies.position[i];
+    ASSERT_TRUE((at.array() >= 0).all() && (at.array() <= Eigen::Array3d(1, 2, 2)).all());
+    ASSERT_NEAR(bodies.orientation[i].norm(), 1, 1e-14);
+    EXPECT_GE((at - bodies.position[0]).dot(Vec3(0, 1, 4).normalized()), reach - 1e-12);
+    EXPECT_GE((at - bodies.position[1]).norm(), reach + 0.3 - 1e-12);
+    // Distance to the box: the nearest of its points, found by clamping in its own frame.
+    const Vec3 local = bodies.orientation[2].inverse() * (at - bodies.position[2]);
+    const Vec3 nearest = local.cwiseMax(-bodies.size[2]).cwiseMin(bodies.size[2]);
+    EXPECT_GE((local - nearest).norm(), reach - 1e-12);
+    for (std::size_t j = 3; j < i; ++j) {
+      // Of two boxes the sphere around the later one clears the earlier one itself, and with it the largest
+      // sphere inside.
+      const double other = bounding_radius(bodies.shape[j], bodies.size[j]);
+      const bool boxes = bodies.shape[i] == Shape::box && bodies.shape[j] == Shape::box;
+      const double clearance =
+          boxes ? std::min(reach + bodies.size[j].minCoeff(), other + bodies.size[i].minCoeff())
+                : reach + other;
+      ASSERT_GE((at - bodies.position[j]).norm(), clearance - 1e-12) << i << " " << j;
+    }
+  }
+  EXPECT_EQ(scene.body_names.at("box[299]"), 1802);
+}
+
+TEST(SceneBodies, ScatterTakesFlatAndThinRegions) {
+  for (const char* to : {"[300, 300, 0]", "[3000, 0, 0]", "[3000, 0.001, 0.001]", "[100, 100, 1e-6]"}) {
+    const Scene scene = scene_of(
+        std::string(
+            "  - {sphere: {radius: 0.5}, material: glass, scatter: {count: 1000, from: [0, 0, 0], to: ") +
+        to + "}}\n");
+    for (std::size_t i = 0; i < 1000; ++i)
+      for (std::size_t j = 0; j < i; ++j)
+        ASSERT_GE((scene.bodies.position[i] - scene.bodies.position[j]).norm(), 1 - 1e-12) << to;
+  }
+}
+
+TEST(SceneBodies, RandomOrientationsAreUniform) {
+  const Scene scene = scene_of(
+      "  - {sphere: {radius: 0.001}, material: glass, scatter: {count: 20000, from: [0, 0, 0], to: [9, 9, "
+      "9]}}\n");
+  Mat3 mean = Mat3::Zero();
+  double angle = 0;
+  for (const Quat& q : scene.bodies.orientation) {
+    mean += q.toRotationMatrix() / 20000;
+    angle += Eigen::AngleAxisd(q).angle() / 20000;
+  }
+  // Entries of a random rotation have mean 0 and variance 1/3; its angle has mean pi/2 + 2/pi.
+  EXPECT_LT(mean.cwiseAbs().maxCoeff(), 5 * std::sqrt(1.0 / 3 / 20000));
+  EXPECT_NEAR(angle, pi / 2 + 2 / pi, 0.02);
+}
+
+TEST(SceneBodies, LawsAreGeometricMeansUnlessListed) {
+  const std::string body = "  - {sphere: {radius: 1}, material: glass}\n";
+  const Scene scene = scene_of(body);
+  EXPECT_NEAR(scene.law(0, 0).friction, 0.09, 1e-15);
+  EXPECT_NEAR(scene.law(0, 1).friction, 0.18, 1e-15);
+  EXPECT_NEAR(scene.law(1, 0).restitution, 0.4, 1e-15);
+  EXPECT_NEAR(scene.law(1, 1).restitution, 0.25, 1e-15);
+  const Scene listed = scene_of(body, "contacts: [{between: [steel, glass], friction: 0.7}]\n");
+  EXPECT_EQ(listed.law(0, 1).friction, 0.7);
+  EXPECT_EQ(listed.law(1, 0).friction, 0.7);
+  EXPECT_NEAR(listed.law(0, 1).restitution, 0.4, 1e-15);
+  EXPECT_NEAR(listed.law(0, 0).friction, 0.09, 1e-15);
+}
+
+TEST(SceneBodies, AliasesAreExpanded) {
+  const Scene scene =
+      scene_of("  - {sphere: &ball {radius: 2}, material: glass}\n  - {sphere: *ball, material: steel}\n");
+  EXPECT_EQ(scene.bodies.size[1].x(), 2);
+}
+
+}  // namespace
+}  // namespace scree

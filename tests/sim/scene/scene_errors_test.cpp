@@ -1,0 +1,237 @@
+// Every kind of bad scene: the message names the place, the key and what is allowed.
+#include "core/error.hpp"
+#include "sim/scene/scene.hpp"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <set>
+#include <string>
+
+namespace scree {
+namespace {
+
+struct BadScene {
+  const char* name;
+  int line;
+  int column;
+  const char* fragment;
+};
+
+const std::filesystem::path folder = SCREE_SOURCE_DIR "/tests/data/bad";
+
+// clang-format off
+constexpr BadScene bad_scenes[] = {
+    {"unknown_key", 7, 1, "gravitty: unknown key (did you mean gravity?)"},
+    {"unknown_key_far", 7, 1, "bananas: unknown key (known here: format, name,"},
+    {"unknown_key_deep", 6, 15, "bodies[0].sphere.radios: unknown key (did you mean radius?)"},
+    {"wrong_type_number", 3, 22, "time.step: must be a number > 0 (s), not fast"},
+    {"wrong_type_quoted", 3, 22, "time.step: must be a number > 0 (s), not \"0.01\""},
+    {"wrong_type_list", 7, 10, "gravity: must be a list of 3 numbers (m/s^2), not -9.81"},
+    {"wrong_length", 7, 10, "gravity: must be a list of 3 numbers (m/s^2), not a list of 2"},
+    {"wrong_type_map", 3, 7, "time: must be a map {end, step, substeps}, not a list of 2"},
+    {"wrong_type_whole", 3, 38, "time.substeps: must be a whole number from 1 to 1000000, not 1.5"},
+    {"no_value", 3, 13, "time.end: must be a number > 0 (s), not nothing"},
+    {"top_is_list", 2, 1, "must be a map {format, name,"},
+    {"radius_negative", 6, 23, "bodies[0].sphere.radius: must be a number > 0 (m), not -0.1"},
+    {"radius_zero", 6, 23, "bodies[0].sphere.radius: must be a number > 0 (m), not 0"},
+    {"radius_word", 6, 23, "must be a number > 0 (m), or a map {uniform, powerlaw, choose}, not big"},
+    {"size_negative", 6, 22, "bodies[0].box.size[1]: must be a number > 0 (m), not -1"},
+    {"size_zero", 6, 25, "bodies[0].box.size[2]: must be a number > 0 (m), not 0.0"},
+    {"nan", 6, 41, "bodies[0].velocity[1]: must be a number (m/s), not .nan"},
+    {"inf", 6, 32, "bodies[0].at[0]: must be a number (m), not .inf"},
+    {"overflow", 6, 32, "bodies[0].at[0]: 1e999 is out of range"},
+    {"missing_step", 3, 7, "time.step: is missing; it must be a number > 0 (s)"},
+    {"missing_format", 2, 1, "format: is missing; it must be 1"},
+    {"missing_material", 6, 5, "bodies[0].material: is missing"},
+    {"missing_bodies", 2, 1, "bodies: is missing"},
+    {"empty_bodies", 5, 9, "bodies: must be a list"},
+    {"unknown_material", 6, 39, "bodies[0].material: there is no material glas (did you mean glass?)"},
+    {"unknown_material_pair", 8, 23, "contacts[0].between: there is no material steel"},
+    {"pair_twice", 9, 15, "the pair is listed already, at "},
+    {"unknown_body", 8, 15, "checks[0].measure: bal.position.z is no measure: there is no body called bal (did you mean ball?)"},
+    {"unknown_measure", 8, 15, "energy.totl is no measure: energy.totl is unknown (did you mean energy.total?)"},
+    {"measure_component", 8, 15, "ball.velocity is no measure: velocity needs .x, .y, .z or .norm"},
+    {"measure_region", 8, 15, "region.exit.flux is part of the scene language but not in this version"},
+    {"check_expects_nothing", 8, 5, "checks[0]: expects nothing; it needs expect, below or above"},
+    {"check_no_tolerance", 8, 37, "checks[0].expect: needs tolerance or relative"},
+    {"check_tolerance_alone", 8, 50, "checks[0].tolerance: needs expect"},
+    {"check_over_no_reduce", 8, 35, "checks[0].over: needs reduce"},
+    {"check_reduce_no_over", 8, 37, "checks[0].reduce: needs over"},
+    {"check_at_and_over", 8, 36, "checks[0].over: cannot stand together with at"},
+    {"check_beyond_end", 8, 33, "checks[0].at: must be at most the end, 1 s, not 2 s"},
+    {"check_span_beyond_end", 8, 35, "checks[0].over: must end at the end, 1 s, or before, not at 2 s"},
+    {"check_span_reversed", 8, 35, "checks[0].over: must be [start, end] with start <= end"},
+    {"check_level", 8, 63, "checks[0].level: needs reduce: crossings"},
+    {"duplicate_key", 6, 1, "seed: duplicate key, already given at 5:1"},
+    {"duplicate_key_deep", 6, 28, "radius: duplicate key, already given at 6:15"},
+    {"duplicate_material", 5, 3, "glass: duplicate key, already given at 4:3"},
+    {"duplicate_name", 7, 35, "bodies[1].name: ball is the name of a body already, at "},
+    {"reserved_name", 6, 35, "bodies[0].name: energy is a word of measures; choose another"},
+    {"name_with_dot", 6, 35, "bodies[0].name: must be a name: a letter or _, then letters, digits, _ and -, not a.b"},
+    {"scene_name", 7, 7, "name: must be a name without slashes, not starting with a dot"},
+    {"truncated", 6, 1, "broken YAML: end of sequence flow not found"},
+    {"broken", 5, 8, "broken YAML: illegal map value"},
+    {"tab", 6, 1, "a tab in the indentation; YAML is indented with spaces"},
+    {"control", 5, 7, "control character 0x04"},
+    {"not_utf8", 5, 10, "byte 0xE9 is not UTF-8 text"},
+    {"two_documents", 8, 1, "a second YAML document"},
+    {"tag", 7, 7, "the scene language has no tags"},
+    {"alias_bomb", 7, 36, "aliases add more than 1000000 nodes"},
+    {"alias_loop", 2, 13, "an alias inside its own anchor"},
+    {"deep", 2, 38, "nested deeper than 32 levels"},
+    {"wrong_format", 2, 9, "format: must be 1, not 2"},
+    {"axis_zero", 6, 37, "bodies[0].rotate.axis: must not be zero"},
+    {"no_angle", 6, 30, "bodies[0].rotate: needs degrees or radians"},
+    {"two_angles", 6, 61, "bodies[0].rotate.radians: cannot stand together with degrees"},
+    {"orientation_zero", 6, 35, "bodies[0].orientation: must not be zero"},
+    {"orientation_and_rotate", 6, 49, "bodies[0].rotate: cannot stand together with orientation"},
+    {"normal_zero", 6, 22, "bodies[0].plane.normal: must not be zero"},
+    {"plane_velocity", 6, 34, "bodies[0].velocity: does not go with a plane"},
+    {"step_negative", 3, 22, "time.step: must be a number > 0 (s), not -0.01"},
+    {"end_zero", 3, 13, "time.end: must be a number > 0 (s), not 0"},
+    {"step_beyond_end", 3, 22, "time.step: must be at most the end, 1 s, not 2 s"},
+    {"step_tiny", 3, 22, "time.step: is so short that the run would have more than 2^53 steps"},
+    {"substeps_zero", 3, 38, "time.substeps: must be a whole number from 1 to 1000000, not 0"},
+    {"fixed_velocity", 6, 40, "bodies[0].velocity: cannot stand together with fixed"},
+    {"fixed_motion", 6, 40, "bodies[0].motion: cannot stand together with fixed"},
+    {"motion_velocity", 6, 54, "bodies[0].velocity: cannot stand together with motion"},
+    {"mass_zero", 6, 33, "bodies[0].mass: must be a number > 0 (kg), not 0"},
+    {"mass_underflow", 6, 5, "bodies[0]: its mass and inertia are beyond what numbers can hold"},
+    {"restitution_large", 4, 49, "materials.glass.restitution: must be a number from 0 to 1, not 1.1"},
+    {"friction_negative", 4, 46, "materials.glass.friction: must be a number >= 0, not -0.4"},
+    {"no_shape", 6, 5, "bodies[0]: must have exactly one shape (plane, sphere or box), not none"},
+    {"two_shapes", 6, 5, "bodies[0]: must have exactly one shape (plane, sphere or box), not 2"},
+    {"bad_word", 7, 22, "broadphase.method: must be one of hierarchical_grid, uniform_grid, brute_force, not brute_froce (did you mean brute_force?)"},
+    {"uniform_reversed", 6, 33, "bodies[0].sphere.radius.uniform: must be [low, high] with low <= high"},
+    {"powerlaw_zero", 6, 34, "bodies[0].sphere.radius.powerlaw: must be [min, max, exponent] with 0 < min <= max"},
+    {"two_distributions", 6, 23, "bodies[0].sphere.radius: must have exactly one of uniform, powerlaw, choose"},
+    {"choose_nothing", 6, 32, "bodies[0].sphere.radius.choose: must be a list"},
+    {"repeat_zero", 6, 47, "bodies[0].repeat.count[1]: must be a whole number >= 1, not 0"},
+    {"repeat_overflow", 6, 35, "bodies[0].repeat: the scene would have 7.29e+38 bodies"},
+    {"too_many", 6, 35, "bodies[0].repeat: the scene would have 8000000000 bodies; at most 2147483647 are possible"},
+    {"repeat_and_scatter", 6, 75, "bodies[0].scatter: cannot stand together with repeat"},
+    {"scatter_reversed", 6, 68, "bodies[0].scatter.to: must be at least `from` in each component, but 0 < 1"},
+    {"scatter_full", 6, 36, "of 100 bodies fit without overlap"},
+    {"camera", 7, 18, "render.camera: `from` and `to` must not be the same point"},
+    {"later_tube", 6, 6, "bodies[0].tube: is part of the scene language but not in this version"},
+    {"later_trajectory", 7, 22, "record.trajectory: true is part of the scene language but not in this version"},
+    {"later_precision", 7, 12, "precision: mixed is part of the scene language but not in this version"},
+    {"later_mode", 7, 18, "response.mode: accurate is part of the scene language but not in this version"},
+    {"later_regions", 7, 1, "regions: is part of the scene language but not in this version"},
+    {"later_method", 7, 22, "broadphase.method: lbvh is part of the scene language but not in this version"},
+    {"later_about", 6, 36, "bodies[0].motion.about: is part of the scene language but not in this version"},
+};
+// clang-format on
+
+std::string message_of(const std::string& text, const std::vector<Override>& overrides = {}) {
+  try {
+    parse_scene(text, "test.yaml", overrides);
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "no error";
+}
+
+bool begins_with(const std::string& text, const std::string& start) { return text.rfind(start, 0) == 0; }
+
+class BadSceneFile : public testing::TestWithParam<BadScene> {};
+
+TEST_P(BadSceneFile, IsRefusedAtItsPlace) {
+  const auto& [name, line, column, fragment] = GetParam();
+  const std::filesystem::path file = folder / (std::string(name) + ".yaml");
+  try {
+    read_scene(file);
+    FAIL() << "accepted";
+  } catch (const InputError& error) {
+    const std::string place =
+        file.string() + ":" + std::to_string(line) + ":" + std::to_string(column) + ": ";
+    const std::string first = std::string(error.what()).substr(0, std::string(error.what()).find('\n'));
+    EXPECT_TRUE(begins_with(first, place)) << "not at " << place << "\n" << first;
+    EXPECT_NE(first.find(fragment), std::string::npos) << fragment << "\n" << first;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Files, BadSceneFile, testing::ValuesIn(bad_scenes),
+                         [](const auto& bad) { return std::string(bad.param.name); });
+
+TEST(BadScenes, EveryFileIsInTheTableAndOpensWithWhatIsWrong) {
+  std::set<std::string> listed;
+  for (const BadScene& scene : bad_scenes) listed.insert(scene.name);
+  std::set<std::string> found;
+  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+    found.insert(entry.path().stem().string());
+    std::string line;
+    std::getline(std::ifstream(entry.path()) >> std::ws, line);
+    EXPECT_TRUE(begins_with(line, "# Wrong: ")) << entry.path();
+  }
+  EXPECT_EQ(listed, found);
+}
+
+TEST(BadScenes, SeveralErrorsAreToldAtOnce) {
+  const std::string message =
+      message_of("format: 1\ntime: {end: -1, stepp: 1}\nmaterials: {glass: {friction: -1}}\nbodies: []\n");
+  EXPECT_NE(message.find("test.yaml:2:13: time.end: must be"), std::string::npos) << message;
+  EXPECT_NE(message.find("test.yaml:2:17: time.stepp: unknown key (did you mean step?)"), std::string::npos);
+  EXPECT_NE(message.find("test.yaml:3:31: materials.glass.friction: must be"), std::string::npos);
+  EXPECT_NE(message.find("test.yaml:4:9: bodies: must be a list"), std::string::npos);
+}
+
+TEST(BadScenes, ManyErrorsAreCounted) {
+  std::string text = "format: 1\ntime: {end: 1, step: 1}\nmaterials: {glass: {}}\nbodies:\n";
+  for (int i = 0; i < 100; ++i) text += "  - {sphere: {radius: -1}, material: glass}\n";
+  EXPECT_NE(message_of(text).find("and 92 more errors"), std::string::npos) << message_of(text);
+}
+
+TEST(BadScenes, FilesThatAreNone) {
+  const auto message = [](const std::filesystem::path& file) {
+    try {
+      read_scene(file);
+    } catch (const InputError& error) {
+      return std::string(error.what());
+    }
+    return std::string("no error");
+  };
+  EXPECT_EQ(message(folder / "absent.yaml"),
+            (folder / "absent.yaml").string() + ": cannot be read: No such file or directory");
+  EXPECT_EQ(message(folder), folder.string() + ": is a directory, not a scene file");
+  EXPECT_EQ(message_of(""), "test.yaml:1:1: the file is empty; a scene begins with `format: 1`");
+  EXPECT_EQ(message_of("# only a comment\n"), message_of(""));
+}
+
+// Whatever the machine: 2e9 bodies with names of 10,000 letters need 2e13 bytes.
+TEST(BadScenes, MoreBodiesThanMemoryAreRefusedBeforeAllocation) {
+  const std::string message = message_of(
+      "format: 1\ntime: {end: 1, step: 1}\nmaterials: {glass: {}}\nbodies:\n"
+      "  - {sphere: {radius: 1}, material: glass, repeat: {count: [2000, 1000, 1000], spacing: [1, 1, 1]},"
+      " name: " +
+      std::string(10000, 'a') + "}\n");
+  EXPECT_TRUE(begins_with(message, "test.yaml:5:52: bodies[0].repeat: the scene's 2000000000 bodies need "))
+      << message;
+  EXPECT_NE(message.find(" bytes, but this machine has "), std::string::npos);
+}
+
+// No prefix of a scene, and no scene with one byte changed, may do anything but load or be refused.
+TEST(BadScenes, DamagedScenesLoadOrAreRefused) {
+  const std::string text =
+      "format: 1\nname: \"a\"\ntime: {end: 1, step: 0.5}\nmaterials: &m {glass: {friction: 0.5}}\n"
+      "contacts: [{between: [glass, glass], friction: 1e-1}]\nbodies:\n"
+      "  - {sphere: {radius: {uniform: [1, 2]}}, name: b, at: [0, 0, 1], material: glass}\n"
+      "  - box: {size: 1}\n    scatter: {count: 3, from: [0, 0, 9], to: [9, 9, 19]}\n    material: glass\n"
+      "model: {friction: off}\nchecks:\n- {measure: b.position.z, above: 0}\n";
+  ASSERT_EQ(message_of(text), "no error");
+  int refused = 0;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    refused += message_of(text.substr(0, i)) != "no error";
+    for (const char c : {'\0', '\t', '\n', ' ', '-', ':', '[', '}', '"', '&', '*', '9', 'x', '\x80'}) {
+      std::string damaged = text;
+      damaged[i] = c;
+      refused += message_of(damaged) != "no error";
+    }
+  }
+  EXPECT_GT(refused, 1000);
+}
+
+}  // namespace
+}  // namespace scree
