@@ -39,8 +39,8 @@ struct BodyGeometry {
 /// Planes are absent: the narrow phase tests them against every body.
 SCREE_HD inline Aabb bounds_of(const BodyGeometry& body, double margin, const Vec3& origin) {
   if (body.shape == Shape::plane) return absent_bounds();
-  Vec3 half = Vec3::Constant(body.size.x());
-  if (body.shape == Shape::box) half = body.orientation.toRotationMatrix().cwiseAbs() * body.size;
+  Vec3 half_extent = Vec3::Constant(body.size.x());
+  if (body.shape == Shape::box) half_extent = body.orientation.toRotationMatrix().cwiseAbs() * body.size;
   // About ten roundings, each of 2^-53 of the size or of the distance, and twice that of the quaternion's
   // norm.
   constexpr double rounding = 0x1p-48;
@@ -48,7 +48,7 @@ SCREE_HD inline Aabb bounds_of(const BodyGeometry& body, double margin, const Ve
   Aabb box;
   for (int a = 0; a < 3; ++a) {
     const double centre = body.position[a] - origin[a];
-    const double outward = half[a] + margin + rounding * (fabs(centre) + reach);
+    const double outward = half_extent[a] + margin + rounding * (fabs(centre) + reach);
     box.lo[a] = round_down(centre - outward);
     box.hi[a] = round_up(centre + outward);
   }

@@ -19,9 +19,10 @@ inline constexpr double pi = 3.14159265358979323846;
 
 /// The rotation by the vector `angle` (rad), exact for any length: sin(x)/x by its series near 0.
 SCREE_HD inline Quat rotation_of(const Vec3& angle) {
-  const double half = 0.5 * angle.norm();
-  const double s = half < 1e-4 ? 0.5 - half * half / 12.0 : 0.5 * sin(half) / half;
-  return Quat(cos(half), s * angle.x(), s * angle.y(), s * angle.z());
+  const double half_angle = 0.5 * angle.norm();
+  const double s =
+      half_angle < 1e-4 ? 0.5 - half_angle * half_angle / 12.0 : 0.5 * sin(half_angle) / half_angle;
+  return Quat(cos(half_angle), s * angle.x(), s * angle.y(), s * angle.z());
 }
 
 /// A unit vector at right angles to the unit vector n (Duff et al. 2017). It is continuous on each side of

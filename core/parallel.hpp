@@ -4,6 +4,7 @@
 
 #include "core/array.hpp"
 #include "core/space_policy.hpp"
+#include "core/timing.hpp"
 
 #include <thrust/extrema.h>
 #include <thrust/for_each.h>
@@ -21,7 +22,8 @@ namespace scree::parallel {
 /// Calls f(i) for 0 <= i < n, in any order and at once. f is a copyable function object over views; on
 /// Device the call returns before the work is done. `label` names the work to a profiler.
 template <class Space, class F>
-void for_each([[maybe_unused]] const char* label, std::int64_t n, F f) {
+void for_each(const char* label, std::int64_t n, F f) {
+  const timing::Call<Space> call(label);
   // Under this many items the cost of waking threads exceeds the work.
   constexpr std::int64_t few = 256;
   if constexpr (std::is_same_v<Space, Host>) {
@@ -102,7 +104,8 @@ T sum(const char* label, std::int64_t n, F f) {
 
 /// Largest f(i), and `lowest` for n = 0. Exact, whatever the grouping.
 template <class T, class Space, class F>
-T max([[maybe_unused]] const char* label, std::int64_t n, F f, T lowest) {
+T max(const char* label, std::int64_t n, F f, T lowest) {
+  const timing::Call<Space> call(label);
   const thrust::counting_iterator<std::int64_t> first(0);
   return thrust::transform_reduce(scree::detail::policy(Space{}), first, first + n, f, lowest,
                                   thrust::maximum<T>());
@@ -111,7 +114,8 @@ T max([[maybe_unused]] const char* label, std::int64_t n, F f, T lowest) {
 /// All of f(i) for 0 <= i < n joined by `join`, and `neutral` for n = 0. The grouping is free: `join` must be
 /// exact, associative and commutative (integers, minima, maxima), or the result would depend on it.
 template <class T, class Space, class F, class Join>
-T reduce([[maybe_unused]] const char* label, std::int64_t n, F f, T neutral, Join join) {
+T reduce(const char* label, std::int64_t n, F f, T neutral, Join join) {
+  const timing::Call<Space> call(label);
   const thrust::counting_iterator<std::int64_t> first(0);
   return thrust::transform_reduce(scree::detail::policy(Space{}), first, first + n, f, neutral, join);
 }
@@ -119,8 +123,8 @@ T reduce([[maybe_unused]] const char* label, std::int64_t n, F f, T neutral, Joi
 /// counts[b] = number of i, 0 <= i < n, with f(i) = b, for 0 <= b < bins; other values are not counted. f
 /// gives int; bins <= 256 is fastest.
 template <class Space, class F>
-void histogram([[maybe_unused]] const char* label, std::int64_t n, F f, int bins,
-               Array<std::uint32_t, Space>& counts) {
+void histogram(const char* label, std::int64_t n, F f, int bins, Array<std::uint32_t, Space>& counts) {
+  const timing::Call<Space> call(label);
   counts.resize(bins);
   const auto first = thrust::make_transform_iterator(thrust::counting_iterator<std::int64_t>(0), f);
   scree::detail::histogram(Space{}, first, n, bins, counts.data());
@@ -128,7 +132,8 @@ void histogram([[maybe_unused]] const char* label, std::int64_t n, F f, int bins
 
 /// values[i] becomes the largest of values[0..i].
 template <class Space, class T>
-void running_max([[maybe_unused]] const char* label, Array<T, Space>& values) {
+void running_max(const char* label, Array<T, Space>& values) {
+  const timing::Call<Space> call(label);
   thrust::inclusive_scan(scree::detail::policy(Space{}), values.data(), values.data() + values.size(),
                          values.data(), thrust::maximum<T>());
 }
@@ -142,6 +147,7 @@ std::int64_t exclusive_scan(const char* label, const Array<T, Space>& counts,
   parallel::for_each<Space>(label, 1, detail::Set<std::int64_t>{offsets.data(), 0});
   const auto first = thrust::make_transform_iterator(thrust::counting_iterator<std::int64_t>(0),
                                                      detail::Widen<T>{counts.data()});
+  const timing::Call<Space> call(label);
   thrust::inclusive_scan(scree::detail::policy(Space{}), first, first + n, offsets.data() + 1);
   std::int64_t total = 0;
   copy_bytes<Host, Space>(&total, offsets.data() + n, sizeof(total));
@@ -150,8 +156,9 @@ std::int64_t exclusive_scan(const char* label, const Array<T, Space>& counts,
 
 /// Stable sort of values by the lowest `bits` bits of their unsigned keys, which hold nothing above them.
 template <class Space, class Key, class Value>
-void sort_by_key([[maybe_unused]] const char* label, Array<Key, Space>& keys, Array<Value, Space>& values,
+void sort_by_key(const char* label, Array<Key, Space>& keys, Array<Value, Space>& values,
                  int bits = 8 * sizeof(Key)) {
+  const timing::Call<Space> call(label);
   Array<Key, Space> spare_keys(keys.size());
   Array<Value, Space> spare_values(values.size());
   Key* k = keys.data();

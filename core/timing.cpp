@@ -1,46 +1,55 @@
 #include "core/timing.hpp"
 
-#include <cstring>
 #include <unordered_map>
 
 namespace scree::timing {
 
 namespace {
 
-struct Accounts {
-  std::vector<Entry> entries;
-  std::unordered_map<std::string, std::size_t> by_text;
+class Accounts {
+ public:
+  void add(const char* label, double seconds) {
+    auto [slot, is_new] = by_address_.try_emplace(label, 0);
+    if (is_new) {
+      const auto [text, is_new_text] = by_text_.try_emplace(label, entries_.size());
+      if (is_new_text) entries_.push_back({label, 0, 0});
+      slot->second = text->second;
+    }
+    Entry& entry = entries_[slot->second];
+    entry.seconds += seconds;
+    ++entry.calls;
+  }
+  double seconds(const std::string& label) const {
+    const auto found = by_text_.find(label);
+    return found == by_text_.end() ? 0.0 : entries_[found->second].seconds;
+  }
+  const std::vector<Entry>& entries() const { return entries_; }
+
+ private:
+  std::vector<Entry> entries_;
+  std::unordered_map<std::string, std::size_t> by_text_;
   // Labels are string literals: their address finds the account without hashing the text.
-  std::unordered_map<const char*, std::size_t> by_address;
+  std::unordered_map<const char*, std::size_t> by_address_;
 };
 
-Accounts& accounts() {
-  static Accounts all;
-  return all;
-}
+Accounts stage_accounts;
+Accounts call_accounts;
+bool timed_calls = false;
 
 }  // namespace
 
-void add(const char* label, double seconds) {
-  Accounts& all = accounts();
-  auto [slot, is_new] = all.by_address.try_emplace(label, 0);
-  if (is_new) {
-    const auto [text, is_new_text] = all.by_text.try_emplace(label, all.entries.size());
-    if (is_new_text) all.entries.push_back({label, 0, 0});
-    slot->second = text->second;
-  }
-  Entry& entry = all.entries[slot->second];
-  entry.seconds += seconds;
-  ++entry.calls;
+void add(const char* label, double seconds) { stage_accounts.add(label, seconds); }
+const std::vector<Entry>& entries() { return stage_accounts.entries(); }
+double seconds(const std::string& label) { return stage_accounts.seconds(label); }
+
+void reset() {
+  stage_accounts = {};
+  call_accounts = {};
 }
 
-const std::vector<Entry>& entries() { return accounts().entries; }
-
-double seconds(const std::string& label) {
-  const auto found = accounts().by_text.find(label);
-  return found == accounts().by_text.end() ? 0.0 : accounts().entries[found->second].seconds;
-}
-
-void reset() { accounts() = {}; }
+void time_calls(bool on) { timed_calls = on; }
+bool calls_are_timed() { return timed_calls; }
+void add_call(const char* label, double seconds) { call_accounts.add(label, seconds); }
+const std::vector<Entry>& calls() { return call_accounts.entries(); }
 
 }  // namespace scree::timing

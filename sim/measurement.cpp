@@ -35,7 +35,7 @@ void measure_totals(const Totals& totals, const EnergyBaseline& baseline, const 
   const double change =
       totals.kinetic_linear + totals.kinetic_angular + totals.potential - baseline.first_total();
   const double explained = l.work + l.integration - l.restitution - l.friction - l.correction;
-  out.unexplained = out.energy_scale > 0 ? (change - explained) / out.energy_scale : 0.0;
+  out.unexplained = out.energy_scale > 0 ? std::abs(change - explained) / out.energy_scale : 0.0;
 }
 
 void measure_contacts(const ContactSet& contacts, std::int64_t free_bodies, Observation& out) {

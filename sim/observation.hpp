@@ -34,6 +34,18 @@ struct Penetration {
   double relative_mean = 0;
 };
 
+/// What the loops of the run did, since t = 0; those that hit their bound are counted, never silent.
+struct Counters {
+  std::int64_t sweeps = 0;       ///< over the contacts
+  std::int64_t impacts = 0;      ///< that bounced
+  std::int64_t unconverged = 0;  ///< substeps that used all sweeps; raise response.iterations
+  std::int64_t unfinished_impacts =
+      0;                             ///< substeps whose chains of impacts hit the bound; the rest took e = 0
+  std::int64_t pairs_made_anew = 0;  ///< times a body outran its box inside a step
+  std::int64_t ccd_calls = 0;        ///< box-box pairs given to libccd
+  std::int64_t ccd_rejected = 0;     ///< of these, answers that the certificate refused
+};
+
 struct Observation {
   double time = 0;
   std::int64_t step = 0;
@@ -42,9 +54,10 @@ struct Observation {
   double potential = 0;  ///< -sum m g.x
   Ledger ledger;
   double energy_scale = 0;  ///< largest K + |U - U0| so far (J)
-  double unexplained = 0;   ///< energy change that the ledger does not explain, over energy_scale
+  double unexplained = 0;   ///< |energy change that the ledger does not explain| / energy_scale
   Vec3 momentum = Vec3::Zero();
   Vec3 angular_momentum = Vec3::Zero();  ///< about the origin
+  Counters counters;
   Penetration penetration;
   double gap_mean = 0;        ///< mean |gap| of loaded contact points (m)
   std::int64_t contacts = 0;  ///< contact points that carried an impulse in the last step

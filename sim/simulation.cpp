@@ -114,7 +114,7 @@ struct Simulation::Parts {
   ContactSet contacts;
   ImpulseMemory memory;
   Ledger ledger;
-  ResponseStats stats;
+  Counters counters;
   EnergyBaseline baseline;
   Observation observation;
   bool observed = false;
@@ -164,15 +164,17 @@ struct Simulation::Parts {
   }
 
   ConstView<Manifold> find_contacts(double h, double remaining) {
-    {
-      const timing::Region region("narrowphase");
-      contact_margins(bodies, h, parameters.gravity, contact_margin);
-      if (!outran_pairs())
-        return narrow_phase.find(view_of(std::as_const(bodies)), pairs, contact_margin.view());
+    contact_margins(bodies, h, parameters.gravity, contact_margin);
+    if (outran_pairs()) {
+      ++counters.pairs_made_anew;
+      find_pairs(remaining + h);
     }
-    find_pairs(remaining + h);
     const timing::Region region("narrowphase");
-    return narrow_phase.find(view_of(std::as_const(bodies)), pairs, contact_margin.view());
+    const ConstView<Manifold> manifolds =
+        narrow_phase.find(view_of(std::as_const(bodies)), pairs, contact_margin.view());
+    counters.ccd_calls += narrow_phase.stats().ccd_calls;
+    counters.ccd_rejected += narrow_phase.stats().ccd_rejected;
+    return manifolds;
   }
 
   /// Moreau's midpoint step: free flight to the midpoint, contacts there, impulses, free flight to the end.
@@ -188,8 +190,8 @@ struct Simulation::Parts {
                                    static_cast<std::int64_t>(scene.materials.size())};
     const double scale = last_substep > 0 ? h / last_substep : 1.0;
     prepare_contacts(manifolds, contact_laws, memory, scale, parameters, contacts);
-    ledger = ledger + impacts.resolve({manifolds, h, views}, parameters, solver, contacts, stats);
-    ledger = ledger + response.solve(manifolds, h, parameters, views, solver, contacts, stats);
+    ledger = ledger + impacts.resolve({manifolds, h, views}, parameters, solver, contacts, counters);
+    ledger = ledger + response.solve(manifolds, h, parameters, views, solver, contacts, counters);
     ledger.integration += advance(bodies, 0.5 * h, parameters);
     ledger = ledger + corrector.correct(h, parameters, views, solver, contacts);
     remember_impulses(manifolds, contacts, memory);
@@ -301,6 +303,7 @@ const Observation& Simulation::observe() {
   o.step = p.step;
   o.ledger = p.ledger;
   o.bodies = p.bodies.count();
+  o.counters = p.counters;
   const Totals totals = totals_of(p.bodies, p.parameters.gravity, p.origin);
   measure_totals(totals, p.baseline, p.parameters.gravity, p.origin, o);
   o.speed_max = largest_speed(p.bodies);

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <cstdio>
+#include <sys/ioctl.h>
 #include <unistd.h>
 
 namespace scree::cli {
@@ -11,6 +12,14 @@ namespace {
 using namespace std::chrono_literals;
 constexpr auto terminal_cadence = 200ms;  // smooth to the eye, cheap over a network
 constexpr auto plain_cadence = 10s;       // a night's run stays readable
+
+/// A longer line would wrap, and only its last row could be replaced.
+std::size_t terminal_width() {
+  winsize size = {};
+  const bool known = ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0;
+  return known ? size.ws_col - 1U : 80U;
+}
+
 }  // namespace
 
 Console::Console(const std::filesystem::path& log) : log_(log), terminal_(isatty(STDOUT_FILENO) == 1) {}
@@ -51,7 +60,7 @@ void Console::progress(std::string_view line) {
   last_progress_ = Clock::now();
   if (!terminal_) return say(line);
   clear_progress();
-  fmt::print("{}", line);
+  fmt::print("{}", line.substr(0, terminal_width()));
   std::fflush(stdout);
   showing_progress_ = true;
 }

@@ -1,5 +1,6 @@
 // The command line: arguments to commands, errors to exit statuses.
 #include "core/error.hpp"
+#include "core/timing.hpp"
 #include "sim/cli/commands.hpp"
 #include "sim/cli/console.hpp"
 #include "sim/record/outcome.hpp"
@@ -41,9 +42,11 @@ void add_simulation(CLI::App& command, SimulationOptions& options, const char* t
   static const std::map<std::string, SpaceChoice> spaces = {
       {"auto", SpaceChoice::automatic}, {"host", SpaceChoice::host}, {"cuda", SpaceChoice::cuda}};
   command.add_option("--device", options.space, "Where to run: auto, host or cuda")
-      ->transform(CLI::Transformer(spaces))
+      ->transform(CLI::Transformer(spaces).description(""))
       ->type_name("DEVICE");
-  command.add_option("--threads", options.threads, threads)->check(CLI::PositiveNumber)->type_name("N");
+  command.add_option("--threads", options.threads, threads)
+      ->check(CLI::Validator(CLI::PositiveNumber).description(""))
+      ->type_name("N");
 }
 
 CLI::App* add_run(CLI::App& app, RunArguments& arguments) {
@@ -54,9 +57,11 @@ CLI::App* add_run(CLI::App& app, RunArguments& arguments) {
   add_simulation(*command, arguments.simulation,
                  "Threads to use (default: all cores); never changes the result");
   command->add_option("--until", arguments.until, "Stop at this time (s) instead of the scene's end")
-      ->check(CLI::NonNegativeNumber)
+      ->check(CLI::Validator(CLI::NonNegativeNumber).description(""))
       ->type_name("T");
   command->add_flag("!--no-render", arguments.draw, "Draw nothing");
+  command->add_flag_callback(
+      "--profile", [] { timing::time_calls(true); }, "Time every parallel call too, into the manifest");
   command->add_flag("--overwrite", arguments.overwrite, "Replace an earlier run in the folder");
   command->add_flag("--resume", arguments.resume, "Continue from a checkpoint (not in this version)");
   return command;

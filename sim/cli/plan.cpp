@@ -1,6 +1,4 @@
 // scree plan: what a scene will model and what it needs, before anything runs.
-#include "broadphase/broad_phase.hpp"
-#include "narrowphase/contact.hpp"
 #include "sim/cli/commands.hpp"
 #include "sim/model.hpp"
 #include "sim/record/metrics.hpp"
@@ -11,6 +9,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 namespace scree::cli {
 
@@ -36,8 +35,8 @@ void print_bodies(const Scene& scene) {
   for (std::size_t shape = 0; shape < counts.size(); ++shape) {
     for (std::size_t mobility = 0; mobility < counts.size(); ++mobility) {
       if (counts[shape][mobility] == 0) continue;
-      print_row("", fmt::format("{} {}, {}", counts[shape][mobility], shape_words[shape],
-                                mobility_words[mobility]));
+      print_row("", fmt::format("{} {}: {}", mobility_words[mobility], shape_words[shape],
+                                counts[shape][mobility]));
     }
   }
 }
@@ -85,14 +84,18 @@ std::string narrow_phase_words(const Scene& scene) {
   return "closed forms; boxes by the measured best way";
 }
 
-/// Of the state in its three copies (scene, simulation, picture), and of pairs and contacts as in a dense
-/// packing, where a body has 6 contacts, each counted for both of its bodies; buffers hold manifolds about
-/// four times over.
+/// Of the state in its three copies (scene, simulation, picture) and of the contacts of a dense packing,
+/// where a body has 6, each shared by two. Per contact and for the program itself: as measured on lattices of
+/// spheres.
 double memory_estimate(const Scene& scene) {
-  double body = 0;
-  for_each_field([&](const char*, const auto& field) { body += sizeof(field[0]); }, scene.bodies);
-  const double contact = 2 * sizeof(Pair) + 4 * sizeof(Manifold);
-  return static_cast<double>(scene.bodies.count()) * (3 * body + 3 * contact);
+  constexpr double bytes_of_program = 6e7;
+  constexpr double bytes_of_pictures = 1.2e8;
+  constexpr double bytes_per_contact = 2300;  // pairs, manifolds, rows of the solver and remembered impulses
+  double bytes_per_body = 3 * bytes_per_contact;
+  for_each_field([&](const char*, const auto& field) { bytes_per_body += 3 * sizeof(field[0]); },
+                 scene.bodies);
+  return bytes_of_program + (scene.render.enabled ? bytes_of_pictures : 0) +
+         static_cast<double>(scene.bodies.count()) * bytes_per_body;
 }
 
 struct OutputPlan {
@@ -104,7 +107,7 @@ struct OutputPlan {
 OutputPlan plan_output(const Scene& scene, const TimeGrid& grid) {
   constexpr double bytes_per_number = 20;
   constexpr double bytes_per_timing_row = 2000;  // some 30 stages
-  constexpr double bytes_per_pixel = 0.6;  // PNG of a scene full of small bodies, and its share of the movie
+  constexpr double bytes_per_pixel = 1.1;  // PNG of a scene full of small bodies, and its share of the movie
   OutputPlan plan{.rows = Cadence(grid, scene.record.metrics_every).due(grid.last())};
   const double row =
       bytes_per_number * static_cast<double>(metric_names(scene).size()) + bytes_per_timing_row;
@@ -121,12 +124,13 @@ std::string output_words(const Scene& scene, const OutputPlan& plan) {
   return words + fmt::format(", {} frames of {} x {}", plan.frames, scene.render.width, scene.render.height);
 }
 
-/// With two significant digits: it is an estimate.
+/// Rounded to what an estimate is worth.
 std::string bytes_words(double bytes) {
   constexpr std::array<const char*, 4> units = {"KiB", "MiB", "GiB", "TiB"};
   std::size_t unit = 0;
   for (bytes /= 1024; bytes >= 1000 && unit + 1 < units.size(); ++unit) bytes /= 1024;
-  return fmt::format("about {:.2g} {}", bytes, units[unit]);
+  return fmt::format("about {} {}", bytes < 10 ? std::ceil(bytes * 10) / 10 : std::ceil(bytes / 10) * 10,
+                     units[unit]);
 }
 
 }  // namespace

@@ -38,10 +38,9 @@ std::string progress_line(const Simulation& simulation, const Recorder& recorder
   const double rate = static_cast<double>(simulation.steps()) / elapsed;
   const double left = static_cast<double>(last_step - simulation.steps()) / rate;
   return fmt::format(
-      "t {:.4g} of {:.4g} s | {:.3g} steps/s | {} contacts | penetration {:.2g} m | energy error {:.2g} | {} "
-      "left",
-      simulation.time(), end, rate, seen.contacts, recorder.worst_penetration(), seen.unexplained,
-      duration_words(left));
+      "t {:.4g}/{:.4g} s, {:.3g} steps/s, {} left, {} contacts, penetration {:.2g} m, energy error {:.2g}",
+      simulation.time(), end, rate, duration_words(left), seen.contacts, recorder.worst_penetration(),
+      seen.unexplained);
 }
 
 /// Steps until `last_step` or an interrupt.

@@ -121,7 +121,8 @@ int verify(const VerifyArguments& arguments) {
       });
 
   const Tally tally = tally_of(outcomes);
-  const std::string left_out = tally.left_out == 0 ? "" : fmt::format(", {} scenes left out", tally.left_out);
+  const std::string left_out =
+      tally.left_out == 0 ? "" : fmt::format(", scenes left out: {}", tally.left_out);
   fmt::print("{} passed, {} failed{}\n", tally.passed, tally.failed, left_out);
   if (!arguments.json.empty()) write_file(arguments.json, to_json(outcomes));
   return std::ranges::max(outcomes, {}, &SceneOutcome::status).status;

@@ -61,7 +61,7 @@ SCREE_HD inline ContactRow make_row(const Vec3& normal, const Vec3& arm_i, const
   const double tt = t.dot(w * t);
   const double bb = b.dot(w * b);
   const double tb = t.dot(w * b);
-  const double half = 0.5 * (tt - bb);
+  const double half_difference = 0.5 * (tt - bb);
   ContactRow row;
   row.arm_i = arm_i;
   row.arm_j = arm_j;
@@ -71,7 +71,7 @@ SCREE_HD inline ContactRow make_row(const Vec3& normal, const Vec3& arm_i, const
   row.stick = w.inverse();
   row.coupling = w * normal;
   row.normal_mass = 1.0 / normal.dot(row.coupling);
-  row.tangent_mass = 1.0 / (0.5 * (tt + bb) + sqrt(half * half + tb * tb));
+  row.tangent_mass = 1.0 / (0.5 * (tt + bb) + sqrt(half_difference * half_difference + tb * tb));
   return row;
 }
 

@@ -91,9 +91,11 @@ Ledger PositionCorrector::correct(double step, const ResponseParameters& paramet
                     std::as_const(set.rows).view(),
                     displacement_.view(),
                     step};
-  for_each_color("correction.sweep", set.coloring, [&stage](std::int64_t first) {
-    return Sweep{stage, first};
-  });
+  for (int sweep = 0; sweep < tolerance::correction_sweeps; ++sweep) {
+    for_each_color("correction.sweep", set.coloring, [&stage](std::int64_t first) {
+      return Sweep{stage, first};
+    });
+  }
   return parallel::sum<Ledger, Host>("correction.apply", solver.size(),
                                      Apply{stage, parameters.gravity, parameters.rotation});
 }

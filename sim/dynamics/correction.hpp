@@ -8,10 +8,10 @@ namespace scree {
 
 class PositionCorrector {
  public:
-  /// One sweep of nonlinear Gauss-Seidel on the gaps predicted for the end of the substep: each overlapping
-  /// point is parted by a share of its overlap, mass weighted, with rotation. `bodies` are at the end of the
-  /// substep, the rows of `set` at its midpoint. Velocities and spins stay; what that changes in energy and
-  /// angular momentum is returned.
+  /// A few sweeps of nonlinear Gauss-Seidel on the gaps predicted for the end of the substep: each
+  /// overlapping point is parted by a share of its overlap, mass weighted, with rotation. `bodies` are at the
+  /// end of the substep, the rows of `set` at its midpoint. Velocities and spins stay; what that changes in
+  /// energy and angular momentum is returned.
   Ledger correct(double step, const ResponseParameters& parameters, BodyView bodies,
                  const Array<SolverBody, Host>& solver, ContactSet& set);
 

@@ -251,7 +251,7 @@ constexpr int chain_passes = 64;
 }  // namespace
 
 Ledger ImpactSolver::resolve(const ImpactProblem& problem, const ResponseParameters& parameters,
-                             Array<SolverBody, Host>& solver, ContactSet& set, ResponseStats& stats) {
+                             Array<SolverBody, Host>& solver, ContactSet& set, Counters& counters) {
   const std::int64_t n = set.contacts.size();
   set.shift.resize(solver.size());
   parallel::fill("impact.reset", set.shift, Vec3(Vec3::Zero()));
@@ -270,10 +270,10 @@ Ledger ImpactSolver::resolve(const ImpactProblem& problem, const ResponseParamet
     });
     const auto hits =
         parallel::sum<std::int64_t, Host>("impact.count", n, AnyHit{std::as_const(hit_).view()});
-    stats.impacts += hits;
+    counters.impacts += hits;
     closing = hits > 0;
   }
-  if (closing) ++stats.unfinished_impacts;
+  if (closing) ++counters.unfinished_impacts;
   parallel::for_each<Host>("impact.falling", n, MarkFalling{stage});
   return parallel::sum<Ledger, Host>("impact.ledger", n, LoadLedger{std::as_const(ledger_).view()});
 }

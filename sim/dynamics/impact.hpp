@@ -33,7 +33,7 @@ class ImpactSolver {
   /// positions by the shift. `solver` holds the velocities before gravity's kick. Returns what the impacts
   /// moved.
   Ledger resolve(const ImpactProblem& problem, const ResponseParameters& parameters,
-                 Array<SolverBody, Host>& solver, ContactSet& set, ResponseStats& stats);
+                 Array<SolverBody, Host>& solver, ContactSet& set, Counters& counters);
 
  private:
   Array<double, Host> clock_;      // time of each body's last impact in this substep

@@ -213,7 +213,7 @@ struct StoreVelocities {
 
 Ledger ResponseSolver::solve(ConstView<Manifold> manifolds, double step, const ResponseParameters& parameters,
                              BodyView bodies, Array<SolverBody, Host>& solver, ContactSet& set,
-                             ResponseStats& stats) {
+                             Counters& counters) {
   const std::int64_t n = set.contacts.size();
   change_.resize(n);
   row_step_.resize(set.rows.size());
@@ -242,7 +242,7 @@ Ledger ResponseSolver::solve(ConstView<Manifold> manifolds, double step, const R
       for_each_color("response.sweep", set.coloring, [&stage](std::int64_t first) {
         return Sweep{stage, first};
       });
-      ++stats.sweeps;
+      ++counters.sweeps;
       const auto total =
           parallel::sum<SweepChange, Host>("response.change", n, LoadChange{std::as_const(change_).view()});
       converged = total.step <= parameters.tolerance * parameters.tolerance * total.size;
@@ -254,7 +254,7 @@ Ledger ResponseSolver::solve(ConstView<Manifold> manifolds, double step, const R
       parallel::for_each<Host>("response.accelerate_rows", n, AccelerateRows{stage, beta});
       parallel::for_each<Host>("response.accelerate_bodies", solver.size(), AccelerateBodies{stage, beta});
     }
-    if (!converged) ++stats.unconverged;
+    if (!converged) ++counters.unconverged;
     ledger = parallel::sum<Ledger, Host>("response.ledger", n, Account{stage});
   }
   parallel::for_each<Host>("response.store", solver.size(), StoreVelocities{stage});

@@ -44,7 +44,7 @@ class ResponseSolver {
   /// the substep. The bodies are at the midpoint and keep their positions; their velocities are set. Returns
   /// what it moved.
   Ledger solve(ConstView<Manifold> manifolds, double step, const ResponseParameters& parameters,
-               BodyView bodies, Array<SolverBody, Host>& solver, ContactSet& set, ResponseStats& stats);
+               BodyView bodies, Array<SolverBody, Host>& solver, ContactSet& set, Counters& counters);
 
  private:
   Array<SweepChange, Host> change_;  // per contact, of the last sweep

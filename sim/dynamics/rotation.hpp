@@ -28,9 +28,9 @@ SCREE_HD inline void turn_about(int axis, Quat& orientation, Vec3& momentum, con
                                 double dt) {
   const int a = (axis + 1) % 3;
   const int b = (axis + 2) % 3;
-  const double half = 0.5 * dt * momentum[axis] * inverse_inertia[axis];
-  const double sh = sin(half);
-  const double ch = cos(half);
+  const double half_angle = 0.5 * dt * momentum[axis] * inverse_inertia[axis];
+  const double sh = sin(half_angle);
+  const double ch = cos(half_angle);
   Vec3 imaginary = Vec3::Zero();
   imaginary[axis] = sh;
   orientation = orientation * Quat(ch, imaginary.x(), imaginary.y(), imaginary.z());

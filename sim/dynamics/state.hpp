@@ -23,20 +23,6 @@ struct ResponseParameters {
   double restitution_threshold = 0;  ///< m/s
 };
 
-/// Counts of what happened in one substep; loops that hit their bound are counted, never silent.
-struct ResponseStats {
-  std::int64_t sweeps = 0;
-  std::int64_t impacts = 0;
-  std::int64_t unconverged = 0;  ///< substeps that used all sweeps
-  std::int64_t unfinished_impacts =
-      0;  ///< substeps whose chains of impacts hit the bound; resolved with e = 0
-
-  friend ResponseStats operator+(const ResponseStats& a, const ResponseStats& b) {
-    return {a.sweeps + b.sweeps, a.impacts + b.impacts, a.unconverged + b.unconverged,
-            a.unfinished_impacts + b.unfinished_impacts};
-  }
-};
-
 /// Energy that one impulse p on j (and -p on i) at a common point moves, from the relative velocities before
 /// and after: dE = p.(u- + u+)/2 exactly, when u is taken at one configuration (Moreau's midpoint). Its
 /// normal part is restitution's, its tangential part friction's; what a prescribed partner gives is work.

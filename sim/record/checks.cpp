@@ -95,7 +95,7 @@ Checks::Checks(const Scene& scene, const TimeGrid& grid) : grid_(grid) {
                         .measure = parse_measure(check.measure, scene.body_names),
                         .first = check.over ? grid.first_in(from) : grid.nearest(from),
                         .last = check.over ? grid.last_in(to) : grid.nearest(to),
-                        .within_run = grid.covers(to),
+                        .within_run = grid.contains(to),
                         .series = Series(check.reduce, check.level)});
   }
 }

@@ -45,6 +45,16 @@ Json json_of(const Observation& o) {
           {"coordination_mean", o.coordination_mean}};
 }
 
+Json json_of(const Counters& c) {
+  return {{"sweeps", c.sweeps},
+          {"impacts", c.impacts},
+          {"unconverged", c.unconverged},
+          {"unfinished_impacts", c.unfinished_impacts},
+          {"pairs_made_anew", c.pairs_made_anew},
+          {"ccd_calls", c.ccd_calls},
+          {"ccd_rejected", c.ccd_rejected}};
+}
+
 Json machine() {
   const MachineInfo info = machine_info();
   Json json = {{"cpu", info.cpu}, {"cores", info.cores}};
@@ -53,9 +63,9 @@ Json machine() {
   return json;
 }
 
-Json stage_times() {
+Json times(const std::vector<timing::Entry>& entries) {
   Json json = Json::object();
-  for (const timing::Entry& entry : timing::entries()) {
+  for (const timing::Entry& entry : entries) {
     json[entry.label] = {{"seconds", entry.seconds}, {"calls", entry.calls}};
   }
   return json;
@@ -91,7 +101,9 @@ std::string manifest_of(const Scene& scene, const RunSummary& run) {
   if (!run.movie.empty()) json["movie"] = run.movie;
   json["warnings"] = run.warnings;
   json["wall_s"] = run.wall;
-  json["stages"] = stage_times();
+  json["counters"] = json_of(run.last.counters);
+  json["stages"] = times(timing::entries());
+  if (!timing::calls().empty()) json["calls"] = times(timing::calls());
   return json.dump(2) + '\n';
 }
 

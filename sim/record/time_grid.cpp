@@ -41,13 +41,15 @@ std::int64_t TimeGrid::last_in(double to) const {
   return time(near) > to * (1 + rounding) ? near - 1 : near;
 }
 
+bool TimeGrid::contains(double t) const { return t <= end_ * (1 + rounding); }
+
 std::int64_t Cadence::due(std::int64_t step) {
   const bool repeats = period_ > 0 && std::isfinite(period_);
   std::int64_t count = 0;
   for (;; ++next_, ++count) {
     if (next_ > 0 && !repeats) return count;
     const double time = static_cast<double>(next_) * (repeats ? period_ : 0.0);
-    if (!grid_.covers(time) || grid_.nearest(time) > step) return count;
+    if (!grid_.contains(time) || grid_.nearest(time) > step) return count;
   }
 }
 

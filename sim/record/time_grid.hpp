@@ -21,8 +21,8 @@ class TimeGrid {
   /// First and last step in the closed interval [from, to]; the first is the greater where there is none.
   std::int64_t first_in(double from) const;
   std::int64_t last_in(double to) const;
-  /// Whether a time is nearer to the run's last step than to the one that would follow.
-  bool covers(double time) const { return time <= end_ + 0.5 * step_; }
+  /// Whether a time is not after the end, but for rounding.
+  bool contains(double time) const;
 
  private:
   double step_;

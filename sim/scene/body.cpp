@@ -1,3 +1,4 @@
+// Closed forms of mass and inertia, and the draws of one body.
 #include "sim/scene/body.hpp"
 
 #include <cmath>

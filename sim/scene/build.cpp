@@ -1,3 +1,5 @@
+// Draws the bodies and settles what spans sections; entries keep their nodes so that messages find their
+// place.
 #include "sim/scene/build.hpp"
 
 #include "sim/scene/body.hpp"

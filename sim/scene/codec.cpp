@@ -1,3 +1,4 @@
+// Codecs of single values, and the messages of keys that are unknown or missing.
 #include "sim/scene/codec.hpp"
 
 #include <fmt/format.h>

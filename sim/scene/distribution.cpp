@@ -1,3 +1,4 @@
+// Quantiles and draws.
 #include "sim/scene/distribution.hpp"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// yaml-cpp is included here alone: its events become a tree, and what it is lax about is refused.
 #include "sim/scene/document.hpp"
 
 #include <fmt/format.h>
@@ -192,43 +193,37 @@ class TreeBuilder final : public YAML::EventHandler {
   std::int64_t aliased_ = 0;
 };
 
-void append_flow(std::string& out, const Node& node) {
-  switch (node.kind) {
-    case Node::Kind::null:
-      out += "null";
-      return;
-    case Node::Kind::scalar:
-      if (!node.quoted) {
-        out += node.text;
-        return;
-      }
-      out += '"';
-      for (const char c : node.text) {
-        if (c == '"' || c == '\\') out += '\\';
-        if (c == '\n') {
-          out += "\\n";
-        } else if (c == '\t') {
-          out += "\\t";
-        } else if (c == '\r') {
-          out += "\\r";
-        } else {
-          out += c;
-        }
-      }
-      out += '"';
-      return;
-    case Node::Kind::list:
-    case Node::Kind::map: {
-      const bool map = node.kind == Node::Kind::map;
-      out += map ? '{' : '[';
-      for (const Node& item : node.items) {
-        if (&item != node.items.data()) out += ", ";
-        if (map) (out += item.key) += ": ";
-        append_flow(out, item);
-      }
-      out += map ? '}' : ']';
-      return;
+void append_quoted(std::string& out, std::string_view text) {
+  out += '"';
+  for (const char c : text) {
+    if (c == '\n' || c == '\r' || c == '\t') {
+      out += c == '\n' ? "\\n" : c == '\r' ? "\\r" : "\\t";
+      continue;
     }
+    if (c == '"' || c == '\\') out += '\\';
+    out += c;
+  }
+  out += '"';
+}
+
+void append_flow(std::string& out, const Node& node) {
+  if (node.kind == Node::Kind::null) {
+    out += "null";
+  } else if (node.kind == Node::Kind::scalar) {
+    if (node.quoted) {
+      append_quoted(out, node.text);
+    } else {
+      out += node.text;
+    }
+  } else {
+    const bool map = node.kind == Node::Kind::map;
+    out += map ? '{' : '[';
+    for (const Node& item : node.items) {
+      if (&item != node.items.data()) out += ", ";
+      if (map) (out += item.key) += ": ";
+      append_flow(out, item);
+    }
+    out += map ? '}' : ']';
   }
 }
 

@@ -1,3 +1,4 @@
+// The table of measures, their parser and their values.
 #include "sim/scene/measure.hpp"
 
 #include "core/error.hpp"

@@ -1,3 +1,4 @@
+// Walks the tree and the table side by side.
 #include "sim/scene/override.hpp"
 
 #include "sim/scene/codec.hpp"

@@ -1,3 +1,4 @@
+// Messages: place, path, nearest known word.
 #include "sim/scene/reader.hpp"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// Rules across the keys of one section.
 #include "sim/scene/rules.hpp"
 
 #include <fmt/format.h>

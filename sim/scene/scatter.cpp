@@ -1,3 +1,4 @@
+// Random sequential addition, with a grid of cells to find what is near.
 #include "sim/scene/scatter.hpp"
 
 #include <algorithm>

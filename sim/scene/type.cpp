@@ -1,3 +1,4 @@
+// Types in words, and which form a node has.
 #include "sim/scene/type.hpp"
 
 #include <fmt/format.h>

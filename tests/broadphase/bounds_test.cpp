@@ -42,7 +42,7 @@ TEST(Rounding, IsOutwardAndTight) {
 using Real = long double;
 
 // |R| h in long double from the normalised quaternion, as the rotation matrix's entries by their definition.
-void exact_half_extents(const BodyGeometry& body, Real half[3]) {
+void exact_half_extents(const BodyGeometry& body, Real extent[3]) {
   Real w = body.orientation.w(), x = body.orientation.x(), y = body.orientation.y(), z = body.orientation.z();
   const Real norm = std::sqrt(w * w + x * x + y * y + z * z);
   w /= norm, x /= norm, y /= norm, z /= norm;
@@ -50,9 +50,9 @@ void exact_half_extents(const BodyGeometry& body, Real half[3]) {
                                {2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)},
                                {2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)}};
   for (int a = 0; a < 3; ++a) {
-    half[a] = body.shape == Shape::sphere ? Real{body.size.x()} : Real{0};
+    extent[a] = body.shape == Shape::sphere ? Real{body.size.x()} : Real{0};
     for (int b = 0; b < 3 && body.shape == Shape::box; ++b)
-      half[a] += std::abs(rotation[a][b]) * body.size[b];
+      extent[a] += std::abs(rotation[a][b]) * body.size[b];
   }
 }
 
@@ -77,11 +77,11 @@ TEST(Bounds, HoldTheExactBoxAndAreTight) {
     const double margin = random.uniform() < 0.5 ? 0.0 : random.uniform(0, 0.1);
     const Vec3 origin = random.uniform() < 0.5 ? Vec3::Zero() : Vec3(body.position * random.uniform());
     const Aabb bounds = bounds_of(body, margin, origin);
-    Real half[3];
-    exact_half_extents(body, half);
+    Real extent[3];
+    exact_half_extents(body, extent);
     for (int a = 0; a < 3; ++a) {
-      const Real lo = Real{body.position[a]} - origin[a] - half[a] - margin;
-      const Real hi = Real{body.position[a]} - origin[a] + half[a] + margin;
+      const Real lo = Real{body.position[a]} - origin[a] - extent[a] - margin;
+      const Real hi = Real{body.position[a]} - origin[a] + extent[a] + margin;
       ASSERT_LE(bounds.lo[a], lo);
       ASSERT_GE(bounds.hi[a], hi);
       const Real slack = 1e-14L * (std::abs(lo) + std::abs(hi) + body.size.norm());

@@ -220,10 +220,10 @@ TYPED_TEST(Find, RodsAndPlates) {
     Boxes boxes;
     for (int k = 0; k < 1200; ++k) {
       Random random(16, static_cast<std::uint64_t>(k));
-      double half[3];
-      for (int a = 0; a < 3; ++a) half[a] = ((k + axis) % 3 == a) == plate ? 0.005 : 5;
-      boxes.push_back(box(random.uniform(-20, 20), random.uniform(-20, 20), random.uniform(-20, 20), half[0],
-                          half[1], half[2]));
+      double extent[3];
+      for (int a = 0; a < 3; ++a) extent[a] = ((k + axis) % 3 == a) == plate ? 0.005 : 5;
+      boxes.push_back(box(random.uniform(-20, 20), random.uniform(-20, 20), random.uniform(-20, 20),
+                          extent[0], extent[1], extent[2]));
     }
     return boxes;
   };

@@ -1,6 +1,8 @@
 // The accounts of wall time.
 #include "core/timing.hpp"
 
+#include "core/space.hpp"
+
 #include <gtest/gtest.h>
 
 #include <chrono>
@@ -45,6 +47,18 @@ TEST_F(TimingTest, ResetForgets) {
   EXPECT_EQ(timing::seconds("a"), 0.0);
   timing::add("a", 2);
   EXPECT_EQ(timing::seconds("a"), 2.0);
+}
+
+TEST_F(TimingTest, CallsAreTimedOnlyWhenAskedFor) {
+  { const timing::Call<Host> call("quiet"); }
+  EXPECT_TRUE(timing::calls().empty());
+  timing::time_calls(true);
+  { const timing::Call<Host> call("timed"); }
+  timing::time_calls(false);
+  ASSERT_EQ(timing::calls().size(), 1u);
+  EXPECT_EQ(timing::calls()[0].label, "timed");
+  EXPECT_EQ(timing::calls()[0].calls, 1);
+  EXPECT_TRUE(timing::entries().empty());
 }
 
 TEST_F(TimingTest, RegionTimesItsLifetime) {

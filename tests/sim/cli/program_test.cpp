@@ -267,7 +267,7 @@ TEST_F(VerifyTest, LongScenesAreLeftOutUnlessAsked) {
   add("b.yaml", falling_ball("label: long\n" + bad_check));
   const Finished usual = verify();
   EXPECT_EQ(usual.status, 0);
-  EXPECT_TRUE(contains(usual.out, "1 scenes left out")) << usual.out;
+  EXPECT_TRUE(contains(usual.out, "scenes left out: 1")) << usual.out;
   EXPECT_EQ(verify({"--label", "long"}).status, 1);
   EXPECT_EQ(table()["passed"], 0);
   EXPECT_EQ(verify({"--all"}).status, 1);
@@ -284,7 +284,7 @@ TEST_F(ProgramTest, PlanSaysWhatWillBeModelledAndRunsNothing) {
   write_text(folder_ / "fall.yaml", falling_ball(good_check));
   const Finished plan = scree_in(folder_, {"plan", "fall.yaml"});
   EXPECT_EQ(plan.status, 0) << plan.error;
-  EXPECT_TRUE(contains(plan.out, "1 spheres, free")) << plan.out;
+  EXPECT_TRUE(contains(plan.out, "free spheres: 1")) << plan.out;
   EXPECT_TRUE(contains(plan.out, "friction     off")) << plan.out;
   EXPECT_TRUE(contains(plan.out, "in 10 steps")) << plan.out;
   EXPECT_TRUE(contains(plan.out, "6 rows of metrics, 4 frames of 1280 x 720")) << plan.out;

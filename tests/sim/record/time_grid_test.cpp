@@ -56,10 +56,9 @@ TEST(TimeGrid, IntervalsIncludeTheirEnds) {
   EXPECT_GT(grid.first_in(0.41), grid.last_in(0.49)) << "no step between";
 }
 
-TEST(TimeGrid, CoversWhatIsNearestToItsLastStep) {
-  const TimeGrid grid = grid_of(1, 0.1);
-  EXPECT_TRUE(grid.covers(1.04));
-  EXPECT_FALSE(grid.covers(1.06));
+TEST(TimeGrid, ContainsItsEndInSpiteOfRounding) {
+  EXPECT_TRUE(grid_of(0.3, 0.1).contains(3 * 0.1));  // > 0.3
+  EXPECT_FALSE(grid_of(1, 0.1).contains(1.01));
 }
 
 std::vector<std::int64_t> due_at_each_step(const TimeGrid& grid, double period) {

@@ -1,0 +1,82 @@
+// On every scene of the repository, now and as it moves: the PCS of the grid, on Host and on Device, is that
+// of brute force, and the run does not depend on the space that makes it.
+#include "core/space.hpp"
+#include "sim/dynamics/motion.hpp"
+#include "sim/pair_finder.hpp"
+#include "sim/simulation.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <utility>
+#include <vector>
+
+namespace scree {
+namespace {
+
+using PairSet = std::vector<std::pair<std::int32_t, std::int32_t>>;
+
+std::vector<std::filesystem::path> all_scenes() {
+  std::vector<std::filesystem::path> scenes;
+  const std::filesystem::path configs = std::filesystem::path(SCREE_SOURCE_DIR) / "configs";
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(configs)) {
+    if (entry.path().extension() == ".yaml") scenes.push_back(entry.path());
+  }
+  std::sort(scenes.begin(), scenes.end());
+  return scenes;
+}
+
+std::string name_of(const testing::TestParamInfo<std::filesystem::path>& info) {
+  std::string name = info.param.stem().string();
+  std::replace_if(
+      name.begin(), name.end(), [](char c) { return !std::isalnum(static_cast<unsigned char>(c)); }, '_');
+  return name;
+}
+
+PairSet pairs_of(BroadPhaseMethod method, bool on_device, const Snapshot& state, const Scene& scene) {
+  Bodies<Host> bodies;
+  copy_bodies(bodies, state.bodies);
+  Array<double, Host> margin;
+  contact_margins(bodies, 2 * scene.time.step, scene.gravity, margin);
+  const auto finder = make_pair_finder({.method = method}, on_device, state.bodies.position.front());
+  PairSet set;
+  for (const Pair& pair : finder->find(bodies, margin)) set.emplace_back(pair.i, pair.j);
+  std::sort(set.begin(), set.end());
+  return set;
+}
+
+class ScenePairs : public testing::TestWithParam<std::filesystem::path> {
+ protected:
+  /// Compares at the start and after each of a few stretches of the run.
+  void compare(bool on_device) {
+    const Scene scene = read_scene(GetParam());
+    Simulation simulation(scene, {on_device ? SpaceChoice::cuda : SpaceChoice::host, 0});
+    Snapshot state;
+    const std::int64_t stretch = scene.bodies.position.size() > 1000 ? 25 : 200;
+    for (int k = 0; k < 4; ++k) {
+      simulation.snapshot(state);
+      ASSERT_EQ(pairs_of(BroadPhaseMethod::hierarchical_grid, on_device, state, scene),
+                pairs_of(BroadPhaseMethod::brute_force, on_device, state, scene))
+          << "at t = " << simulation.time();
+      for (std::int64_t s = 0; s < stretch && !simulation.finished(); ++s) simulation.step();
+    }
+    if (!on_device) return;
+    Simulation host(scene, {SpaceChoice::host, 0});
+    while (host.steps() < simulation.steps()) host.step();
+    EXPECT_EQ(host.state_hash(), simulation.state_hash());
+  }
+};
+
+TEST_P(ScenePairs, OnHostAreThoseOfBruteForce) { compare(false); }
+
+TEST_P(ScenePairs, OnDeviceAreThoseOfBruteForceAndMoveTheSame) {
+  const DeviceInfo device = device_info();
+  if (!device.available) GTEST_SKIP() << "no GPU: " << device.name;
+  compare(true);
+}
+
+INSTANTIATE_TEST_SUITE_P(AllScenes, ScenePairs, testing::ValuesIn(all_scenes()), name_of);
+
+}  // namespace
+}  // namespace scree
