@@ -22,7 +22,8 @@ inline constexpr double travel_factor = 1.05;
 /// Share of an overlap that one position correction removes. 1 can collapse a pile, 0.2 leaves 4 times the
 /// overlap.
 inline constexpr double correction_share = 0.5;
-/// Sweeps of position correction in a substep. One lifts a tall heap too slowly; more than a few gain nothing.
+/// Sweeps of position correction in a substep. One lifts a tall heap too slowly; more than a few gain
+/// nothing.
 inline constexpr int correction_sweeps = 4;
 /// Largest correction of one body in one step (of smallest_size): deep overlaps part gently.
 inline constexpr double correction_cap = 0.2;

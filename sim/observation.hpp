@@ -73,10 +73,13 @@ struct Observation {
 
 /// One body at one instant.
 struct BodyState {
-  Vec3 position, velocity, spin;
-  Quat orientation, start_orientation;
-  Vec3 acceleration;  ///< change of velocity over the last step / step
-  Vec3 force;         ///< contact impulse on it over the last step / step (N)
+  Vec3 position = Vec3::Zero();
+  Vec3 velocity = Vec3::Zero();
+  Vec3 spin = Vec3::Zero();
+  Quat orientation = Quat::Identity();
+  Quat start_orientation = Quat::Identity();
+  Vec3 acceleration = Vec3::Zero();  ///< change of velocity over the last step / step
+  Vec3 force = Vec3::Zero();         ///< contact impulse on it over the last step / step (N)
 };
 
 }  // namespace scree

@@ -12,8 +12,10 @@ SCREE_HD inline double time_of_impact(double gap, double u, double a) {
   if (gap <= 0) return 0;
   const double discriminant = u * u - 2 * a * gap;
   if (discriminant < 0) return HUGE_VAL;
-  const double speed = sqrt(discriminant) - u;  // the form without cancellation for u < 0
-  return speed > 0 ? 2 * gap / speed : HUGE_VAL;
+  // Of the two forms of the root, the one without cancellation.
+  const double root = sqrt(discriminant);
+  if (u > 0) return a < 0 ? (u + root) / -a : HUGE_VAL;
+  return root > u ? 2 * gap / (root - u) : HUGE_VAL;
 }
 
 struct ImpactProblem {

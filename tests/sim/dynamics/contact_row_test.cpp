@@ -71,8 +71,9 @@ double violation(const Problem& p) {
 TEST(ContactRow, OneSweepSolvesSpheresExactly) {
   for (std::uint64_t item = 0; item < 20000; ++item) {
     Problem p = random_problem(item, true);
+    const double speed = p.row.relative_velocity(p.i, p.j).norm();
     sweep_rows(&p.row, 1, p.normal, p.friction, p.i, p.j);
-    ASSERT_LT(violation(p), 1e-12) << "problem " << item;
+    ASSERT_LT(violation(p), 1e-12 * (1 + speed)) << "problem " << item;
   }
 }
 
