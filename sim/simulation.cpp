@@ -12,6 +12,7 @@
 #include "sim/measurement.hpp"
 #include "sim/model.hpp"
 #include "sim/pair_finder.hpp"
+#include "sim/scene/time_grid.hpp"
 
 #include <fmt/format.h>
 #include <tbb/global_control.h>
@@ -88,6 +89,7 @@ struct MovingState {
 
 struct Simulation::Parts {
   Scene scene;
+  TimeGrid grid;
   tbb::global_control threads;
   ResponseParameters parameters;
   Vec3 origin;
@@ -101,14 +103,15 @@ struct Simulation::Parts {
   PositionCorrector corrector;
 
   std::int64_t step = 0;
-  double time = 0;
   double last_step = 0;     // its length
   double last_substep = 0;  // likewise; scales the remembered impulses
   MovingState start;        // of the last step
   std::vector<Quat> first_orientation;
   std::vector<Vec3> contact_impulse;  // on each body that is not free, over the last step
   ConstView<Pair> pairs;
-  Array<double, Host> pair_margin;  // of the boxes in `pairs`
+  Array<double, Host> pair_margin;  // of the boxes behind `pairs`
+  std::vector<Vec3> pair_position;  // and where their bodies were
+  std::vector<Quat> pair_orientation;
   Array<double, Host> contact_margin;
   Array<SolverBody, Host> solver;
   ContactSet contacts;
@@ -121,6 +124,7 @@ struct Simulation::Parts {
 
   Parts(const Scene& s, const SimulationOptions& options)
       : scene(s),
+        grid(s.time),
         threads(tbb::global_control::max_allowed_parallelism,
                 options.threads > 0
                     ? static_cast<std::size_t>(options.threads)
@@ -140,24 +144,26 @@ struct Simulation::Parts {
     baseline.start(totals_of(bodies, parameters.gravity, origin), lifting_energy(scene));
   }
 
-  double step_length() const {
-    const double rest = scene.time.end - static_cast<double>(step) * scene.time.step;
-    return std::min(scene.time.step, rest);
-  }
-
   void find_pairs(double reach) {
     const timing::Region region("broadphase");
     contact_margins(bodies, reach, parameters.gravity, pair_margin);
     pairs = pair_finder->find(bodies, pair_margin);
-    start_of_pairs.save(bodies);
+    copy(pair_position, bodies.position);
+    copy(pair_orientation, bodies.orientation);
   }
-  MovingState start_of_pairs;
 
-  /// True if a body, moved since the boxes were made, could now touch something outside its box within h.
+  /// True if a body, moved and turned since the boxes were made, could now touch something outside its box
+  /// within the next substep: an impact made it faster than its box allows.
   bool outran_pairs() const {
+    const ConstBodyView views = view_of(bodies);
     for (std::int64_t k = 0; k < bodies.count(); ++k) {
-      const Vec3& from = start_of_pairs.position[static_cast<std::size_t>(k)];
-      const double moved = (bodies.position.view()[k] - from).norm();
+      if (views.mobility[k] == Mobility::fixed) continue;
+      const auto at = static_cast<std::size_t>(k);
+      double moved = (views.position[k] - pair_position[at]).norm();
+      if (views.shape[k] == Shape::box) {
+        moved += bounding_radius(Shape::box, views.size[k]) *
+                 views.orientation[k].angularDistance(pair_orientation[at]);
+      }
       if (moved + contact_margin.view()[k] > pair_margin.view()[k]) return true;
     }
     return false;
@@ -212,7 +218,7 @@ struct Simulation::Parts {
   }
 
   void do_step() {
-    const double dt = step_length();
+    const double dt = grid.length(step + 1);
     const double h = dt / scene.time.substeps;
     start.save(bodies);
     const Ledger ledger_before = ledger;
@@ -225,18 +231,11 @@ struct Simulation::Parts {
     } catch (const RunError& error) {
       start.restore(bodies);
       ledger = ledger_before;
-      throw RunError(fmt::format("step {} (t = {} s): {}", step + 1, time, error.what()));
+      throw RunError(fmt::format("step {} (t = {} s): {}", step + 1, grid.time(step), error.what()));
     }
     ++step;
     last_step = dt;
-    time = step == total_steps() ? scene.time.end : static_cast<double>(step) * scene.time.step;
     observed = false;
-  }
-
-  std::int64_t total_steps() const {
-    // A last step shorter than rounding of the division is none.
-    return static_cast<std::int64_t>(
-        std::ceil(scene.time.end / scene.time.step * (1 - tolerance::step_count)));
   }
 
   std::string non_finite_body() const {
@@ -256,14 +255,14 @@ Simulation::~Simulation() = default;
 Simulation::Simulation(Simulation&&) noexcept = default;
 
 void Simulation::step() { parts_->do_step(); }
-bool Simulation::finished() const { return parts_->step >= parts_->total_steps(); }
-double Simulation::time() const { return parts_->time; }
+bool Simulation::finished() const { return parts_->step >= parts_->grid.last(); }
+double Simulation::time() const { return parts_->grid.time(parts_->step); }
 std::int64_t Simulation::steps() const { return parts_->step; }
-std::int64_t Simulation::steps_total() const { return parts_->total_steps(); }
+std::int64_t Simulation::steps_total() const { return parts_->grid.last(); }
 const char* Simulation::space_name() const { return parts_->pair_finder->space_name(); }
 
 void Simulation::snapshot(Snapshot& out) const {
-  out.time = parts_->time;
+  out.time = time();
   out.step = parts_->step;
   copy_bodies(out.bodies, parts_->bodies);
 }
@@ -299,7 +298,7 @@ const Observation& Simulation::observe() {
   if (p.observed) return p.observation;
   const timing::Region region("observation");
   Observation& o = p.observation;
-  o.time = p.time;
+  o.time = time();
   o.step = p.step;
   o.ledger = p.ledger;
   o.bodies = p.bodies.count();

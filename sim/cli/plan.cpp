@@ -3,7 +3,7 @@
 #include "sim/model.hpp"
 #include "sim/record/metrics.hpp"
 #include "sim/record/outcome.hpp"
-#include "sim/record/time_grid.hpp"
+#include "sim/scene/time_grid.hpp"
 
 #include <fmt/format.h>
 

@@ -6,7 +6,7 @@
 #include "sim/record/checks.hpp"
 #include "sim/record/metrics.hpp"
 #include "sim/record/run_folder.hpp"
-#include "sim/record/time_grid.hpp"
+#include "sim/scene/time_grid.hpp"
 #include "sim/simulation.hpp"
 
 #include <cstdint>

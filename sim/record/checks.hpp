@@ -1,9 +1,9 @@
 // The scene's own acceptance test, evaluated as the run goes on.
 #pragma once
 
-#include "sim/record/time_grid.hpp"
 #include "sim/scene/measure.hpp"
 #include "sim/scene/scene.hpp"
+#include "sim/scene/time_grid.hpp"
 
 #include <cstdint>
 #include <functional>

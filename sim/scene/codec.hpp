@@ -66,7 +66,8 @@ Codec<T> word(std::vector<std::pair<std::string, T>> words, std::vector<std::str
 /// An item of a list, under its index in messages; an error in one does not hide those of the others.
 template <class T>
 void read_items(std::vector<T>& values, const Node& node, Reader& reader, const Codec<T>& item) {
-  values.assign(node.items.size(), T{});
+  values.clear();
+  values.resize(node.items.size());
   for (std::size_t i = 0; i < node.items.size(); ++i) {
     const Reader::Step step(reader, i);
     try {

@@ -138,6 +138,24 @@ bodies:
   }
 }
 
+TEST(Simulation, ABodyThatOutrunsItsBoxInsideAStepStillMeetsWhatItShould) {
+  // The first ball strikes the second, which was at rest when the step's pairs were found, and that the
+  // third.
+  Simulation simulation(scene_of(R"(
+time: {end: 0.05, step: 0.05, substeps: 50}
+materials: {a: {density: 1000, restitution: 1}}
+bodies:
+  - {sphere: {radius: 0.05}, at: [-0.6, 0, 0], velocity: [50, 0, 0], material: a}
+  - {sphere: {radius: 0.05}, material: a}
+  - {sphere: {radius: 0.05}, at: [0.6, 0, 0], material: a}
+)"),
+                        {SpaceChoice::host, 1});
+  simulation.step();
+  EXPECT_GT(simulation.observe().counters.pairs_made_anew, 0);
+  EXPECT_NEAR(simulation.body(2).velocity.x(), 50, 1e-12);
+  EXPECT_NEAR(simulation.body(2).position.x(), 0.6 + 50 * (0.05 - 0.02), 1e-12);
+}
+
 TEST(Simulation, TheLastStepEndsAtTheEnd) {
   Simulation simulation(scene_of(R"(
 time: {end: 1, step: 0.3}

@@ -1,4 +1,4 @@
-#include "sim/record/time_grid.hpp"
+#include "sim/scene/time_grid.hpp"
 
 #include <gtest/gtest.h>
 
@@ -11,6 +11,14 @@ namespace scree {
 namespace {
 
 TimeGrid grid_of(double end, double step) { return TimeGrid({.end = end, .step = step, .substeps = 1}); }
+
+TEST(TimeGrid, StepsHaveTheSceneLengthButForAShorterLast) {
+  const TimeGrid even({.end = 1, .step = 0.1});
+  for (std::int64_t step = 1; step <= even.last(); ++step) EXPECT_EQ(even.length(step), 0.1);
+  const TimeGrid uneven({.end = 1, .step = 0.3});
+  EXPECT_EQ(uneven.length(3), 0.3);
+  EXPECT_NEAR(uneven.length(4), 0.1, 1e-15);
+}
 
 TEST(TimeGrid, CountsWholeStepsInSpiteOfRounding) {
   EXPECT_EQ(grid_of(6, 0.002).last(), 3000);

@@ -15,6 +15,8 @@ class TimeGrid {
   std::int64_t last() const { return last_; }
   /// Time after a step (s); the last one ends at time.end exactly.
   double time(std::int64_t step) const;
+  /// Length of a step, counted from 1: time.step, but for a last step that is shorter.
+  double length(std::int64_t step) const;
   /// The step nearest to a time; of two as near, the earlier one. Times beyond the run give its first or last
   /// step.
   std::int64_t nearest(double time) const;

@@ -1,4 +1,4 @@
-#include "sim/record/time_grid.hpp"
+#include "sim/scene/time_grid.hpp"
 
 #include "core/tolerances.hpp"
 
@@ -22,6 +22,11 @@ TimeGrid::TimeGrid(const TimeSettings& time) : step_(time.step), end_(time.end),
 
 double TimeGrid::time(std::int64_t step) const {
   return step >= last_ ? end_ : static_cast<double>(step) * step_;
+}
+
+double TimeGrid::length(std::int64_t step) const {
+  const double rest = end_ - static_cast<double>(step - 1) * step_;
+  return rest < step_ * (1 - rounding * static_cast<double>(last_)) ? rest : step_;
 }
 
 std::int64_t TimeGrid::nearest(double t) const {
