@@ -4,9 +4,6 @@
 
 namespace scree::tolerance {
 
-/// Relative growth of a bound when it is rounded from double to float, beyond the rounding itself: none is
-/// needed, bounds are moved outward by one float where the conversion moved them inward.
-
 /// Gap under which a contact counts as closed (of smallest_size). Contacts rest inside this shell instead of
 /// flickering at 0: without it a box on four corners jitters. Larger: visible gaps; must stay under
 /// contact_slack.

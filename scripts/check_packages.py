@@ -3,8 +3,7 @@
 
     check_packages.py           docs/dependencies.md explains each package of the list, and no other
     check_packages.py BUILD     and every header that the build read and every library that its programs load comes
-                                from a package of the list or from one that such a package depends on; and each
-                                package with headers is used
+                                from a package of the list or from one that such a package depends on
 
 Prints one line per fault; exit status 1 if there is any.
 """
