@@ -18,6 +18,8 @@ enum class Shape : std::uint8_t {
   sphere,  ///< size.x() is the radius
   box,     ///< size holds the half extents
   plane,   ///< half space below the body's z axis through its position; always fixed
+  tube,    ///< inside of a cylinder along the body's z axis, with end caps; never free. size.x() and size.y()
+           ///< are its radius, size.z() is half its length
 };
 
 enum class Mobility : std::uint8_t {
@@ -112,15 +114,17 @@ void permute(BodyTable& bodies, const std::vector<std::int32_t>& order);
 /// 64-bit XXH3 over every field in the order of the list.
 std::uint64_t hash_of(const BodyTable& bodies);
 
-/// Radius of the smallest sphere around the centre that holds a sphere or box (m); infinite for a plane.
+/// Radius of the smallest sphere around the centre that holds the body (m); infinite for a plane.
 SCREE_HD inline double bounding_radius(Shape shape, const Vec3& size) {
   if (shape == Shape::plane) return HUGE_VAL;
+  if (shape == Shape::tube) return hypot(size.x(), size.z());
   return shape == Shape::sphere ? size.x() : size.norm();
 }
 
-/// The length to which a body's tolerances are relative: radius, or smallest half extent (m).
+/// The length to which a body's tolerances are relative: radius, or smallest half extent (m). Boundaries
+/// (planes and tubes) set none: the body that touches them does.
 SCREE_HD inline double smallest_size(Shape shape, const Vec3& size) {
-  if (shape == Shape::plane) return HUGE_VAL;
+  if (shape == Shape::plane || shape == Shape::tube) return HUGE_VAL;
   return shape == Shape::sphere ? size.x() : size.minCoeff();
 }
 

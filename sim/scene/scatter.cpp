@@ -99,6 +99,8 @@ double distance_to(const BodyTable& bodies, std::size_t b, const Vec3& point) {
       return (local.cwiseAbs() - bodies.size[b]).cwiseMax(0.0).norm();
     case Shape::plane:
       return local.z();
+    case Shape::tube:
+      return std::min(bodies.size[b].x() - local.head<2>().norm(), bodies.size[b].z() - std::abs(local.z()));
   }
   return 0;
 }
