@@ -56,6 +56,7 @@ class Builder {
     for (const Slot& slot : slots_) make_bodies(slot, scene);
     for (const Slot& slot : slots_)
       if (slot.entry->scatter) scatter_bodies(slot, scene);
+    find_motions(scene);
     find_checks(scene);
   }
 
@@ -168,7 +169,6 @@ class Builder {
       scene.bodies.material[static_cast<std::size_t>(id)] = slot.material;
       if (!make_body(entry, k, id, scene.seed, material.density, scene.bodies))
         reader_.fail(entry.node->mark, "its mass and inertia are beyond what numbers can hold");
-      if (entry.motion) scene.motions.push_back({id, entry.motion->velocity, entry.motion->spin});
       if (entry.name.empty()) continue;
       const bool many = entry.repeat || entry.scatter;
       scene.body_names.emplace(many ? fmt::format("{}[{}]", entry.name, k) : entry.name, id);
@@ -191,6 +191,20 @@ class Builder {
                     fmt::format("only {} of {} bodies fit without overlap; make the region larger or the "
                                 "bodies fewer or smaller",
                                 fitted, slot.count));
+  }
+
+  /// Once every body has its place: the centre of a body that turns about a point moves by that too.
+  void find_motions(Scene& scene) {
+    for (const Slot& slot : slots_) {
+      if (!slot.entry->motion) continue;
+      const MotionEntry& motion = *slot.entry->motion;
+      for (std::int64_t id = slot.first; id < slot.first + slot.count; ++id) {
+        const auto b = static_cast<std::size_t>(id);
+        scene.motions.push_back({static_cast<std::int32_t>(id), motion.velocity, motion.spin, motion.about});
+        if (motion.about)
+          scene.bodies.velocity[b] += motion.spin.cross(scene.bodies.position[b] - *motion.about);
+      }
+    }
   }
 
   void find_checks(Scene& scene) {

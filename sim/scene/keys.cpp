@@ -144,10 +144,12 @@ Codec<MotionEntry> motion_section() {
   return section<T>("bodies[].motion", "Prescribed motion: the body moves like this whatever hits it.",
                     {
                         key<T>("velocity", &T::velocity, vector("m/s"), optionally, "constant velocity"),
-                        key<T>("spin", &T::spin, vector("rad/s"), optionally,
-                               "constant angular velocity about the body's own centre"),
-                        future<T>("about", "a point to turn about"),
-                    });
+                        key<T>("spin", &T::spin, vector("rad/s"), optionally, "constant angular velocity"),
+                        key<T>("about", &T::about, optional(vector("m")), optionally,
+                               "the point to turn about, which moves along with `velocity`; the body's own "
+                               "centre if not given"),
+                    },
+                    check_motion);
 }
 
 Codec<RepeatEntry> repeat_section() {

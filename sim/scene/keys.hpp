@@ -46,6 +46,7 @@ struct RotationEntry {
 struct MotionEntry {
   Vec3 velocity = Vec3::Zero();
   Vec3 spin = Vec3::Zero();
+  std::optional<Vec3> about;
 };
 
 struct RepeatEntry {

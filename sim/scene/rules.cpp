@@ -55,6 +55,10 @@ void check_rotation(const RotationEntry& rotation, const Node& node, Reader& rea
   if (given({"degrees", "radians"}, node) == 0) reader.fail(node.mark, "needs degrees or radians");
 }
 
+void check_motion(const MotionEntry& motion, const Node& node, Reader& reader) {
+  if (motion.about && motion.spin.isZero(0)) reader.fail_at("about", node, "needs a spin that is not zero");
+}
+
 void check_scatter(const ScatterEntry& scatter, const Node& node, Reader& reader) {
   for (int k = 0; k < 3; ++k)
     if (scatter.from[k] > scatter.to[k])

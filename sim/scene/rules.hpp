@@ -8,6 +8,7 @@ namespace scree {
 void check_time(const TimeSettings& time, const Node& node, Reader& reader);
 void check_plane(const PlaneEntry& plane, const Node& node, Reader& reader);
 void check_rotation(const RotationEntry& rotation, const Node& node, Reader& reader);
+void check_motion(const MotionEntry& motion, const Node& node, Reader& reader);
 void check_scatter(const ScatterEntry& scatter, const Node& node, Reader& reader);
 void check_body(const BodyEntry& body, const Node& node, Reader& reader);
 void check_camera(const CameraSettings& camera, const Node& node, Reader& reader);

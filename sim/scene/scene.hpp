@@ -35,11 +35,12 @@ struct TimeSettings {
   int substeps = 1;  ///< contacts are found and solved this many times per step
 };
 
-/// Prescribed motion: constant velocity, and constant spin about `about` (the body's own position if absent).
+/// Prescribed motion: constant spin about a point that moves along with constant velocity.
 struct Motion {
   std::int32_t body = 0;
   Vec3 velocity = Vec3::Zero();  ///< m/s
   Vec3 spin = Vec3::Zero();      ///< rad/s
+  std::optional<Vec3> about;     ///< the point, at the start (m); absent: the body's centre
 };
 
 enum class ResponseMode { standard };  ///< `default` in the scene language

@@ -121,7 +121,7 @@ constexpr BadScene bad_scenes[] = {
     {"later_mode", 7, 18, "response.mode: accurate is part of the scene language but not in this version"},
     {"later_regions", 7, 1, "regions: is part of the scene language but not in this version"},
     {"later_method", 7, 22, "broadphase.method: lbvh is part of the scene language but not in this version"},
-    {"later_about", 6, 36, "bodies[0].motion.about: is part of the scene language but not in this version"},
+    {"about_without_spin", 6, 43, "bodies[0].motion.about: needs a spin that is not zero"},
 };
 // clang-format on
 
