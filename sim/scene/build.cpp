@@ -5,6 +5,7 @@
 #include "sim/scene/body.hpp"
 #include "sim/scene/measure.hpp"
 #include "sim/scene/scatter.hpp"
+#include "sim/scene/time_grid.hpp"
 
 #include <fmt/format.h>
 
@@ -57,6 +58,7 @@ class Builder {
     for (const Slot& slot : slots_)
       if (slot.entry->scatter) scatter_bodies(slot, scene);
     find_motions(scene);
+    find_forces(scene);
     find_checks(scene);
   }
 
@@ -205,6 +207,45 @@ class Builder {
           scene.bodies.velocity[b] += motion.spin.cross(scene.bodies.position[b] - *motion.about);
       }
     }
+  }
+
+  void find_forces(Scene& scene) {
+    const Reader::Step step(reader_, "forces");
+    for (std::size_t i = 0; i < entry_.forces.size(); ++i) {
+      const Reader::Step item(reader_, i);
+      const ForceEntry& force = entry_.forces[i];
+      const BodyRange on = bodies_called(force.on, *force.node, scene);
+      if (scene.bodies.mobility[static_cast<std::size_t>(on.first)] != Mobility::free)
+        reader_.fail_at("on", *force.node,
+                        fmt::format("{} is not free; forces move free bodies alone", force.on));
+      scene.forces.push_back({on, force.force, force.torque, span_of(force.from, force.until, *force.node)});
+    }
+  }
+
+  /// One body by its name, or all of an entry by the entry's.
+  BodyRange bodies_called(const std::string& name, const Node& node, const Scene& scene) {
+    const auto body = scene.body_names.find(name);
+    if (body != scene.body_names.end()) return {body->second, 1};
+    std::vector<std::string_view> known;
+    for (const Slot& slot : slots_) {
+      if (slot.entry->name == name)
+        return {static_cast<std::int32_t>(slot.first), static_cast<std::int32_t>(slot.count)};
+      known.push_back(slot.entry->name);
+    }
+    reader_.fail_at("on", node, fmt::format("there is no body called {}{}", name, suggestion(name, known)));
+  }
+
+  /// `node` holds the keys from and until.
+  TimeSpan span_of(double from, const std::optional<double>& until, const Node& node) {
+    const TimeSpan span{from, until.value_or(HUGE_VAL)};
+    const double end = entry_.time.end;
+    if (from >= end)
+      reader_.fail_at("from", node, fmt::format("must be before the end, {} s, not {} s", end, from));
+    const TimeGrid::Steps steps = TimeGrid(entry_.time).steps_in(span);
+    if (steps.first >= steps.end)
+      reader_.fail_at("until", node,
+                      fmt::format("must be at least a step after from, {} s, not {} s", from, span.until));
+    return span;
   }
 
   void find_checks(Scene& scene) {

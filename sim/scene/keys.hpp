@@ -82,6 +82,15 @@ struct BodyEntry {
   const Node* node = nullptr;
 };
 
+struct ForceEntry {
+  std::string on;
+  Vec3 force = Vec3::Zero();
+  Vec3 torque = Vec3::Zero();
+  double from = 0;
+  std::optional<double> until;
+  const Node* node = nullptr;
+};
+
 struct CheckEntry : Check {
   const Node* node = nullptr;
 };
@@ -103,6 +112,7 @@ struct SceneEntry {
   std::vector<MaterialEntry> materials;
   std::vector<ContactEntry> contacts;
   std::vector<BodyEntry> bodies;
+  std::vector<ForceEntry> forces;
   ResponseSettings response;
   BroadPhaseSettings broadphase;
   NarrowPhaseSettings narrowphase;

@@ -87,6 +87,10 @@ void check_body(const BodyEntry& body, const Node& node, Reader& reader) {
   }
 }
 
+void check_force(const ForceEntry&, const Node& node, Reader& reader) {
+  if (given({"force", "torque"}, node) == 0) reader.fail(node.mark, "needs force or torque");
+}
+
 void check_camera(const CameraSettings& camera, const Node& node, Reader& reader) {
   if (camera.from == camera.to) reader.fail(node.mark, "`from` and `to` must not be the same point");
 }

@@ -7,6 +7,7 @@
 #include "narrowphase/settings.hpp"
 
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <filesystem>
 #include <map>
@@ -41,6 +42,27 @@ struct Motion {
   Vec3 velocity = Vec3::Zero();  ///< m/s
   Vec3 spin = Vec3::Zero();      ///< rad/s
   std::optional<Vec3> about;     ///< the point, at the start (m); absent: the body's centre
+};
+
+/// Bodies first, first + 1, ...: those of one item of `bodies`, or one of them.
+struct BodyRange {
+  std::int32_t first = 0;
+  std::int32_t count = 1;
+};
+
+/// from <= t < until (s), both taken at the step nearest to them; see TimeGrid::steps_in().
+struct TimeSpan {
+  double from = 0;
+  double until = HUGE_VAL;
+};
+
+/// A constant force on the centre of each of the bodies, and a torque on each, in the world frame. The bodies
+/// are free ones.
+struct AppliedForce {
+  BodyRange on;
+  Vec3 force = Vec3::Zero();   ///< N
+  Vec3 torque = Vec3::Zero();  ///< N m
+  TimeSpan during;
 };
 
 enum class ResponseMode { standard };  ///< `default` in the scene language
@@ -116,6 +138,7 @@ struct Scene {
   BodyTable bodies;                                ///< at t = 0; id[k] = k
   std::map<std::string, std::int32_t> body_names;  ///< named bodies, name[k] of a repeat included
   std::vector<Motion> motions;                     ///< of the prescribed bodies, by ascending body
+  std::vector<AppliedForce> forces;                ///< besides gravity
   ResponseSettings response;
   BroadPhaseSettings broadphase;
   NarrowPhaseSettings narrowphase;

@@ -121,6 +121,12 @@ constexpr BadScene bad_scenes[] = {
     {"later_mode", 7, 18, "response.mode: accurate is part of the scene language but not in this version"},
     {"later_regions", 7, 1, "regions: is part of the scene language but not in this version"},
     {"later_method", 7, 22, "broadphase.method: lbvh is part of the scene language but not in this version"},
+    {"force_unknown_body", 9, 10, "forces[0].on: there is no body called bal (did you mean ball?)"},
+    {"force_on_fixed", 9, 10, "forces[0].on: wall is not free; forces move free bodies alone"},
+    {"force_nothing", 9, 5, "forces[0]: needs force or torque"},
+    {"force_beyond_end", 9, 40, "forces[0].from: must be before the end, 1 s, not 2 s"},
+    {"force_reversed", 9, 52, "forces[0].until: must be at least a step after from, 0.5 s, not 0.2 s"},
+    {"force_scalar", 9, 23, "forces[0].force: must be a list of 3 numbers (N), not 3"},
     {"about_without_spin", 6, 43, "bodies[0].motion.about: needs a spin that is not zero"},
 };
 // clang-format on
