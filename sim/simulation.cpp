@@ -9,6 +9,7 @@
 #include "sim/dynamics/impact.hpp"
 #include "sim/dynamics/motion.hpp"
 #include "sim/dynamics/prescribed.hpp"
+#include "sim/dynamics/region.hpp"
 #include "sim/dynamics/response.hpp"
 #include "sim/measurement.hpp"
 #include "sim/model.hpp"
@@ -121,6 +122,8 @@ struct Simulation::Parts {
   Ledger ledger;
   Counters counters;
   EnergyBaseline baseline;
+  std::vector<RegionContents> contents;         // of each region
+  std::vector<RegionContents> contents_before;  // and one step earlier
   Observation observation;
   bool observed = false;
 
@@ -145,6 +148,13 @@ struct Simulation::Parts {
     start.save(bodies);
     contact_impulse.assign(scene.bodies.position.size(), Vec3::Zero());
     baseline.start(totals_of(bodies, parameters.gravity, origin), lifting_energy(scene));
+    contents = contents_before = region_contents();
+  }
+
+  std::vector<RegionContents> region_contents() const {
+    std::vector<RegionContents> all;
+    for (const Region& region : scene.regions) all.push_back(contents_of(region, bodies));
+    return all;
   }
 
   void find_pairs(double reach) {
@@ -245,6 +255,7 @@ struct Simulation::Parts {
       throw RunError(fmt::format("step {} (t = {} s): {}", step + 1, grid.time(step), error.what()));
     }
     ++step;
+    contents_before = std::exchange(contents, region_contents());
     last_step = dt;
     observed = false;
   }
@@ -317,6 +328,7 @@ const Observation& Simulation::observe() {
   const Totals totals = totals_of(p.bodies, p.parameters.gravity, p.origin);
   measure_totals(totals, p.baseline, p.parameters.gravity, p.origin, o);
   o.speed_max = largest_speed(p.bodies);
+  measure_regions(p.scene.regions, p.contents, p.contents_before, p.last_step, o.regions);
   measure_contacts(p.contacts, totals.count, o);
   if (p.pairs.data() == nullptr) p.find_pairs(0);
   o.pairs = p.pairs.size();

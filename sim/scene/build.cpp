@@ -254,7 +254,7 @@ class Builder {
       const Reader::Step item(reader_, i);
       const CheckEntry& check = entry_.checks[i];
       try {
-        parse_measure(check.measure, scene.body_names);
+        parse_measure(check.measure, scene);
       } catch (const InputError& error) {
         reader_.fail_at("measure", *check.node, error.what());
       }
@@ -303,6 +303,7 @@ Scene build_scene(SceneEntry entry, const std::filesystem::path& source, Reader&
   scene.seed = entry.seed;
   scene.gravity = entry.gravity;
   scene.time = entry.time;
+  scene.regions = entry.regions;
   scene.response = entry.response;
   scene.broadphase = entry.broadphase;
   scene.narrowphase = entry.narrowphase;

@@ -238,6 +238,18 @@ Codec<ForceEntry> force_section() {
       check_force);
 }
 
+Codec<Region> region_section() {
+  using T = Region;
+  return section<T>(
+      "regions.<name>",
+      "A box to measure in, its faces along the world's axes. The names are yours; see Measures.",
+      {
+          key<T>("from", &T::from, vector("m"), required, "lower corner"),
+          key<T>("to", &T::to, vector("m"), required, "upper corner"),
+      },
+      check_region);
+}
+
 Codec<ResponseSettings> response_section() {
   using T = ResponseSettings;
   return section<T>(
@@ -438,6 +450,8 @@ const Codec<SceneEntry>& scene_codec() {
                  "laws of pairs of materials"),
           key<T>("bodies", &T::bodies, list_of(body_section(), 1), required, "the bodies"),
           key<T>("forces", &T::forces, list_of(force_section()), optionally, "forces besides gravity"),
+          key<T>("regions", &T::regions, named(region_section()), optionally,
+                 "a map of names to boxes to measure in"),
           key<T>("response", &T::response, response_section(), optionally, "how contacts answer"),
           key<T>("broadphase", &T::broadphase, broadphase_section(), optionally, "how pairs are found"),
           key<T>("narrowphase", &T::narrowphase, narrowphase_section(), optionally, "how contacts are found"),
@@ -448,7 +462,6 @@ const Codec<SceneEntry>& scene_codec() {
           key<T>("render", &T::render, render_section(), optionally, "the pictures"),
           key<T>("record", &T::record, record_section(), optionally, "what is written besides"),
           key<T>("checks", &T::checks, list_of(check_section()), optionally, "the scene's own test"),
-          future<T>("regions", "named boxes to measure in"),
           future<T>("crosscheck", "the run again by other means, compared"),
       });
   return codec;

@@ -113,6 +113,7 @@ struct SceneEntry {
   std::vector<ContactEntry> contacts;
   std::vector<BodyEntry> bodies;
   std::vector<ForceEntry> forces;
+  std::vector<Region> regions;
   ResponseSettings response;
   BroadPhaseSettings broadphase;
   NarrowPhaseSettings narrowphase;

@@ -91,6 +91,14 @@ void check_force(const ForceEntry&, const Node& node, Reader& reader) {
   if (given({"force", "torque"}, node) == 0) reader.fail(node.mark, "needs force or torque");
 }
 
+void check_region(const Region& region, const Node& node, Reader& reader) {
+  for (int k = 0; k < 3; ++k)
+    if (!(region.from[k] < region.to[k]))
+      reader.fail_at("to", node,
+                     fmt::format("must be greater than `from` in each component, but {} <= {}", region.to[k],
+                                 region.from[k]));
+}
+
 void check_camera(const CameraSettings& camera, const Node& node, Reader& reader) {
   if (camera.from == camera.to) reader.fail(node.mark, "`from` and `to` must not be the same point");
 }

@@ -65,6 +65,13 @@ struct AppliedForce {
   TimeSpan during;
 };
 
+/// A named box to measure in, its faces along the world's axes; closed.
+struct Region {
+  std::string name;
+  Vec3 from = Vec3::Zero();  ///< m
+  Vec3 to = Vec3::Zero();    ///< m; greater in each component
+};
+
 enum class ResponseMode { standard };  ///< `default` in the scene language
 
 struct ResponseSettings {
@@ -138,7 +145,8 @@ struct Scene {
   BodyTable bodies;                                ///< at t = 0; id[k] = k
   std::map<std::string, std::int32_t> body_names;  ///< named bodies, name[k] of a repeat included
   std::vector<Motion> motions;                     ///< of the prescribed bodies, by ascending body
-  std::vector<AppliedForce> forces;                ///< besides gravity
+  std::vector<Region> regions;
+  std::vector<AppliedForce> forces;  ///< besides gravity
   ResponseSettings response;
   BroadPhaseSettings broadphase;
   NarrowPhaseSettings narrowphase;
