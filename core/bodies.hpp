@@ -26,6 +26,7 @@ enum class Mobility : std::uint8_t {
   free,        ///< moved by forces and contacts
   fixed,       ///< never moves
   prescribed,  ///< moves as its `motion` says, whatever hits it
+  absent,      ///< not there (yet, or any more): touches nothing, counts nowhere
 };
 
 template <class T>
@@ -126,6 +127,11 @@ SCREE_HD inline double bounding_radius(Shape shape, const Vec3& size) {
 SCREE_HD inline double smallest_size(Shape shape, const Vec3& size) {
   if (shape == Shape::plane || shape == Shape::tube) return HUGE_VAL;
   return shape == Shape::sphere ? size.x() : size.minCoeff();
+}
+
+/// Of a sphere or box (m^3).
+SCREE_HD inline double volume_of(Shape shape, const Vec3& size) {
+  return shape == Shape::sphere ? 4.0 / 3.0 * pi * size.x() * size.x() * size.x() : 8.0 * size.prod();
 }
 
 /// True where all principal moments are equal (spheres, cubes): the spin is then constant in free flight

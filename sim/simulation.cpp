@@ -8,10 +8,13 @@
 #include "sim/dynamics/correction.hpp"
 #include "sim/dynamics/impact.hpp"
 #include "sim/dynamics/motion.hpp"
+#include "sim/dynamics/prescribed.hpp"
+#include "sim/dynamics/region.hpp"
 #include "sim/dynamics/response.hpp"
 #include "sim/measurement.hpp"
 #include "sim/model.hpp"
 #include "sim/pair_finder.hpp"
+#include "sim/presence.hpp"
 #include "sim/scene/time_grid.hpp"
 
 #include <fmt/format.h>
@@ -55,7 +58,7 @@ Vec3 middle_of(const BodyTable& bodies) {
   return count > 0 ? Vec3(sum / count) : sum;
 }
 
-/// Energy that lifts every free body by its own size (J).
+/// Energy that lifts every free body of the scene by its own size (J).
 double lifting_energy(const Scene& scene) {
   double energy = 0;
   const BodyTable& bodies = scene.bodies;
@@ -90,10 +93,12 @@ struct MovingState {
 struct Simulation::Parts {
   Scene scene;
   TimeGrid grid;
+  Presence presence;
   tbb::global_control threads;
   ResponseParameters parameters;
   Vec3 origin;
   Bodies<Host> bodies;
+  Array<PrescribedPath, Host> paths;
   Array<PairLaw, Host> laws;
   std::unique_ptr<PairFinder> pair_finder;
   NarrowPhase narrow_phase;
@@ -117,14 +122,18 @@ struct Simulation::Parts {
   ContactSet contacts;
   ImpulseMemory memory;
   Ledger ledger;
+  Exchange exchange;
   Counters counters;
   EnergyBaseline baseline;
+  std::vector<RegionContents> contents;         // of each region
+  std::vector<RegionContents> contents_before;  // and one step earlier
   Observation observation;
   bool observed = false;
 
   Parts(const Scene& s, const SimulationOptions& options)
       : scene(s),
         grid(s.time),
+        presence(s, grid),
         threads(tbb::global_control::max_allowed_parallelism,
                 options.threads > 0
                     ? static_cast<std::size_t>(options.threads)
@@ -134,7 +143,10 @@ struct Simulation::Parts {
         narrow_phase(s.narrowphase),
         end_narrow_phase(s.narrowphase) {
     copy_bodies(bodies, scene.bodies);
+    presence.begin(bodies);
     copy(laws, table_of(scene));
+    copy(paths, prescribed_paths(scene));
+    for (PrescribedPath& path : paths.view()) path.start = grid.time(presence.first_step(path.body));
     const bool on_device = options.space == SpaceChoice::cuda ||
                            (options.space == SpaceChoice::automatic && device_info().available);
     pair_finder = make_pair_finder(scene.broadphase, on_device, origin);
@@ -142,6 +154,13 @@ struct Simulation::Parts {
     start.save(bodies);
     contact_impulse.assign(scene.bodies.position.size(), Vec3::Zero());
     baseline.start(totals_of(bodies, parameters.gravity, origin), lifting_energy(scene));
+    contents = contents_before = region_contents();
+  }
+
+  std::vector<RegionContents> region_contents() const {
+    std::vector<RegionContents> all;
+    for (const Region& region : scene.regions) all.push_back(contents_of(region, bodies));
+    return all;
   }
 
   void find_pairs(double reach) {
@@ -184,9 +203,11 @@ struct Simulation::Parts {
   }
 
   /// Moreau's midpoint step: free flight to the midpoint, contacts there, impulses, free flight to the end.
-  void substep(double h, double remaining) {
-    ledger.integration += timed_advance(0.5 * h);
-    const ConstView<Manifold> manifolds = find_contacts(h, remaining);
+  /// `done`: how much of the step went before (s).
+  void substep(double h, double done) {
+    const double start_time = grid.time(step) + done;
+    timed_fly(start_time + 0.5 * h, 0.5 * h);
+    const ConstView<Manifold> manifolds = find_contacts(h, grid.length(step + 1) - done);
     const timing::Region region("response");
     const BodyView views = view_of(bodies);
     load_solver_bodies(bodies, solver);
@@ -198,16 +219,22 @@ struct Simulation::Parts {
     prepare_contacts(manifolds, contact_laws, memory, scale, parameters, contacts);
     ledger = ledger + impacts.resolve({manifolds, h, views}, parameters, solver, contacts, counters);
     ledger = ledger + response.solve(manifolds, h, parameters, views, solver, contacts, counters);
-    ledger.integration += advance(bodies, 0.5 * h, parameters);
+    fly(start_time + h, 0.5 * h);
     ledger = ledger + corrector.correct(h, parameters, views, solver, contacts);
     memory.remember(manifolds, contacts, bodies.count());
     add_impulses_on_driven_bodies();
     last_substep = h;
   }
 
-  double timed_advance(double dt) {
+  /// Moves every body to the time given, dt later than it is.
+  void fly(double time, double dt) {
+    ledger.integration += advance(bodies, dt, parameters);
+    place_prescribed(paths, time, bodies);
+  }
+
+  void timed_fly(double time, double dt) {
     const timing::Region region("integration");
-    return advance(bodies, dt, parameters);
+    fly(time, dt);
   }
 
   void add_impulses_on_driven_bodies() {
@@ -225,7 +252,7 @@ struct Simulation::Parts {
     std::fill(contact_impulse.begin(), contact_impulse.end(), Vec3(Vec3::Zero()));
     try {
       find_pairs(dt + h);
-      for (int s = 0; s < scene.time.substeps; ++s) substep(h, dt - s * h);
+      for (int s = 0; s < scene.time.substeps; ++s) substep(h, s * h);
       baseline.extend(totals_of(bodies, parameters.gravity, origin));
       if (!baseline.is_finite()) throw RunError(non_finite_body());
     } catch (const RunError& error) {
@@ -234,8 +261,22 @@ struct Simulation::Parts {
       throw RunError(fmt::format("step {} (t = {} s): {}", step + 1, grid.time(step), error.what()));
     }
     ++step;
+    come_and_go();
+    contents_before = std::exchange(contents, region_contents());
     last_step = dt;
     observed = false;
+  }
+
+  /// Bodies whose time has come or is over.
+  void come_and_go() {
+    const Presence::Change change = presence.update(step, scene, origin, bodies);
+    if (!change.any) return;
+    exchange.energy += change.exchange.energy;
+    exchange.momentum += change.exchange.momentum;
+    exchange.angular_momentum += change.exchange.angular_momentum;
+    baseline.exchange(change.first_potential);
+    baseline.extend(totals_of(bodies, parameters.gravity, origin));
+    pairs = {};  // those of the bodies that went are no more
   }
 
   std::string non_finite_body() const {
@@ -277,6 +318,7 @@ BodyState Simulation::body(std::int32_t id) const {
   const Parts& p = *parts_;
   const auto k = static_cast<std::size_t>(id);
   const ConstBodyView views = view_of(std::as_const(p.bodies));
+  if (views.mobility[id] == Mobility::absent) return BodyState::absent();
   BodyState state{.position = views.position[id],
                   .velocity = views.velocity[id],
                   .spin = views.spin[id],
@@ -284,7 +326,7 @@ BodyState Simulation::body(std::int32_t id) const {
                   .start_orientation = p.first_orientation[k],
                   .acceleration = Vec3::Zero(),
                   .force = Vec3::Zero()};
-  if (p.last_step == 0) return state;
+  if (p.step == 0 || !p.presence.holds(id, p.step - 1)) return state;
   state.acceleration = (state.velocity - p.start.velocity[k]) / p.last_step;
   // On a free body the contact impulse is what gravity does not explain of the change of its momentum.
   state.force = views.mobility[id] == Mobility::free
@@ -301,11 +343,13 @@ const Observation& Simulation::observe() {
   o.time = time();
   o.step = p.step;
   o.ledger = p.ledger;
-  o.bodies = p.bodies.count();
+  o.exchange = p.exchange;
+  o.bodies = p.presence.count();
   o.counters = p.counters;
   const Totals totals = totals_of(p.bodies, p.parameters.gravity, p.origin);
   measure_totals(totals, p.baseline, p.parameters.gravity, p.origin, o);
   o.speed_max = largest_speed(p.bodies);
+  measure_regions(p.scene.regions, p.contents, p.contents_before, p.last_step, o.regions);
   measure_contacts(p.contacts, totals.count, o);
   if (p.pairs.data() == nullptr) p.find_pairs(0);
   o.pairs = p.pairs.size();

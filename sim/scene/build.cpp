@@ -5,6 +5,7 @@
 #include "sim/scene/body.hpp"
 #include "sim/scene/measure.hpp"
 #include "sim/scene/scatter.hpp"
+#include "sim/scene/time_grid.hpp"
 
 #include <fmt/format.h>
 
@@ -24,6 +25,7 @@ struct Slot {
   std::int64_t first;
   std::int64_t count;
   std::int32_t material;
+  TimeGrid::Steps steps;  ///< in whose states the bodies are there
 };
 
 /// A product of counts may exceed every integer, but not the doubles.
@@ -47,7 +49,7 @@ double machine_memory() {
 
 class Builder {
  public:
-  Builder(SceneEntry& entry, Reader& reader) : entry_(entry), reader_(reader) {}
+  Builder(SceneEntry& entry, Reader& reader) : entry_(entry), reader_(reader), grid_(entry.time) {}
 
   void build(Scene& scene) {
     find_materials(scene);
@@ -56,6 +58,9 @@ class Builder {
     for (const Slot& slot : slots_) make_bodies(slot, scene);
     for (const Slot& slot : slots_)
       if (slot.entry->scatter) scatter_bodies(slot, scene);
+    find_lifetimes(scene);
+    find_motions(scene);
+    find_forces(scene);
     find_checks(scene);
   }
 
@@ -135,7 +140,8 @@ class Builder {
                         bytes, machine_memory()));
       claim_name(body, names);
       slots_.push_back({&body, i, static_cast<std::int64_t>(total - count), static_cast<std::int64_t>(count),
-                        find_material(body)});
+                        find_material(body),
+                        grid_.steps_in(span_of(body.from.value_or(0), body.until, *body.node))});
     }
     for_each_field([&](const char*, auto& field) { field.resize(static_cast<std::size_t>(total)); },
                    scene.bodies);
@@ -168,18 +174,23 @@ class Builder {
       scene.bodies.material[static_cast<std::size_t>(id)] = slot.material;
       if (!make_body(entry, k, id, scene.seed, material.density, scene.bodies))
         reader_.fail(entry.node->mark, "its mass and inertia are beyond what numbers can hold");
-      if (entry.motion) scene.motions.push_back({id, entry.motion->velocity, entry.motion->spin});
       if (entry.name.empty()) continue;
       const bool many = entry.repeat || entry.scatter;
       scene.body_names.emplace(many ? fmt::format("{}[{}]", entry.name, k) : entry.name, id);
     }
   }
 
+  /// Whether the bodies of `other` are where the scene puts them when those of `slot` appear.
+  static bool is_in_place(const Slot& other, const Slot& slot, const Scene& scene) {
+    const bool fixed = scene.bodies.mobility[static_cast<std::size_t>(other.first)] == Mobility::fixed;
+    return fixed ? other.steps.holds(slot.steps.first) : other.steps.first == slot.steps.first;
+  }
+
   /// Obstacles are the bodies with a place: those of no scatter, and of scatters before this one.
   void scatter_bodies(const Slot& slot, Scene& scene) {
     std::vector<std::int32_t> obstacles;
     for (const Slot& other : slots_)
-      if (!other.entry->scatter || other.first < slot.first)
+      if (is_in_place(other, slot, scene) && (!other.entry->scatter || other.first < slot.first))
         for (std::int64_t k = 0; k < other.count; ++k)
           obstacles.push_back(static_cast<std::int32_t>(other.first + k));
     const std::int64_t fitted =
@@ -193,13 +204,75 @@ class Builder {
                                 fitted, slot.count));
   }
 
+  void find_lifetimes(Scene& scene) {
+    for (const Slot& slot : slots_)
+      if (slot.entry->from || slot.entry->until)
+        scene.lifetimes.push_back(
+            {{static_cast<std::int32_t>(slot.first), static_cast<std::int32_t>(slot.count)},
+             {slot.entry->from.value_or(0), slot.entry->until.value_or(HUGE_VAL)}});
+  }
+
+  /// Once every body has its place: the centre of a body that turns about a point moves by that too.
+  void find_motions(Scene& scene) {
+    for (const Slot& slot : slots_) {
+      if (!slot.entry->motion) continue;
+      const MotionEntry& motion = *slot.entry->motion;
+      for (std::int64_t id = slot.first; id < slot.first + slot.count; ++id) {
+        const auto b = static_cast<std::size_t>(id);
+        scene.motions.push_back({static_cast<std::int32_t>(id), motion.velocity, motion.spin, motion.about});
+        if (motion.about)
+          scene.bodies.velocity[b] += motion.spin.cross(scene.bodies.position[b] - *motion.about);
+      }
+    }
+  }
+
+  void find_forces(Scene& scene) {
+    const Reader::Step step(reader_, "forces");
+    for (std::size_t i = 0; i < entry_.forces.size(); ++i) {
+      const Reader::Step item(reader_, i);
+      const ForceEntry& force = entry_.forces[i];
+      const BodyRange on = bodies_called(force.on, *force.node, scene);
+      if (scene.bodies.mobility[static_cast<std::size_t>(on.first)] != Mobility::free)
+        reader_.fail_at("on", *force.node,
+                        fmt::format("{} is not free; forces move free bodies alone", force.on));
+      scene.forces.push_back({on, force.force, force.torque, span_of(force.from, force.until, *force.node)});
+    }
+  }
+
+  /// One body by its name, or all of an entry by the entry's.
+  BodyRange bodies_called(const std::string& name, const Node& node, const Scene& scene) {
+    const auto body = scene.body_names.find(name);
+    if (body != scene.body_names.end()) return {body->second, 1};
+    std::vector<std::string_view> known;
+    for (const Slot& slot : slots_) {
+      if (slot.entry->name == name)
+        return {static_cast<std::int32_t>(slot.first), static_cast<std::int32_t>(slot.count)};
+      known.push_back(slot.entry->name);
+    }
+    reader_.fail_at("on", node, fmt::format("there is no body called {}{}", name, suggestion(name, known)));
+  }
+
+  /// `node` holds the keys from and until.
+  TimeSpan span_of(double from, const std::optional<double>& until, const Node& node) {
+    const TimeSpan span{from, until.value_or(HUGE_VAL)};
+    const double end = entry_.time.end;
+    if (from >= end)
+      reader_.fail_at("from", node, fmt::format("must be before the end, {} s, not {} s", end, from));
+    const TimeGrid::Steps steps = grid_.steps_in(span);
+    if (steps.first >= steps.end)
+      reader_.fail_at("until", node,
+                      fmt::format("must be at least a step after from, {} s, not {} s", from, span.until));
+    return span;
+  }
+
   void find_checks(Scene& scene) {
     const Reader::Step step(reader_, "checks");
     for (std::size_t i = 0; i < entry_.checks.size(); ++i) {
       const Reader::Step item(reader_, i);
       const CheckEntry& check = entry_.checks[i];
+      Measure measure;
       try {
-        parse_measure(check.measure, scene.body_names);
+        measure = parse_measure(check.measure, scene);
       } catch (const InputError& error) {
         reader_.fail_at("measure", *check.node, error.what());
       }
@@ -211,12 +284,32 @@ class Builder {
         reader_.fail_at(
             "over", *check.node,
             fmt::format("must end at the end, {} s, or before, not at {} s", end, (*check.over)[1]));
+      if (measure.body >= 0) require_presence(measure.body, check);
       scene.checks.push_back(check);
     }
   }
 
+  /// Of the body that a check is about, at all times that it asks for.
+  void require_presence(std::int32_t body, const CheckEntry& check) {
+    const auto after =
+        std::find_if(slots_.begin(), slots_.end(), [&](const Slot& s) { return s.first > body; });
+    const Slot& slot = *std::prev(after);
+    const double end = entry_.time.end;
+    const auto first = check.over ? grid_.first_in((*check.over)[0]) : grid_.nearest(check.at.value_or(end));
+    const auto last = check.over ? grid_.last_in((*check.over)[1]) : first;
+    for (const std::int64_t step : {first, last})
+      if (!slot.steps.holds(step))
+        reader_.fail_at(
+            check.over ? "over"
+            : check.at ? "at"
+                       : "measure",
+            *check.node,
+            fmt::format("the body is not there at {:.9g} s; see its from and until", grid_.time(step)));
+  }
+
   SceneEntry& entry_;
   Reader& reader_;
+  TimeGrid grid_;
   std::vector<Slot> slots_;
   std::unordered_map<std::string_view, std::int32_t> material_of_;
 };
@@ -248,6 +341,7 @@ Scene build_scene(SceneEntry entry, const std::filesystem::path& source, Reader&
   scene.seed = entry.seed;
   scene.gravity = entry.gravity;
   scene.time = entry.time;
+  scene.regions = entry.regions;
   scene.response = entry.response;
   scene.broadphase = entry.broadphase;
   scene.narrowphase = entry.narrowphase;

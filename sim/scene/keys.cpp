@@ -144,10 +144,12 @@ Codec<MotionEntry> motion_section() {
   return section<T>("bodies[].motion", "Prescribed motion: the body moves like this whatever hits it.",
                     {
                         key<T>("velocity", &T::velocity, vector("m/s"), optionally, "constant velocity"),
-                        key<T>("spin", &T::spin, vector("rad/s"), optionally,
-                               "constant angular velocity about the body's own centre"),
-                        future<T>("about", "a point to turn about"),
-                    });
+                        key<T>("spin", &T::spin, vector("rad/s"), optionally, "constant angular velocity"),
+                        key<T>("about", &T::about, optional(vector("m")), optionally,
+                               "the point to turn about, which moves along with `velocity`; the body's own "
+                               "centre if not given"),
+                    },
+                    check_motion);
 }
 
 Codec<RepeatEntry> repeat_section() {
@@ -167,16 +169,18 @@ Codec<RepeatEntry> repeat_section() {
 
 Codec<ScatterEntry> scatter_section() {
   using T = ScatterEntry;
-  return section<T>("bodies[].scatter",
-                    "The body again and again at random places, in random orientations unless one is given. "
-                    "Centres lie between the two corners, and no body overlaps another one of the scene. "
-                    "Bodies are called `name[0]`, `name[1]`, ...",
-                    {
-                        key<T>("count", &T::count, large_integer(at_least(1)), required, "how many"),
-                        key<T>("from", &T::from, vector("m"), required, "lower corner"),
-                        key<T>("to", &T::to, vector("m"), required, "upper corner"),
-                    },
-                    check_scatter);
+  return section<T>(
+      "bodies[].scatter",
+      "The body again and again at random places, in random orientations unless one is given. "
+      "Centres lie between the two corners, and no body overlaps another one that appears at the "
+      "same time, or a fixed one. "
+      "Bodies are called `name[0]`, `name[1]`, ...",
+      {
+          key<T>("count", &T::count, large_integer(at_least(1)), required, "how many"),
+          key<T>("from", &T::from, vector("m"), required, "lower corner"),
+          key<T>("to", &T::to, vector("m"), required, "upper corner"),
+      },
+      check_scatter);
 }
 
 Codec<BodyEntry> body_section() {
@@ -211,10 +215,46 @@ Codec<BodyEntry> body_section() {
                  "the body moves as prescribed"),
           key<T>("repeat", &T::repeat, optional(repeat_section()), optionally, "many on a lattice"),
           key<T>("scatter", &T::scatter, optional(scatter_section()), optionally, "many at random places"),
-          future<T>("from", "when the body appears"),
-          future<T>("until", "when the body is gone"),
+          with_default(
+              key<T>("from", &T::from, optional(number(not_negative, "s")), optionally,
+                     "when the body appears, in the state given here; its motion starts then. Taken at "
+                     "the nearest step, as is `until`"),
+              "0"),
+          key<T>("until", &T::until, optional(number(above_zero, "s")), optionally,
+                 "when the body is gone; never if not given"),
       },
       check_body);
+}
+
+Codec<ForceEntry> force_section() {
+  using T = ForceEntry;
+  return section<T>(
+      "forces[]",
+      "A constant force on the centre of a body, a torque, or both, in the world frame. They act for "
+      "from <= t < until, both taken at the nearest step.",
+      {
+          key<T>(
+              "on", &T::on, text(), required,
+              "name of a free body; of a repeat or scatter, `name[3]` is one of its bodies and `name` each"),
+          key<T>("force", &T::force, vector("N"), optionally, "on the centre"),
+          key<T>("torque", &T::torque, vector("N m"), optionally, "about the centre"),
+          key<T>("from", &T::from, number(not_negative, "s"), optionally, "when it starts to act"),
+          key<T>("until", &T::until, optional(number(above_zero, "s")), optionally,
+                 "when it ends; at the end of the run if not given"),
+      },
+      check_force);
+}
+
+Codec<Region> region_section() {
+  using T = Region;
+  return section<T>(
+      "regions.<name>",
+      "A box to measure in, its faces along the world's axes. The names are yours; see Measures.",
+      {
+          key<T>("from", &T::from, vector("m"), required, "lower corner"),
+          key<T>("to", &T::to, vector("m"), required, "upper corner"),
+      },
+      check_region);
 }
 
 Codec<ResponseSettings> response_section() {
@@ -416,6 +456,9 @@ const Codec<SceneEntry>& scene_codec() {
           key<T>("contacts", &T::contacts, list_of(contact_section()), optionally,
                  "laws of pairs of materials"),
           key<T>("bodies", &T::bodies, list_of(body_section(), 1), required, "the bodies"),
+          key<T>("forces", &T::forces, list_of(force_section()), optionally, "forces besides gravity"),
+          key<T>("regions", &T::regions, named(region_section()), optionally,
+                 "a map of names to boxes to measure in"),
           key<T>("response", &T::response, response_section(), optionally, "how contacts answer"),
           key<T>("broadphase", &T::broadphase, broadphase_section(), optionally, "how pairs are found"),
           key<T>("narrowphase", &T::narrowphase, narrowphase_section(), optionally, "how contacts are found"),
@@ -426,8 +469,6 @@ const Codec<SceneEntry>& scene_codec() {
           key<T>("render", &T::render, render_section(), optionally, "the pictures"),
           key<T>("record", &T::record, record_section(), optionally, "what is written besides"),
           key<T>("checks", &T::checks, list_of(check_section()), optionally, "the scene's own test"),
-          future<T>("regions", "named boxes to measure in"),
-          future<T>("forces", "forces besides gravity"),
           future<T>("crosscheck", "the run again by other means, compared"),
       });
   return codec;
