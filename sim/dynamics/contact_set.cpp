@@ -3,27 +3,35 @@
 #include "core/parallel.hpp"
 
 #include <algorithm>
-#include <utility>
+#include <tuple>
 
 namespace scree {
 
+namespace {
+
+/// What manifolds and remembered impulses are ordered by.
+template <class Contact>
+auto place_of(const Contact& c) {
+  return std::tuple(c.i, c.j, c.part);
+}
+
+}  // namespace
+
 bool ImpulseMemory::recall(const Manifold& manifold, Vec3 impulses[Manifold::max_points]) const {
-  const auto found = std::lower_bound(entries_.begin(), entries_.end(), manifold,
-                                      [](const Entry& entry, const Manifold& wanted) {
-                                        return std::pair(entry.i, entry.j) < std::pair(wanted.i, wanted.j);
-                                      });
   for (int k = 0; k < manifold.count; ++k) impulses[k].setZero();
-  if (found == entries_.end() || found->i != manifold.i || found->j != manifold.j) return false;
   bool loaded = false;
-  for (int k = 0; k < manifold.count; ++k) {
-    for (int old = 0; old < found->count; ++old) {
-      if (found->feature[old] != manifold.points[k].feature) continue;
-      impulses[k] = found->impulse[old];
-      break;
+  const auto before = [](const Entry& entry, const Manifold& wanted) {
+    return place_of(entry) < place_of(wanted);
+  };
+  auto entry = std::lower_bound(entries_.begin(), entries_.end(), manifold, before);
+  for (; entry != entries_.end() && place_of(*entry) == place_of(manifold); ++entry) {
+    for (int old = 0; old < entry->count; ++old) {
+      loaded = loaded || !entry->impulse[old].isZero(0);
+      for (int k = 0; k < manifold.count; ++k) {
+        if (entry->feature[old] == manifold.points[k].feature) impulses[k] = entry->impulse[old];
+      }
     }
   }
-  // Loaded is a matter of the pair: where one corner rests, the others do not bounce.
-  for (int old = 0; old < found->count; ++old) loaded = loaded || !found->impulse[old].isZero(0);
   return loaded;
 }
 
@@ -84,6 +92,7 @@ void remember_impulses(ConstView<Manifold> manifolds, const ContactSet& set, Imp
     ImpulseMemory::Entry& entry = entries[static_cast<std::size_t>(contact.manifold)];
     entry.i = contact.i;
     entry.j = contact.j;
+    entry.part = manifolds[contact.manifold].part;
     entry.count = contact.count;
     for (int k = 0; k < contact.count; ++k) {
       entry.feature[k] = manifolds[contact.manifold].points[k].feature;

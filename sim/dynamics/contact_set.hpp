@@ -34,16 +34,18 @@ struct PairLaw {
   double friction;
 };
 
-/// Impulses of the last substep, by pair and feature. Ordered by (i, j), as manifolds are.
+/// Impulses of the last substep, by pair, part and feature. Ordered by (i, j, part), as manifolds are.
 class ImpulseMemory {
  public:
-  /// Finds the last impulses of a manifold's points (N s, world frame); false if none of them carried any.
+  /// Finds the last impulses of a manifold's points (N s, world frame). False if none of the pair's points on
+  /// that part carried any: where one corner rests, the others do not bounce.
   bool recall(const Manifold& manifold, Vec3 impulses[Manifold::max_points]) const;
   void clear() { entries_.clear(); }
 
   struct Entry {
     std::int32_t i;
     std::int32_t j;
+    std::int32_t part;
     int count;
     std::uint32_t feature[Manifold::max_points];
     Vec3 impulse[Manifold::max_points];
