@@ -46,7 +46,7 @@ void measure_contacts(const ContactSet& contacts, std::int64_t free_bodies, Obse
     const Contact& contact = contacts.contacts.view()[c];
     bool loaded = false;
     for (int k = 0; k < contact.count; ++k) {
-      const ContactRow& row = contacts.rows.view()[c * Manifold::max_points + k];
+      const ContactRow& row = contacts.rows.view()[contact.first_row + k];
       if (row.impulse.isZero(0)) continue;
       ++out.contacts;
       gaps += std::abs(row.gap);

@@ -191,7 +191,7 @@ struct Simulation::Parts {
     const BodyView views = view_of(bodies);
     load_solver_bodies(bodies, solver);
     color_contacts(manifolds, std::as_const(bodies.mobility).view(), contacts.coloring);
-    const ContactLaws contact_laws{std::as_const(bodies.mobility).view(),
+    const ContactLaws contact_laws{std::as_const(bodies.shape).view(), std::as_const(bodies.mobility).view(),
                                    std::as_const(bodies.material).view(), std::as_const(laws).view(),
                                    static_cast<std::int64_t>(scene.materials.size())};
     const double scale = last_substep > 0 ? h / last_substep : 1.0;
@@ -200,7 +200,7 @@ struct Simulation::Parts {
     ledger = ledger + response.solve(manifolds, h, parameters, views, solver, contacts, counters);
     ledger.integration += advance(bodies, 0.5 * h, parameters);
     ledger = ledger + corrector.correct(h, parameters, views, solver, contacts);
-    remember_impulses(manifolds, contacts, memory);
+    memory.remember(manifolds, contacts, bodies.count());
     add_impulses_on_driven_bodies();
     last_substep = h;
   }

@@ -39,6 +39,7 @@ class ImpactSolver {
 
  private:
   Array<double, Host> clock_;      // time of each body's last impact in this substep
+  Array<std::int32_t, Host> last_pass_;  // in which each body was last hit
   Array<Ledger, Host> ledger_;     // per contact
   Array<std::uint8_t, Host> hit_;  // per contact, in the last pass
 };
