@@ -1,5 +1,5 @@
 // Time of impact beside bisection in long double.
-#include "sim/dynamics/impact.hpp"
+#include "sim/dynamics/flight.hpp"
 
 #include "core/rng.hpp"
 
