@@ -10,7 +10,7 @@ namespace scree {
 /// of these has a normal of its own.
 SCREE_HD inline int box_tube(const Solid& box, const Solid& tube, double margin, Manifold* out) {
   const Mat3 tube_axes = tube.orientation.toRotationMatrix();
-  if (!detail::is_in_tube(tube, tube_axes, box.position)) return 0;
+  if (!detail::is_in_tube(tube, tube_axes, box.position, margin)) return 0;
   const Mat3 axes = box.orientation.toRotationMatrix();
   int count = 0;
   for (int c = 0; c < 8; ++c) {

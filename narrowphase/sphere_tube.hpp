@@ -8,7 +8,7 @@ namespace scree {
 
 SCREE_HD inline int sphere_tube(const Solid& sphere, const Solid& tube, double margin, Manifold* out) {
   const Mat3 axes = tube.orientation.toRotationMatrix();
-  if (!detail::is_in_tube(tube, axes, sphere.position)) return 0;
+  if (!detail::is_in_tube(tube, axes, sphere.position, margin)) return 0;
   int count = 0;
   count += detail::wall_contact(tube, axes, sphere.position, sphere.size.x(), only_feature, margin, out[0]);
   for (const TubePart cap : {tube_cap_below, tube_cap_above}) {

@@ -12,10 +12,11 @@ enum TubePart : std::int32_t { tube_wall, tube_cap_below, tube_cap_above };
 
 namespace detail {
 
-/// Tells whether a point is in the tube with the given axes, its wall and caps included.
-SCREE_HD inline bool is_in_tube(const Solid& tube, const Mat3& axes, const Vec3& point) {
-  const Vec3 at = axes.transpose() * (point - tube.position);
-  return hypot(at.x(), at.y()) <= tube.size.x() && fabs(at.z()) <= tube.size.z();
+/// Tells whether a body with this centre is in the tube with the given axes. One that is beyond the wall or a
+/// cap by no more than the margin has come from inside since the step began, and is held.
+SCREE_HD inline bool is_in_tube(const Solid& tube, const Mat3& axes, const Vec3& centre, double margin) {
+  const Vec3 at = axes.transpose() * (centre - tube.position);
+  return hypot(at.x(), at.y()) <= tube.size.x() + margin && fabs(at.z()) <= tube.size.z() + margin;
 }
 
 /// The contact of a ball with the wall; of a point, if the radius is 0. A ball that is wider than the tube

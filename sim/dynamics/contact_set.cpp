@@ -55,24 +55,24 @@ struct PrepareContact {
     const double friction = parameters.friction ? law.friction : 0.0;
     Vec3 remembered[Manifold::max_points];
     const bool loaded = memory->recall(manifold, remembered);
-    contacts[c] = {.i = manifold.i,
-                   .j = manifold.j,
-                   .manifold = order[c],
-                   .count = manifold.count,
-                   .first_row = first_row[c],
-                   .normal = manifold.normal,
-                   .friction = friction,
-                   .restitution = parameters.restitution ? law.restitution : 0.0,
-                   .loaded = loaded,
-                   .falling = false,
-                   .balls = laws.acts_as_ball(manifold.i) && laws.acts_as_ball(manifold.j),
-                   .free_ends = static_cast<int>(laws.is_free(manifold.i)) +
-                                static_cast<int>(laws.is_free(manifold.j)),
-                   .impulse = Vec3::Zero()};
+    contacts[c] = {
+        .i = manifold.i,
+        .j = manifold.j,
+        .manifold = order[c],
+        .count = manifold.count,
+        .first_row = first_row[c],
+        .normal = manifold.normal,
+        .friction = friction,
+        .restitution = parameters.restitution ? law.restitution : 0.0,
+        .loaded = loaded,
+        .falling = false,
+        .balls = laws.acts_as_ball(manifold.i) && laws.acts_as_ball(manifold.j),
+        .free_ends = static_cast<int>(laws.is_free(manifold.i)) + static_cast<int>(laws.is_free(manifold.j)),
+        .impulse = Vec3::Zero()};
     for (int k = 0; k < manifold.count; ++k) {
-      rows[first_row[c] + k].impulse =
-          parameters.warm_start ? project_on_cone(scale * remembered[k], manifold.normal, friction)
-                                : Vec3(Vec3::Zero());
+      rows[first_row[c] + k].impulse = parameters.warm_start
+                                           ? project_on_cone(scale * remembered[k], manifold.normal, friction)
+                                           : Vec3(Vec3::Zero());
     }
   }
 };
@@ -111,9 +111,8 @@ struct MarkBegins {
 void ImpulseMemory::remember(ConstView<Manifold> manifolds, const ContactSet& set, std::int64_t bodies) {
   entries_.resize(manifolds.size());
   begin_.resize(bodies + 1);
-  parallel::for_each<Host>(
-      "contacts.remember", manifolds.size(),
-      StoreEntry{manifolds, set.contacts.view(), set.rows.view(), entries_.view()});
+  parallel::for_each<Host>("contacts.remember", manifolds.size(),
+                           StoreEntry{manifolds, set.contacts.view(), set.rows.view(), entries_.view()});
   parallel::for_each<Host>("contacts.remember", manifolds.size() + 1, MarkBegins{manifolds, begin_.view()});
 }
 
@@ -129,8 +128,7 @@ void prepare_contacts(ConstView<Manifold> manifolds, const ContactLaws& laws, co
   set.couplings.resize(rows);
   parallel::for_each<Host>("contacts.prepare", n,
                            PrepareContact{manifolds, order, std::as_const(set.first_row).view(), laws,
-                                          &memory, scale, parameters, set.contacts.view(),
-                                          set.rows.view()});
+                                          &memory, scale, parameters, set.contacts.view(), set.rows.view()});
 }
 
 }  // namespace scree

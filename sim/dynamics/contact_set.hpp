@@ -40,14 +40,14 @@ struct ContactSet {
   Coloring coloring;
   Array<std::int32_t, Host> counts;  ///< of the points of each contact, and where its rows begin
   Array<std::int64_t, Host> first_row;
-  Array<Contact, Host> contacts;  ///< in the order of the colours
-  Array<ContactRow, Host> rows;   ///< of one contact after the other
+  Array<Contact, Host> contacts;       ///< in the order of the colours
+  Array<ContactRow, Host> rows;        ///< of one contact after the other
   Array<RowCoupling, Host> couplings;  ///< of the rows; not set for those of balls
-  Array<Vec3, Host> shift;        ///< of each body's midpoint position, by impacts of this substep (m)
+  Array<Vec3, Host> shift;             ///< of each body's midpoint position, by impacts of this substep (m)
 };
 
-/// Impulses of the last substep, by pair, part and feature. Ordered by (i, j, part), as manifolds are, with the
-/// place where those of each i begin.
+/// Impulses of the last substep, by pair, part and feature. Ordered by (i, j, part), as manifolds are, with
+/// the place where those of each i begin.
 class ImpulseMemory {
  public:
   /// Finds the last impulses of a manifold's points (N s, world frame). False if none of the pair's points on

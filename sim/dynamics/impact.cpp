@@ -28,8 +28,8 @@ struct ImpactStage {
   BodyView bodies;
   View<SolverBody> solver;
   View<Contact> contacts;
-  View<Vec3> shift;     ///< of the midpoint positions by impacts so far
-  View<double> clock;   ///< time of each body's last impact in this substep
+  View<Vec3> shift;              ///< of the midpoint positions by impacts so far
+  View<double> clock;            ///< time of each body's last impact in this substep
   View<std::int32_t> last_pass;  ///< in which each body was last hit
   View<Ledger> ledger;           ///< per contact
 
@@ -102,9 +102,7 @@ struct ImpactStage {
                                               .reach = bodies.size[tube].x() - bodies.size[ball].x()},
                                              step, fmax(clock[c.i], clock[c.j]));
     if (next.time == HUGE_VAL || !is_fast(-next.speed, c)) return {};
-    return {.time = next.time,
-            .normal = ball_first ? next.outward : Vec3(-next.outward),
-            .count = 1};
+    return {.time = next.time, .normal = ball_first ? next.outward : Vec3(-next.outward), .count = 1};
   }
 
   Impact next_impact(const Contact& c) const {
@@ -295,8 +293,9 @@ Ledger ImpactSolver::resolve(const ImpactProblem& problem, const ResponseParamet
   parallel::fill("impact.reset", clock_, 0.0);
   parallel::fill("impact.reset", last_pass_, std::int32_t{-2});
   parallel::fill("impact.reset", ledger_, Ledger{});
-  const ImpactStage stage{problem.manifolds,   problem.step,     parameters,    problem.bodies, solver.view(),
-                          set.contacts.view(), set.shift.view(), clock_.view(), last_pass_.view(), ledger_.view()};
+  const ImpactStage stage{problem.manifolds, problem.step,        parameters,       problem.bodies,
+                          solver.view(),     set.contacts.view(), set.shift.view(), clock_.view(),
+                          last_pass_.view(), ledger_.view()};
   bool closing = true;
   for (std::int32_t pass = 0; pass < chain_passes && closing; ++pass) {
     for_each_color("impact.visit", set.coloring, [&](std::int64_t first) {

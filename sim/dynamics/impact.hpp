@@ -26,10 +26,10 @@ class ImpactSolver {
                  Array<SolverBody, Host>& solver, ContactSet& set, Counters& counters);
 
  private:
-  Array<double, Host> clock_;      // time of each body's last impact in this substep
+  Array<double, Host> clock_;            // time of each body's last impact in this substep
   Array<std::int32_t, Host> last_pass_;  // in which each body was last hit
-  Array<Ledger, Host> ledger_;     // per contact
-  Array<std::uint8_t, Host> hit_;  // per contact, in the last pass
+  Array<Ledger, Host> ledger_;           // per contact
+  Array<std::uint8_t, Host> hit_;        // per contact, in the last pass
 };
 
 }  // namespace scree
