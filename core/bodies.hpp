@@ -131,6 +131,11 @@ SCREE_HD inline double smallest_size(Shape shape, const Vec3& size) {
   return shape == Shape::sphere ? size.x() : size.minCoeff();
 }
 
+/// Of a sphere or box (m^3).
+SCREE_HD inline double volume_of(Shape shape, const Vec3& size) {
+  return shape == Shape::sphere ? 4.0 / 3.0 * pi * size.x() * size.x() * size.x() : 8.0 * size.prod();
+}
+
 /// True where all principal moments are equal (spheres, cubes): the spin is then constant in free flight
 /// and there is no gyroscopic term.
 SCREE_HD inline bool has_equal_moments(const Vec3& inverse_inertia) {

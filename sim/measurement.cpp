@@ -38,6 +38,15 @@ void measure_totals(const Totals& totals, const EnergyBaseline& baseline, const 
   out.unexplained = out.energy_scale > 0 ? std::abs(change - explained) / out.energy_scale : 0.0;
 }
 
+void measure_regions(const std::vector<Region>& regions, const std::vector<RegionContents>& now,
+                     const std::vector<RegionContents>& before, double step, std::vector<RegionState>& out) {
+  out.clear();
+  for (std::size_t r = 0; r < regions.size(); ++r) {
+    const double flux = step > 0 ? (now[r].mass - before[r].mass) / step : 0.0;
+    out.push_back({now[r].count, now[r].volume / (regions[r].to - regions[r].from).prod(), flux});
+  }
+}
+
 void measure_contacts(const ContactSet& contacts, std::int64_t free_bodies, Observation& out) {
   out.contacts = 0;
   double gaps = 0;

@@ -5,7 +5,10 @@
 #include "narrowphase/contact.hpp"
 #include "sim/dynamics/contact_set.hpp"
 #include "sim/dynamics/motion.hpp"
+#include "sim/dynamics/region.hpp"
 #include "sim/observation.hpp"
+
+#include <vector>
 
 namespace scree {
 
@@ -31,6 +34,10 @@ class EnergyBaseline {
 /// `reference`; the potential energy reported is about the origin.
 void measure_totals(const Totals& totals, const EnergyBaseline& baseline, const Vec3& gravity,
                     const Vec3& reference, Observation& out);
+
+/// Of each region, from what it holds now and held one step before; `step` is its length (s), 0 at t = 0.
+void measure_regions(const std::vector<Region>& regions, const std::vector<RegionContents>& now,
+                     const std::vector<RegionContents>& before, double step, std::vector<RegionState>& out);
 
 /// Counts and gaps of the contacts that carried an impulse in the last substep.
 void measure_contacts(const ContactSet& contacts, std::int64_t free_bodies, Observation& out);

@@ -4,6 +4,7 @@
 #include "core/math.hpp"
 
 #include <cstdint>
+#include <vector>
 
 namespace scree {
 
@@ -46,6 +47,13 @@ struct Counters {
   std::int64_t ccd_rejected = 0;     ///< of these, answers that the certificate refused
 };
 
+/// A region of the scene at one instant; its bodies are the free ones whose centre lies in it.
+struct RegionState {
+  std::int64_t count = 0;
+  double fraction = 0;  ///< of its volume that is solid
+  double flux = 0;      ///< mass gained over the last step / step (kg/s)
+};
+
 struct Observation {
   double time = 0;
   std::int64_t step = 0;
@@ -65,7 +73,8 @@ struct Observation {
   std::int64_t bodies = 0;
   double speed_max = 0;  ///< of the free bodies (m/s)
   double speed_rms = 0;
-  double coordination_mean = 0;  ///< loaded contacts per free body, counted for each of its two
+  double coordination_mean = 0;      ///< loaded contacts per free body, counted for each of its two
+  std::vector<RegionState> regions;  ///< in the order of the scene
 
   double kinetic() const { return kinetic_linear + kinetic_angular; }
   double total() const { return kinetic() + potential; }

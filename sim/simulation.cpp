@@ -8,6 +8,8 @@
 #include "sim/dynamics/correction.hpp"
 #include "sim/dynamics/impact.hpp"
 #include "sim/dynamics/motion.hpp"
+#include "sim/dynamics/prescribed.hpp"
+#include "sim/dynamics/region.hpp"
 #include "sim/dynamics/response.hpp"
 #include "sim/measurement.hpp"
 #include "sim/model.hpp"
@@ -94,6 +96,7 @@ struct Simulation::Parts {
   ResponseParameters parameters;
   Vec3 origin;
   Bodies<Host> bodies;
+  Array<PrescribedPath, Host> paths;
   Array<PairLaw, Host> laws;
   std::unique_ptr<PairFinder> pair_finder;
   NarrowPhase narrow_phase;
@@ -119,6 +122,8 @@ struct Simulation::Parts {
   Ledger ledger;
   Counters counters;
   EnergyBaseline baseline;
+  std::vector<RegionContents> contents;         // of each region
+  std::vector<RegionContents> contents_before;  // and one step earlier
   Observation observation;
   bool observed = false;
 
@@ -135,6 +140,7 @@ struct Simulation::Parts {
         end_narrow_phase(s.narrowphase) {
     copy_bodies(bodies, scene.bodies);
     copy(laws, table_of(scene));
+    copy(paths, prescribed_paths(scene));
     const bool on_device = options.space == SpaceChoice::cuda ||
                            (options.space == SpaceChoice::automatic && device_info().available);
     pair_finder = make_pair_finder(scene.broadphase, on_device, origin);
@@ -142,6 +148,13 @@ struct Simulation::Parts {
     start.save(bodies);
     contact_impulse.assign(scene.bodies.position.size(), Vec3::Zero());
     baseline.start(totals_of(bodies, parameters.gravity, origin), lifting_energy(scene));
+    contents = contents_before = region_contents();
+  }
+
+  std::vector<RegionContents> region_contents() const {
+    std::vector<RegionContents> all;
+    for (const Region& region : scene.regions) all.push_back(contents_of(region, bodies));
+    return all;
   }
 
   void find_pairs(double reach) {
@@ -184,9 +197,11 @@ struct Simulation::Parts {
   }
 
   /// Moreau's midpoint step: free flight to the midpoint, contacts there, impulses, free flight to the end.
-  void substep(double h, double remaining) {
-    ledger.integration += timed_advance(0.5 * h);
-    const ConstView<Manifold> manifolds = find_contacts(h, remaining);
+  /// `done`: how much of the step went before (s).
+  void substep(double h, double done) {
+    const double start_time = grid.time(step) + done;
+    timed_fly(start_time + 0.5 * h, 0.5 * h);
+    const ConstView<Manifold> manifolds = find_contacts(h, grid.length(step + 1) - done);
     const timing::Region region("response");
     const BodyView views = view_of(bodies);
     load_solver_bodies(bodies, solver);
@@ -198,16 +213,22 @@ struct Simulation::Parts {
     prepare_contacts(manifolds, contact_laws, memory, scale, parameters, contacts);
     ledger = ledger + impacts.resolve({manifolds, h, views}, parameters, solver, contacts, counters);
     ledger = ledger + response.solve(manifolds, h, parameters, views, solver, contacts, counters);
-    ledger.integration += advance(bodies, 0.5 * h, parameters);
+    fly(start_time + h, 0.5 * h);
     ledger = ledger + corrector.correct(h, parameters, views, solver, contacts);
     memory.remember(manifolds, contacts, bodies.count());
     add_impulses_on_driven_bodies();
     last_substep = h;
   }
 
-  double timed_advance(double dt) {
+  /// Moves every body to the time given, dt later than it is.
+  void fly(double time, double dt) {
+    ledger.integration += advance(bodies, dt, parameters);
+    place_prescribed(paths, time, bodies);
+  }
+
+  void timed_fly(double time, double dt) {
     const timing::Region region("integration");
-    return advance(bodies, dt, parameters);
+    fly(time, dt);
   }
 
   void add_impulses_on_driven_bodies() {
@@ -225,7 +246,7 @@ struct Simulation::Parts {
     std::fill(contact_impulse.begin(), contact_impulse.end(), Vec3(Vec3::Zero()));
     try {
       find_pairs(dt + h);
-      for (int s = 0; s < scene.time.substeps; ++s) substep(h, dt - s * h);
+      for (int s = 0; s < scene.time.substeps; ++s) substep(h, s * h);
       baseline.extend(totals_of(bodies, parameters.gravity, origin));
       if (!baseline.is_finite()) throw RunError(non_finite_body());
     } catch (const RunError& error) {
@@ -234,6 +255,7 @@ struct Simulation::Parts {
       throw RunError(fmt::format("step {} (t = {} s): {}", step + 1, grid.time(step), error.what()));
     }
     ++step;
+    contents_before = std::exchange(contents, region_contents());
     last_step = dt;
     observed = false;
   }
@@ -306,6 +328,7 @@ const Observation& Simulation::observe() {
   const Totals totals = totals_of(p.bodies, p.parameters.gravity, p.origin);
   measure_totals(totals, p.baseline, p.parameters.gravity, p.origin, o);
   o.speed_max = largest_speed(p.bodies);
+  measure_regions(p.scene.regions, p.contents, p.contents_before, p.last_step, o.regions);
   measure_contacts(p.contacts, totals.count, o);
   if (p.pairs.data() == nullptr) p.find_pairs(0);
   o.pairs = p.pairs.size();

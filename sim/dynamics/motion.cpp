@@ -12,7 +12,7 @@ struct Translate {
   BodyView bodies;
   double dt;
   SCREE_HD void operator()(std::int64_t k) const {
-    if (bodies.mobility[k] != Mobility::fixed) bodies.position[k] += dt * bodies.velocity[k];
+    if (bodies.mobility[k] == Mobility::free) bodies.position[k] += dt * bodies.velocity[k];
   }
 };
 
@@ -20,7 +20,7 @@ struct Rotate {
   BodyView bodies;
   double dt;
   SCREE_HD void operator()(std::int64_t k) const {
-    if (bodies.mobility[k] == Mobility::fixed) return;
+    if (bodies.mobility[k] != Mobility::free) return;
     rotate_freely(bodies.orientation[k], bodies.spin[k], bodies.inverse_inertia[k], dt);
   }
 };

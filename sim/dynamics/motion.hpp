@@ -7,8 +7,8 @@
 
 namespace scree {
 
-/// Moves every body by its velocity and spin for the time dt (s), in place. Returns the drift of the
-/// rotational energy of the free bodies (J), which the ledger books as integration.
+/// Moves every free body by its velocity and spin for the time dt (s), in place. Returns the drift of their
+/// rotational energy (J), which the ledger books as integration.
 double advance(Bodies<Host>& bodies, double dt, const ResponseParameters& parameters);
 
 /// How far contacts of each body must reach so that nothing it can meet within dt is missed (m):

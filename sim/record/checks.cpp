@@ -92,7 +92,7 @@ Checks::Checks(const Scene& scene, const TimeGrid& grid) : grid_(grid) {
     const double from = check.over ? (*check.over)[0] : check.at.value_or(scene.time.end);
     const double to = check.over ? (*check.over)[1] : from;
     watches_.push_back({.check = check,
-                        .measure = parse_measure(check.measure, scene.body_names),
+                        .measure = parse_measure(check.measure, scene),
                         .first = check.over ? grid.first_in(from) : grid.nearest(from),
                         .last = check.over ? grid.last_in(to) : grid.nearest(to),
                         .within_run = grid.contains(to),

@@ -32,7 +32,13 @@ void append_names(std::vector<std::string>& names, const std::string& measure, b
 std::vector<std::string> metric_names(const Scene& scene) {
   std::vector<std::string> names;
   for (const MeasureInfo& info : measure_table()) {
-    if (!info.of_body) append_names(names, std::string(info.name), info.is_vector);
+    if (info.of == MeasureSubject::run) append_names(names, std::string(info.name), info.is_vector);
+  }
+  for (const Region& region : scene.regions) {
+    for (const MeasureInfo& info : measure_table()) {
+      if (info.of == MeasureSubject::region)
+        names.push_back(fmt::format("region.{}.{}", region.name, info.name));
+    }
   }
   for (const std::string& body : single_bodies(scene)) {
     for (const char* measure : {".position", ".velocity", ".spin"}) append_names(names, body + measure, true);
@@ -43,7 +49,7 @@ std::vector<std::string> metric_names(const Scene& scene) {
 MetricsFile::MetricsFile(const Scene& scene, const std::filesystem::path& file) : file_(file) {
   std::string header = "time,step";
   for (std::string name : metric_names(scene)) {
-    measures_.push_back(parse_measure(name, scene.body_names));
+    measures_.push_back(parse_measure(name, scene));
     std::ranges::replace(name, '.', '_');
     header += ',' + name;
   }

@@ -14,8 +14,9 @@
 
 namespace scree {
 
-/// The measures of a scene's columns: all global ones; then position, velocity and spin of each body that was
-/// named on its own, in the order of the scene. Members of a repeat have no columns: they can be a million.
+/// The measures of a scene's columns: all of the whole run; those of each region; then position, velocity and
+/// spin of each body that was named on its own, in the order of the scene. Members of a repeat have no
+/// columns: they can be a million.
 std::vector<std::string> metric_names(const Scene& scene);
 
 /// One row per call: time, step, then the measures, with _ for . in their names. Numbers are the shortest

@@ -48,10 +48,6 @@ Vec3 inertia_of(Shape shape, const Vec3& size, double mass) {
   return mass / 3 * Vec3(squares.y() + squares.z(), squares.z() + squares.x(), squares.x() + squares.y());
 }
 
-double volume_of(Shape shape, const Vec3& size) {
-  return shape == Shape::sphere ? 4.0 / 3.0 * pi * size.x() * size.x() * size.x() : 8 * size.prod();
-}
-
 bool is_usable(double x) { return x > 0 && std::isfinite(x) && std::isfinite(1 / x); }
 
 /// A turn of +z to the unit vector n. Exact along the axes; past the horizon it goes by way of -z,

@@ -5,6 +5,7 @@
 #include "sim/scene/body.hpp"
 #include "sim/scene/measure.hpp"
 #include "sim/scene/scatter.hpp"
+#include "sim/scene/time_grid.hpp"
 
 #include <fmt/format.h>
 
@@ -56,6 +57,8 @@ class Builder {
     for (const Slot& slot : slots_) make_bodies(slot, scene);
     for (const Slot& slot : slots_)
       if (slot.entry->scatter) scatter_bodies(slot, scene);
+    find_motions(scene);
+    find_forces(scene);
     find_checks(scene);
   }
 
@@ -168,7 +171,6 @@ class Builder {
       scene.bodies.material[static_cast<std::size_t>(id)] = slot.material;
       if (!make_body(entry, k, id, scene.seed, material.density, scene.bodies))
         reader_.fail(entry.node->mark, "its mass and inertia are beyond what numbers can hold");
-      if (entry.motion) scene.motions.push_back({id, entry.motion->velocity, entry.motion->spin});
       if (entry.name.empty()) continue;
       const bool many = entry.repeat || entry.scatter;
       scene.body_names.emplace(many ? fmt::format("{}[{}]", entry.name, k) : entry.name, id);
@@ -193,13 +195,66 @@ class Builder {
                                 fitted, slot.count));
   }
 
+  /// Once every body has its place: the centre of a body that turns about a point moves by that too.
+  void find_motions(Scene& scene) {
+    for (const Slot& slot : slots_) {
+      if (!slot.entry->motion) continue;
+      const MotionEntry& motion = *slot.entry->motion;
+      for (std::int64_t id = slot.first; id < slot.first + slot.count; ++id) {
+        const auto b = static_cast<std::size_t>(id);
+        scene.motions.push_back({static_cast<std::int32_t>(id), motion.velocity, motion.spin, motion.about});
+        if (motion.about)
+          scene.bodies.velocity[b] += motion.spin.cross(scene.bodies.position[b] - *motion.about);
+      }
+    }
+  }
+
+  void find_forces(Scene& scene) {
+    const Reader::Step step(reader_, "forces");
+    for (std::size_t i = 0; i < entry_.forces.size(); ++i) {
+      const Reader::Step item(reader_, i);
+      const ForceEntry& force = entry_.forces[i];
+      const BodyRange on = bodies_called(force.on, *force.node, scene);
+      if (scene.bodies.mobility[static_cast<std::size_t>(on.first)] != Mobility::free)
+        reader_.fail_at("on", *force.node,
+                        fmt::format("{} is not free; forces move free bodies alone", force.on));
+      scene.forces.push_back({on, force.force, force.torque, span_of(force.from, force.until, *force.node)});
+    }
+  }
+
+  /// One body by its name, or all of an entry by the entry's.
+  BodyRange bodies_called(const std::string& name, const Node& node, const Scene& scene) {
+    const auto body = scene.body_names.find(name);
+    if (body != scene.body_names.end()) return {body->second, 1};
+    std::vector<std::string_view> known;
+    for (const Slot& slot : slots_) {
+      if (slot.entry->name == name)
+        return {static_cast<std::int32_t>(slot.first), static_cast<std::int32_t>(slot.count)};
+      known.push_back(slot.entry->name);
+    }
+    reader_.fail_at("on", node, fmt::format("there is no body called {}{}", name, suggestion(name, known)));
+  }
+
+  /// `node` holds the keys from and until.
+  TimeSpan span_of(double from, const std::optional<double>& until, const Node& node) {
+    const TimeSpan span{from, until.value_or(HUGE_VAL)};
+    const double end = entry_.time.end;
+    if (from >= end)
+      reader_.fail_at("from", node, fmt::format("must be before the end, {} s, not {} s", end, from));
+    const TimeGrid::Steps steps = TimeGrid(entry_.time).steps_in(span);
+    if (steps.first >= steps.end)
+      reader_.fail_at("until", node,
+                      fmt::format("must be at least a step after from, {} s, not {} s", from, span.until));
+    return span;
+  }
+
   void find_checks(Scene& scene) {
     const Reader::Step step(reader_, "checks");
     for (std::size_t i = 0; i < entry_.checks.size(); ++i) {
       const Reader::Step item(reader_, i);
       const CheckEntry& check = entry_.checks[i];
       try {
-        parse_measure(check.measure, scene.body_names);
+        parse_measure(check.measure, scene);
       } catch (const InputError& error) {
         reader_.fail_at("measure", *check.node, error.what());
       }
@@ -248,6 +303,7 @@ Scene build_scene(SceneEntry entry, const std::filesystem::path& source, Reader&
   scene.seed = entry.seed;
   scene.gravity = entry.gravity;
   scene.time = entry.time;
+  scene.regions = entry.regions;
   scene.response = entry.response;
   scene.broadphase = entry.broadphase;
   scene.narrowphase = entry.narrowphase;

@@ -257,6 +257,7 @@ Codec<std::vector<T>> named(Codec<T> codec) {
             }
           },
           [codec](const std::vector<T>& values) -> std::optional<Node> {
+            if (values.empty()) return {};
             std::vector<Node> items;
             for (const T& value : values) items.push_back(std::move(*codec.write(value)).named(value.name));
             return Node::map(std::move(items));

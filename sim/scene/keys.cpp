@@ -156,10 +156,12 @@ Codec<MotionEntry> motion_section() {
   return section<T>("bodies[].motion", "Prescribed motion: the body moves like this whatever hits it.",
                     {
                         key<T>("velocity", &T::velocity, vector("m/s"), optionally, "constant velocity"),
-                        key<T>("spin", &T::spin, vector("rad/s"), optionally,
-                               "constant angular velocity about the body's own centre"),
-                        future<T>("about", "a point to turn about"),
-                    });
+                        key<T>("spin", &T::spin, vector("rad/s"), optionally, "constant angular velocity"),
+                        key<T>("about", &T::about, optional(vector("m")), optionally,
+                               "the point to turn about, which moves along with `velocity`; the body's own "
+                               "centre if not given"),
+                    },
+                    check_motion);
 }
 
 Codec<RepeatEntry> repeat_section() {
@@ -228,6 +230,37 @@ Codec<BodyEntry> body_section() {
           future<T>("until", "when the body is gone"),
       },
       check_body);
+}
+
+Codec<ForceEntry> force_section() {
+  using T = ForceEntry;
+  return section<T>(
+      "forces[]",
+      "A constant force on the centre of a body, a torque, or both, in the world frame. They act for "
+      "from <= t < until, both taken at the nearest step.",
+      {
+          key<T>(
+              "on", &T::on, text(), required,
+              "name of a free body; of a repeat or scatter, `name[3]` is one of its bodies and `name` each"),
+          key<T>("force", &T::force, vector("N"), optionally, "on the centre"),
+          key<T>("torque", &T::torque, vector("N m"), optionally, "about the centre"),
+          key<T>("from", &T::from, number(not_negative, "s"), optionally, "when it starts to act"),
+          key<T>("until", &T::until, optional(number(above_zero, "s")), optionally,
+                 "when it ends; at the end of the run if not given"),
+      },
+      check_force);
+}
+
+Codec<Region> region_section() {
+  using T = Region;
+  return section<T>(
+      "regions.<name>",
+      "A box to measure in, its faces along the world's axes. The names are yours; see Measures.",
+      {
+          key<T>("from", &T::from, vector("m"), required, "lower corner"),
+          key<T>("to", &T::to, vector("m"), required, "upper corner"),
+      },
+      check_region);
 }
 
 Codec<ResponseSettings> response_section() {
@@ -429,6 +462,9 @@ const Codec<SceneEntry>& scene_codec() {
           key<T>("contacts", &T::contacts, list_of(contact_section()), optionally,
                  "laws of pairs of materials"),
           key<T>("bodies", &T::bodies, list_of(body_section(), 1), required, "the bodies"),
+          key<T>("forces", &T::forces, list_of(force_section()), optionally, "forces besides gravity"),
+          key<T>("regions", &T::regions, named(region_section()), optionally,
+                 "a map of names to boxes to measure in"),
           key<T>("response", &T::response, response_section(), optionally, "how contacts answer"),
           key<T>("broadphase", &T::broadphase, broadphase_section(), optionally, "how pairs are found"),
           key<T>("narrowphase", &T::narrowphase, narrowphase_section(), optionally, "how contacts are found"),
@@ -439,8 +475,6 @@ const Codec<SceneEntry>& scene_codec() {
           key<T>("render", &T::render, render_section(), optionally, "the pictures"),
           key<T>("record", &T::record, record_section(), optionally, "what is written besides"),
           key<T>("checks", &T::checks, list_of(check_section()), optionally, "the scene's own test"),
-          future<T>("regions", "named boxes to measure in"),
-          future<T>("forces", "forces besides gravity"),
           future<T>("crosscheck", "the run again by other means, compared"),
       });
   return codec;

@@ -51,6 +51,7 @@ struct RotationEntry {
 struct MotionEntry {
   Vec3 velocity = Vec3::Zero();
   Vec3 spin = Vec3::Zero();
+  std::optional<Vec3> about;
 };
 
 struct RepeatEntry {
@@ -87,6 +88,15 @@ struct BodyEntry {
   const Node* node = nullptr;
 };
 
+struct ForceEntry {
+  std::string on;
+  Vec3 force = Vec3::Zero();
+  Vec3 torque = Vec3::Zero();
+  double from = 0;
+  std::optional<double> until;
+  const Node* node = nullptr;
+};
+
 struct CheckEntry : Check {
   const Node* node = nullptr;
 };
@@ -108,6 +118,8 @@ struct SceneEntry {
   std::vector<MaterialEntry> materials;
   std::vector<ContactEntry> contacts;
   std::vector<BodyEntry> bodies;
+  std::vector<ForceEntry> forces;
+  std::vector<Region> regions;
   ResponseSettings response;
   BroadPhaseSettings broadphase;
   NarrowPhaseSettings narrowphase;

@@ -11,6 +11,7 @@
 namespace scree {
 namespace {
 
+constexpr std::string_view region_word = "region";
 constexpr std::string_view components[] = {"x", "y", "z", "norm"};
 
 double part_of(const Vec3& v, Component component) {
@@ -47,110 +48,147 @@ std::string_view first_word(std::string_view name) { return name.substr(0, name.
   throw InputError(fmt::format("{} is no measure: {}", text, what));
 }
 
-const MeasureInfo* find_measure(std::string_view name, bool of_body) {
+const MeasureInfo* find_measure(std::string_view name, MeasureSubject of) {
   const auto& table = measure_table();
   const auto found = std::find_if(table.begin(), table.end(), [&](const MeasureInfo& info) {
-    return info.of_body == of_body && info.name == name;
+    return info.of == of && info.name == name;
   });
   return found == table.end() ? nullptr : &*found;
 }
 
 /// `rest` is the measure's name, with its component if it is a vector.
-Measure parse_name(std::string_view text, std::string_view rest, bool of_body) {
-  if (const MeasureInfo* whole = find_measure(rest, of_body); whole && !whole->is_vector)
-    return {whole->kind, -1, Component::norm};
+Measure parse_name(std::string_view text, std::string_view rest, MeasureSubject of) {
+  if (const MeasureInfo* whole = find_measure(rest, of); whole && !whole->is_vector)
+    return {.kind = whole->kind};
   const std::size_t dot = rest.rfind('.');
-  const MeasureInfo* info = find_measure(rest.substr(0, dot), of_body);
+  const MeasureInfo* info = find_measure(rest.substr(0, dot), of);
   if (info && info->is_vector) {
     const std::string_view last = dot == std::string_view::npos ? "" : rest.substr(dot + 1);
     const auto found = std::find(std::begin(components), std::end(components), last);
     if (found == std::end(components)) fail(text, fmt::format("{} needs .x, .y, .z or .norm", info->name));
-    return {info->kind, -1, static_cast<Component>(found - std::begin(components))};
+    return {.kind = info->kind, .component = static_cast<Component>(found - std::begin(components))};
   }
   std::vector<std::string_view> known;
   for (const MeasureInfo& m : measure_table())
-    if (m.of_body == of_body) known.push_back(m.name);
+    if (m.of == of) known.push_back(m.name);
   std::string hint = suggestion(rest, known);
   if (hint.empty() && info == nullptr) hint = suggestion(rest.substr(0, dot), known);
   fail(text, fmt::format("{} is unknown{}", rest, hint));
+}
+
+/// What follows the name of the body or region.
+std::string_view after_name(std::string_view text, std::string_view name, const char* example) {
+  const auto end = static_cast<std::size_t>(name.data() - text.data()) + name.size();
+  if (end >= text.size()) fail(text, fmt::format("it says nothing about {}, such as {}", name, example));
+  return text.substr(end + 1);
+}
+
+Measure parse_of_body(std::string_view text, const Scene& scene) {
+  const std::string_view name = first_word(text);
+  const auto body = scene.body_names.find(std::string(name));
+  if (body == scene.body_names.end()) {
+    std::vector<std::string_view> known;
+    for (const auto& [other, id] : scene.body_names) known.push_back(other);
+    for (const MeasureInfo& info : measure_table())
+      if (info.of == MeasureSubject::run) known.push_back(first_word(info.name));
+    fail(text, fmt::format("there is no body called {}{}", name, suggestion(name, known)));
+  }
+  Measure measure = parse_name(text, after_name(text, name, ".position.z"), MeasureSubject::body);
+  measure.body = body->second;
+  return measure;
+}
+
+Measure parse_of_region(std::string_view text, const Scene& scene) {
+  const std::string_view rest = after_name(text, first_word(text), ".exit.flux");
+  const std::string_view name = first_word(rest);
+  const auto region = std::find_if(scene.regions.begin(), scene.regions.end(),
+                                   [&](const Region& candidate) { return candidate.name == name; });
+  if (region == scene.regions.end()) {
+    std::vector<std::string_view> known;
+    for (const Region& other : scene.regions) known.push_back(other.name);
+    fail(text, fmt::format("there is no region called {}{}", name, suggestion(name, known)));
+  }
+  Measure measure = parse_name(text, after_name(text, name, ".count"), MeasureSubject::region);
+  measure.region = static_cast<std::int32_t>(region - scene.regions.begin());
+  return measure;
 }
 
 }  // namespace
 
 const std::vector<MeasureInfo>& measure_table() {
   using K = MeasureKind;
+  using S = MeasureSubject;
   static const std::vector<MeasureInfo> table{
-      {K::position, "position", true, true, "m", "of the centre"},
-      {K::velocity, "velocity", true, true, "m/s", "of the centre"},
-      {K::spin, "spin", true, true, "rad/s", "angular velocity"},
-      {K::acceleration, "acceleration", true, true, "m/s^2", "change of velocity over the last step / step"},
-      {K::force, "force", true, true, "N", "contact impulse on the body over the last step / step"},
-      {K::tilt, "tilt", true, false, "rad", "angle of the body's z axis from its start"},
-      {K::energy_total, "energy.total", false, false, "J", "kinetic + potential, of the free bodies"},
-      {K::energy_kinetic, "energy.kinetic", false, false, "J", "linear + angular"},
-      {K::energy_linear, "energy.linear", false, false, "J", "of the motion of the centres"},
-      {K::energy_angular, "energy.angular", false, false, "J", "of the spins"},
-      {K::energy_potential, "energy.potential", false, false, "J", "-sum of m g . x"},
-      {K::energy_unexplained, "energy.unexplained", false, false, "",
+      {K::position, "position", S::body, true, "m", "of the centre"},
+      {K::velocity, "velocity", S::body, true, "m/s", "of the centre"},
+      {K::spin, "spin", S::body, true, "rad/s", "angular velocity"},
+      {K::acceleration, "acceleration", S::body, true, "m/s^2",
+       "change of velocity over the last step / step"},
+      {K::force, "force", S::body, true, "N", "contact impulse on the body over the last step / step"},
+      {K::tilt, "tilt", S::body, false, "rad", "angle of the body's z axis from its start"},
+      {K::energy_total, "energy.total", S::run, false, "J", "kinetic + potential, of the free bodies"},
+      {K::energy_kinetic, "energy.kinetic", S::run, false, "J", "linear + angular"},
+      {K::energy_linear, "energy.linear", S::run, false, "J", "of the motion of the centres"},
+      {K::energy_angular, "energy.angular", S::run, false, "J", "of the spins"},
+      {K::energy_potential, "energy.potential", S::run, false, "J", "-sum of m g . x"},
+      {K::energy_unexplained, "energy.unexplained", S::run, false, "",
        "change of energy that the ledger does not explain, over the energy scale"},
-      {K::energy_work, "energy.work", false, false, "J", "done by prescribed bodies since the start"},
-      {K::energy_integration, "energy.integration", false, false, "J",
+      {K::energy_work, "energy.work", S::run, false, "J", "done by prescribed bodies since the start"},
+      {K::energy_integration, "energy.integration", S::run, false, "J",
        "drift of the free rotation since the start"},
-      {K::dissipated_restitution, "energy.dissipated.restitution", false, false, "J",
+      {K::dissipated_restitution, "energy.dissipated.restitution", S::run, false, "J",
        "lost in normal impulses since the start"},
-      {K::dissipated_friction, "energy.dissipated.friction", false, false, "J",
+      {K::dissipated_friction, "energy.dissipated.friction", S::run, false, "J",
        "lost in tangential impulses since the start"},
-      {K::dissipated_correction, "energy.dissipated.correction", false, false, "J",
+      {K::dissipated_correction, "energy.dissipated.correction", S::run, false, "J",
        "lost by position correction since the start"},
-      {K::momentum, "momentum", false, true, "kg m/s", "of the free bodies"},
-      {K::angular_momentum, "angular_momentum", false, true, "kg m^2/s",
+      {K::momentum, "momentum", S::run, true, "kg m/s", "of the free bodies"},
+      {K::angular_momentum, "angular_momentum", S::run, true, "kg m^2/s",
        "of the free bodies, about the origin"},
-      {K::penetration_max, "penetration.max", false, false, "m", "deepest overlap of all pairs"},
-      {K::penetration_mean, "penetration.mean", false, false, "m", "mean over overlapping pairs"},
-      {K::penetration_p99, "penetration.p99", false, false, "m", "99th percentile over overlapping pairs"},
-      {K::penetration_relative_max, "penetration.relative_max", false, false, "",
+      {K::penetration_max, "penetration.max", S::run, false, "m", "deepest overlap of all pairs"},
+      {K::penetration_mean, "penetration.mean", S::run, false, "m", "mean over overlapping pairs"},
+      {K::penetration_p99, "penetration.p99", S::run, false, "m", "99th percentile over overlapping pairs"},
+      {K::penetration_relative_max, "penetration.relative_max", S::run, false, "",
        "deepest overlap, by the smaller body's radius or smallest half edge"},
-      {K::penetration_relative_mean, "penetration.relative_mean", false, false, "", "mean of the same"},
-      {K::gap_mean, "gap.mean", false, false, "m", "mean |gap| of loaded contact points"},
-      {K::contacts_count, "contacts.count", false, false, "",
+      {K::penetration_relative_mean, "penetration.relative_mean", S::run, false, "", "mean of the same"},
+      {K::gap_mean, "gap.mean", S::run, false, "m", "mean |gap| of loaded contact points"},
+      {K::contacts_count, "contacts.count", S::run, false, "",
        "contact points that carried an impulse in the last step"},
-      {K::pairs_count, "pairs.count", false, false, "", "potentially colliding pairs"},
-      {K::bodies_count, "bodies.count", false, false, "", "bodies in the scene"},
-      {K::speed_max, "speed.max", false, false, "m/s", "of the free bodies"},
-      {K::speed_rms, "speed.rms", false, false, "m/s", "of the free bodies"},
-      {K::coordination_mean, "coordination.mean", false, false, "",
+      {K::pairs_count, "pairs.count", S::run, false, "", "potentially colliding pairs"},
+      {K::bodies_count, "bodies.count", S::run, false, "", "bodies in the scene"},
+      {K::speed_max, "speed.max", S::run, false, "m/s", "of the free bodies"},
+      {K::speed_rms, "speed.rms", S::run, false, "m/s", "of the free bodies"},
+      {K::coordination_mean, "coordination.mean", S::run, false, "",
        "loaded contacts per free body, counted for each of its two"},
+      {K::region_count, "count", S::region, false, "", "free bodies whose centre lies in the closed box"},
+      {K::region_fraction, "fraction", S::region, false, "", "volume of these bodies / volume of the box"},
+      {K::region_flux, "flux", S::region, false, "kg/s",
+       "mass of these bodies less that one step before / step: negative while the region empties. Its mean "
+       "over "
+       "steps a to b is the mass gained since the step before a / the time since then"},
   };
   return table;
 }
 
 bool is_measure_word(std::string_view name) {
-  if (name == "region") return true;  // a later part of the language
-  return std::any_of(measure_table().begin(), measure_table().end(),
-                     [&](const MeasureInfo& info) { return !info.of_body && first_word(info.name) == name; });
+  return name == region_word ||
+         std::any_of(measure_table().begin(), measure_table().end(), [&](const MeasureInfo& info) {
+           return info.of == MeasureSubject::run && first_word(info.name) == name;
+         });
 }
 
-Measure parse_measure(std::string_view text, const std::map<std::string, std::int32_t>& bodies) {
+Measure parse_measure(std::string_view text, const Scene& scene) {
   const std::string_view first = first_word(text);
-  if (first == "region") throw InputError(fmt::format("{} {}", text, future_text));
-  if (is_measure_word(first)) return parse_name(text, text, false);
-  const auto body = bodies.find(std::string(first));
-  if (body == bodies.end()) {
-    std::vector<std::string_view> known;
-    for (const auto& [name, id] : bodies) known.push_back(name);
-    for (const MeasureInfo& info : measure_table())
-      if (!info.of_body) known.push_back(first_word(info.name));
-    fail(text, fmt::format("there is no body called {}{}", first, suggestion(first, known)));
-  }
-  if (first.size() == text.size()) fail(text, "it says nothing about the body, such as .position.z");
-  Measure measure = parse_name(text, text.substr(first.size() + 1), true);
-  measure.body = body->second;
-  return measure;
+  if (first == region_word) return parse_of_region(text, scene);
+  return is_measure_word(first) ? parse_name(text, text, MeasureSubject::run) : parse_of_body(text, scene);
 }
 
 double evaluate(const Measure& measure, const Observation& observation,
                 const std::function<BodyState(std::int32_t)>& body) {
   const Observation& o = observation;
+  const auto region = [&]() -> const RegionState& {
+    return o.regions.at(static_cast<std::size_t>(measure.region));
+  };
   switch (measure.kind) {
     case MeasureKind::position:
     case MeasureKind::velocity:
@@ -209,6 +247,12 @@ double evaluate(const Measure& measure, const Observation& observation,
       return o.speed_rms;
     case MeasureKind::coordination_mean:
       return o.coordination_mean;
+    case MeasureKind::region_count:
+      return static_cast<double>(region().count);
+    case MeasureKind::region_fraction:
+      return region().fraction;
+    case MeasureKind::region_flux:
+      return region().flux;
   }
   return 0;
 }

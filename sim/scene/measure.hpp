@@ -2,11 +2,10 @@
 #pragma once
 
 #include "sim/observation.hpp"
+#include "sim/scene/scene.hpp"
 
 #include <cstdint>
 #include <functional>
-#include <map>
-#include <string>
 #include <string_view>
 #include <vector>
 
@@ -46,33 +45,40 @@ enum class MeasureKind {
   speed_max,
   speed_rms,
   coordination_mean,
+  // Of a region; see RegionState.
+  region_count,
+  region_fraction,
+  region_flux,
 };
 
 enum class Component { x, y, z, norm };
 
 struct Measure {
   MeasureKind kind = MeasureKind::energy_total;
-  std::int32_t body = -1;                 ///< its number in the scene; -1 for measures of the whole run
+  std::int32_t body = -1;                 ///< its number in the scene; -1 for other measures
+  std::int32_t region = -1;               ///< likewise
   Component component = Component::norm;  ///< of a vector
 };
+
+enum class MeasureSubject { body, run, region };
 
 /// What there is to measure, for the parser and for the reference.
 struct MeasureInfo {
   MeasureKind kind;
-  std::string_view name;  ///< without the body's name and without the component
-  bool of_body;
+  std::string_view name;  ///< without the name of the body or region, and without the component
+  MeasureSubject of;
   bool is_vector;
   std::string_view unit;
   std::string_view help;
 };
 const std::vector<MeasureInfo>& measure_table();
 
-/// True for the first words of measures of the whole run (energy, speed ...): no body may be called so.
+/// True for the first words of measures that are of no body (energy, region ...): no body may be called so.
 bool is_measure_word(std::string_view name);
 
-/// Parses energy.total, momentum.x, puck.velocity.norm, bed[3].tilt. `bodies` are Scene::body_names. Throws
-/// InputError, without a place, that names what is unknown and the nearest known word.
-Measure parse_measure(std::string_view text, const std::map<std::string, std::int32_t>& bodies);
+/// Parses energy.total, momentum.x, puck.velocity.norm, bed[3].tilt, region.exit.flux; the names are those of
+/// the scene. Throws InputError, without a place, that names what is unknown and the nearest known word.
+Measure parse_measure(std::string_view text, const Scene& scene);
 
 /// The measure's value in SI units. `body` is asked for the state of the body only for measures of one.
 double evaluate(const Measure& measure, const Observation& observation,

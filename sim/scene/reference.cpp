@@ -89,11 +89,14 @@ void append_section(std::string& page, const SectionType& section) {
   for (const KeyType& key : section.keys) append_sections_in(page, key.type);
 }
 
-void append_measures(std::string& page, bool of_body) {
+void append_measures(std::string& page, MeasureSubject of) {
+  const char* prefix = of == MeasureSubject::body     ? "<body>."
+                       : of == MeasureSubject::region ? "region.<name>."
+                                                      : "";
   page += "\n| measure | unit | meaning |\n|---|---|---|\n";
   for (const MeasureInfo& info : measure_table())
-    if (info.of_body == of_body)
-      page += fmt::format("| `{}{}{}` | {} | {} |\n", of_body ? "<body>." : "", info.name,
+    if (info.of == of)
+      page += fmt::format("| `{}{}{}` | {} | {} |\n", prefix, info.name,
                           info.is_vector ? ".{x,y,z,norm}" : "", info.unit, cell(info.help));
 }
 
@@ -104,9 +107,11 @@ std::string scene_reference() {
   append_section(page, *scene_codec().type.section);
   page +=
       "\n## Measures\n\nOf one body, by its name; `bed[3]` is a body of a repeat or scatter. World frame.\n";
-  append_measures(page, true);
-  page += "\nOf the whole run. `region.<name>.*` is part of the language, but not in this version.\n";
-  append_measures(page, false);
+  append_measures(page, MeasureSubject::body);
+  page += "\nOf the whole run.\n";
+  append_measures(page, MeasureSubject::run);
+  page += "\nOf one of the `regions`, at the end of a step.\n";
+  append_measures(page, MeasureSubject::region);
   return page;
 }
 

@@ -67,6 +67,10 @@ void check_rotation(const RotationEntry& rotation, const Node& node, Reader& rea
   if (given({"degrees", "radians"}, node) == 0) reader.fail(node.mark, "needs degrees or radians");
 }
 
+void check_motion(const MotionEntry& motion, const Node& node, Reader& reader) {
+  if (motion.about && motion.spin.isZero(0)) reader.fail_at("about", node, "needs a spin that is not zero");
+}
+
 void check_scatter(const ScatterEntry& scatter, const Node& node, Reader& reader) {
   for (int k = 0; k < 3; ++k)
     if (scatter.from[k] > scatter.to[k])
@@ -94,6 +98,18 @@ void check_body(const BodyEntry& body, const Node& node, Reader& reader) {
     const double length = Eigen::Vector4d(q[0], q[1], q[2], q[3]).stableNorm();
     if (!(length > 0) || !std::isfinite(length)) reader.fail_at("orientation", node, "must not be zero");
   }
+}
+
+void check_force(const ForceEntry&, const Node& node, Reader& reader) {
+  if (given({"force", "torque"}, node) == 0) reader.fail(node.mark, "needs force or torque");
+}
+
+void check_region(const Region& region, const Node& node, Reader& reader) {
+  for (int k = 0; k < 3; ++k)
+    if (!(region.from[k] < region.to[k]))
+      reader.fail_at("to", node,
+                     fmt::format("must be greater than `from` in each component, but {} <= {}", region.to[k],
+                                 region.from[k]));
 }
 
 void check_camera(const CameraSettings& camera, const Node& node, Reader& reader) {

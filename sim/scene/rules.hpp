@@ -8,8 +8,11 @@ namespace scree {
 void check_time(const TimeSettings& time, const Node& node, Reader& reader);
 void check_plane(const PlaneEntry& plane, const Node& node, Reader& reader);
 void check_rotation(const RotationEntry& rotation, const Node& node, Reader& reader);
+void check_motion(const MotionEntry& motion, const Node& node, Reader& reader);
 void check_scatter(const ScatterEntry& scatter, const Node& node, Reader& reader);
 void check_body(const BodyEntry& body, const Node& node, Reader& reader);
+void check_force(const ForceEntry& force, const Node& node, Reader& reader);
+void check_region(const Region& region, const Node& node, Reader& reader);
 void check_camera(const CameraSettings& camera, const Node& node, Reader& reader);
 void check_check(const CheckEntry& check, const Node& node, Reader& reader);
 template <class T>

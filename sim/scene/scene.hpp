@@ -7,6 +7,7 @@
 #include "narrowphase/settings.hpp"
 
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <filesystem>
 #include <map>
@@ -35,11 +36,40 @@ struct TimeSettings {
   int substeps = 1;  ///< contacts are found and solved this many times per step
 };
 
-/// Prescribed motion: constant velocity, and constant spin about `about` (the body's own position if absent).
+/// Prescribed motion: constant spin about a point that moves along with constant velocity.
 struct Motion {
   std::int32_t body = 0;
   Vec3 velocity = Vec3::Zero();  ///< m/s
   Vec3 spin = Vec3::Zero();      ///< rad/s
+  std::optional<Vec3> about;     ///< the point, at the start (m); absent: the body's centre
+};
+
+/// Bodies first, first + 1, ...: those of one item of `bodies`, or one of them.
+struct BodyRange {
+  std::int32_t first = 0;
+  std::int32_t count = 1;
+};
+
+/// from <= t < until (s), both taken at the step nearest to them; see TimeGrid::steps_in().
+struct TimeSpan {
+  double from = 0;
+  double until = HUGE_VAL;
+};
+
+/// A constant force on the centre of each of the bodies, and a torque on each, in the world frame. The bodies
+/// are free ones.
+struct AppliedForce {
+  BodyRange on;
+  Vec3 force = Vec3::Zero();   ///< N
+  Vec3 torque = Vec3::Zero();  ///< N m
+  TimeSpan during;
+};
+
+/// A named box to measure in, its faces along the world's axes; closed.
+struct Region {
+  std::string name;
+  Vec3 from = Vec3::Zero();  ///< m
+  Vec3 to = Vec3::Zero();    ///< m; greater in each component
 };
 
 enum class ResponseMode { standard };  ///< `default` in the scene language
@@ -115,6 +145,8 @@ struct Scene {
   BodyTable bodies;                                ///< at t = 0; id[k] = k
   std::map<std::string, std::int32_t> body_names;  ///< named bodies, name[k] of a repeat included
   std::vector<Motion> motions;                     ///< of the prescribed bodies, by ascending body
+  std::vector<Region> regions;
+  std::vector<AppliedForce> forces;  ///< besides gravity
   ResponseSettings response;
   BroadPhaseSettings broadphase;
   NarrowPhaseSettings narrowphase;

@@ -46,6 +46,10 @@ std::int64_t TimeGrid::last_in(double to) const {
   return time(near) > to * (1 + rounding) ? near - 1 : near;
 }
 
+TimeGrid::Steps TimeGrid::steps_in(const TimeSpan& span) const {
+  return {nearest(span.from), contains(span.until) ? nearest(span.until) : last_ + 1};
+}
+
 bool TimeGrid::contains(double t) const { return t <= end_ * (1 + rounding); }
 
 std::int64_t Cadence::due(std::int64_t step) {

@@ -23,6 +23,14 @@ class TimeGrid {
   /// First and last step in the closed interval [from, to]; the first is the greater where there is none.
   std::int64_t first_in(double from) const;
   std::int64_t last_in(double to) const;
+  /// The steps k whose time lies in the span, first <= k < end: what the span is about is there in their
+  /// states, and acts in the steps that follow them.
+  struct Steps {
+    std::int64_t first;
+    std::int64_t end;
+    bool holds(std::int64_t step) const { return first <= step && step < end; }
+  };
+  Steps steps_in(const TimeSpan& span) const;
   /// Whether a time is not after the end, but for rounding.
   bool contains(double time) const;
 

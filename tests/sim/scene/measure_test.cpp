@@ -11,7 +11,13 @@
 namespace scree {
 namespace {
 
-const std::map<std::string, std::int32_t> names{{"puck", 4}, {"bed[0]", 7}, {"bed[12]", 19}};
+Scene named_scene() {
+  Scene scene;
+  scene.body_names = {{"puck", 4}, {"bed[0]", 7}, {"bed[12]", 19}};
+  scene.regions = {{.name = "entry"}, {.name = "exit"}};
+  return scene;
+}
+const Scene names = named_scene();
 
 /// Every quantity a different number, so that no two measures can be confused.
 Observation numbered() {
@@ -31,6 +37,7 @@ Observation numbered() {
   o.speed_max = 521;
   o.speed_rms = 522;
   o.coordination_mean = 523;
+  o.regions = {{524, 525, 526}, {527, 528, 529}};
   return o;
 }
 
@@ -79,6 +86,10 @@ TEST(Measure, EachNameHasItsValue) {
       {"speed.max", 521},
       {"speed.rms", 522},
       {"coordination.mean", 523},
+      {"region.entry.count", 524},
+      {"region.exit.count", 527},
+      {"region.entry.fraction", 525},
+      {"region.exit.flux", 529},
       {"puck.position.x", 4},
       {"bed[0].position.x", 7},
       {"bed[12].position.x", 19},
@@ -99,8 +110,8 @@ TEST(Measure, TiltIsExactForSmallAngles) { EXPECT_NEAR(value("puck.tilt"), 1e-9,
 
 TEST(Measure, OfTheRunAsksForNoBody) {
   const auto none = [](std::int32_t) -> BodyState { throw std::logic_error("asked for a body"); };
-  EXPECT_EQ(evaluate(parse_measure("energy.total", {}), numbered(), none), 7);
-  EXPECT_EQ(parse_measure("energy.total", {}).body, -1);
+  EXPECT_EQ(evaluate(parse_measure("energy.total", Scene{}), numbered(), none), 7);
+  EXPECT_EQ(parse_measure("energy.total", Scene{}).body, -1);
 }
 
 TEST(Measure, UnknownNamesAreErrors) {
@@ -117,13 +128,16 @@ TEST(Measure, UnknownNamesAreErrors) {
   EXPECT_EQ(message("enrgy.total"),
             "enrgy.total is no measure: there is no body called enrgy (did you mean energy?)");
   EXPECT_EQ(message("energy"), "energy is no measure: energy is unknown");
-  EXPECT_EQ(message("puck"), "puck is no measure: it says nothing about the body, such as .position.z");
+  EXPECT_EQ(message("puck"), "puck is no measure: it says nothing about puck, such as .position.z");
   EXPECT_EQ(message("puck.positon.z"),
             "puck.positon.z is no measure: positon.z is unknown (did you mean position?)");
   EXPECT_EQ(message("puck.position.w"), "puck.position.w is no measure: position needs .x, .y, .z or .norm");
   EXPECT_EQ(message("momentum"), "momentum is no measure: momentum needs .x, .y, .z or .norm");
-  EXPECT_EQ(message("region.exit.flux"),
-            "region.exit.flux is part of the scene language but not in this version");
+  EXPECT_EQ(message("region.exti.flux"),
+            "region.exti.flux is no measure: there is no region called exti (did you mean exit?)");
+  EXPECT_EQ(message("region.exit"), "region.exit is no measure: it says nothing about exit, such as .count");
+  EXPECT_EQ(message("region.exit.flow"),
+            "region.exit.flow is no measure: flow is unknown (did you mean flux?)");
   for (const char* text :
        {"", ".", "puck.", ".x", "puck.tilt.x", "energy.total.x", "momentum.x.y", "bed.tilt"})
     EXPECT_NE(message(text), "no error") << text;

@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cmath>
 #include <string>
+#include <tuple>
 
 namespace scree {
 namespace {
@@ -277,6 +278,30 @@ TEST(SceneBodies, AliasesAreExpanded) {
   const Scene scene =
       scene_of("  - {sphere: &ball {radius: 2}, material: glass}\n  - {sphere: *ball, material: steel}\n");
   EXPECT_EQ(scene.bodies.size[1].x(), 2);
+}
+
+TEST(SceneBodies, ForcesFindTheirBodies) {
+  const Scene scene = scene_of(
+      "  - {sphere: {radius: 0.1}, name: a, at: [9, 0, 0], material: glass}\n"
+      "  - {sphere: {radius: 0.1}, name: b, material: glass, repeat: {count: [3, 1, 1], spacing: [1, 0, "
+      "0]}}\n",
+      "forces:\n  - {on: a, force: [1, 2, 3]}\n  - {on: b, torque: [0, 0, 4], from: 0.2, until: 0.5}\n"
+      "  - {on: \"b[1]\", force: [0, 0, 1], until: 5}\n");
+  ASSERT_EQ(scene.forces.size(), 3u);
+  const auto& [a, b, b1] = std::tie(scene.forces[0], scene.forces[1], scene.forces[2]);
+  EXPECT_EQ(a.on.first, 0);
+  EXPECT_EQ(a.on.count, 1);
+  EXPECT_EQ(a.force, Vec3(1, 2, 3));
+  EXPECT_EQ(a.torque, Vec3(0, 0, 0));
+  EXPECT_EQ(a.during.from, 0);
+  EXPECT_EQ(a.during.until, HUGE_VAL);
+  EXPECT_EQ(b.on.first, 1);
+  EXPECT_EQ(b.on.count, 3);
+  EXPECT_EQ(b.torque, Vec3(0, 0, 4));
+  EXPECT_EQ(b.during.from, 0.2);
+  EXPECT_EQ(b.during.until, 0.5);
+  EXPECT_EQ(b1.on.first, 2);
+  EXPECT_EQ(b1.on.count, 1);
 }
 
 }  // namespace

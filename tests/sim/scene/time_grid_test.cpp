@@ -92,5 +92,22 @@ TEST(Cadence, LosesNoFrameWhateverTheRates) {
   EXPECT_EQ(at_once.due(3000), 181) << "steps that were not asked about are made up for";
 }
 
+TEST(TimeGrid, SpansAreHalfOpenAndTakenAtTheNearestSteps) {
+  const TimeGrid grid({.end = 1, .step = 0.1});
+  const auto steps = [&](double from, double until) {
+    const TimeGrid::Steps s = grid.steps_in({from, until});
+    return std::pair(s.first, s.end);
+  };
+  EXPECT_EQ(steps(0, HUGE_VAL), std::pair(std::int64_t{0}, std::int64_t{11}));
+  EXPECT_EQ(steps(0.3, 0.7), std::pair(std::int64_t{3}, std::int64_t{7}));
+  EXPECT_EQ(steps(0.34, 0.66), std::pair(std::int64_t{3}, std::int64_t{7}));
+  EXPECT_EQ(steps(0, 1), std::pair(std::int64_t{0}, std::int64_t{10}));  // gone in the last state
+  EXPECT_EQ(steps(0, 1.01), std::pair(std::int64_t{0}, std::int64_t{11}));
+  EXPECT_FALSE(grid.steps_in({0.3, 0.7}).holds(2));
+  EXPECT_TRUE(grid.steps_in({0.3, 0.7}).holds(3));
+  EXPECT_TRUE(grid.steps_in({0.3, 0.7}).holds(6));
+  EXPECT_FALSE(grid.steps_in({0.3, 0.7}).holds(7));
+}
+
 }  // namespace
 }  // namespace scree

@@ -1,0 +1,28 @@
+#include "sim/dynamics/region.hpp"
+
+#include "core/parallel.hpp"
+
+namespace scree {
+
+namespace {
+
+struct BodyContents {
+  ConstBodyView bodies;
+  Vec3 low;
+  Vec3 high;
+  SCREE_HD RegionContents operator()(std::int64_t k) const {
+    if (bodies.mobility[k] != Mobility::free) return {};
+    const Vec3& x = bodies.position[k];
+    if ((x.array() < low.array()).any() || (x.array() > high.array()).any()) return {};
+    return {1, volume_of(bodies.shape[k], bodies.size[k]), 1.0 / bodies.inverse_mass[k]};
+  }
+};
+
+}  // namespace
+
+RegionContents contents_of(const Region& region, const Bodies<Host>& bodies) {
+  return parallel::sum<RegionContents, Host>("region.contents", bodies.count(),
+                                             BodyContents{view_of(bodies), region.from, region.to});
+}
+
+}  // namespace scree
