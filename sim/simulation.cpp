@@ -179,8 +179,8 @@ struct Simulation::Parts {
       if (views.mobility[k] == Mobility::fixed) continue;
       const auto at = static_cast<std::size_t>(k);
       double moved = (views.position[k] - pair_position[at]).norm();
-      if (views.shape[k] == Shape::box) {
-        moved += bounding_radius(Shape::box, views.size[k]) *
+      if (views.shape[k] != Shape::sphere) {
+        moved += bounding_radius(views.shape[k], views.size[k]) *
                  views.orientation[k].angularDistance(pair_orientation[at]);
       }
       if (moved + contact_margin.view()[k] > pair_margin.view()[k]) return true;

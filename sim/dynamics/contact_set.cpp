@@ -2,6 +2,7 @@
 
 #include "core/parallel.hpp"
 
+#include <algorithm>
 #include <utility>
 
 namespace scree {
@@ -9,15 +10,19 @@ namespace scree {
 bool ImpulseMemory::recall(const Manifold& manifold, Vec3 impulses[Manifold::max_points]) const {
   for (int k = 0; k < manifold.count; ++k) impulses[k].setZero();
   if (begin_.empty()) return false;
+  const auto place = [](const auto& contact) { return std::pair(contact.j, contact.part); };
+  const auto before = [place](const Entry& entry, const Manifold& wanted) {
+    return place(entry) < place(wanted);
+  };
+  // A floor may have as many entries as there are bodies.
+  const Entry* last = entries_.data() + begin_.view()[manifold.i + 1];
+  const Entry* entry = std::lower_bound(entries_.data() + begin_.view()[manifold.i], last, manifold, before);
   bool loaded = false;
-  for (std::int64_t e = begin_.view()[manifold.i]; e < begin_.view()[manifold.i + 1]; ++e) {
-    const Entry& entry = entries_.view()[e];
-    if (entry.j != manifold.j) continue;
-    for (int old = 0; old < entry.count; ++old) {
-      // Loaded is a matter of the pair: where one corner rests, the others do not bounce.
-      loaded = loaded || !entry.impulse[old].isZero(0);
+  for (; entry != last && place(*entry) == place(manifold); ++entry) {
+    for (int old = 0; old < entry->count; ++old) {
+      loaded = loaded || !entry->impulse[old].isZero(0);
       for (int k = 0; k < manifold.count; ++k) {
-        if (entry.feature[old] == manifold.points[k].feature) impulses[k] = entry.impulse[old];
+        if (entry->feature[old] == manifold.points[k].feature) impulses[k] = entry->impulse[old];
       }
     }
   }
@@ -50,24 +55,24 @@ struct PrepareContact {
     const double friction = parameters.friction ? law.friction : 0.0;
     Vec3 remembered[Manifold::max_points];
     const bool loaded = memory->recall(manifold, remembered);
-    contacts[c] = {.i = manifold.i,
-                   .j = manifold.j,
-                   .manifold = order[c],
-                   .count = manifold.count,
-                   .first_row = first_row[c],
-                   .normal = manifold.normal,
-                   .friction = friction,
-                   .restitution = parameters.restitution ? law.restitution : 0.0,
-                   .loaded = loaded,
-                   .falling = false,
-                   .balls = laws.acts_as_ball(manifold.i) && laws.acts_as_ball(manifold.j),
-                   .free_ends = static_cast<int>(laws.is_free(manifold.i)) +
-                                static_cast<int>(laws.is_free(manifold.j)),
-                   .impulse = Vec3::Zero()};
+    contacts[c] = {
+        .i = manifold.i,
+        .j = manifold.j,
+        .manifold = order[c],
+        .count = manifold.count,
+        .first_row = first_row[c],
+        .normal = manifold.normal,
+        .friction = friction,
+        .restitution = parameters.restitution ? law.restitution : 0.0,
+        .loaded = loaded,
+        .falling = false,
+        .balls = laws.acts_as_ball(manifold.i) && laws.acts_as_ball(manifold.j),
+        .free_ends = static_cast<int>(laws.is_free(manifold.i)) + static_cast<int>(laws.is_free(manifold.j)),
+        .impulse = Vec3::Zero()};
     for (int k = 0; k < manifold.count; ++k) {
-      rows[first_row[c] + k].impulse =
-          parameters.warm_start ? project_on_cone(scale * remembered[k], manifold.normal, friction)
-                                : Vec3(Vec3::Zero());
+      rows[first_row[c] + k].impulse = parameters.warm_start
+                                           ? project_on_cone(scale * remembered[k], manifold.normal, friction)
+                                           : Vec3(Vec3::Zero());
     }
   }
 };
@@ -81,6 +86,7 @@ struct StoreEntry {
     const Contact& contact = contacts[c];
     ImpulseMemory::Entry& entry = entries[contact.manifold];
     entry.j = contact.j;
+    entry.part = manifolds[contact.manifold].part;
     entry.count = contact.count;
     for (int k = 0; k < contact.count; ++k) {
       entry.feature[k] = manifolds[contact.manifold].points[k].feature;
@@ -105,9 +111,8 @@ struct MarkBegins {
 void ImpulseMemory::remember(ConstView<Manifold> manifolds, const ContactSet& set, std::int64_t bodies) {
   entries_.resize(manifolds.size());
   begin_.resize(bodies + 1);
-  parallel::for_each<Host>(
-      "contacts.remember", manifolds.size(),
-      StoreEntry{manifolds, set.contacts.view(), set.rows.view(), entries_.view()});
+  parallel::for_each<Host>("contacts.remember", manifolds.size(),
+                           StoreEntry{manifolds, set.contacts.view(), set.rows.view(), entries_.view()});
   parallel::for_each<Host>("contacts.remember", manifolds.size() + 1, MarkBegins{manifolds, begin_.view()});
 }
 
@@ -123,8 +128,7 @@ void prepare_contacts(ConstView<Manifold> manifolds, const ContactLaws& laws, co
   set.couplings.resize(rows);
   parallel::for_each<Host>("contacts.prepare", n,
                            PrepareContact{manifolds, order, std::as_const(set.first_row).view(), laws,
-                                          &memory, scale, parameters, set.contacts.view(),
-                                          set.rows.view()});
+                                          &memory, scale, parameters, set.contacts.view(), set.rows.view()});
 }
 
 }  // namespace scree

@@ -40,23 +40,25 @@ struct ContactSet {
   Coloring coloring;
   Array<std::int32_t, Host> counts;  ///< of the points of each contact, and where its rows begin
   Array<std::int64_t, Host> first_row;
-  Array<Contact, Host> contacts;  ///< in the order of the colours
-  Array<ContactRow, Host> rows;   ///< of one contact after the other
+  Array<Contact, Host> contacts;       ///< in the order of the colours
+  Array<ContactRow, Host> rows;        ///< of one contact after the other
   Array<RowCoupling, Host> couplings;  ///< of the rows; not set for those of balls
-  Array<Vec3, Host> shift;        ///< of each body's midpoint position, by impacts of this substep (m)
+  Array<Vec3, Host> shift;             ///< of each body's midpoint position, by impacts of this substep (m)
 };
 
-/// Impulses of the last substep, by pair and feature. Ordered by (i, j), as manifolds are, with the place where
-/// those of each i begin.
+/// Impulses of the last substep, by pair, part and feature. Ordered by (i, j, part), as manifolds are, with
+/// the place where those of each i begin.
 class ImpulseMemory {
  public:
-  /// Finds the last impulses of a manifold's points (N s, world frame); false if none of them carried any.
+  /// Finds the last impulses of a manifold's points (N s, world frame). False if none of the pair's points on
+  /// that part carried any: where one corner rests, the others do not bounce.
   bool recall(const Manifold& manifold, Vec3 impulses[Manifold::max_points]) const;
   /// Takes the impulses of the rows; `bodies` is their number.
   void remember(ConstView<Manifold> manifolds, const ContactSet& set, std::int64_t bodies);
 
   struct Entry {
     std::int32_t j;
+    std::int32_t part;
     std::int32_t count;
     std::uint32_t feature[Manifold::max_points];
     Vec3 impulse[Manifold::max_points];

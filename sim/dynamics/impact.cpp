@@ -2,7 +2,9 @@
 
 #include "core/parallel.hpp"
 #include "core/tolerances.hpp"
+#include "narrowphase/tube.hpp"
 #include "sim/dynamics/colored.hpp"
+#include "sim/dynamics/flight.hpp"
 
 #include <utility>
 
@@ -10,22 +12,12 @@ namespace scree {
 
 namespace {
 
-/// A body in flight, as the impact search sees it.
-struct Flight {
-  Vec3 position;      ///< at the midpoint
-  Vec3 acceleration;  ///< gravity, or 0 for bodies that are not free
-
-  SCREE_HD Vec3 at(const Vec3& velocity, double step, double s) const {
-    return position + (s - 0.5 * step) * velocity + (0.5 * s * s) * acceleration;
-  }
-};
-
 /// The next impact of a contact: when, along which normal, and which of its points take part.
 struct Impact {
   double time = HUGE_VAL;
   Vec3 normal;
   int count = 0;
-  int point[Manifold::max_points];
+  int point[Manifold::max_points] = {};
 };
 
 /// Everything that the functors below share.
@@ -36,8 +28,8 @@ struct ImpactStage {
   BodyView bodies;
   View<SolverBody> solver;
   View<Contact> contacts;
-  View<Vec3> shift;     ///< of the midpoint positions by impacts so far
-  View<double> clock;   ///< time of each body's last impact in this substep
+  View<Vec3> shift;              ///< of the midpoint positions by impacts so far
+  View<double> clock;            ///< time of each body's last impact in this substep
   View<std::int32_t> last_pass;  ///< in which each body was last hit
   View<Ledger> ledger;           ///< per contact
 
@@ -88,7 +80,33 @@ struct ImpactStage {
     impact.time = s;
   }
 
+  /// True for a ball and the wall of a tube: its normal goes round with the ball.
+  bool meets_wall(const Contact& c) const {
+    const Shape i = bodies.shape[c.i];
+    const Shape j = bodies.shape[c.j];
+    return (i == Shape::tube || j == Shape::tube) && (i == Shape::sphere || j == Shape::sphere) &&
+           manifolds[c.manifold].part == tube_wall;
+  }
+
+  Impact next_wall_impact_of(const Contact& c) const {
+    const bool ball_first = bodies.shape[c.i] == Shape::sphere;
+    const std::int32_t ball = ball_first ? c.i : c.j;
+    const std::int32_t tube = ball_first ? c.j : c.i;
+    const Vec3 axis = bodies.orientation[tube] * Vec3::UnitZ();
+    const auto across = [&axis](const Vec3& v) { return Vec3(v - axis.dot(v) * axis); };
+    const Vec3 offset = bodies.position[ball] - bodies.position[tube];
+    // Spin about the axis leaves the wall where it is; spin across it does not.
+    const Vec3 wall_velocity = solver[tube].velocity_at(axis.dot(offset) * axis);
+    const WallImpact next = next_wall_impact({.flight = {across(offset), across(flight(ball).acceleration)},
+                                              .velocity = across(solver[ball].velocity - wall_velocity),
+                                              .reach = bodies.size[tube].x() - bodies.size[ball].x()},
+                                             step, fmax(clock[c.i], clock[c.j]));
+    if (next.time == HUGE_VAL || !is_fast(-next.speed, c)) return {};
+    return {.time = next.time, .normal = ball_first ? next.outward : Vec3(-next.outward), .count = 1};
+  }
+
   Impact next_impact(const Contact& c) const {
+    if (meets_wall(c)) return next_wall_impact_of(c);
     Impact impact;
     const Manifold& m = manifolds[c.manifold];
     const SolverBody& bi = solver[c.i];
@@ -129,12 +147,13 @@ struct ImpactStage {
   }
 
   /// The common point. Bodies slide along one another between the midpoint and the impact: the more curved
-  /// surface carries the point with it (sphere before box before plane); between equals it lies in the
-  /// middle.
+  /// surface carries the point with it (sphere before box before plane or tube); between equals it lies in
+  /// the middle.
   Vec3 touching_point(const Contact& c, const Vec3& normal, const Vec3& on_i, const Vec3& on_j) const {
     const Shape i = bodies.shape[c.i];
     const Shape j = bodies.shape[c.j];
-    const double apart = normal.dot(on_j - on_i);
+    // The point of the wall at the midpoint says nothing of where the wall is at the impact.
+    const double apart = meets_wall(c) ? 0.0 : normal.dot(on_j - on_i);
     if (i == j) return 0.5 * (on_i + on_j);
     return i < j ? Vec3(on_i + (0.5 * apart) * normal) : Vec3(on_j - (0.5 * apart) * normal);
   }
@@ -274,8 +293,9 @@ Ledger ImpactSolver::resolve(const ImpactProblem& problem, const ResponseParamet
   parallel::fill("impact.reset", clock_, 0.0);
   parallel::fill("impact.reset", last_pass_, std::int32_t{-2});
   parallel::fill("impact.reset", ledger_, Ledger{});
-  const ImpactStage stage{problem.manifolds,   problem.step,     parameters,    problem.bodies, solver.view(),
-                          set.contacts.view(), set.shift.view(), clock_.view(), last_pass_.view(), ledger_.view()};
+  const ImpactStage stage{problem.manifolds, problem.step,        parameters,       problem.bodies,
+                          solver.view(),     set.contacts.view(), set.shift.view(), clock_.view(),
+                          last_pass_.view(), ledger_.view()};
   bool closing = true;
   for (std::int32_t pass = 0; pass < chain_passes && closing; ++pass) {
     for_each_color("impact.visit", set.coloring, [&](std::int64_t first) {

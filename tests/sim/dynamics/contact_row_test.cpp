@@ -34,11 +34,7 @@ struct Problem {
 
 Problem random_problem(std::uint64_t item, bool spheres) {
   Random random(11, item);
-  Problem p{random_box(random),
-            random_box(random),
-            {},
-            {},
-            random_vector(random, 1).normalized(),
+  Problem p{random_box(random),    random_box(random), {}, {}, random_vector(random, 1).normalized(),
             random.uniform(0, 1.2)};
   Vec3 arm_i = random_vector(random, 0.5);
   Vec3 arm_j = random_vector(random, 0.5);
