@@ -32,16 +32,16 @@ const ContactLaw& law(const Scene& scene) {
 
 /// A sphere that starts without spin rolls at 5/7 of its speed, whatever the friction.
 double rolling_speed(const Scene& scene, const Findings& f) {
-  return std::abs(f.velocity.x() / (launch(scene).x() * 5 / 7) - 1);
+  return f.velocity.x() / (launch(scene).x() * 5 / 7) - 1;
 }
 
 /// Coulomb friction stops it after v^2 / (2 mu g).
 double stop_distance(const Scene& scene, const Findings& f) {
   const double expected = launch(scene).squaredNorm() / (2 * law(scene).friction * scene.gravity.norm());
-  return std::abs(f.travel.x() / expected - 1);
+  return f.travel.x() / expected - 1;
 }
 
-double drift(const Scene&, const Findings& f) { return f.worst_travel; }
+double drift(const Scene&, const Findings& f) { return f.worst_drift; }
 double penetration(const Scene&, const Findings& f) { return f.worst_penetration; }
 double relative_mean(const Scene&, const Findings& f) { return f.penetration.relative_mean; }
 double relative_max(const Scene&, const Findings& f) { return f.penetration.relative_max; }
@@ -53,7 +53,7 @@ double passed(const Scene& scene, const Findings& f) {
 }
 /// Of its speed after the impact, which is e times that before.
 double rebound(const Scene& scene, const Findings& f) {
-  return std::abs(f.velocity.x() / (-law(scene).restitution * launch(scene).x()) - 1);
+  return f.velocity.x() / (-law(scene).restitution * launch(scene).x()) - 1;
 }
 
 constexpr Measure end_penetration_mean = {"penetration mean", "r", relative_mean};

@@ -49,7 +49,8 @@ void Judge::see(const BodyTable& state) {
   Findings& f = findings_;
   f.travel = state.position.back() - first_place_;
   f.velocity = state.velocity.back();
-  f.worst_travel = std::max(f.worst_travel, f.travel.norm());
+  const Vec3 down = gravity_.normalized();  // 0 without gravity
+  f.worst_drift = std::max(f.worst_drift, (f.travel - f.travel.dot(down) * down).norm());
 }
 
 void Judge::measure_energy(const BodyTable& state) {

@@ -21,7 +21,7 @@ struct Findings {
   double rms_speed = 0;            ///< sqrt(2 K / mass), spin included, in the newest state (m/s)
   Vec3 travel = Vec3::Zero();      ///< of the scene's last body, from the first state to the newest (m)
   Vec3 velocity = Vec3::Zero();    ///< of the scene's last body (m/s)
-  double worst_travel = 0;         ///< farthest from its first place (m)
+  double worst_drift = 0;          ///< farthest of that at right angles to gravity (m)
 };
 
 /// Sees the states of one run, the first of which is the scene's own.
