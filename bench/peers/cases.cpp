@@ -2,6 +2,7 @@
 
 #include "core/error.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace scree::bench {
@@ -32,13 +33,13 @@ const ContactLaw& law(const Scene& scene) {
 
 /// A sphere that starts without spin rolls at 5/7 of its speed, whatever the friction.
 double rolling_speed(const Scene& scene, const Findings& f) {
-  return f.velocity.x() / (launch(scene).x() * 5 / 7) - 1;
+  return f.newest.velocity.back().x() / (launch(scene).x() * 5 / 7) - 1;
 }
 
 /// Coulomb friction stops it after v^2 / (2 mu g).
 double stop_distance(const Scene& scene, const Findings& f) {
   const double expected = launch(scene).squaredNorm() / (2 * law(scene).friction * scene.gravity.norm());
-  return f.travel.x() / expected - 1;
+  return (f.newest.position.back() - scene.bodies.position.back()).x() / expected - 1;
 }
 
 double drift(const Scene&, const Findings& f) { return f.worst_drift; }
@@ -47,13 +48,20 @@ double relative_mean(const Scene&, const Findings& f) { return f.penetration.rel
 double relative_max(const Scene&, const Findings& f) { return f.penetration.relative_max; }
 double rms_speed(const Scene&, const Findings& f) { return f.rms_speed; }
 
-/// 1 if the pellet is behind the plate at the end.
+/// Share of the pellets, all bodies but the plate, that are behind the plate at the end.
 double passed(const Scene& scene, const Findings& f) {
-  return f.travel.x() > scene.bodies.position.front().x() - scene.bodies.position.back().x() ? 1 : 0;
+  const double plate = scene.bodies.position.front().x();
+  const auto behind = std::count_if(f.newest.position.begin() + 1, f.newest.position.end(),
+                                    [&](const Vec3& at) { return at.x() > plate; });
+  return static_cast<double>(behind) / static_cast<double>(scene.bodies.position.size() - 1);
 }
-/// Of its speed after the impact, which is e times that before.
+/// Worst of the speeds after the impact, which is e times that before.
 double rebound(const Scene& scene, const Findings& f) {
-  return f.velocity.x() / (-law(scene).restitution * launch(scene).x()) - 1;
+  const double expected = -law(scene).restitution * launch(scene).x();
+  double worst = 0;
+  for (std::size_t k = 1; k < f.newest.velocity.size(); ++k)
+    worst = std::max(worst, std::abs(f.newest.velocity[k].x() / expected - 1));
+  return worst;
 }
 
 constexpr Measure end_penetration_mean = {"penetration mean", "r", relative_mean};

@@ -44,13 +44,12 @@ Judge::Judge(const Scene& scene)
 }
 
 void Judge::see(const BodyTable& state) {
+  findings_.newest = state;
   measure_energy(state);
   measure_penetration_of(state);
-  Findings& f = findings_;
-  f.travel = state.position.back() - first_place_;
-  f.velocity = state.velocity.back();
+  const Vec3 travel = state.position.back() - first_place_;
   const Vec3 down = gravity_.normalized();  // 0 without gravity
-  f.worst_drift = std::max(f.worst_drift, (f.travel - f.travel.dot(down) * down).norm());
+  findings_.worst_drift = std::max(findings_.worst_drift, (travel - travel.dot(down) * down).norm());
 }
 
 void Judge::measure_energy(const BodyTable& state) {

@@ -13,15 +13,14 @@
 namespace scree::bench {
 
 struct Findings {
+  BodyTable newest;                ///< the state seen last
   double energy = 0;               ///< K + U of the free bodies in the newest state (J)
   double energy_change = 0;        ///< the same, less that of the first state
   double worst_energy_change = 0;  ///< the largest of either sign, as an amount
   Penetration penetration;         ///< in the newest state, true geometry
   double worst_penetration = 0;    ///< of all states (m)
   double rms_speed = 0;            ///< sqrt(2 K / mass), spin included, in the newest state (m/s)
-  Vec3 travel = Vec3::Zero();      ///< of the scene's last body, from the first state to the newest (m)
-  Vec3 velocity = Vec3::Zero();    ///< of the scene's last body (m/s)
-  double worst_drift = 0;          ///< farthest of that at right angles to gravity (m)
+  double worst_drift = 0;  ///< of the scene's last body from its start, at right angles to gravity (m)
 };
 
 /// Sees the states of one run, the first of which is the scene's own.
@@ -38,7 +37,7 @@ class Judge {
   Vec3 gravity_;
   Findings findings_;
   double first_energy_ = 0;
-  Vec3 first_place_;
+  Vec3 first_place_;  // of the last body
   std::unique_ptr<PairFinder> pair_finder_;
   NarrowPhase narrow_phase_;
 };
