@@ -74,9 +74,6 @@ class BulletEngine : public Engine {
     gContactBreakingThreshold = setting.contact_distance;
     for (std::size_t k = 0; k < scene.bodies.position.size(); ++k) add_body(k, setting.continuous);
   }
-  ~BulletEngine() override {
-    for (const auto& body : bodies_) world_.removeRigidBody(body.get());
-  }
 
   void step() override { world_.stepSimulation(step_, 0); }
 

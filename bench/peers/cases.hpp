@@ -22,7 +22,6 @@ struct Case {
   std::vector<Measure> measures;
 };
 
-const std::vector<Case>& all_cases();
 /// Throws InputError for a name that none has.
 const Case& find_case(const std::string& name);
 

@@ -11,9 +11,12 @@ namespace scree::bench {
 namespace {
 
 struct Energy {
-  double kinetic = 0;
+  double linear = 0;
+  double angular = 0;
   double potential = 0;
   double mass = 0;
+
+  double total() const { return linear + angular + potential; }
 };
 
 /// sum of m v^2 / 2 + w.I w / 2 and of -m g.x over the free bodies.
@@ -23,8 +26,8 @@ Energy energy_of(const BodyTable& state, const Vec3& gravity) {
     if (state.mobility[k] != Mobility::free) continue;
     const double mass = 1 / state.inverse_mass[k];
     const Vec3 spin = state.orientation[k].conjugate() * state.spin[k];  // in the body's frame
-    sum.kinetic += 0.5 * mass * state.velocity[k].squaredNorm() +
-                   0.5 * spin.cwiseProduct(spin).dot(state.inverse_inertia[k].cwiseInverse());
+    sum.linear += 0.5 * mass * state.velocity[k].squaredNorm();
+    sum.angular += 0.5 * spin.cwiseProduct(spin).dot(state.inverse_inertia[k].cwiseInverse());
     sum.potential -= mass * gravity.dot(state.position[k]);
     sum.mass += mass;
   }
@@ -38,8 +41,7 @@ Judge::Judge(const Scene& scene)
       first_place_(scene.bodies.position.back()),
       pair_finder_(make_pair_finder({}, false, Vec3::Zero())),
       narrow_phase_(NarrowPhaseSettings{}) {
-  const Energy energy = energy_of(scene.bodies, gravity_);
-  first_energy_ = energy.kinetic + energy.potential;
+  first_energy_ = energy_of(scene.bodies, gravity_).total();
   see(scene.bodies);
 }
 
@@ -55,10 +57,10 @@ void Judge::see(const BodyTable& state) {
 void Judge::measure_energy(const BodyTable& state) {
   const Energy energy = energy_of(state, gravity_);
   Findings& f = findings_;
-  f.energy = energy.kinetic + energy.potential;
-  f.energy_change = f.energy - first_energy_;
+  f.spin_energy = energy.angular;
+  f.energy_change = energy.total() - first_energy_;
   f.worst_energy_change = std::max(f.worst_energy_change, std::abs(f.energy_change));
-  f.rms_speed = std::sqrt(2 * energy.kinetic / energy.mass);
+  f.rms_speed = std::sqrt(2 * (energy.linear + energy.angular) / energy.mass);
 }
 
 void Judge::measure_penetration_of(const BodyTable& state) {

@@ -14,13 +14,13 @@ namespace scree::bench {
 
 struct Findings {
   BodyTable newest;                ///< the state seen last
-  double energy = 0;               ///< K + U of the free bodies in the newest state (J)
-  double energy_change = 0;        ///< the same, less that of the first state
+  double spin_energy = 0;          ///< part of K in the newest state (J)
+  double energy_change = 0;        ///< of K + U of the free bodies, from the first state to the newest (J)
   double worst_energy_change = 0;  ///< the largest of either sign, as an amount
   Penetration penetration;         ///< in the newest state, true geometry
   double worst_penetration = 0;    ///< of all states (m)
   double rms_speed = 0;            ///< sqrt(2 K / mass), spin included, in the newest state (m/s)
-  double worst_drift = 0;  ///< of the scene's last body from its start, at right angles to gravity (m)
+  double worst_drift = 0;          ///< of the last body from its start, at right angles to gravity (m)
 };
 
 /// Sees the states of one run, the first of which is the scene's own.

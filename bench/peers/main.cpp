@@ -39,9 +39,11 @@ struct Cost {
   double total = 0;   ///< of all steps (s)
 };
 
-/// Steps to the end; `judge` sees what the case wants it to see.
+/// Steps to the scene's end; `judge` sees what the case wants it to see.
 Cost run_case(const Case& wanted, const Scene& scene, double step, Engine& engine, Judge& judge) {
   const auto steps = std::lround(scene.time.end / step);
+  if (std::abs(static_cast<double>(steps) * step - scene.time.end) > 1e-9 * scene.time.end)
+    throw InputError("--step: must divide the scene's end");
   const auto per_sample = std::max(std::lround(wanted.watch_every / step), 1L);
   BodyTable state = scene.bodies;
   std::vector<double> samples;
@@ -87,7 +89,6 @@ int run(const Arguments& arguments) {
 }
 
 }  // namespace
-
 }  // namespace scree::bench
 
 int main(int argc, char** argv) {

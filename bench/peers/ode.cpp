@@ -21,12 +21,21 @@ const std::map<std::string, OdeSetting> settings = {
     {"direct", {0}},
 };
 
-/// The library's own state; it lives as long as the program.
-void start_library() {
+struct Destroy {
+  void operator()(dWorldID world) const { dWorldDestroy(world); }
+  void operator()(dSpaceID space) const { dSpaceDestroy(space); }
+  void operator()(dJointGroupID group) const { dJointGroupDestroy(group); }
+};
+template <class Handle>
+using Owned = std::unique_ptr<std::remove_pointer_t<Handle>, Destroy>;
+
+/// The library's own state lives as long as the program.
+dWorldID create_world() {
   static const struct Library {
     Library() { dInitODE2(0); }
     ~Library() { dCloseODE(); }
   } library;
+  return dWorldCreate();
 }
 
 Vec3 from_ode(const dReal* v) { return {v[0], v[1], v[2]}; }
@@ -35,29 +44,19 @@ class OdeEngine : public Engine {
  public:
   OdeEngine(const OdeSetting& setting, const Scene& scene, double step)
       : scene_(scene), setting_(setting), step_(step) {
-    start_library();
-    world_ = dWorldCreate();
-    space_ = dHashSpaceCreate(nullptr);
-    contacts_ = dJointGroupCreate(0);
-    dWorldSetGravity(world_, scene.gravity.x(), scene.gravity.y(), scene.gravity.z());
-    if (setting.iterations > 0) dWorldSetQuickStepNumIterations(world_, setting.iterations);
+    dWorldSetGravity(world_.get(), scene.gravity.x(), scene.gravity.y(), scene.gravity.z());
+    if (setting.iterations > 0) dWorldSetQuickStepNumIterations(world_.get(), setting.iterations);
     for (std::size_t k = 0; k < scene.bodies.position.size(); ++k) add_body(k);
   }
-  ~OdeEngine() override {
-    dJointGroupDestroy(contacts_);
-    dSpaceDestroy(space_);
-    dWorldDestroy(world_);
-  }
-  OdeEngine(const OdeEngine&) = delete;
-  OdeEngine& operator=(const OdeEngine&) = delete;
 
   void step() override {
-    dSpaceCollide(space_, this, [](void* engine, dGeomID a, dGeomID b) {
+    dSpaceCollide(space_.get(), this, [](void* engine, dGeomID a, dGeomID b) {
       static_cast<OdeEngine*>(engine)->add_contacts(a, b);
     });
-    const bool done = setting_.iterations > 0 ? dWorldQuickStep(world_, step_) : dWorldStep(world_, step_);
+    const bool done =
+        setting_.iterations > 0 ? dWorldQuickStep(world_.get(), step_) : dWorldStep(world_.get(), step_);
     if (!done) throw RunError("ODE has no memory for the step");
-    dJointGroupEmpty(contacts_);
+    dJointGroupEmpty(contacts_.get());
   }
 
   void read(BodyTable& bodies) const override {
@@ -77,12 +76,12 @@ class OdeEngine : public Engine {
     const Vec3& size = scene_.bodies.size[k];
     switch (scene_.bodies.shape[k]) {
       case Shape::sphere:
-        return dCreateSphere(space_, size.x());
+        return dCreateSphere(space_.get(), size.x());
       case Shape::box:
-        return dCreateBox(space_, 2 * size.x(), 2 * size.y(), 2 * size.z());
+        return dCreateBox(space_.get(), 2 * size.x(), 2 * size.y(), 2 * size.z());
       case Shape::plane: {
         const Vec3 up = scene_.bodies.orientation[k] * Vec3::UnitZ();
-        return dCreatePlane(space_, up.x(), up.y(), up.z(), up.dot(scene_.bodies.position[k]));
+        return dCreatePlane(space_.get(), up.x(), up.y(), up.z(), up.dot(scene_.bodies.position[k]));
       }
       default:
         throw InputError("ODE is given spheres, boxes and planes alone");
@@ -95,7 +94,7 @@ class OdeEngine : public Engine {
     dMass mass;
     dMassSetParameters(&mass, 1 / all.inverse_mass[k], 0, 0, 0, inertia.x(), inertia.y(), inertia.z(), 0, 0,
                        0);
-    const dBodyID body = dBodyCreate(world_);
+    const dBodyID body = dBodyCreate(world_.get());
     dBodySetMass(body, &mass);
     dBodySetLinearVel(body, all.velocity[k].x(), all.velocity[k].y(), all.velocity[k].z());
     dBodySetAngularVel(body, all.spin[k].x(), all.spin[k].y(), all.spin[k].z());
@@ -130,17 +129,17 @@ class OdeEngine : public Engine {
     contact.surface.bounce = law.restitution;
     for (int k = 0; k < count; ++k) {
       contact.geom = found[k];
-      dJointAttach(dJointCreateContact(world_, contacts_, &contact), first, second);
+      dJointAttach(dJointCreateContact(world_.get(), contacts_.get(), &contact), first, second);
     }
   }
 
   const Scene& scene_;
   OdeSetting setting_;
   double step_;
-  dWorldID world_;
-  dSpaceID space_;  // owns the geometries
-  dJointGroupID contacts_;
-  std::vector<dBodyID> bodies_;  // in the order of the scene; null where fixed
+  Owned<dWorldID> world_{create_world()};                // with the bodies
+  Owned<dSpaceID> space_{dHashSpaceCreate(nullptr)};     // with the geometries
+  Owned<dJointGroupID> contacts_{dJointGroupCreate(0)};  // of one step
+  std::vector<dBodyID> bodies_;                          // in the order of the scene; null where fixed
 };
 
 }  // namespace
