@@ -1,5 +1,6 @@
 // scree behind the interface of the benchmark.
 #include "bench/peers/engine.hpp"
+#include "core/error.hpp"
 #include "sim/simulation.hpp"
 
 #include <fmt/format.h>
@@ -34,7 +35,8 @@ std::unique_ptr<Engine> make_scree(const std::string& setting, const Scene& scen
   std::vector<Override> overrides = {{"time.step", fmt::format("{}", step)}};
   std::istringstream list(setting == "default" ? "" : setting);
   for (std::string item; std::getline(list, item, ',');) {
-    const std::size_t equals = std::min(item.find('='), item.size() - 1);
+    const std::size_t equals = item.find('=');
+    if (equals == std::string::npos) throw InputError("setting " + item + ": scree's are key=value");
     overrides.push_back({item.substr(0, equals), item.substr(equals + 1)});
   }
   return std::make_unique<ScreeEngine>(read_scene(scene.source, overrides));

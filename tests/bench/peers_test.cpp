@@ -78,7 +78,8 @@ TEST_P(Peers, SlideAsTheFrictionOfThePairSays) {
 
 TEST_P(Peers, RefuseASettingThatTheyDoNotKnow) {
   const Scene scene = scene_of("  - {sphere: {radius: 1}, material: a}\n");
-  EXPECT_THROW(make_engine(GetParam().engine, "no.such.setting=1", scene, step), InputError);
+  for (const char* setting : {"no.such.setting=1", "none"})
+    EXPECT_THROW(make_engine(GetParam().engine, setting, scene, step), InputError) << setting;
 }
 
 std::string name_of(const testing::TestParamInfo<Entrant>& entrant) {
