@@ -13,6 +13,10 @@ inline constexpr double closed_gap = 1e-5;
 /// Larger: more contacts to solve that never close.
 inline constexpr double contact_slack = 0.02;
 
+/// How much further the boxes of the broad phase reach (of smallest_size): the pairs last until a body has
+/// moved about this far. Larger: fewer broad phases, more pairs for the narrow phase. Never changes a result.
+inline constexpr double pair_skin = 0.1;
+
 /// Safety factor on the distance that a body can travel in a step, for what impacts add to its speed.
 inline constexpr double travel_factor = 1.05;
 
@@ -31,6 +35,8 @@ inline constexpr double restitution_threshold = 2.0;
 
 /// Slowest approach that can count as an impact, relative to the bodies' speeds: under it, it is rounding.
 inline constexpr double closing_speed = 1e-12;
+/// By how much contacts in flight may close faster than they do before they count as touched, relative.
+inline constexpr double flight_margin = 1e-9;
 /// Change at which the time of an impact is found (of the substep), and at which the impulses of one impact
 /// are (of their size). Both are met to rounding; energy depends on neither.
 inline constexpr double impact_time = 1e-15;
@@ -59,7 +65,7 @@ inline constexpr double parallel_edges = 1e-3;
 /// preferred separation, plus a length. Faces are preferred to edges and the first body's to the second's, so
 /// that noise in a resting stack does not change the manifold. Larger: steadier, but overlaps are
 /// overestimated by as much. The length must exceed same_feature.
-inline constexpr double axis_preference = 0.05;
+inline constexpr double axis_preference = 0.3;
 inline constexpr double axis_preference_length = 1e-4;
 
 /// Length under which two points of a box-box contact count as equally deep, and a vertex as still over a

@@ -49,10 +49,10 @@ struct Counters {
   std::int64_t impacts = 0;      ///< that bounced
   std::int64_t unconverged = 0;  ///< substeps that used all sweeps; raise response.iterations
   std::int64_t unfinished_impacts =
-      0;                             ///< substeps whose chains of impacts hit the bound; the rest took e = 0
-  std::int64_t pairs_made_anew = 0;  ///< times a body outran its box inside a step
-  std::int64_t ccd_calls = 0;        ///< box-box pairs given to libccd
-  std::int64_t ccd_rejected = 0;     ///< of these, answers that the certificate refused
+      0;                          ///< substeps whose chains of impacts hit the bound; the rest took e = 0
+  std::int64_t pcs_made = 0;      ///< broad phases: once, and whenever a body had left its box
+  std::int64_t ccd_calls = 0;     ///< box-box pairs given to libccd
+  std::int64_t ccd_rejected = 0;  ///< of these, answers that the certificate refused
 };
 
 /// A region of the scene at one instant; its bodies are the free ones whose centre lies in it.

@@ -2,6 +2,7 @@
 
 #include "broadphase/bounds.hpp"
 #include "core/error.hpp"
+#include "core/timing.hpp"
 
 #include <type_traits>
 #include <utility>
@@ -56,6 +57,17 @@ struct Last<Only> {
 };
 
 }  // namespace
+
+ConstView<Pair> KeptPairs::covering(const Bodies<Host>& bodies, const Array<double, Host>& contact_margin,
+                                    double reach, const ResponseParameters& parameters) {
+  const timing::Region region("broadphase");
+  if (kept_ && boxes_.hold(bodies, contact_margin)) return pairs_;
+  boxes_.put_around(bodies, reach, parameters);
+  pairs_ = finder_->find(bodies, boxes_.margin());
+  kept_ = true;
+  ++times_made_;
+  return pairs_;
+}
 
 std::unique_ptr<PairFinder> make_pair_finder(const BroadPhaseSettings& settings, bool on_device,
                                              const Vec3& origin) {

@@ -3,7 +3,9 @@
 
 #include "broadphase/broad_phase.hpp"
 #include "core/bodies.hpp"
+#include "sim/dynamics/motion.hpp"
 
+#include <cstdint>
 #include <memory>
 
 namespace scree {
@@ -20,5 +22,29 @@ class PairFinder {
 /// which the float bounds are relative (m).
 std::unique_ptr<PairFinder> make_pair_finder(const BroadPhaseSettings& settings, bool on_device,
                                              const Vec3& origin);
+
+/// The PCS, made anew only when a body has left its box.
+class KeptPairs {
+ public:
+  KeptPairs(const BroadPhaseSettings& settings, bool on_device, const Vec3& origin)
+      : finder_(make_pair_finder(settings, on_device, origin)) {}
+
+  /// Pairs among which are all that may come as close as their contact margins (m). Where they have to be
+  /// made anew, they have room for the bodies' travel within `reach` (s). Valid until the next call.
+  ConstView<Pair> covering(const Bodies<Host>& bodies, const Array<double, Host>& contact_margin,
+                           double reach, const ResponseParameters& parameters);
+  /// The bodies are others: the next call makes the pairs anew.
+  void forget() { kept_ = false; }
+
+  std::int64_t times_made() const { return times_made_; }
+  const char* space_name() const { return finder_->space_name(); }
+
+ private:
+  std::unique_ptr<PairFinder> finder_;
+  FatBoxes boxes_;
+  ConstView<Pair> pairs_;
+  bool kept_ = false;
+  std::int64_t times_made_ = 0;
+};
 
 }  // namespace scree

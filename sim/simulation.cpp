@@ -4,6 +4,7 @@
 #include "core/timing.hpp"
 #include "core/tolerances.hpp"
 #include "narrowphase/narrow_phase.hpp"
+#include "sim/applied_forces.hpp"
 #include "sim/dynamics/contact_set.hpp"
 #include "sim/dynamics/correction.hpp"
 #include "sim/dynamics/impact.hpp"
@@ -30,12 +31,15 @@ namespace {
 ResponseParameters parameters_of(const Scene& scene) {
   const ModelPlan plan = plan_model(scene);
   return {.gravity = scene.gravity,
+          .acceleration = {},
+          .torque = {},
           .friction = plan.friction.on,
           .restitution = plan.restitution.on,
           .rotation = plan.rotation.on,
           .gyroscopic = plan.gyroscopic.on,
           .warm_start = scene.response.warm_start,
-          .iterations = scene.response.iterations,
+          .iterations = scene.response.iterations.value_or(0),
+          .block_sweeps = scene.response.block_sweeps.value_or(0),
           .tolerance = scene.response.tolerance,
           .restitution_threshold = plan.restitution_threshold};
 }
@@ -44,6 +48,10 @@ std::vector<PairLaw> table_of(const Scene& scene) {
   std::vector<PairLaw> table;
   for (const ContactLaw& law : scene.laws) table.push_back({law.restitution, law.friction});
   return table;
+}
+
+bool runs_on_device(SpaceChoice space) {
+  return space == SpaceChoice::cuda || (space == SpaceChoice::automatic && device_info().available);
 }
 
 /// Middle of the free bodies: where float bounds are finest.
@@ -100,7 +108,8 @@ struct Simulation::Parts {
   Bodies<Host> bodies;
   Array<PrescribedPath, Host> paths;
   Array<PairLaw, Host> laws;
-  std::unique_ptr<PairFinder> pair_finder;
+  AppliedForces forces;
+  KeptPairs kept_pairs;
   NarrowPhase narrow_phase;
   NarrowPhase end_narrow_phase;  // for the penetration at the end of a step
   ImpactSolver impacts;
@@ -114,9 +123,6 @@ struct Simulation::Parts {
   std::vector<Quat> first_orientation;
   std::vector<Vec3> contact_impulse;  // on each body that is not free, over the last step
   ConstView<Pair> pairs;
-  Array<double, Host> pair_margin;  // of the boxes behind `pairs`
-  std::vector<Vec3> pair_position;  // and where their bodies were
-  std::vector<Quat> pair_orientation;
   Array<double, Host> contact_margin;
   Array<SolverBody, Host> solver;
   ContactSet contacts;
@@ -140,6 +146,8 @@ struct Simulation::Parts {
                     : tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism)),
         parameters(parameters_of(s)),
         origin(middle_of(s.bodies)),
+        forces(s, grid),
+        kept_pairs(s.broadphase, runs_on_device(options.space), origin),
         narrow_phase(s.narrowphase),
         end_narrow_phase(s.narrowphase) {
     copy_bodies(bodies, scene.bodies);
@@ -147,9 +155,6 @@ struct Simulation::Parts {
     copy(laws, table_of(scene));
     copy(paths, prescribed_paths(scene));
     for (PrescribedPath& path : paths.view()) path.start = grid.time(presence.first_step(path.body));
-    const bool on_device = options.space == SpaceChoice::cuda ||
-                           (options.space == SpaceChoice::automatic && device_info().available);
-    pair_finder = make_pair_finder(scene.broadphase, on_device, origin);
     first_orientation = scene.bodies.orientation;
     start.save(bodies);
     contact_impulse.assign(scene.bodies.position.size(), Vec3::Zero());
@@ -163,37 +168,11 @@ struct Simulation::Parts {
     return all;
   }
 
-  void find_pairs(double reach) {
-    const timing::Region region("broadphase");
-    contact_margins(bodies, reach, parameters.gravity, pair_margin);
-    pairs = pair_finder->find(bodies, pair_margin);
-    copy(pair_position, bodies.position);
-    copy(pair_orientation, bodies.orientation);
-  }
-
-  /// True if a body, moved and turned since the boxes were made, could now touch something outside its box
-  /// within the next substep: an impact made it faster than its box allows.
-  bool outran_pairs() const {
-    const ConstBodyView views = view_of(bodies);
-    for (std::int64_t k = 0; k < bodies.count(); ++k) {
-      if (views.mobility[k] == Mobility::fixed) continue;
-      const auto at = static_cast<std::size_t>(k);
-      double moved = (views.position[k] - pair_position[at]).norm();
-      if (views.shape[k] != Shape::sphere) {
-        moved += bounding_radius(views.shape[k], views.size[k]) *
-                 views.orientation[k].angularDistance(pair_orientation[at]);
-      }
-      if (moved + contact_margin.view()[k] > pair_margin.view()[k]) return true;
-    }
-    return false;
-  }
-
+  /// `remaining`: of the step, from the start of the substep (s).
   ConstView<Manifold> find_contacts(double h, double remaining) {
-    contact_margins(bodies, h, parameters.gravity, contact_margin);
-    if (outran_pairs()) {
-      ++counters.pairs_made_anew;
-      find_pairs(remaining + h);
-    }
+    contact_margins(bodies, h, tolerance::contact_slack, parameters, contact_margin);
+    pairs = kept_pairs.covering(bodies, contact_margin, remaining + h, parameters);
+    counters.pcs_made = kept_pairs.times_made();
     const timing::Region region("narrowphase");
     const ConstView<Manifold> manifolds =
         narrow_phase.find(view_of(std::as_const(bodies)), pairs, contact_margin.view());
@@ -206,6 +185,7 @@ struct Simulation::Parts {
   /// `done`: how much of the step went before (s).
   void substep(double h, double done) {
     const double start_time = grid.time(step) + done;
+    forces.start_substep(bodies);
     timed_fly(start_time + 0.5 * h, 0.5 * h);
     const ConstView<Manifold> manifolds = find_contacts(h, grid.length(step + 1) - done);
     const timing::Region region("response");
@@ -220,6 +200,7 @@ struct Simulation::Parts {
     ledger = ledger + impacts.resolve({manifolds, h, views}, parameters, solver, contacts, counters);
     ledger = ledger + response.solve(manifolds, h, parameters, views, solver, contacts, counters);
     fly(start_time + h, 0.5 * h);
+    ledger.work += forces.work(bodies);
     ledger = ledger + corrector.correct(h, parameters, views, solver, contacts);
     memory.remember(manifolds, contacts, bodies.count());
     add_impulses_on_driven_bodies();
@@ -251,7 +232,7 @@ struct Simulation::Parts {
     const Ledger ledger_before = ledger;
     std::fill(contact_impulse.begin(), contact_impulse.end(), Vec3(Vec3::Zero()));
     try {
-      find_pairs(dt + h);
+      forces.act(step, bodies, parameters);
       for (int s = 0; s < scene.time.substeps; ++s) substep(h, s * h);
       baseline.extend(totals_of(bodies, parameters.gravity, origin));
       if (!baseline.is_finite()) throw RunError(non_finite_body());
@@ -276,7 +257,7 @@ struct Simulation::Parts {
     exchange.angular_momentum += change.exchange.angular_momentum;
     baseline.exchange(change.first_potential);
     baseline.extend(totals_of(bodies, parameters.gravity, origin));
-    pairs = {};  // those of the bodies that went are no more
+    kept_pairs.forget();
   }
 
   std::string non_finite_body() const {
@@ -300,7 +281,7 @@ bool Simulation::finished() const { return parts_->step >= parts_->grid.last(); 
 double Simulation::time() const { return parts_->grid.time(parts_->step); }
 std::int64_t Simulation::steps() const { return parts_->step; }
 std::int64_t Simulation::steps_total() const { return parts_->grid.last(); }
-const char* Simulation::space_name() const { return parts_->pair_finder->space_name(); }
+const char* Simulation::space_name() const { return parts_->kept_pairs.space_name(); }
 
 void Simulation::snapshot(Snapshot& out) const {
   out.time = time();
@@ -328,9 +309,10 @@ BodyState Simulation::body(std::int32_t id) const {
                   .force = Vec3::Zero()};
   if (p.step == 0 || !p.presence.holds(id, p.step - 1)) return state;
   state.acceleration = (state.velocity - p.start.velocity[k]) / p.last_step;
-  // On a free body the contact impulse is what gravity does not explain of the change of its momentum.
+  // On a free body the contact impulse is what gravity and applied forces do not explain of the change of its
+  // momentum.
   state.force = views.mobility[id] == Mobility::free
-                    ? Vec3((state.acceleration - p.scene.gravity) / views.inverse_mass[id])
+                    ? Vec3((state.acceleration - p.parameters.acceleration_of(id)) / views.inverse_mass[id])
                     : Vec3(p.contact_impulse[k] / p.last_step);
   return state;
 }
@@ -351,9 +333,9 @@ const Observation& Simulation::observe() {
   o.speed_max = largest_speed(p.bodies);
   measure_regions(p.scene.regions, p.contents, p.contents_before, p.last_step, o.regions);
   measure_contacts(p.contacts, totals.count, o);
-  if (p.pairs.data() == nullptr) p.find_pairs(0);
+  contact_margins(p.bodies, 0, tolerance::contact_slack, p.parameters, p.contact_margin);
+  p.pairs = p.kept_pairs.covering(p.bodies, p.contact_margin, 0, p.parameters);
   o.pairs = p.pairs.size();
-  contact_margins(p.bodies, 0, Vec3::Zero(), p.contact_margin);
   measure_penetration(
       p.end_narrow_phase.find(view_of(std::as_const(p.bodies)), p.pairs, p.contact_margin.view()),
       view_of(std::as_const(p.bodies)), o.penetration);

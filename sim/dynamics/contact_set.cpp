@@ -65,7 +65,7 @@ struct PrepareContact {
         .friction = friction,
         .restitution = parameters.restitution ? law.restitution : 0.0,
         .loaded = loaded,
-        .falling = false,
+        .flying = false,
         .balls = laws.acts_as_ball(manifold.i) && laws.acts_as_ball(manifold.j),
         .free_ends = static_cast<int>(laws.is_free(manifold.i)) + static_cast<int>(laws.is_free(manifold.j)),
         .impulse = Vec3::Zero()};

@@ -23,7 +23,7 @@ struct Contact {
   double friction;
   double restitution;
   bool loaded;    ///< carried an impulse in the last substep: it does not bounce
-  bool falling;   ///< on its way to an impact after this substep: its rows must not slow it down
+  bool flying;    ///< known not to meet in this substep: its rows only guard what the flight leaves free
   bool balls;     ///< between balls and bodies that are not free: its row needs no coupling
   int free_ends;  ///< how many of its two bodies are free
   Vec3 impulse;   ///< all that it gave to j in this substep, impacts and rows (N s)

@@ -12,17 +12,16 @@ struct PositionCorrector::Stage {
   ConstView<SolverBody> solver;
   ConstView<Contact> contacts;
   ConstView<ContactRow> rows;
+  View<double> flown_gap;  ///< of each row at the end of the substep, without displacements
   View<Displacement> displacement;
   double step;
 
   /// Gap at the end of the substep, to first order in what moved since the midpoint.
-  SCREE_HD double gap_at_end(const Contact& c, const ContactRow& row) const {
-    const Vec3 u = row.relative_velocity(solver[c.i], solver[c.j]);
+  SCREE_HD double gap_at_end(const Contact& c, std::int64_t row) const {
     const Displacement& i = displacement[c.i];
     const Displacement& j = displacement[c.j];
-    const Vec3 moved =
-        j.linear + j.angular.cross(row.arm_j) - i.linear - i.angular.cross(row.arm_i) + 0.5 * step * u;
-    return row.gap + c.normal.dot(moved);
+    return flown_gap[row] + c.normal.dot(j.linear + j.angular.cross(rows[row].arm_j) - i.linear -
+                                         i.angular.cross(rows[row].arm_i));
   }
 
   SCREE_HD void move(std::int32_t body, const Vec3& arm, const Vec3& impulse) const {
@@ -30,6 +29,22 @@ struct PositionCorrector::Stage {
     if (!b.is_free()) return;
     displacement[body].linear += b.inverse_mass * impulse;
     displacement[body].angular += b.inverse_inertia * arm.cross(impulse);
+  }
+};
+
+/// Fills the gaps of a contact's rows and returns its deepest overlap.
+struct PositionCorrector::Fly {
+  Stage stage;
+  SCREE_HD double operator()(std::int64_t k) const {
+    const Contact& c = stage.contacts[k];
+    double deepest = 0;
+    for (std::int64_t r = c.first_row; r < c.first_row + c.count; ++r) {
+      const ContactRow& row = stage.rows[r];
+      const Vec3 u = row.relative_velocity(stage.solver[c.i], stage.solver[c.j]);
+      stage.flown_gap[r] = row.gap + 0.5 * stage.step * c.normal.dot(u);
+      deepest = fmax(deepest, -stage.flown_gap[r]);
+    }
+    return deepest;
   }
 };
 
@@ -41,10 +56,10 @@ struct PositionCorrector::Sweep {
     const double largest =
         tolerance::correction_cap * fmin(smallest_size(stage.bodies.shape[c.i], stage.bodies.size[c.i]),
                                          smallest_size(stage.bodies.shape[c.j], stage.bodies.size[c.j]));
-    for (int p = 0; p < c.count; ++p) {
-      const ContactRow& row = stage.rows[c.first_row + p];
-      const double overlap = -stage.gap_at_end(c, row);
+    for (std::int64_t r = c.first_row; r < c.first_row + c.count; ++r) {
+      const double overlap = -stage.gap_at_end(c, r);
       if (overlap <= 0) continue;
+      const ContactRow& row = stage.rows[r];
       const double part = fmin(tolerance::correction_share * overlap, largest);
       const Vec3 impulse = (part * row.normal_mass) * c.normal;
       stage.move(c.i, row.arm_i, -impulse);
@@ -84,13 +99,17 @@ Ledger PositionCorrector::correct(double step, const ResponseParameters& paramet
                                   const Array<SolverBody, Host>& solver, ContactSet& set) {
   displacement_.resize(solver.size());
   if (set.contacts.empty()) return {};
-  parallel::fill("correction.reset", displacement_, Displacement{});
+  flown_gap_.resize(set.rows.size());
   const Stage stage{bodies,
                     solver.view(),
                     std::as_const(set.contacts).view(),
                     std::as_const(set.rows).view(),
+                    flown_gap_.view(),
                     displacement_.view(),
                     step};
+  const double deepest = parallel::max<double, Host>("correction.gaps", set.contacts.size(), Fly{stage}, 0.0);
+  if (deepest == 0) return {};
+  parallel::fill("correction.reset", displacement_, Displacement{});
   for (int sweep = 0; sweep < tolerance::correction_sweeps; ++sweep) {
     for_each_color("correction.sweep", set.coloring, [&stage](std::int64_t first) {
       return Sweep{stage, first};

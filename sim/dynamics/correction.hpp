@@ -22,8 +22,10 @@ class PositionCorrector {
     Vec3 angular = Vec3::Zero();
   };
   struct Stage;
+  struct Fly;
   struct Sweep;
   struct Apply;
+  Array<double, Host> flown_gap_;
   Array<Displacement, Host> displacement_;
 };
 

@@ -30,6 +30,42 @@ struct Flight {
   }
 };
 
+/// Two balls in flight: the second one relative to the first.
+struct FlightOfBalls {
+  Flight flight;
+  Vec3 velocity;
+  double touching;  ///< sum of the radii (m)
+};
+
+struct BallImpact {
+  double time = HUGE_VAL;  ///< into the substep (s)
+  Vec3 normal;             ///< unit, from the first centre to the second at that time
+  double speed;            ///< along it, negative (m/s)
+};
+
+/// When two balls meet, at `earliest` or later; infinite if they do not, or part at first. The distance of
+/// balls in straight flight is convex in time, so Newton's method nears the first meeting from before.
+/// Time, normal and speed are of one instant: along the midpoint's normal an impulse would turn the balls.
+SCREE_HD inline BallImpact next_ball_impact(const FlightOfBalls& balls, double step, double earliest) {
+  constexpr int most_iterations = 32;
+  BallImpact impact;
+  double s = earliest;
+  for (int iteration = 0; iteration <= most_iterations; ++iteration) {
+    const Vec3 d = balls.flight.at(balls.velocity, step, s);
+    const double distance = d.norm();
+    impact.normal = distance > 0 ? Vec3(d / distance) : Vec3(Vec3::UnitZ());
+    impact.speed = impact.normal.dot(balls.velocity + s * balls.flight.acceleration);
+    if (!(impact.speed < 0)) return {};
+    const double change = (balls.touching - distance) / impact.speed;
+    const bool overlap_at_first = iteration == 0 && change <= 0;
+    if (overlap_at_first || fabs(change) <= tolerance::impact_time * step || iteration == most_iterations)
+      break;
+    s = fmax(earliest, s + change);
+  }
+  impact.time = s;
+  return impact;
+}
+
 /// A ball's flight in a tube, projected along the axis: its centre relative to the axis.
 struct FlightInTube {
   Flight flight;

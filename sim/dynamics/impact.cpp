@@ -34,7 +34,8 @@ struct ImpactStage {
   View<Ledger> ledger;           ///< per contact
 
   Flight flight(std::int32_t body) const {
-    return {bodies.position[body], solver[body].is_free() ? parameters.gravity : Vec3(Vec3::Zero())};
+    return {bodies.position[body],
+            solver[body].is_free() ? parameters.acceleration_of(body) : Vec3(Vec3::Zero())};
   }
 
   /// Geometry of a manifold's point after the shifts: gap, and the arms to the two surfaces.
@@ -54,30 +55,6 @@ struct ImpactStage {
     const double floor =
         tolerance::closing_speed * (solver[c.i].velocity.norm() + solver[c.j].velocity.norm());
     return speed < -fmax(parameters.restitution_threshold, floor);
-  }
-
-  /// Two spheres meet along the line of their centres at the time of impact, not at the midpoint: Newton's
-  /// method on their distance, from the estimate along the midpoint normal.
-  void refine(const Contact& c, Impact& impact) const {
-    const Flight i = flight(c.i);
-    const Flight j = flight(c.j);
-    const double touching = bodies.size[c.i].x() + bodies.size[c.j].x();
-    double s = impact.time;
-    for (int iteration = 0; iteration < 8; ++iteration) {
-      const Vec3 d = j.at(solver[c.j].velocity, step, s) - i.at(solver[c.i].velocity, step, s);
-      const Vec3 w = solver[c.j].velocity - solver[c.i].velocity + s * (j.acceleration - i.acceleration);
-      const double distance = d.norm();
-      const Vec3 n = d / distance;
-      const double closing = n.dot(w);
-      if (!(closing < 0)) return;  // grazes: keep the midpoint normal
-      impact.normal = n;
-      impact.time = s;
-      const double change = (touching - distance) / closing;
-      if (s + change < 0) return;
-      s += change;
-      if (fabs(change) <= tolerance::impact_time * step) break;
-    }
-    impact.time = s;
   }
 
   /// True for a ball and the wall of a tube: its normal goes round with the ball.
@@ -105,7 +82,27 @@ struct ImpactStage {
     return {.time = next.time, .normal = ball_first ? next.outward : Vec3(-next.outward), .count = 1};
   }
 
+  bool is_of_balls(const Contact& c) const {
+    return bodies.shape[c.i] == Shape::sphere && bodies.shape[c.j] == Shape::sphere;
+  }
+
+  BallImpact next_meeting(const Contact& c) const {
+    const Flight i = flight(c.i);
+    const Flight j = flight(c.j);
+    return next_ball_impact({.flight = {j.position - i.position, j.acceleration - i.acceleration},
+                             .velocity = solver[c.j].velocity - solver[c.i].velocity,
+                             .touching = bodies.size[c.i].x() + bodies.size[c.j].x()},
+                            step, fmax(clock[c.i], clock[c.j]));
+  }
+
+  Impact next_ball_impact_of(const Contact& c) const {
+    const BallImpact next = next_meeting(c);
+    if (next.time == HUGE_VAL || !is_fast(next.speed, c)) return {};
+    return {.time = next.time, .normal = next.normal, .count = 1};
+  }
+
   Impact next_impact(const Contact& c) const {
+    if (is_of_balls(c)) return next_ball_impact_of(c);
     if (meets_wall(c)) return next_wall_impact_of(c);
     Impact impact;
     const Manifold& m = manifolds[c.manifold];
@@ -124,11 +121,6 @@ struct ImpactStage {
     }
     if (impact.time == HUGE_VAL) return impact;
     impact.normal = m.normal;
-    if (bodies.shape[c.i] == Shape::sphere && bodies.shape[c.j] == Shape::sphere) {
-      if (impact.time > earliest && impact.time > 0) refine(c, impact);
-      impact.point[impact.count++] = 0;
-      return impact;
-    }
     const double touching = tolerance::closed_gap * fmin(smallest_size(bodies.shape[c.i], bodies.size[c.i]),
                                                          smallest_size(bodies.shape[c.j], bodies.size[c.j]));
     for (int k = 0; k < m.count; ++k) {
@@ -256,13 +248,18 @@ struct VisitContact {
   }
 };
 
-struct MarkFalling {
+struct MarkFlying {
   ImpactStage stage;
   void operator()(std::int64_t index) const {
     Contact& c = stage.contacts[index];
     if (c.restitution == 0 || c.loaded) return;
-    const double time = stage.next_impact(c).time;
-    c.falling = time > stage.step && time < HUGE_VAL;
+    if (stage.is_of_balls(c)) {
+      // Their flight is exact: what does not meet passes by, whatever the midpoint's normal says.
+      c.flying = stage.next_meeting(c).time > stage.step;
+    } else {
+      const double time = stage.next_impact(c).time;
+      c.flying = time > stage.step && time < HUGE_VAL;
+    }
   }
 };
 
@@ -307,7 +304,7 @@ Ledger ImpactSolver::resolve(const ImpactProblem& problem, const ResponseParamet
     closing = hits > 0;
   }
   if (closing) ++counters.unfinished_impacts;
-  parallel::for_each<Host>("impact.falling", n, MarkFalling{stage});
+  parallel::for_each<Host>("impact.flying", n, MarkFlying{stage});
   return parallel::sum<Ledger, Host>("impact.ledger", n, LoadLedger{std::as_const(ledger_).view()});
 }
 

@@ -19,7 +19,7 @@ class ImpactSolver {
   ///   x(s) = x_mid + (s - step/2) v + g s^2 / 2,
   /// so an impulse dv at s shifts x_mid by -(s - step/2) dv, and flight, bounce and energy are exact for a
   /// sphere whatever the step (docs/method.md). Chains run on until nothing closes; if a bound is hit, the
-  /// rest is left to the response with e = 0 and counted. Sets Contact::falling and set.shift, moves the
+  /// rest is left to the response with e = 0 and counted. Sets Contact::flying and set.shift, moves the
   /// positions by the shift. `solver` holds the velocities before gravity's kick. Returns what the impacts
   /// moved.
   Ledger resolve(const ImpactProblem& problem, const ResponseParameters& parameters,

@@ -38,18 +38,47 @@ struct SetMargin {
   ConstBodyView bodies;
   View<double> margin;
   double dt;
-  double fall;
+  double slack;
+  ResponseParameters parameters;
   SCREE_HD void operator()(std::int64_t k) const {
     const Shape shape = bodies.shape[k];
     if (bodies.mobility[k] == Mobility::fixed) {
       margin[k] = 0;
       return;
     }
-    const double slack =
-        is_boundary(shape) ? 0.0 : tolerance::contact_slack * smallest_size(shape, bodies.size[k]);
+    const double fall = parameters.acceleration_of(k).norm() * dt * dt;
     const double radius = bounding_radius(shape, bodies.size[k]);
     const double turn = shape == Shape::sphere ? 0.0 : radius * bodies.spin[k].norm() * dt;
-    margin[k] = slack + tolerance::travel_factor * (bodies.velocity[k].norm() * dt + turn + fall);
+    margin[k] = (is_boundary(shape) ? 0.0 : slack * smallest_size(shape, bodies.size[k])) +
+                tolerance::travel_factor * (bodies.velocity[k].norm() * dt + turn + fall);
+  }
+};
+
+/// Whether a body may touch something outside its box.
+struct IsOut {
+  ConstBodyView bodies;
+  ConstView<Vec3> position;
+  ConstView<Quat> orientation;
+  ConstView<double> box_margin;
+  ConstView<double> contact_margin;
+  SCREE_HD int operator()(std::int64_t k) const {
+    if (bodies.mobility[k] == Mobility::fixed || bodies.mobility[k] == Mobility::absent) return 0;
+    double moved = (bodies.position[k] - position[k]).norm();
+    if (bodies.shape[k] != Shape::sphere) {
+      moved += bounding_radius(bodies.shape[k], bodies.size[k]) *
+               bodies.orientation[k].angularDistance(orientation[k]);
+    }
+    return moved + contact_margin[k] > box_margin[k] ? 1 : 0;
+  }
+};
+
+struct WorkOfForce {
+  ConstBodyView bodies;
+  ConstView<Vec3> start;
+  ConstView<Vec3> acceleration;
+  SCREE_HD double operator()(std::int64_t k) const {
+    if (bodies.mobility[k] != Mobility::free) return 0;
+    return acceleration[k].dot(bodies.position[k] - start[k]) / bodies.inverse_mass[k];
   }
 };
 
@@ -93,11 +122,29 @@ double advance(Bodies<Host>& bodies, double dt, const ResponseParameters& parame
   return parallel::sum<double, Host>("motion.energy", n, energy) - before;
 }
 
-void contact_margins(const Bodies<Host>& bodies, double dt, const Vec3& gravity,
-                     Array<double, Host>& margin) {
+void contact_margins(const Bodies<Host>& bodies, double dt, double slack,
+                     const ResponseParameters& parameters, Array<double, Host>& margin) {
   margin.resize(bodies.count());
   parallel::for_each<Host>("motion.margins", bodies.count(),
-                           SetMargin{view_of(bodies), margin.view(), dt, gravity.norm() * dt * dt});
+                           SetMargin{view_of(bodies), margin.view(), dt, slack, parameters});
+}
+
+void FatBoxes::put_around(const Bodies<Host>& bodies, double dt, const ResponseParameters& parameters) {
+  contact_margins(bodies, dt, tolerance::contact_slack + tolerance::pair_skin, parameters, margin_);
+  copy(position_, bodies.position);
+  copy(orientation_, bodies.orientation);
+}
+
+bool FatBoxes::hold(const Bodies<Host>& bodies, const Array<double, Host>& contact_margin) const {
+  const IsOut is_out{view_of(bodies), position_.view(), orientation_.view(), margin_.view(),
+                     contact_margin.view()};
+  return parallel::max<int, Host>("motion.out", bodies.count(), is_out, 0) == 0;
+}
+
+double work_of_forces(const Bodies<Host>& bodies, const Array<Vec3, Host>& start,
+                      ConstView<Vec3> acceleration) {
+  return parallel::sum<double, Host>("motion.work", bodies.count(),
+                                     WorkOfForce{view_of(bodies), start.view(), acceleration});
 }
 
 void load_solver_bodies(const Bodies<Host>& bodies, Array<SolverBody, Host>& solver) {

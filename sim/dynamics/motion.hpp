@@ -13,8 +13,29 @@ namespace scree {
 double advance(Bodies<Host>& bodies, double dt, const ResponseParameters& parameters);
 
 /// How far contacts of each body must reach so that nothing it can meet within dt is missed (m):
-/// its travel, and a slack relative to its size.
-void contact_margins(const Bodies<Host>& bodies, double dt, const Vec3& gravity, Array<double, Host>& margin);
+/// its travel, and a slack as a share of its smallest_size.
+void contact_margins(const Bodies<Host>& bodies, double dt, double slack,
+                     const ResponseParameters& parameters, Array<double, Host>& margin);
+
+/// Boxes around the bodies, fat enough that pairs found with them last while nobody moves far.
+class FatBoxes {
+ public:
+  /// Around the bodies where they are, with room for their travel within dt (s).
+  void put_around(const Bodies<Host>& bodies, double dt, const ResponseParameters& parameters);
+  /// Whether every body, wherever it is now, and with contacts that reach as far as given (m), is still in
+  /// its box.
+  bool hold(const Bodies<Host>& bodies, const Array<double, Host>& contact_margin) const;
+  const Array<double, Host>& margin() const { return margin_; }  ///< (m)
+
+ private:
+  Array<double, Host> margin_;
+  Array<Vec3, Host> position_;
+  Array<Quat, Host> orientation_;
+};
+
+/// Work of the forces that accelerate the bodies so (m/s^2) on their way from `start` to where they are (J).
+double work_of_forces(const Bodies<Host>& bodies, const Array<Vec3, Host>& start,
+                      ConstView<Vec3> acceleration);
 
 /// Velocities and inverse masses at the present orientation, as the solver wants them.
 void load_solver_bodies(const Bodies<Host>& bodies, Array<SolverBody, Host>& solver);

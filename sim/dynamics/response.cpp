@@ -33,13 +33,16 @@ struct SolveStage {
 /// Keeps the velocities before the kick in the bodies, for the ledger, and kicks.
 struct Kick {
   SolveStage stage;
-  Vec3 kick;
+  ResponseParameters parameters;
   SCREE_HD void operator()(std::int64_t k) const {
     SolverBody& body = stage.solver[k];
     if (!body.is_free()) return;
     stage.bodies.velocity[k] = body.velocity;
     stage.bodies.spin[k] = body.spin;
-    body.velocity += kick;
+    body.velocity += stage.step * parameters.acceleration_of(k);
+    if (parameters.torque.size() > 0) {
+      body.spin += stage.step * (body.inverse_inertia * parameters.torque[k]).eval();
+    }
   }
 };
 
@@ -50,10 +53,6 @@ struct PrepareRows {
     Contact& contact = stage.contacts[c];
     const Manifold& m = stage.manifolds[contact.manifold];
     const BodyView& bodies = stage.bodies;
-    if (contact.falling) {
-      contact.count = 0;
-      return;
-    }
     // Where several points share the load, the closed shell keeps all of them in contact; a single point
     // rests at 0.
     const double shell =
@@ -67,17 +66,46 @@ struct PrepareRows {
       const Vec3 impulse = row.impulse;
       const Vec3 point = m.points[k].position + middle_shift;
       const double gap = m.points[k].gap + opened;
-      const Vec3 arm_i = point - bodies.position[m.i];
-      const Vec3 arm_j = point - bodies.position[m.j];
-      const SolverBody& i = stage.solver[m.i];
-      const SolverBody& j = stage.solver[m.j];
-      row = contact.balls
-                ? make_ball_row(arm_i, arm_j, gap, i, j)
-                : make_row(m.normal, arm_i, arm_j, gap, i, j, stage.couplings[contact.first_row + k]);
+      if (contact.balls) {
+        row = ball_row(contact, gap, point);
+      } else {
+        row = make_row(m.normal, point - bodies.position[m.i], point - bodies.position[m.j], gap,
+                       stage.solver[m.i], stage.solver[m.j], stage.couplings[contact.first_row + k]);
+      }
       row.impulse = impulse;
       // The next midpoint must not overlap: the gap may close by then, and no more (speculative contact).
-      row.target = gap > shell ? -(gap - shell) / stage.step : 0.0;
+      row.target = row.gap > shell ? -(row.gap - shell) / stage.step : 0.0;
+      if (contact.flying) row.target = fmin(row.target, flight_speed(contact, row));
     }
+  }
+
+  /// A little faster than the flight closes along the normal, so that rounding pushes nobody.
+  SCREE_HD double flight_speed(const Contact& contact, const ContactRow& row) const {
+    const double speed =
+        contact.normal.dot(row.relative_velocity(stage.solver[contact.i], stage.solver[contact.j]));
+    return speed - tolerance::flight_margin * fabs(speed);
+  }
+
+  /// On the line of the centres, wherever impacts have shifted them: beside it a normal impulse would turn a
+  /// ball.
+  SCREE_HD ContactRow ball_row(Contact& contact, double gap, Vec3 point) const {
+    const BodyView& bodies = stage.bodies;
+    const Vec3& i = bodies.position[contact.i];
+    const Vec3& j = bodies.position[contact.j];
+    const bool ball_i = bodies.shape[contact.i] == Shape::sphere;
+    const bool ball_j = bodies.shape[contact.j] == Shape::sphere;
+    if (ball_i && ball_j) {
+      const Vec3 offset = j - i;
+      const double distance = offset.norm();
+      if (distance > 0) contact.normal = offset / distance;
+      gap = distance - bodies.size[contact.i].x() - bodies.size[contact.j].x();
+    }
+    if (ball_i) {
+      point = i + (bodies.size[contact.i].x() + 0.5 * gap) * contact.normal;
+    } else if (ball_j) {
+      point = j - (bodies.size[contact.j].x() + 0.5 * gap) * contact.normal;
+    }
+    return make_ball_row(point - i, point - j, gap, stage.solver[contact.i], stage.solver[contact.j]);
   }
 };
 
@@ -103,6 +131,7 @@ struct Sweep {
   SolveStage stage;
   std::int64_t first;
   double beta;
+  int block_sweeps;
 
   SCREE_HD void operator()(std::int64_t k) const {
     const std::int64_t c = first + k;
@@ -120,9 +149,8 @@ struct Sweep {
     if (contact.balls) {
       for (int p = 0; p < contact.count; ++p) sweep_ball_row(rows[p], contact.normal, contact.friction, i, j);
     } else {
-      // Points of one manifold are solved as a block: they share both bodies, which are at hand.
-      const int inner = contact.count > 1 ? manifold_sweeps : 1;
-      for (int sweep = 0; sweep < inner; ++sweep) {
+      const int sweeps = contact.count > 1 ? block_sweeps : 1;
+      for (int sweep = 0; sweep < sweeps; ++sweep) {
         sweep_rows(rows, &stage.couplings[contact.first_row], contact.count, contact.normal, contact.friction,
                    i, j);
       }
@@ -138,7 +166,6 @@ struct Sweep {
     }
     stage.change[c] = change;
   }
-  static constexpr int manifold_sweeps = 4;
 };
 
 struct LoadChange {
@@ -202,6 +229,16 @@ struct Account {
   }
 };
 
+/// Work of the torques: by the mean of the spins before and after, as that of impulses.
+struct WorkOfTorque {
+  SolveStage stage;
+  ConstView<Vec3> torque;
+  SCREE_HD double operator()(std::int64_t k) const {
+    if (!stage.solver[k].is_free()) return 0;
+    return 0.5 * stage.step * torque[k].dot(stage.bodies.spin[k] + stage.solver[k].spin);
+  }
+};
+
 struct StoreVelocities {
   SolveStage stage;
   SCREE_HD void operator()(std::int64_t k) const {
@@ -229,7 +266,7 @@ Ledger ResponseSolver::solve(ConstView<Manifold> manifolds, double step, const R
                          .change = change_.view(),
                          .acceleration = body_acceleration_.view(),
                          .step = step};
-  parallel::for_each<Host>("response.kick", solver.size(), Kick{stage, step * parameters.gravity});
+  parallel::for_each<Host>("response.kick", solver.size(), Kick{stage, parameters});
   Ledger ledger;
   if (n > 0) {
     parallel::for_each<Host>("response.rows", n, PrepareRows{stage});
@@ -237,18 +274,21 @@ Ledger ResponseSolver::solve(ConstView<Manifold> manifolds, double step, const R
       return WarmStart{stage, first};
     });
     parallel::for_each<Host>("response.start", solver.size(), StartBodies{stage});
+    SweepPlan plan = automatic_sweeps(set.rows.size());
+    if (parameters.iterations > 0) plan.sweeps = parameters.iterations;
+    if (parameters.block_sweeps > 0) plan.block_sweeps = parameters.block_sweeps;
     bool converged = false;
     double last_step = 0;
     double beta = 0;
     for (int sweep = 1; !converged; ++sweep) {
-      for_each_color("response.sweep", set.coloring, [&stage, beta](std::int64_t first) {
-        return Sweep{stage, first, beta};
+      for_each_color("response.sweep", set.coloring, [&](std::int64_t first) {
+        return Sweep{stage, first, beta, plan.block_sweeps};
       });
       ++counters.sweeps;
       const auto total =
           parallel::sum<SweepChange, Host>("response.change", n, LoadChange{std::as_const(change_).view()});
       converged = total.step <= parameters.tolerance * parameters.tolerance * total.size;
-      if (converged || sweep == parameters.iterations) break;
+      if (converged || sweep == plan.sweeps) break;
       // The last sweep stands as it is, so that every impulse ends inside its cone.
       const double ratio = sweep > 1 ? total.step / last_step : 0.0;
       beta = ratio < 1.0 ? ratio : 0.0;
@@ -257,6 +297,10 @@ Ledger ResponseSolver::solve(ConstView<Manifold> manifolds, double step, const R
     }
     if (!converged) ++counters.unconverged;
     ledger = parallel::sum<Ledger, Host>("response.ledger", n, Account{stage});
+  }
+  if (parameters.torque.size() > 0) {
+    ledger.work +=
+        parallel::sum<double, Host>("response.torque", solver.size(), WorkOfTorque{stage, parameters.torque});
   }
   parallel::for_each<Host>("response.store", solver.size(), StoreVelocities{stage});
   return ledger;

@@ -18,6 +18,25 @@ struct SweepChange {
   }
 };
 
+/// How often contacts are swept at most.
+struct SweepPlan {
+  int sweeps;
+  int block_sweeps;  ///< over the points of a contact at each visit
+};
+
+/// For so many contact points: few are solved to the tolerance whatever it takes, since they cost nothing; of
+/// many, a heap, the sweeps are bounded, since it moves on before it converges, and visit each point once,
+/// since news travels one contact per sweep however well each is solved (docs/decisions/0005).
+SCREE_HD inline SweepPlan automatic_sweeps(std::int64_t points) {
+  constexpr std::int64_t heap = 2500;      // points
+  constexpr std::int64_t visits = 400000;  // of points in a substep
+  constexpr int fewest = 20, most = 10000;
+  if (points >= heap) return {fewest, 1};
+  constexpr int block = 4;
+  const std::int64_t sweeps = visits / (block * (points > 0 ? points : 1));
+  return {static_cast<int>(sweeps < most ? sweeps : most), block};
+}
+
 /// What the conjugate direction needs of a body.
 struct BodyAcceleration {
   Vec3 last_velocity, last_spin;

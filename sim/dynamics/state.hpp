@@ -13,14 +13,24 @@ namespace scree {
 /// The settings of the response, resolved.
 struct ResponseParameters {
   Vec3 gravity = Vec3::Zero();  ///< m/s^2
+  /// Of each body by the forces applied to it (m/s^2), and the torques on it (N m). Empty without such
+  /// forces.
+  ConstView<Vec3> acceleration;
+  ConstView<Vec3> torque;
   bool friction = true;
   bool restitution = true;
   bool rotation = true;
   bool gyroscopic = true;
   bool warm_start = true;
-  int iterations = 100;              ///< most sweeps
-  double tolerance = 1e-7;           ///< of the impulses' change in one sweep, relative
+  int iterations = 0;                ///< most sweeps; 0: automatic_sweeps()
+  int block_sweeps = 0;              ///< over the points of a contact at each visit; 0: likewise
+  double tolerance = 1e-10;          ///< of the impulses' change in one sweep, relative
   double restitution_threshold = 0;  ///< m/s
+
+  /// Of a free body in flight (m/s^2).
+  SCREE_HD Vec3 acceleration_of(std::int64_t body) const {
+    return acceleration.size() > 0 ? Vec3(gravity + acceleration[body]) : gravity;
+  }
 };
 
 /// Energy that one impulse p on j (and -p on i) at a common point moves, from the relative velocities before

@@ -51,7 +51,7 @@ Json json_of(const Counters& c) {
           {"impacts", c.impacts},
           {"unconverged", c.unconverged},
           {"unfinished_impacts", c.unfinished_impacts},
-          {"pairs_made_anew", c.pairs_made_anew},
+          {"pcs_made", c.pcs_made},
           {"ccd_calls", c.ccd_calls},
           {"ccd_rejected", c.ccd_rejected}};
 }

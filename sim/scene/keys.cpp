@@ -277,8 +277,13 @@ Codec<ResponseSettings> response_section() {
       {
           key<T>("mode", &T::mode, word<ResponseMode>({{"default", ResponseMode::standard}}, {"accurate"}),
                  optionally, "how impulses are found"),
-          key<T>("iterations", &T::iterations, integer(between(1, 1e6)), optionally,
-                 "most sweeps over the contacts per substep"),
+          key<T>(
+              "iterations", &T::iterations, or_auto(integer(between(1, 1e6))), optionally,
+              "most sweeps over the contacts per substep; auto: 20 for heaps, more the fewer contacts there "
+              "are, until they converge"),
+          key<T>("block_sweeps", &T::block_sweeps, or_auto(integer(between(1, 100))), optionally,
+                 "sweeps over the points that two bodies share, at each visit; auto: 4, with which stacks "
+                 "stand still, but 1 for heaps"),
           key<T>("tolerance", &T::tolerance, number(inside(0, 1)), optionally,
                  "sweeps stop when they change the impulses by less than this share"),
           key<T>("warm_start", &T::warm_start, boolean(), optionally, "start from the last step's impulses"),

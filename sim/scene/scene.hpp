@@ -82,9 +82,10 @@ enum class ResponseMode { standard };  ///< `default` in the scene language
 
 struct ResponseSettings {
   ResponseMode mode = ResponseMode::standard;
-  int iterations = 100;     ///< most sweeps over the contacts per substep
-  double tolerance = 1e-7;  ///< sweeps stop when they change the impulses by less than this share
-  bool warm_start = true;   ///< start from the last step's impulses
+  std::optional<int> iterations;    ///< most sweeps over the contacts per substep; absent: from their number
+  std::optional<int> block_sweeps;  ///< sweeps over the points of a contact at each visit; absent: likewise
+  double tolerance = 1e-10;         ///< sweeps stop when they change the impulses by less than this share
+  bool warm_start = true;           ///< start from the last step's impulses
   std::optional<double> restitution_threshold;  ///< m/s; absent: from gravity and step
 };
 

@@ -1,6 +1,7 @@
 // On every scene of the repository, now and as it moves: the PCS of the grid, on Host and on Device, is that
 // of brute force, and the run does not depend on the space that makes it.
 #include "core/space.hpp"
+#include "core/tolerances.hpp"
 #include "sim/dynamics/motion.hpp"
 #include "sim/pair_finder.hpp"
 #include "sim/simulation.hpp"
@@ -38,7 +39,9 @@ PairSet pairs_of(BroadPhaseMethod method, bool on_device, const Snapshot& state,
   Bodies<Host> bodies;
   copy_bodies(bodies, state.bodies);
   Array<double, Host> margin;
-  contact_margins(bodies, 2 * scene.time.step, scene.gravity, margin);
+  ResponseParameters parameters;
+  parameters.gravity = scene.gravity;
+  contact_margins(bodies, 2 * scene.time.step, tolerance::contact_slack, parameters, margin);
   const auto finder = make_pair_finder({.method = method}, on_device, state.bodies.position.front());
   PairSet set;
   for (const Pair& pair : finder->find(bodies, margin)) set.emplace_back(pair.i, pair.j);

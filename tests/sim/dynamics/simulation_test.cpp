@@ -151,9 +151,106 @@ bodies:
 )"),
                         {SpaceChoice::host, 1});
   simulation.step();
-  EXPECT_GT(simulation.observe().counters.pairs_made_anew, 0);
+  EXPECT_GT(simulation.observe().counters.pcs_made, 1);
   EXPECT_NEAR(simulation.body(2).velocity.x(), 50, 1e-12);
   EXPECT_NEAR(simulation.body(2).position.x(), 0.6 + 50 * (0.05 - 0.02), 1e-12);
+}
+
+TEST(Simulation, PairsLastWhileNobodyLeavesTheirBox) {
+  Simulation simulation(scene_of(R"(
+gravity: [0, 0, -9.81]
+time: {end: 2, step: 0.01}
+materials: {a: {density: 1000, friction: 0.5}}
+bodies:
+  - {plane: {normal: [0, 0, 1]}, material: a}
+  - {box: {size: 1}, at: [0, 0, 0.5], repeat: {count: [1, 1, 3], spacing: [1, 1, 1]}, material: a}
+)"),
+                        {SpaceChoice::host, 1});
+  while (!simulation.finished()) simulation.step();
+  EXPECT_EQ(simulation.observe().counters.pcs_made, 1);
+}
+
+TEST(Simulation, BallsWithoutFrictionNeverTurn) {
+  Simulation simulation(scene_of(R"(
+seed: 3
+time: {end: 2, step: 0.01}
+materials: {ideal: {density: 1000, restitution: 1}}
+model: {rotation: on, friction: on}
+bodies:
+  - {plane: {normal: [1, 0, 0], offset: 0}, material: ideal}
+  - {plane: {normal: [-1, 0, 0], offset: -0.5}, material: ideal}
+  - {plane: {normal: [0, 1, 0], offset: 0}, material: ideal}
+  - {plane: {normal: [0, -1, 0], offset: -0.5}, material: ideal}
+  - {plane: {normal: [0, 0, 1], offset: 0}, material: ideal}
+  - {plane: {normal: [0, 0, -1], offset: -0.5}, material: ideal}
+  - {sphere: {radius: 0.03}, scatter: {count: 50, from: [0, 0, 0], to: [0.5, 0.5, 0.5]}, velocity: [1, 0.5, -1], material: ideal}
+  - {sphere: {radius: 0.03}, scatter: {count: 50, from: [0, 0, 0], to: [0.5, 0.5, 0.5]}, velocity: [-1, 0.5, 1], material: ideal}
+)"),
+                        {SpaceChoice::host, 1});
+  const double energy = simulation.observe().kinetic();
+  while (!simulation.finished()) simulation.step();
+  const Observation& end = simulation.observe();
+  EXPECT_GT(end.counters.impacts, 500);
+  EXPECT_EQ(end.counters.unfinished_impacts, 0);
+  EXPECT_LT(end.kinetic_angular, 1e-20 * energy);
+  EXPECT_NEAR(end.kinetic(), energy, 1e-12 * energy);
+}
+
+TEST(Simulation, AppliedForcesAndTorquesDoTheirWork) {
+  // A cube on ice is pulled and turned for a while; another one is not.
+  const Scene scene = scene_of(R"(
+gravity: [0, 0, -10]
+time: {end: 1, step: 0.01}
+materials: {ice: {density: 1000}}
+bodies:
+  - {plane: {normal: [0, 0, 1]}, material: ice}
+  - {box: {size: 1}, name: pulled, at: [0, 0, 0.5], material: ice}
+  - {box: {size: 1}, name: left, at: [0, 5, 0.5], material: ice}
+forces:
+  - {on: pulled, force: [2000, 0, 0], from: 0.2, until: 0.7}
+  - {on: pulled, torque: [0, 0, 50]}
+)");
+  Simulation simulation(scene, {SpaceChoice::host, 1});
+  while (!simulation.finished()) simulation.step();
+  const BodyState pulled = simulation.body(scene.body_names.at("pulled"));
+  EXPECT_NEAR(pulled.velocity.x(), 2 * 0.5, 1e-12);
+  EXPECT_NEAR(pulled.position.x(), 0.5 * 2 * 0.5 * 0.5 + 1.0 * 0.3, 1e-12);
+  const double moment = 1000.0 / 6;
+  EXPECT_NEAR(pulled.spin.z(), 50 / moment, 1e-9);
+  EXPECT_NEAR(pulled.force.z(), 1e4, 1e-5);
+  EXPECT_EQ(simulation.body(scene.body_names.at("left")).velocity.x(), 0);
+  const Observation& end = simulation.observe();
+  EXPECT_NEAR(end.ledger.work, 0.5 * 1000 * 1 + 0.5 * moment * std::pow(50 / moment, 2), 1e-6);
+  EXPECT_LT(end.unexplained, 1e-12);
+}
+
+TEST(Simulation, AppliedForcesAndBouncesAddUp) {
+  // A ball pushed against the floor twice as hard as by gravity bounces as in that gravity.
+  Simulation pushed(scene_of(R"(
+gravity: [0, 0, -5]
+time: {end: 3, step: 0.013}
+materials: {a: {density: 1000, restitution: 1}}
+bodies:
+  - {plane: {normal: [0, 0, 1]}, material: a}
+  - {sphere: {radius: 0.1}, name: ball, mass: 2, at: [0, 0, 1], material: a}
+forces: [{on: ball, force: [0, 0, -10]}]
+)"),
+                    {SpaceChoice::host, 1});
+  Simulation heavy(scene_of(R"(
+gravity: [0, 0, -10]
+time: {end: 3, step: 0.013}
+materials: {a: {density: 1000, restitution: 1}}
+bodies:
+  - {plane: {normal: [0, 0, 1]}, material: a}
+  - {sphere: {radius: 0.1}, name: ball, mass: 2, at: [0, 0, 1], material: a}
+)"),
+                   {SpaceChoice::host, 1});
+  while (!pushed.finished()) {
+    pushed.step();
+    heavy.step();
+  }
+  EXPECT_NEAR(pushed.body(1).position.z(), heavy.body(1).position.z(), 1e-12);
+  EXPECT_LT(pushed.observe().unexplained, 1e-13);
 }
 
 TEST(Simulation, ABallBouncesInATubeMoreThanOnceInAStep) {

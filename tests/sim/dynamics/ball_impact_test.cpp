@@ -1,0 +1,92 @@
+// The next meeting of two balls, beside stepping and bisection in long double.
+#include "core/rng.hpp"
+#include "sim/dynamics/flight.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace scree {
+namespace {
+
+using Real = long double;
+using Vec = Eigen::Matrix<Real, 3, 1>;
+
+Vec offset_at(const FlightOfBalls& balls, double step, Real s) {
+  return balls.flight.position.cast<Real>() + (s - 0.5L * step) * balls.velocity.cast<Real>() +
+         0.5L * s * s * balls.flight.acceleration.cast<Real>();
+}
+
+/// The first s at which the balls touch; infinite beyond the horizon.
+Real first_touch(const FlightOfBalls& balls, double step, Real earliest, Real horizon) {
+  const auto apart = [&](Real s) { return offset_at(balls, step, s).norm() > balls.touching; };
+  constexpr int cells = 20000;
+  for (int k = 0; k < cells; ++k) {
+    Real low = earliest + (horizon - earliest) * k / cells;
+    Real high = earliest + (horizon - earliest) * (k + 1) / cells;
+    if (apart(high)) continue;
+    for (int n = 0; n < 80; ++n) {
+      const Real middle = 0.5L * (low + high);
+      (apart(middle) ? low : high) = middle;
+    }
+    return high;
+  }
+  return INFINITY;
+}
+
+Vec3 draw(Random& random, double size) {
+  const double x = random.uniform(-size, size);
+  const double y = random.uniform(-size, size);
+  return Vec3(x, y, random.uniform(-size, size));
+}
+
+TEST(BallImpact, IsTheFirstTouchAndItsNormalAndSpeedAreOfThatInstant) {
+  constexpr double step = 0.1;
+  int met = 0;
+  int passed_by = 0;
+  for (std::uint64_t n = 0; n < 500; ++n) {
+    Random random(22, n);
+    FlightOfBalls balls;
+    balls.flight.position = draw(random, 1);
+    balls.flight.acceleration = n % 2 == 0 ? Vec3(0, 0, 0) : Vec3(0, 0, -9.81);
+    balls.velocity = draw(random, 20);
+    balls.touching = random.uniform(0.1, 0.8);
+    const double earliest = random.uniform(0, 0.03);
+    if (offset_at(balls, step, earliest).norm() < balls.touching) continue;
+    const Real expected = first_touch(balls, step, earliest, step);
+    const BallImpact impact = next_ball_impact(balls, step, earliest);
+    if (expected > step) {
+      ++passed_by;
+      EXPECT_GT(impact.time, step * (1 - 1e-9)) << n;
+      continue;
+    }
+    ++met;
+    ASSERT_NEAR(impact.time, static_cast<double>(expected), 1e-7 * step) << n;
+    const Vec3 at = offset_at(balls, step, impact.time).cast<double>();
+    EXPECT_LT((impact.normal - at.normalized()).norm(), 1e-12) << n;
+    EXPECT_NEAR(at.norm(), balls.touching, 1e-9) << n;
+    const Vec3 velocity = balls.velocity + impact.time * balls.flight.acceleration;
+    EXPECT_NEAR(impact.speed, impact.normal.dot(velocity), 1e-12) << n;
+    EXPECT_LT(impact.speed, 0) << n;
+  }
+  EXPECT_GT(met, 30);
+  EXPECT_GT(passed_by, 100);
+}
+
+TEST(BallImpact, OverlapIsNowIfTheyCloseAndNeverIfTheyPart) {
+  FlightOfBalls balls{.flight = {Vec3(0.9, 0, 0), Vec3::Zero()}, .velocity = Vec3(-1, 0, 0), .touching = 1};
+  EXPECT_EQ(next_ball_impact(balls, 0.01, 0.004).time, 0.004);
+  balls.velocity = Vec3(1, 0, 0);
+  EXPECT_EQ(next_ball_impact(balls, 0.01, 0.004).time, HUGE_VAL);
+}
+
+TEST(BallImpact, CoincidentCentresGiveAFiniteNormal) {
+  const FlightOfBalls balls{
+      .flight = {Vec3::Zero(), Vec3::Zero()}, .velocity = Vec3(0, 0, -1), .touching = 1};
+  const BallImpact impact = next_ball_impact(balls, 0.01, 0.005);
+  EXPECT_TRUE(impact.normal.allFinite());
+  EXPECT_EQ(impact.time, 0.005);
+}
+
+}  // namespace
+}  // namespace scree
