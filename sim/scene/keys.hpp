@@ -67,6 +67,7 @@ struct BodyEntry {
   std::optional<PlaneEntry> plane;
   std::optional<SphereEntry> sphere;
   std::optional<BoxEntry> box;
+  std::string file;
   std::string name;
   std::string material;
   std::optional<double> mass;
