@@ -34,13 +34,25 @@ struct BodyGeometry {
   Vec3 size;
 };
 
-/// Box of a sphere or box, fat by `margin` on every side, relative to `origin` (m). It holds the box of exact
-/// arithmetic: the rounding of the double formula is added before the result is rounded outward to float.
-/// Planes are absent: the narrow phase tests them against every body.
+/// Half the extents of a body's box, along the world's axes (m).
+SCREE_HD inline Vec3 half_extent_of(const BodyGeometry& body) {
+  if (body.shape == Shape::sphere) return Vec3::Constant(body.size.x());
+  const Mat3 axes = body.orientation.toRotationMatrix();
+  if (body.shape == Shape::box) return axes.cwiseAbs() * body.size;
+  // A tube's: a segment along its z axis plus a disc along the other two. The disc's extent by sqrt(1 - z^2)
+  // would cancel where the axes are aligned.
+  Vec3 half_extent;
+  for (int a = 0; a < 3; ++a)
+    half_extent[a] = fabs(axes(a, 2)) * body.size.z() + hypot(axes(a, 0), axes(a, 1)) * body.size.x();
+  return half_extent;
+}
+
+/// Box of a sphere, box or tube, fat by `margin` on every side, relative to `origin` (m). It holds the box of
+/// exact arithmetic: the rounding of the double formula is added before the result is rounded outward to
+/// float. Planes are absent: the narrow phase tests them against every body.
 SCREE_HD inline Aabb bounds_of(const BodyGeometry& body, double margin, const Vec3& origin) {
   if (body.shape == Shape::plane) return absent_bounds();
-  Vec3 half_extent = Vec3::Constant(body.size.x());
-  if (body.shape == Shape::box) half_extent = body.orientation.toRotationMatrix().cwiseAbs() * body.size;
+  const Vec3 half_extent = half_extent_of(body);
   // About ten roundings, each of 2^-53 of the size or of the distance, and twice that of the quaternion's
   // norm.
   constexpr double rounding = 0x1p-48;

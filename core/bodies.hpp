@@ -18,8 +18,8 @@ enum class Shape : std::uint8_t {
   sphere,  ///< size.x() is the radius
   box,     ///< size holds the half extents
   plane,   ///< half space below the body's z axis through its position; always fixed
-  tube,    ///< inside of a cylinder along the body's z axis, with end caps; never free. size.x() and size.y()
-           ///< are its radius, size.z() is half its length
+  tube,  ///< inside of a cylinder along the body's z axis, with end caps; never free. It acts on bodies whose
+         ///< centre is in it. size.x() and size.y() are its radius, size.z() is half its length
 };
 
 enum class Mobility : std::uint8_t {
@@ -122,10 +122,13 @@ SCREE_HD inline double bounding_radius(Shape shape, const Vec3& size) {
   return shape == Shape::sphere ? size.x() : size.norm();
 }
 
+/// True for shapes that other bodies are in, and that are never free.
+SCREE_HD inline bool is_boundary(Shape shape) { return shape == Shape::plane || shape == Shape::tube; }
+
 /// The length to which a body's tolerances are relative: radius, or smallest half extent (m). Boundaries
 /// (planes and tubes) set none: the body that touches them does.
 SCREE_HD inline double smallest_size(Shape shape, const Vec3& size) {
-  if (shape == Shape::plane || shape == Shape::tube) return HUGE_VAL;
+  if (is_boundary(shape)) return HUGE_VAL;
   return shape == Shape::sphere ? size.x() : size.minCoeff();
 }
 

@@ -33,14 +33,8 @@ SCREE_HD inline bool box_plane(const Solid& box, const Solid& plane, double marg
   for (int c = 0; c < 8; ++c) {
     const bool wanted = within <= Manifold::max_points || (c >> down & 1) == side;
     if (gap[c] > margin || !wanted) continue;
-    Vec3 corner = box.position;
-    BoxFeature feature = 0;
-    for (int k = 0; k < 3; ++k) {
-      const double at = c >> k & 1 ? 1.0 : -1.0;
-      corner += at * box.size[k] * axes.col(k);
-      feature |= box_side(k, at);
-    }
-    out.points[out.count++] = {corner - 0.5 * gap[c] * up, gap[c], feature};
+    const BoxCorner corner = box_corner(box, axes, c);
+    out.points[out.count++] = {corner.position - 0.5 * gap[c] * up, gap[c], corner.feature};
   }
   return out.count > 0;
 }

@@ -10,18 +10,24 @@ namespace scree {
 struct ContactPoint {
   Vec3 position;          ///< midway between the two surfaces; the same for both bodies (m)
   double gap;             ///< distance of the surfaces along the normal; negative: penetration (m)
-  std::uint32_t feature;  ///< names the features in contact; equal from step to step while they touch
+  std::uint32_t feature;  ///< names the features in contact, within pair and part; equal from step to step
+                          ///< while they touch
 };
 
-/// The contact of one pair: up to 4 points that share a normal.
+/// A contact of one pair: up to 4 points that share a normal.
 struct Manifold {
   static constexpr int max_points = 4;
 
   std::int32_t i;  ///< first body, i < j
   std::int32_t j;
-  Vec3 normal;    ///< unit, from i to j
-  int count = 0;  ///< points in use
+  std::int32_t part = 0;  ///< surface of the pair that it belongs to: of a tube, wall or cap; else 0
+  Vec3 normal;            ///< unit, from i to j
+  int count = 0;          ///< points in use
   ContactPoint points[max_points];
 };
+
+/// A pair has at most this many manifolds: those of a box that just fits into a tube, whose 8 corners touch
+/// the wall, each with a normal of its own, and whose ends touch the caps.
+inline constexpr int max_pair_manifolds = 10;
 
 }  // namespace scree

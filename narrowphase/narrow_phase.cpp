@@ -5,12 +5,15 @@
 #include "core/parallel.hpp"
 #include "narrowphase/box_box_ccd.hpp"
 #include "narrowphase/box_plane.hpp"
+#include "narrowphase/box_tube.hpp"
 #include "narrowphase/sphere_box.hpp"
 #include "narrowphase/sphere_plane.hpp"
 #include "narrowphase/sphere_sphere.hpp"
+#include "narrowphase/sphere_tube.hpp"
 
 #include <algorithm>
 #include <atomic>
+#include <type_traits>
 
 namespace scree {
 
@@ -19,35 +22,48 @@ namespace {
 // One candidate's cost is near that of an atomic addition, so they are taken by the block.
 constexpr std::int64_t block = 32;
 
-using PairTest = bool (*)(const Solid&, const Solid&, double margin, Manifold&, NarrowPhaseStats&);
+/// Sets the manifolds of a pair, and returns their number.
+using PairTest = int (*)(const Solid&, const Solid&, double margin, Manifold* out, NarrowPhaseStats&);
 
-template <bool test(const Solid&, const Solid&, double, Manifold&)>
-bool straight(const Solid& a, const Solid& b, double margin, Manifold& out, NarrowPhaseStats&) {
-  return test(a, b, margin, out);
+/// The count of a test that has at most one manifold.
+int single(bool found, Manifold& out) {
+  out.part = 0;
+  return found ? 1 : 0;
+}
+
+template <auto test>
+int straight(const Solid& a, const Solid& b, double margin, Manifold* out, NarrowPhaseStats&) {
+  if constexpr (std::is_invocable_v<decltype(test), const Solid&, const Solid&, double, Manifold*>) {
+    return test(a, b, margin, out);
+  } else {
+    return single(test(a, b, margin, *out), *out);
+  }
 }
 
 /// The test with the shapes in the other order.
-template <bool test(const Solid&, const Solid&, double, Manifold&)>
-bool swapped(const Solid& a, const Solid& b, double margin, Manifold& out, NarrowPhaseStats&) {
-  if (!test(b, a, margin, out)) return false;
-  out.normal = -out.normal;
-  return true;
+template <auto test>
+int swapped(const Solid& a, const Solid& b, double margin, Manifold* out, NarrowPhaseStats& stats) {
+  const int count = straight<test>(b, a, margin, out, stats);
+  for (int m = 0; m < count; ++m) out[m].normal = -out[m].normal;
+  return count;
 }
 
 template <ccd::Method method>
-bool by_ccd(const Solid& a, const Solid& b, double margin, Manifold& out, NarrowPhaseStats& stats) {
-  return box_box_ccd(a, b, margin, method, out, stats);
+int by_ccd(const Solid& a, const Solid& b, double margin, Manifold* out, NarrowPhaseStats& stats) {
+  return single(box_box_ccd(a, b, margin, method, *out, stats), *out);
 }
 
-/// The test of each two shapes; rows and columns in the order of Shape. Two planes are never tested.
+/// The test of each two shapes; rows and columns in the order of Shape. Planes and tubes are never free, and
+/// never tested with each other.
 struct PairTable {
-  PairTest of[3][3];
+  PairTest of[4][4];
 };
 
 constexpr PairTable table_with(PairTest box_box_test) {
-  return {{{straight<sphere_sphere>, straight<sphere_box>, straight<sphere_plane>},
-           {swapped<sphere_box>, box_box_test, straight<box_plane>},
-           {swapped<sphere_plane>, swapped<box_plane>, nullptr}}};
+  return {{{straight<sphere_sphere>, straight<sphere_box>, straight<sphere_plane>, straight<sphere_tube>},
+           {swapped<sphere_box>, box_box_test, straight<box_plane>, straight<box_tube>},
+           {swapped<sphere_plane>, swapped<box_plane>, nullptr, nullptr},
+           {swapped<sphere_tube>, swapped<box_tube>, nullptr, nullptr}}};
 }
 
 /// Rows in the order of BoxBoxMethod. `automatic` is the 15 axes: scree_bench_narrowphase has them at 0.35 us
@@ -80,50 +96,58 @@ struct FindContacts {
   std::int64_t candidates() const { return pairs.size() + planes.size() * bodies.count(); }
 
   void operator()(std::int64_t b) const {
-    Manifold found[block];
-    std::int64_t count = 0;
+    Manifold found[block + max_pair_manifolds];
+    int count = 0;
     NarrowPhaseStats stats;
     const std::int64_t last = std::min((b + 1) * block, candidates());
     for (std::int64_t c = b * block; c < last; ++c) {
-      const bool contact = c < pairs.size() ? test_pair(pairs[c], found[count], stats)
-                                            : test_plane(c - pairs.size(), found[count], stats);
-      count += contact;
+      count += c < pairs.size() ? test_pair(pairs[c], found + count, stats)
+                                : test_plane(c - pairs.size(), found + count, stats);
+      if (count <= block) continue;
+      append(found, count);
+      count = 0;
     }
+    append(found, count);
     tally->tested += stats.tested;
     tally->ccd_calls += stats.ccd_calls;
     tally->ccd_rejected += stats.ccd_rejected;
-    if (count == 0) return;
-    const std::int64_t first = tally->found.fetch_add(count);
-    for (std::int64_t k = 0; k < count && first + k < room.size(); ++k) room[first + k] = found[k];
   }
 
  private:
-  /// Pairs with planes are left to test_plane, whoever lists them, so that none comes twice.
-  bool test_pair(const Pair& pair, Manifold& out, NarrowPhaseStats& stats) const {
-    const bool has_plane = bodies.shape[pair.i] == Shape::plane || bodies.shape[pair.j] == Shape::plane;
-    return !has_plane && test(pair.i, pair.j, out, stats);
+  void append(const Manifold* found, int count) const {
+    if (count == 0) return;
+    const std::int64_t first = tally->found.fetch_add(count);
+    for (int k = 0; k < count && first + k < room.size(); ++k) room[first + k] = found[k];
   }
 
-  bool test_plane(std::int64_t candidate, Manifold& out, NarrowPhaseStats& stats) const {
+  /// Pairs with planes are left to test_plane, whoever lists them, so that none comes twice.
+  int test_pair(const Pair& pair, Manifold* out, NarrowPhaseStats& stats) const {
+    const bool has_plane = bodies.shape[pair.i] == Shape::plane || bodies.shape[pair.j] == Shape::plane;
+    return has_plane ? 0 : test(pair.i, pair.j, out, stats);
+  }
+
+  int test_plane(std::int64_t candidate, Manifold* out, NarrowPhaseStats& stats) const {
     const std::int32_t plane = planes[candidate / bodies.count()];
     const auto body = static_cast<std::int32_t>(candidate % bodies.count());
-    if (bodies.mobility[body] != Mobility::free || bodies.mobility[plane] == Mobility::absent) return false;
+    if (bodies.mobility[body] != Mobility::free || bodies.mobility[plane] == Mobility::absent) return 0;
     const Vec3 up = bodies.orientation[plane] * Vec3::UnitZ();
     const double reach =
         bounding_radius(bodies.shape[body], bodies.size[body]) + margin[plane] + margin[body];
-    if (up.dot(bodies.position[body] - bodies.position[plane]) > reach) return false;
+    if (up.dot(bodies.position[body] - bodies.position[plane]) > reach) return 0;
     return test(std::min(plane, body), std::max(plane, body), out, stats);
   }
 
-  bool test(std::int32_t i, std::int32_t j, Manifold& out, NarrowPhaseStats& stats) const {
-    if (bodies.mobility[i] != Mobility::free && bodies.mobility[j] != Mobility::free) return false;
+  int test(std::int32_t i, std::int32_t j, Manifold* out, NarrowPhaseStats& stats) const {
+    if (bodies.mobility[i] != Mobility::free && bodies.mobility[j] != Mobility::free) return 0;
     ++stats.tested;
     const PairTest pair_test =
         table->of[static_cast<int>(bodies.shape[i])][static_cast<int>(bodies.shape[j])];
-    if (!pair_test(solid(i), solid(j), margin[i] + margin[j], out, stats)) return false;
-    out.i = i;
-    out.j = j;
-    return true;
+    const int count = pair_test(solid(i), solid(j), margin[i] + margin[j], out, stats);
+    for (int m = 0; m < count; ++m) {
+      out[m].i = i;
+      out[m].j = j;
+    }
+    return count;
   }
 
   Solid solid(std::int32_t i) const { return {bodies.position[i], bodies.orientation[i], bodies.size[i]}; }
@@ -149,12 +173,15 @@ struct PlaceByFirst {
   }
 };
 
-/// Orders the range of one first body by the second: no pair comes twice, so there is one such order.
+/// Orders the range of one first body by the second. No pair comes twice, and one thread appends all of a
+/// pair's manifolds, so there is one such order.
 struct SortBySecond {
   ConstView<std::int64_t> offsets;
   View<detail::ManifoldSlot> slots;
   void operator()(std::int64_t i) const {
-    const auto less = [](const auto& a, const auto& b) { return a.j < b.j; };
+    const auto less = [](const auto& a, const auto& b) {
+      return a.j != b.j ? a.j < b.j : a.source < b.source;
+    };
     std::sort(slots.data() + offsets[i], slots.data() + offsets[i + 1], less);
   }
 };

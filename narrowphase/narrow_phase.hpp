@@ -21,7 +21,7 @@ namespace detail {
 /// Stands for a manifold while they are put in order.
 struct ManifoldSlot {
   std::int32_t j;
-  std::int64_t source;  ///< its place among those found
+  std::int64_t source;  ///< its place among those found; grows in the order of the pair's test
 };
 }  // namespace detail
 
@@ -31,8 +31,8 @@ class NarrowPhase {
   explicit NarrowPhase(const NarrowPhaseSettings& settings) : settings_(settings) {}
 
   /// All manifolds with a gap of at most margin[i] + margin[j] (m), for the pairs given and for every
-  /// plane with every body that is not fixed; ordered by (i, j), each pair once. Bodies that are not free
-  /// make no contact with each other. The view is valid until the next call.
+  /// plane with every body that is not fixed; ordered by (i, j, part), each pair tested once. Bodies that are
+  /// not free make no contact with each other. The view is valid until the next call.
   ConstView<Manifold> find(const ConstBodyView& bodies, ConstView<Pair> pairs, ConstView<double> margin);
 
   const NarrowPhaseStats& stats() const { return stats_; }

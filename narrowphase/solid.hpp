@@ -8,7 +8,7 @@
 
 namespace scree {
 
-/// A shape in place. `size` as in Bodies: x is a sphere's radius, or all half extents of a box (m).
+/// A shape in place. `size` as in Shape (m).
 struct Solid {
   Vec3 position;
   Quat orientation;
@@ -18,8 +18,11 @@ struct Solid {
 // Every pair function has the form
 //   bool pair(const Solid& a, const Solid& b, double margin, Manifold& out)
 // It tells whether a and b have contact points with gaps of at most `margin`, and sets normal (from a to b),
-// count and points of `out`. The offset b - a is formed in double before anything else: far from the origin
-// nothing is lost but what the positions themselves have lost.
+// count and points of `out`. Where one normal cannot serve, it is
+//   int pair(const Solid& a, const Solid& b, double margin, Manifold* out)
+// which sets as many manifolds as it returns, `part` included, and at most max_pair_manifolds. The offset b -
+// a is formed in double before anything else: far from the origin nothing is lost but what the positions
+// themselves have lost.
 
 /// The sign of x, never 0.
 SCREE_HD inline double sign_of(double x) { return x < 0.0 ? -1.0 : 1.0; }
@@ -35,7 +38,23 @@ SCREE_HD inline BoxFeature box_side(int axis, double side) { return (side < 0.0 
 /// features, whichever body gave the reference face.
 SCREE_HD inline std::uint32_t contact_feature(BoxFeature a, BoxFeature b) { return a << 6 | b; }
 
-/// A pair that has at most one point needs no name to find it again.
+struct BoxCorner {
+  Vec3 position;
+  BoxFeature feature;
+};
+
+/// Corner c of the 8 of a box with the given axes: bit k of c chooses the side along axis k.
+SCREE_HD inline BoxCorner box_corner(const Solid& box, const Mat3& axes, int c) {
+  BoxCorner corner{box.position, 0};
+  for (int k = 0; k < 3; ++k) {
+    const double side = c >> k & 1 ? 1.0 : -1.0;
+    corner.position += side * box.size[k] * axes.col(k);
+    corner.feature |= box_side(k, side);
+  }
+  return corner;
+}
+
+/// A surface that has at most one point needs no name to find it again.
 inline constexpr std::uint32_t only_feature = 0;
 
 SCREE_HD inline void set_single(Manifold& out, const Vec3& normal, const ContactPoint& point) {

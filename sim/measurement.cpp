@@ -57,7 +57,7 @@ void measure_contacts(const ContactSet& contacts, std::int64_t free_bodies, Obse
     const Contact& contact = contacts.contacts.view()[c];
     bool loaded = false;
     for (int k = 0; k < contact.count; ++k) {
-      const ContactRow& row = contacts.rows.view()[c * Manifold::max_points + k];
+      const ContactRow& row = contacts.rows.view()[contact.first_row + k];
       if (row.impulse.isZero(0)) continue;
       ++out.contacts;
       gaps += std::abs(row.gap);
@@ -75,12 +75,16 @@ void measure_penetration(ConstView<Manifold> manifolds, const ConstBodyView& bod
   std::vector<double> depths;
   double sum = 0;
   double relative_sum = 0;
-  for (const Manifold& m : manifolds) {
+  for (auto m = manifolds.begin(); m != manifolds.end();) {
+    const std::int32_t i = m->i;
+    const std::int32_t j = m->j;
     double depth = 0;
-    for (int k = 0; k < m.count; ++k) depth = std::max(depth, -m.points[k].gap);
+    for (; m != manifolds.end() && m->i == i && m->j == j; ++m) {
+      for (int k = 0; k < m->count; ++k) depth = std::max(depth, -m->points[k].gap);
+    }
     if (depth <= 0) continue;
-    const double relative = depth / std::min(smallest_size(bodies.shape[m.i], bodies.size[m.i]),
-                                             smallest_size(bodies.shape[m.j], bodies.size[m.j]));
+    const double relative = depth / std::min(smallest_size(bodies.shape[i], bodies.size[i]),
+                                             smallest_size(bodies.shape[j], bodies.size[j]));
     depths.push_back(depth);
     sum += depth;
     relative_sum += relative;

@@ -179,8 +179,8 @@ struct Simulation::Parts {
       if (views.mobility[k] == Mobility::fixed) continue;
       const auto at = static_cast<std::size_t>(k);
       double moved = (views.position[k] - pair_position[at]).norm();
-      if (views.shape[k] == Shape::box) {
-        moved += bounding_radius(Shape::box, views.size[k]) *
+      if (views.shape[k] != Shape::sphere) {
+        moved += bounding_radius(views.shape[k], views.size[k]) *
                  views.orientation[k].angularDistance(pair_orientation[at]);
       }
       if (moved + contact_margin.view()[k] > pair_margin.view()[k]) return true;
@@ -212,7 +212,7 @@ struct Simulation::Parts {
     const BodyView views = view_of(bodies);
     load_solver_bodies(bodies, solver);
     color_contacts(manifolds, std::as_const(bodies.mobility).view(), contacts.coloring);
-    const ContactLaws contact_laws{std::as_const(bodies.mobility).view(),
+    const ContactLaws contact_laws{std::as_const(bodies.shape).view(), std::as_const(bodies.mobility).view(),
                                    std::as_const(bodies.material).view(), std::as_const(laws).view(),
                                    static_cast<std::int64_t>(scene.materials.size())};
     const double scale = last_substep > 0 ? h / last_substep : 1.0;
@@ -221,7 +221,7 @@ struct Simulation::Parts {
     ledger = ledger + response.solve(manifolds, h, parameters, views, solver, contacts, counters);
     fly(start_time + h, 0.5 * h);
     ledger = ledger + corrector.correct(h, parameters, views, solver, contacts);
-    remember_impulses(manifolds, contacts, memory);
+    memory.remember(manifolds, contacts, bodies.count());
     add_impulses_on_driven_bodies();
     last_substep = h;
   }

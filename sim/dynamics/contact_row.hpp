@@ -8,8 +8,8 @@
 namespace scree {
 
 /// What the solver reads and writes of a body: velocities, and the inverse masses at the midpoint
-/// orientation.
-struct SolverBody {
+/// orientation. Two cache lines; a round body needs but the first.
+struct alignas(64) SolverBody {
   Vec3 velocity;
   Vec3 spin;
   double inverse_mass;   ///< 0: not free
@@ -21,6 +21,11 @@ struct SolverBody {
     velocity += inverse_mass * impulse;
     spin += inverse_inertia * arm.cross(impulse);
   }
+  /// The same where the inertia is that of a ball.
+  SCREE_HD void push_ball(const Vec3& arm, const Vec3& impulse) {
+    velocity += inverse_mass * impulse;
+    spin += inverse_inertia(0, 0) * arm.cross(impulse);
+  }
 };
 
 /// A contact point between bodies i and j. Impulses act on j, and reversed on i, at one common point, so that
@@ -31,18 +36,24 @@ struct ContactRow {
   double gap;           ///< at the midpoint (m)
   double target;        ///< normal velocity to reach if the contact pushes (m/s)
   Vec3 impulse;         ///< accumulated, world frame (N s)
-  Mat3 stick;           ///< inverse of the Delassus matrix W of the point (kg)
-  Vec3 coupling;        ///< W n: change of relative velocity by a unit normal impulse (1/kg)
-  double normal_mass;   ///< 1 / (n.W n) (kg)
+  double normal_mass;   ///< 1 / (n.W n), W: the Delassus matrix of the point (kg)
   double tangent_mass;  ///< 1 / largest eigenvalue of W in the tangent plane (kg)
+  Vec3 direction;       ///< conjugate direction of the impulse (N s)
+  Vec3 change;          ///< of the impulse in the last sweep (N s)
 
   SCREE_HD Vec3 relative_velocity(const SolverBody& i, const SolverBody& j) const {
     return j.velocity_at(arm_j) - i.velocity_at(arm_i);
   }
-  SCREE_HD void push(const Vec3& change, SolverBody& i, SolverBody& j) const {
-    i.push(arm_i, -change);
-    j.push(arm_j, change);
+  SCREE_HD void push(const Vec3& more, SolverBody& i, SolverBody& j) const {
+    i.push(arm_i, -more);
+    j.push(arm_j, more);
   }
+};
+
+/// What a row needs besides where W couples the normal to the tangents or tells them apart.
+struct RowCoupling {
+  Mat3 stick;   ///< inverse of W (kg)
+  Vec3 normal;  ///< W n: change of relative velocity by a unit normal impulse (1/kg)
 };
 
 /// Delassus matrix of one body at an arm: its share of the change of relative velocity by an impulse (1/kg).
@@ -52,9 +63,20 @@ SCREE_HD inline Mat3 delassus_share(const SolverBody& body, const Vec3& arm) {
   return body.inverse_mass * Mat3::Identity() - cross * body.inverse_inertia * cross;
 }
 
+/// A row with its lever arms and gap; the impulse, its target and the masses are for the caller to set.
+SCREE_HD inline ContactRow row_at(const Vec3& arm_i, const Vec3& arm_j, double gap) {
+  ContactRow row;
+  row.arm_i = arm_i;
+  row.arm_j = arm_j;
+  row.gap = gap;
+  row.target = 0;
+  row.impulse = row.direction = row.change = Vec3::Zero();
+  return row;
+}
+
 /// Prepares a row with zero impulse and target. At least one of the bodies is free.
 SCREE_HD inline ContactRow make_row(const Vec3& normal, const Vec3& arm_i, const Vec3& arm_j, double gap,
-                                    const SolverBody& i, const SolverBody& j) {
+                                    const SolverBody& i, const SolverBody& j, RowCoupling& coupling) {
   const Mat3 w = delassus_share(i, arm_i) + delassus_share(j, arm_j);
   const Vec3 t = tangent_of(normal);
   const Vec3 b = normal.cross(t);
@@ -62,16 +84,23 @@ SCREE_HD inline ContactRow make_row(const Vec3& normal, const Vec3& arm_i, const
   const double bb = b.dot(w * b);
   const double tb = t.dot(w * b);
   const double half_difference = 0.5 * (tt - bb);
-  ContactRow row;
-  row.arm_i = arm_i;
-  row.arm_j = arm_j;
-  row.gap = gap;
-  row.target = 0;
-  row.impulse = Vec3::Zero();
-  row.stick = w.inverse();
-  row.coupling = w * normal;
-  row.normal_mass = 1.0 / normal.dot(row.coupling);
+  coupling.stick = w.inverse();
+  coupling.normal = w * normal;
+  ContactRow row = row_at(arm_i, arm_j, gap);
+  row.normal_mass = 1.0 / normal.dot(coupling.normal);
   row.tangent_mass = 1.0 / (0.5 * (tt + bb) + sqrt(half_difference * half_difference + tb * tb));
+  return row;
+}
+
+/// The same for a contact of balls (a body that is not free counts as one): their arms lie along the normal,
+/// so that W is diagonal with equal tangents and nothing couples.
+SCREE_HD inline ContactRow make_ball_row(const Vec3& arm_i, const Vec3& arm_j, double gap,
+                                         const SolverBody& i, const SolverBody& j) {
+  ContactRow row = row_at(arm_i, arm_j, gap);
+  const double normal = i.inverse_mass + j.inverse_mass;
+  row.normal_mass = 1.0 / normal;
+  row.tangent_mass = 1.0 / (normal + i.inverse_inertia(0, 0) * arm_i.squaredNorm() +
+                            j.inverse_inertia(0, 0) * arm_j.squaredNorm());
   return row;
 }
 
@@ -86,37 +115,61 @@ SCREE_HD inline Vec3 project_on_cone(const Vec3& impulse, const Vec3& normal, do
   return length <= radius ? impulse : Vec3(pn * normal + (radius / length) * pt);
 }
 
+/// The impulse with normal part pn >= 0 and the tangential part pt, cut to Coulomb's disc.
+SCREE_HD inline Vec3 on_disc(double pn, const Vec3& pt, const Vec3& normal, double friction) {
+  const double radius = friction * pn;
+  const double square = pt.squaredNorm();
+  return pn * normal + (square <= radius * radius ? pt : Vec3((radius / sqrt(square)) * pt));
+}
+
 /// The impulse that the point should carry in place of row.impulse, given the relative velocity u that holds
 /// now. First the impulse that makes the point stick; if it leaves the cone, the normal impulse that reaches
-/// the target and one projected step of the tangential one. For spheres W is diagonal and this is the exact
-/// local solution; otherwise its fixed points are (Coulomb's disc, both tangents together).
-SCREE_HD inline Vec3 coulomb_update(const ContactRow& row, const Vec3& normal, double friction,
-                                    const Vec3& u) {
+/// the target and one projected step of the tangential one. Its fixed points are the local solutions
+/// (Coulomb's disc, both tangents together).
+SCREE_HD inline Vec3 coulomb_update(const ContactRow& row, const RowCoupling& coupling, const Vec3& normal,
+                                    double friction, const Vec3& u) {
   const double pn_old = row.impulse.dot(normal);
   if (friction > 0) {
-    const Vec3 sticking = row.impulse - row.stick * (u - row.target * normal);
+    const Vec3 sticking = row.impulse - coupling.stick * (u - row.target * normal);
     const double pn = sticking.dot(normal);
     if (pn >= 0 && (sticking - pn * normal).squaredNorm() <= friction * friction * pn * pn) return sticking;
   }
   const double pn = fmax(0.0, pn_old - (u.dot(normal) - row.target) * row.normal_mass);
   if (friction == 0 || pn == 0) return pn * normal;
-  const Vec3 v = u + row.coupling * (pn - pn_old);
+  const Vec3 v = u + coupling.normal * (pn - pn_old);
   const Vec3 vt = v - v.dot(normal) * normal;
-  const Vec3 pt = row.impulse - pn_old * normal - row.tangent_mass * vt;
-  const double radius = friction * pn;
-  const double length = pt.norm();
-  return pn * normal + (length <= radius ? pt : Vec3((radius / length) * pt));
+  return on_disc(pn, row.impulse - pn_old * normal - row.tangent_mass * vt, normal, friction);
+}
+
+/// The same for a contact of balls, where it is the exact local solution.
+SCREE_HD inline Vec3 coulomb_update_of_balls(const ContactRow& row, const Vec3& normal, double friction,
+                                             const Vec3& u) {
+  const double un = u.dot(normal);
+  const double pn_old = row.impulse.dot(normal);
+  const double pn = fmax(0.0, pn_old - (un - row.target) * row.normal_mass);
+  if (friction == 0 || pn == 0) return pn * normal;
+  return on_disc(pn, row.impulse - pn_old * normal - row.tangent_mass * (u - un * normal), normal, friction);
 }
 
 /// One Gauss-Seidel sweep over the rows of a contact, with its two bodies at hand.
-SCREE_HD inline void sweep_rows(ContactRow* rows, int count, const Vec3& normal, double friction,
-                                SolverBody& i, SolverBody& j) {
+SCREE_HD inline void sweep_rows(ContactRow* rows, const RowCoupling* couplings, int count, const Vec3& normal,
+                                double friction, SolverBody& i, SolverBody& j) {
   for (int k = 0; k < count; ++k) {
     ContactRow& row = rows[k];
-    const Vec3 impulse = coulomb_update(row, normal, friction, row.relative_velocity(i, j));
+    const Vec3 impulse = coulomb_update(row, couplings[k], normal, friction, row.relative_velocity(i, j));
     row.push(impulse - row.impulse, i, j);
     row.impulse = impulse;
   }
+}
+
+/// The same for the one row of a contact of balls.
+SCREE_HD inline void sweep_ball_row(ContactRow& row, const Vec3& normal, double friction, SolverBody& i,
+                                    SolverBody& j) {
+  const Vec3 impulse = coulomb_update_of_balls(row, normal, friction, row.relative_velocity(i, j));
+  const Vec3 change = impulse - row.impulse;
+  i.push_ball(row.arm_i, -change);
+  j.push_ball(row.arm_j, change);
+  row.impulse = impulse;
 }
 
 }  // namespace scree

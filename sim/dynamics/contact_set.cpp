@@ -8,30 +8,40 @@
 namespace scree {
 
 bool ImpulseMemory::recall(const Manifold& manifold, Vec3 impulses[Manifold::max_points]) const {
-  const auto found = std::lower_bound(entries_.begin(), entries_.end(), manifold,
-                                      [](const Entry& entry, const Manifold& wanted) {
-                                        return std::pair(entry.i, entry.j) < std::pair(wanted.i, wanted.j);
-                                      });
   for (int k = 0; k < manifold.count; ++k) impulses[k].setZero();
-  if (found == entries_.end() || found->i != manifold.i || found->j != manifold.j) return false;
+  if (begin_.empty()) return false;
+  const auto place = [](const auto& contact) { return std::pair(contact.j, contact.part); };
+  const auto before = [place](const Entry& entry, const Manifold& wanted) {
+    return place(entry) < place(wanted);
+  };
+  // A floor may have as many entries as there are bodies.
+  const Entry* last = entries_.data() + begin_.view()[manifold.i + 1];
+  const Entry* entry = std::lower_bound(entries_.data() + begin_.view()[manifold.i], last, manifold, before);
   bool loaded = false;
-  for (int k = 0; k < manifold.count; ++k) {
-    for (int old = 0; old < found->count; ++old) {
-      if (found->feature[old] != manifold.points[k].feature) continue;
-      impulses[k] = found->impulse[old];
-      break;
+  for (; entry != last && place(*entry) == place(manifold); ++entry) {
+    for (int old = 0; old < entry->count; ++old) {
+      loaded = loaded || !entry->impulse[old].isZero(0);
+      for (int k = 0; k < manifold.count; ++k) {
+        if (entry->feature[old] == manifold.points[k].feature) impulses[k] = entry->impulse[old];
+      }
     }
   }
-  // Loaded is a matter of the pair: where one corner rests, the others do not bounce.
-  for (int old = 0; old < found->count; ++old) loaded = loaded || !found->impulse[old].isZero(0);
   return loaded;
 }
 
 namespace {
 
+struct CountPoints {
+  ConstView<Manifold> manifolds;
+  const std::int32_t* order;
+  View<std::int32_t> counts;
+  SCREE_HD void operator()(std::int64_t c) const { counts[c] = manifolds[order[c]].count; }
+};
+
 struct PrepareContact {
   ConstView<Manifold> manifolds;
   const std::int32_t* order;
+  ConstView<std::int64_t> first_row;
   ContactLaws laws;
   const ImpulseMemory* memory;
   double scale;
@@ -45,51 +55,80 @@ struct PrepareContact {
     const double friction = parameters.friction ? law.friction : 0.0;
     Vec3 remembered[Manifold::max_points];
     const bool loaded = memory->recall(manifold, remembered);
-    contacts[c] = {.i = manifold.i,
-                   .j = manifold.j,
-                   .manifold = order[c],
-                   .count = manifold.count,
-                   .normal = manifold.normal,
-                   .friction = friction,
-                   .restitution = parameters.restitution ? law.restitution : 0.0,
-                   .loaded = loaded,
-                   .falling = false,
-                   .free_ends = static_cast<int>(laws.mobility[manifold.i] == Mobility::free) +
-                                static_cast<int>(laws.mobility[manifold.j] == Mobility::free),
-                   .impulse = Vec3::Zero()};
+    contacts[c] = {
+        .i = manifold.i,
+        .j = manifold.j,
+        .manifold = order[c],
+        .count = manifold.count,
+        .first_row = first_row[c],
+        .normal = manifold.normal,
+        .friction = friction,
+        .restitution = parameters.restitution ? law.restitution : 0.0,
+        .loaded = loaded,
+        .falling = false,
+        .balls = laws.acts_as_ball(manifold.i) && laws.acts_as_ball(manifold.j),
+        .free_ends = static_cast<int>(laws.is_free(manifold.i)) + static_cast<int>(laws.is_free(manifold.j)),
+        .impulse = Vec3::Zero()};
     for (int k = 0; k < manifold.count; ++k) {
-      rows[c * Manifold::max_points + k].impulse =
-          parameters.warm_start ? project_on_cone(scale * remembered[k], manifold.normal, friction)
-                                : Vec3(Vec3::Zero());
+      rows[first_row[c] + k].impulse = parameters.warm_start
+                                           ? project_on_cone(scale * remembered[k], manifold.normal, friction)
+                                           : Vec3(Vec3::Zero());
     }
+  }
+};
+
+struct StoreEntry {
+  ConstView<Manifold> manifolds;
+  ConstView<Contact> contacts;
+  ConstView<ContactRow> rows;
+  View<ImpulseMemory::Entry> entries;
+  SCREE_HD void operator()(std::int64_t c) const {
+    const Contact& contact = contacts[c];
+    ImpulseMemory::Entry& entry = entries[contact.manifold];
+    entry.j = contact.j;
+    entry.part = manifolds[contact.manifold].part;
+    entry.count = contact.count;
+    for (int k = 0; k < contact.count; ++k) {
+      entry.feature[k] = manifolds[contact.manifold].points[k].feature;
+      entry.impulse[k] = rows[contact.first_row + k].impulse;
+    }
+  }
+};
+
+/// The manifolds are ordered by i: each one marks where the bodies after the last i up to its own begin.
+struct MarkBegins {
+  ConstView<Manifold> manifolds;
+  View<std::int64_t> begin;
+  SCREE_HD void operator()(std::int64_t m) const {
+    const std::int64_t last = m > 0 ? manifolds[m - 1].i : -1;
+    const std::int64_t own = m < manifolds.size() ? manifolds[m].i : begin.size() - 1;
+    for (std::int64_t i = last + 1; i <= own; ++i) begin[i] = m;
   }
 };
 
 }  // namespace
 
-void prepare_contacts(ConstView<Manifold> manifolds, const ContactLaws& laws, const ImpulseMemory& memory,
-                      double scale, const ResponseParameters& parameters, ContactSet& set) {
-  set.contacts.resize(manifolds.size());
-  set.rows.resize(manifolds.size() * Manifold::max_points);
-  parallel::for_each<Host>("contacts.prepare", manifolds.size(),
-                           PrepareContact{manifolds, set.coloring.order.data(), laws, &memory, scale,
-                                          parameters, set.contacts.view(), set.rows.view()});
+void ImpulseMemory::remember(ConstView<Manifold> manifolds, const ContactSet& set, std::int64_t bodies) {
+  entries_.resize(manifolds.size());
+  begin_.resize(bodies + 1);
+  parallel::for_each<Host>("contacts.remember", manifolds.size(),
+                           StoreEntry{manifolds, set.contacts.view(), set.rows.view(), entries_.view()});
+  parallel::for_each<Host>("contacts.remember", manifolds.size() + 1, MarkBegins{manifolds, begin_.view()});
 }
 
-void remember_impulses(ConstView<Manifold> manifolds, const ContactSet& set, ImpulseMemory& memory) {
-  std::vector<ImpulseMemory::Entry>& entries = memory.entries();
-  entries.resize(static_cast<std::size_t>(manifolds.size()));
-  for (std::int64_t c = 0; c < set.contacts.size(); ++c) {
-    const Contact& contact = set.contacts.view()[c];
-    ImpulseMemory::Entry& entry = entries[static_cast<std::size_t>(contact.manifold)];
-    entry.i = contact.i;
-    entry.j = contact.j;
-    entry.count = contact.count;
-    for (int k = 0; k < contact.count; ++k) {
-      entry.feature[k] = manifolds[contact.manifold].points[k].feature;
-      entry.impulse[k] = set.rows.view()[c * Manifold::max_points + k].impulse;
-    }
-  }
+void prepare_contacts(ConstView<Manifold> manifolds, const ContactLaws& laws, const ImpulseMemory& memory,
+                      double scale, const ResponseParameters& parameters, ContactSet& set) {
+  const std::int64_t n = manifolds.size();
+  const std::int32_t* order = set.coloring.order.data();
+  set.contacts.resize(n);
+  set.counts.resize(n);
+  parallel::for_each<Host>("contacts.count", n, CountPoints{manifolds, order, set.counts.view()});
+  const std::int64_t rows = parallel::exclusive_scan<Host>("contacts.first_row", set.counts, set.first_row);
+  set.rows.resize(rows);
+  set.couplings.resize(rows);
+  parallel::for_each<Host>("contacts.prepare", n,
+                           PrepareContact{manifolds, order, std::as_const(set.first_row).view(), laws,
+                                          &memory, scale, parameters, set.contacts.view(), set.rows.view()});
 }
 
 }  // namespace scree

@@ -9,7 +9,6 @@
 #include "sim/dynamics/state.hpp"
 
 #include <cstdint>
-#include <vector>
 
 namespace scree {
 
@@ -18,12 +17,14 @@ struct Contact {
   std::int32_t i;
   std::int32_t j;
   std::int32_t manifold;  ///< its place in the order of the narrow phase
-  int count;              ///< rows in use
+  std::int32_t count;     ///< rows in use
+  std::int64_t first_row;
   Vec3 normal;
   double friction;
   double restitution;
   bool loaded;    ///< carried an impulse in the last substep: it does not bounce
   bool falling;   ///< on its way to an impact after this substep: its rows must not slow it down
+  bool balls;     ///< between balls and bodies that are not free: its row needs no coupling
   int free_ends;  ///< how many of its two bodies are free
   Vec3 impulse;   ///< all that it gave to j in this substep, impacts and rows (N s)
 };
@@ -34,41 +35,50 @@ struct PairLaw {
   double friction;
 };
 
-/// Impulses of the last substep, by pair and feature. Ordered by (i, j), as manifolds are.
-class ImpulseMemory {
- public:
-  /// Finds the last impulses of a manifold's points (N s, world frame); false if none of them carried any.
-  bool recall(const Manifold& manifold, Vec3 impulses[Manifold::max_points]) const;
-  void clear() { entries_.clear(); }
-
-  struct Entry {
-    std::int32_t i;
-    std::int32_t j;
-    int count;
-    std::uint32_t feature[Manifold::max_points];
-    Vec3 impulse[Manifold::max_points];
-  };
-  std::vector<Entry>& entries() { return entries_; }
-
- private:
-  std::vector<Entry> entries_;
-};
-
 /// What the response works on.
 struct ContactSet {
   Coloring coloring;
-  Array<Contact, Host> contacts;  ///< in the order of the colours
-  Array<ContactRow, Host> rows;   ///< Manifold::max_points for each contact
-  Array<Vec3, Host> shift;        ///< of each body's midpoint position, by impacts of this substep (m)
+  Array<std::int32_t, Host> counts;  ///< of the points of each contact, and where its rows begin
+  Array<std::int64_t, Host> first_row;
+  Array<Contact, Host> contacts;       ///< in the order of the colours
+  Array<ContactRow, Host> rows;        ///< of one contact after the other
+  Array<RowCoupling, Host> couplings;  ///< of the rows; not set for those of balls
+  Array<Vec3, Host> shift;             ///< of each body's midpoint position, by impacts of this substep (m)
 };
 
-/// Which law holds between two bodies, and which bodies move freely.
+/// Impulses of the last substep, by pair, part and feature. Ordered by (i, j, part), as manifolds are, with
+/// the place where those of each i begin.
+class ImpulseMemory {
+ public:
+  /// Finds the last impulses of a manifold's points (N s, world frame). False if none of the pair's points on
+  /// that part carried any: where one corner rests, the others do not bounce.
+  bool recall(const Manifold& manifold, Vec3 impulses[Manifold::max_points]) const;
+  /// Takes the impulses of the rows; `bodies` is their number.
+  void remember(ConstView<Manifold> manifolds, const ContactSet& set, std::int64_t bodies);
+
+  struct Entry {
+    std::int32_t j;
+    std::int32_t part;
+    std::int32_t count;
+    std::uint32_t feature[Manifold::max_points];
+    Vec3 impulse[Manifold::max_points];
+  };
+
+ private:
+  Array<Entry, Host> entries_;
+  Array<std::int64_t, Host> begin_;  ///< of the entries of each i; one more than bodies, empty at first
+};
+
+/// Which law holds between two bodies, and what they are.
 struct ContactLaws {
+  ConstView<Shape> shape;            ///< of each body
   ConstView<Mobility> mobility;      ///< of each body
   ConstView<std::int32_t> material;  ///< of each body
   ConstView<PairLaw> table;          ///< materials x materials
   std::int64_t materials = 0;
 
+  bool is_free(std::int32_t body) const { return mobility[body] == Mobility::free; }
+  bool acts_as_ball(std::int32_t body) const { return shape[body] == Shape::sphere || !is_free(body); }
   const PairLaw& between(std::int32_t i, std::int32_t j) const {
     return table[material[i] * materials + material[j]];
   }
@@ -78,8 +88,5 @@ struct ContactLaws {
 /// by `scale` (ratio of the substeps' lengths) and projected on the cone at the new normal.
 void prepare_contacts(ConstView<Manifold> manifolds, const ContactLaws& laws, const ImpulseMemory& memory,
                       double scale, const ResponseParameters& parameters, ContactSet& set);
-
-/// Stores the impulses of the rows, in the order of the manifolds.
-void remember_impulses(ConstView<Manifold> manifolds, const ContactSet& set, ImpulseMemory& memory);
 
 }  // namespace scree

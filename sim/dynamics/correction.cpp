@@ -42,7 +42,7 @@ struct PositionCorrector::Sweep {
         tolerance::correction_cap * fmin(smallest_size(stage.bodies.shape[c.i], stage.bodies.size[c.i]),
                                          smallest_size(stage.bodies.shape[c.j], stage.bodies.size[c.j]));
     for (int p = 0; p < c.count; ++p) {
-      const ContactRow& row = stage.rows[(first + k) * Manifold::max_points + p];
+      const ContactRow& row = stage.rows[c.first_row + p];
       const double overlap = -stage.gap_at_end(c, row);
       if (overlap <= 0) continue;
       const double part = fmin(tolerance::correction_share * overlap, largest);

@@ -2,7 +2,9 @@
 
 #include "core/parallel.hpp"
 #include "core/tolerances.hpp"
+#include "narrowphase/tube.hpp"
 #include "sim/dynamics/colored.hpp"
+#include "sim/dynamics/flight.hpp"
 
 #include <utility>
 
@@ -10,22 +12,12 @@ namespace scree {
 
 namespace {
 
-/// A body in flight, as the impact search sees it.
-struct Flight {
-  Vec3 position;      ///< at the midpoint
-  Vec3 acceleration;  ///< gravity, or 0 for bodies that are not free
-
-  SCREE_HD Vec3 at(const Vec3& velocity, double step, double s) const {
-    return position + (s - 0.5 * step) * velocity + (0.5 * s * s) * acceleration;
-  }
-};
-
 /// The next impact of a contact: when, along which normal, and which of its points take part.
 struct Impact {
   double time = HUGE_VAL;
   Vec3 normal;
   int count = 0;
-  int point[Manifold::max_points];
+  int point[Manifold::max_points] = {};
 };
 
 /// Everything that the functors below share.
@@ -36,9 +28,10 @@ struct ImpactStage {
   BodyView bodies;
   View<SolverBody> solver;
   View<Contact> contacts;
-  View<Vec3> shift;     ///< of the midpoint positions by impacts so far
-  View<double> clock;   ///< time of each body's last impact in this substep
-  View<Ledger> ledger;  ///< per contact
+  View<Vec3> shift;              ///< of the midpoint positions by impacts so far
+  View<double> clock;            ///< time of each body's last impact in this substep
+  View<std::int32_t> last_pass;  ///< in which each body was last hit
+  View<Ledger> ledger;           ///< per contact
 
   Flight flight(std::int32_t body) const {
     return {bodies.position[body], solver[body].is_free() ? parameters.gravity : Vec3(Vec3::Zero())};
@@ -87,7 +80,33 @@ struct ImpactStage {
     impact.time = s;
   }
 
+  /// True for a ball and the wall of a tube: its normal goes round with the ball.
+  bool meets_wall(const Contact& c) const {
+    const Shape i = bodies.shape[c.i];
+    const Shape j = bodies.shape[c.j];
+    return (i == Shape::tube || j == Shape::tube) && (i == Shape::sphere || j == Shape::sphere) &&
+           manifolds[c.manifold].part == tube_wall;
+  }
+
+  Impact next_wall_impact_of(const Contact& c) const {
+    const bool ball_first = bodies.shape[c.i] == Shape::sphere;
+    const std::int32_t ball = ball_first ? c.i : c.j;
+    const std::int32_t tube = ball_first ? c.j : c.i;
+    const Vec3 axis = bodies.orientation[tube] * Vec3::UnitZ();
+    const auto across = [&axis](const Vec3& v) { return Vec3(v - axis.dot(v) * axis); };
+    const Vec3 offset = bodies.position[ball] - bodies.position[tube];
+    // Spin about the axis leaves the wall where it is; spin across it does not.
+    const Vec3 wall_velocity = solver[tube].velocity_at(axis.dot(offset) * axis);
+    const WallImpact next = next_wall_impact({.flight = {across(offset), across(flight(ball).acceleration)},
+                                              .velocity = across(solver[ball].velocity - wall_velocity),
+                                              .reach = bodies.size[tube].x() - bodies.size[ball].x()},
+                                             step, fmax(clock[c.i], clock[c.j]));
+    if (next.time == HUGE_VAL || !is_fast(-next.speed, c)) return {};
+    return {.time = next.time, .normal = ball_first ? next.outward : Vec3(-next.outward), .count = 1};
+  }
+
   Impact next_impact(const Contact& c) const {
+    if (meets_wall(c)) return next_wall_impact_of(c);
     Impact impact;
     const Manifold& m = manifolds[c.manifold];
     const SolverBody& bi = solver[c.i];
@@ -128,19 +147,20 @@ struct ImpactStage {
   }
 
   /// The common point. Bodies slide along one another between the midpoint and the impact: the more curved
-  /// surface carries the point with it (sphere before box before plane); between equals it lies in the
-  /// middle.
+  /// surface carries the point with it (sphere before box before plane or tube); between equals it lies in
+  /// the middle.
   Vec3 touching_point(const Contact& c, const Vec3& normal, const Vec3& on_i, const Vec3& on_j) const {
     const Shape i = bodies.shape[c.i];
     const Shape j = bodies.shape[c.j];
-    const double apart = normal.dot(on_j - on_i);
+    // The point of the wall at the midpoint says nothing of where the wall is at the impact.
+    const double apart = meets_wall(c) ? 0.0 : normal.dot(on_j - on_i);
     if (i == j) return 0.5 * (on_i + on_j);
     return i < j ? Vec3(on_i + (0.5 * apart) * normal) : Vec3(on_j - (0.5 * apart) * normal);
   }
 
   /// Newton's law u+ = -e u- at all points of the impact at once, with Coulomb friction, at one
   /// configuration.
-  void resolve(std::int64_t index, const Impact& impact) const {
+  void resolve(std::int64_t index, const Impact& impact, std::int32_t pass) const {
     Contact& c = contacts[index];
     const Manifold& m = manifolds[c.manifold];
     const double s = impact.time;
@@ -152,12 +172,13 @@ struct ImpactStage {
     const Vec3 xi = fi.at(i.velocity, step, s);
     const Vec3 xj = fj.at(j.velocity, step, s);
     ContactRow rows[Manifold::max_points];
+    RowCoupling couplings[Manifold::max_points];
     Vec3 before[Manifold::max_points];
     for (int k = 0; k < impact.count; ++k) {
       const Point p = point(m, impact.point[k]);
       const Vec3 touch = touching_point(c, impact.normal, surface(c.i, xi, impact.normal, p.arm_i, tau),
                                         surface(c.j, xj, -impact.normal, p.arm_j, tau));
-      rows[k] = make_row(impact.normal, touch - xi, touch - xj, 0.0, i, j);
+      rows[k] = make_row(impact.normal, touch - xi, touch - xj, 0.0, i, j, couplings[k]);
     }
     i.velocity += s * fi.acceleration;
     j.velocity += s * fj.acceleration;
@@ -170,7 +191,7 @@ struct ImpactStage {
       double size = 0;
       Vec3 last[Manifold::max_points];
       for (int k = 0; k < impact.count; ++k) last[k] = rows[k].impulse;
-      sweep_rows(rows, impact.count, impact.normal, c.friction, i, j);
+      sweep_rows(rows, couplings, impact.count, impact.normal, c.friction, i, j);
       for (int k = 0; k < impact.count; ++k) {
         change += (rows[k].impulse - last[k]).norm();
         size += rows[k].impulse.norm();
@@ -189,11 +210,12 @@ struct ImpactStage {
       total += rows[k].impulse;
     }
     c.impulse += total;
-    store(c.i, i, fi, s, tau);
-    store(c.j, j, fj, s, tau);
+    store(c.i, i, fi, s, tau, pass);
+    store(c.j, j, fj, s, tau, pass);
   }
 
-  void store(std::int32_t body, const SolverBody& after, const Flight& flown, double s, double tau) const {
+  void store(std::int32_t body, const SolverBody& after, const Flight& flown, double s, double tau,
+             std::int32_t pass) const {
     SolverBody& state = solver[body];
     if (!state.is_free()) return;
     const Vec3 velocity = after.velocity - s * flown.acceleration;
@@ -203,6 +225,13 @@ struct ImpactStage {
     bodies.position[body] += move;
     shift[body] += move;
     clock[body] = s;
+    last_pass[body] = pass;
+  }
+
+  /// False if nothing has changed for a contact since its visit in the pass before.
+  bool is_due(const Contact& c, std::int32_t pass) const {
+    if (c.restitution == 0 || c.loaded) return false;
+    return pass == 0 || last_pass[c.i] >= pass - 1 || last_pass[c.j] >= pass - 1;
   }
 
   static constexpr int impact_sweeps = 200;
@@ -213,15 +242,16 @@ struct VisitContact {
   ImpactStage stage;
   std::int64_t first;
   View<std::uint8_t> hit;
+  std::int32_t pass;
 
   void operator()(std::int64_t k) const {
     const std::int64_t index = first + k;
     hit[index] = 0;
     const Contact& c = stage.contacts[index];
-    if (c.restitution == 0 || c.loaded) return;
+    if (!stage.is_due(c, pass)) return;
     const Impact impact = stage.next_impact(c);
     if (impact.count == 0 || impact.time > stage.step) return;
-    stage.resolve(index, impact);
+    stage.resolve(index, impact, pass);
     hit[index] = 1;
   }
 };
@@ -257,16 +287,19 @@ Ledger ImpactSolver::resolve(const ImpactProblem& problem, const ResponseParamet
   parallel::fill("impact.reset", set.shift, Vec3(Vec3::Zero()));
   if (!parameters.restitution || n == 0) return {};
   clock_.resize(solver.size());
+  last_pass_.resize(solver.size());
   ledger_.resize(n);
   hit_.resize(n);
   parallel::fill("impact.reset", clock_, 0.0);
+  parallel::fill("impact.reset", last_pass_, std::int32_t{-2});
   parallel::fill("impact.reset", ledger_, Ledger{});
-  const ImpactStage stage{problem.manifolds,   problem.step,     parameters,    problem.bodies, solver.view(),
-                          set.contacts.view(), set.shift.view(), clock_.view(), ledger_.view()};
+  const ImpactStage stage{problem.manifolds, problem.step,        parameters,       problem.bodies,
+                          solver.view(),     set.contacts.view(), set.shift.view(), clock_.view(),
+                          last_pass_.view(), ledger_.view()};
   bool closing = true;
-  for (int pass = 0; pass < chain_passes && closing; ++pass) {
+  for (std::int32_t pass = 0; pass < chain_passes && closing; ++pass) {
     for_each_color("impact.visit", set.coloring, [&](std::int64_t first) {
-      return VisitContact{stage, first, hit_.view()};
+      return VisitContact{stage, first, hit_.view(), pass};
     });
     const auto hits =
         parallel::sum<std::int64_t, Host>("impact.count", n, AnyHit{std::as_const(hit_).view()});

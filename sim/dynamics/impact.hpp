@@ -6,18 +6,6 @@
 
 namespace scree {
 
-/// First s >= 0 at which gap + u s + a s^2 / 2 = 0, for gap > 0; 0 for gap <= 0; infinite if there is none.
-/// gap in m, u in m/s, a in m/s^2, s in s.
-SCREE_HD inline double time_of_impact(double gap, double u, double a) {
-  if (gap <= 0) return 0;
-  const double discriminant = u * u - 2 * a * gap;
-  if (discriminant < 0) return HUGE_VAL;
-  // Of the two forms of the root, the one without cancellation.
-  const double root = sqrt(discriminant);
-  if (u > 0) return a < 0 ? (u + root) / -a : HUGE_VAL;
-  return root > u ? 2 * gap / (root - u) : HUGE_VAL;
-}
-
 struct ImpactProblem {
   ConstView<Manifold> manifolds;
   double step;      ///< length of the substep (s)
@@ -38,9 +26,10 @@ class ImpactSolver {
                  Array<SolverBody, Host>& solver, ContactSet& set, Counters& counters);
 
  private:
-  Array<double, Host> clock_;      // time of each body's last impact in this substep
-  Array<Ledger, Host> ledger_;     // per contact
-  Array<std::uint8_t, Host> hit_;  // per contact, in the last pass
+  Array<double, Host> clock_;            // time of each body's last impact in this substep
+  Array<std::int32_t, Host> last_pass_;  // in which each body was last hit
+  Array<Ledger, Host> ledger_;           // per contact
+  Array<std::uint8_t, Host> hit_;        // per contact, in the last pass
 };
 
 }  // namespace scree

@@ -40,13 +40,15 @@ struct SetMargin {
   double dt;
   double fall;
   SCREE_HD void operator()(std::int64_t k) const {
-    const double slack = tolerance::contact_slack * smallest_size(bodies.shape[k], bodies.size[k]);
+    const Shape shape = bodies.shape[k];
     if (bodies.mobility[k] == Mobility::fixed) {
       margin[k] = 0;
       return;
     }
-    const double radius = bounding_radius(bodies.shape[k], bodies.size[k]);
-    const double turn = bodies.shape[k] == Shape::box ? radius * bodies.spin[k].norm() * dt : 0.0;
+    const double slack =
+        is_boundary(shape) ? 0.0 : tolerance::contact_slack * smallest_size(shape, bodies.size[k]);
+    const double radius = bounding_radius(shape, bodies.size[k]);
+    const double turn = shape == Shape::sphere ? 0.0 : radius * bodies.spin[k].norm() * dt;
     margin[k] = slack + tolerance::travel_factor * (bodies.velocity[k].norm() * dt + turn + fall);
   }
 };

@@ -16,12 +16,13 @@ struct SolveStage {
   View<SolverBody> solver;
   View<Contact> contacts;
   View<ContactRow> rows;
+  View<RowCoupling> couplings;
   ConstView<Vec3> shift;
   View<SweepChange> change;
-  AccelerationView acceleration;
+  View<BodyAcceleration> acceleration;
   double step;
 
-  SCREE_HD ContactRow* rows_of(std::int64_t c) const { return &rows[c * Manifold::max_points]; }
+  SCREE_HD ContactRow* rows_of(std::int64_t c) const { return &rows[contacts[c].first_row]; }
   SCREE_HD void store(std::int32_t body, const SolverBody& state) const {
     if (!state.is_free()) return;
     solver[body].velocity = state.velocity;
@@ -66,8 +67,13 @@ struct PrepareRows {
       const Vec3 impulse = row.impulse;
       const Vec3 point = m.points[k].position + middle_shift;
       const double gap = m.points[k].gap + opened;
-      row = make_row(m.normal, point - bodies.position[m.i], point - bodies.position[m.j], gap,
-                     stage.solver[m.i], stage.solver[m.j]);
+      const Vec3 arm_i = point - bodies.position[m.i];
+      const Vec3 arm_j = point - bodies.position[m.j];
+      const SolverBody& i = stage.solver[m.i];
+      const SolverBody& j = stage.solver[m.j];
+      row = contact.balls
+                ? make_ball_row(arm_i, arm_j, gap, i, j)
+                : make_row(m.normal, arm_i, arm_j, gap, i, j, stage.couplings[contact.first_row + k]);
       row.impulse = impulse;
       // The next midpoint must not overlap: the gap may close by then, and no more (speculative contact).
       row.target = gap > shell ? -(gap - shell) / stage.step : 0.0;
@@ -91,9 +97,13 @@ struct WarmStart {
   }
 };
 
+/// One visit of a contact. Going on by beta in the direction of the sweeps before, which the bodies have done
+/// already, waits for it.
 struct Sweep {
   SolveStage stage;
   std::int64_t first;
+  double beta;
+
   SCREE_HD void operator()(std::int64_t k) const {
     const std::int64_t c = first + k;
     const Contact& contact = stage.contacts[c];
@@ -101,20 +111,30 @@ struct Sweep {
     SolverBody i = stage.solver[contact.i];
     SolverBody j = stage.solver[contact.j];
     Vec3 last[Manifold::max_points];
-    for (int p = 0; p < contact.count; ++p) last[p] = rows[p].impulse;
-    // Points of one manifold are solved as a block: they share both bodies, which are at hand.
-    const int inner = contact.count > 1 ? manifold_sweeps : 1;
-    for (int sweep = 0; sweep < inner; ++sweep) {
-      sweep_rows(rows, contact.count, contact.normal, contact.friction, i, j);
+    for (int p = 0; p < contact.count; ++p) {
+      ContactRow& row = rows[p];
+      row.impulse += beta * row.direction;
+      row.direction = beta * row.direction + row.change;
+      last[p] = row.impulse;
+    }
+    if (contact.balls) {
+      for (int p = 0; p < contact.count; ++p) sweep_ball_row(rows[p], contact.normal, contact.friction, i, j);
+    } else {
+      // Points of one manifold are solved as a block: they share both bodies, which are at hand.
+      const int inner = contact.count > 1 ? manifold_sweeps : 1;
+      for (int sweep = 0; sweep < inner; ++sweep) {
+        sweep_rows(rows, &stage.couplings[contact.first_row], contact.count, contact.normal, contact.friction,
+                   i, j);
+      }
     }
     stage.store(contact.i, i);
     stage.store(contact.j, j);
     SweepChange change;
     for (int p = 0; p < contact.count; ++p) {
-      const Vec3 step = rows[p].impulse - last[p];
-      stage.acceleration.row_step[c * Manifold::max_points + p] = step;
-      change.step += step.squaredNorm() / rows[p].normal_mass;
-      change.size += rows[p].impulse.squaredNorm() / rows[p].normal_mass;
+      ContactRow& row = rows[p];
+      row.change = row.impulse - last[p];
+      change.step += row.change.squaredNorm() / row.normal_mass;
+      change.size += row.impulse.squaredNorm() / row.normal_mass;
     }
     stage.change[c] = change;
   }
@@ -126,32 +146,16 @@ struct LoadChange {
   SCREE_HD SweepChange operator()(std::int64_t c) const { return change[c]; }
 };
 
-/// Goes on by beta in the direction of the sweeps before, on the impulses ...
-struct AccelerateRows {
-  SolveStage stage;
-  double beta;
-  SCREE_HD void operator()(std::int64_t c) const {
-    for (int p = 0; p < stage.contacts[c].count; ++p) {
-      const std::int64_t r = c * Manifold::max_points + p;
-      Vec3& direction = stage.acceleration.row_direction[r];
-      if (beta == 0) direction.setZero();
-      stage.rows[r].impulse += beta * direction;
-      direction = beta * direction + stage.acceleration.row_step[r];
-    }
-  }
-};
-
-/// ... and, since velocities are linear in the impulses, likewise on the velocities.
+/// Velocities are linear in the impulses: what beta does to these it does to them.
 struct AccelerateBodies {
   SolveStage stage;
   double beta;
   SCREE_HD void operator()(std::int64_t k) const {
     SolverBody& body = stage.solver[k];
-    BodyAcceleration& a = stage.acceleration.body[k];
+    BodyAcceleration& a = stage.acceleration[k];
     if (!body.is_free()) return;
     const Vec3 velocity_step = body.velocity - a.last_velocity;
     const Vec3 spin_step = body.spin - a.last_spin;
-    if (beta == 0) a.velocity_direction = a.spin_direction = Vec3::Zero();
     body.velocity += beta * a.velocity_direction;
     body.spin += beta * a.spin_direction;
     a.velocity_direction = beta * a.velocity_direction + velocity_step;
@@ -164,9 +168,7 @@ struct AccelerateBodies {
 struct StartBodies {
   SolveStage stage;
   SCREE_HD void operator()(std::int64_t k) const {
-    BodyAcceleration& a = stage.acceleration.body[k];
-    a.last_velocity = stage.solver[k].velocity;
-    a.last_spin = stage.solver[k].spin;
+    stage.acceleration[k] = {stage.solver[k].velocity, stage.solver[k].spin, Vec3::Zero(), Vec3::Zero()};
   }
 };
 
@@ -216,17 +218,16 @@ Ledger ResponseSolver::solve(ConstView<Manifold> manifolds, double step, const R
                              Counters& counters) {
   const std::int64_t n = set.contacts.size();
   change_.resize(n);
-  row_step_.resize(set.rows.size());
-  row_direction_.resize(set.rows.size());
   body_acceleration_.resize(solver.size());
   const SolveStage stage{.manifolds = manifolds,
                          .bodies = bodies,
                          .solver = solver.view(),
                          .contacts = set.contacts.view(),
                          .rows = set.rows.view(),
+                         .couplings = set.couplings.view(),
                          .shift = std::as_const(set.shift).view(),
                          .change = change_.view(),
-                         .acceleration = {row_step_.view(), row_direction_.view(), body_acceleration_.view()},
+                         .acceleration = body_acceleration_.view(),
                          .step = step};
   parallel::for_each<Host>("response.kick", solver.size(), Kick{stage, step * parameters.gravity});
   Ledger ledger;
@@ -238,9 +239,10 @@ Ledger ResponseSolver::solve(ConstView<Manifold> manifolds, double step, const R
     parallel::for_each<Host>("response.start", solver.size(), StartBodies{stage});
     bool converged = false;
     double last_step = 0;
+    double beta = 0;
     for (int sweep = 1; !converged; ++sweep) {
-      for_each_color("response.sweep", set.coloring, [&stage](std::int64_t first) {
-        return Sweep{stage, first};
+      for_each_color("response.sweep", set.coloring, [&stage, beta](std::int64_t first) {
+        return Sweep{stage, first, beta};
       });
       ++counters.sweeps;
       const auto total =
@@ -249,10 +251,9 @@ Ledger ResponseSolver::solve(ConstView<Manifold> manifolds, double step, const R
       if (converged || sweep == parameters.iterations) break;
       // The last sweep stands as it is, so that every impulse ends inside its cone.
       const double ratio = sweep > 1 ? total.step / last_step : 0.0;
-      const double beta = ratio < 1.0 ? ratio : 0.0;
+      beta = ratio < 1.0 ? ratio : 0.0;
       last_step = total.step;
-      parallel::for_each<Host>("response.accelerate_rows", n, AccelerateRows{stage, beta});
-      parallel::for_each<Host>("response.accelerate_bodies", solver.size(), AccelerateBodies{stage, beta});
+      parallel::for_each<Host>("response.accelerate", solver.size(), AccelerateBodies{stage, beta});
     }
     if (!converged) ++counters.unconverged;
     ledger = parallel::sum<Ledger, Host>("response.ledger", n, Account{stage});

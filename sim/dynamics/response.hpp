@@ -24,13 +24,6 @@ struct BodyAcceleration {
   Vec3 velocity_direction, spin_direction;
 };
 
-/// What it needs in views, for the functors.
-struct AccelerationView {
-  View<Vec3> row_step;
-  View<Vec3> row_direction;
-  View<BodyAcceleration> body;
-};
-
 /// Sequential impulses over coloured contacts, accelerated by the nonsmooth nonlinear conjugate gradient
 /// method (Silcowitz, Niebe, Erleben 2010, "A nonsmooth nonlinear conjugate gradient method for interactive
 /// contact force problems", algorithm 1): a sweep's change of the impulses is taken as minus a gradient, and
@@ -48,8 +41,6 @@ class ResponseSolver {
 
  private:
   Array<SweepChange, Host> change_;  // per contact, of the last sweep
-  Array<Vec3, Host> row_step_;       // change of each impulse by the last sweep
-  Array<Vec3, Host> row_direction_;  // conjugate direction
   Array<BodyAcceleration, Host> body_acceleration_;
 };
 

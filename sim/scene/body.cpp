@@ -76,6 +76,20 @@ void make_plane(const PlaneEntry& plane, std::size_t b, BodyTable& bodies) {
   bodies.orientation[b] = turn_to(normal);
 }
 
+/// The shape, and its size drawn.
+void make_shape(const BodyEntry& entry, Random& random, Shape& shape, Vec3& size) {
+  if (entry.sphere) {
+    shape = Shape::sphere;
+    size = Vec3(draw(entry.sphere->radius, random), 0, 0);
+  } else if (entry.box) {
+    shape = Shape::box;
+    size = 0.5 * draw(entry.box->size, random);
+  } else {
+    shape = Shape::tube;
+    size = Vec3(entry.tube->radius, entry.tube->radius, 0.5 * entry.tube->length);
+  }
+}
+
 }  // namespace
 
 bool make_body(const BodyEntry& entry, std::int64_t k, std::int32_t id, std::uint64_t seed, double density,
@@ -89,9 +103,7 @@ bool make_body(const BodyEntry& entry, std::int64_t k, std::int32_t id, std::uin
     return true;
   }
   Random random(seed, b);
-  bodies.shape[b] = entry.sphere ? Shape::sphere : Shape::box;
-  bodies.size[b] = entry.sphere ? Vec3(draw(entry.sphere->radius, random), 0, 0)
-                                : Vec3(0.5 * draw(entry.box->size, random));
+  make_shape(entry, random, bodies.shape[b], bodies.size[b]);
   bodies.position[b] = place_of(entry, k, random);
   bodies.orientation[b] = orientation_of(entry, random);
   bodies.velocity[b] = entry.motion ? entry.motion->velocity : entry.velocity.value_or(Vec3::Zero());

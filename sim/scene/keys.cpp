@@ -130,6 +130,18 @@ Codec<BoxEntry> box_section() {
                     });
 }
 
+Codec<TubeEntry> tube_section() {
+  using T = TubeEntry;
+  return section<T>(
+      "bodies[].tube",
+      "The inside of a cylinder along the body's z axis, closed by a cap at each end. It has one side: it "
+      "holds what is in it, and bodies whose centre is outside pass it by. It never moves freely.",
+      {
+          key<T>("radius", &T::radius, number(above_zero, "m"), required, "of the inside"),
+          key<T>("length", &T::length, number(above_zero, "m"), required, "from cap to cap"),
+      });
+}
+
 Codec<RotationEntry> rotate_section() {
   using T = RotationEntry;
   return section<T>(
@@ -189,12 +201,13 @@ Codec<ScatterEntry> scatter_section() {
 Codec<BodyEntry> body_section() {
   using T = BodyEntry;
   return section<T>(
-      "bodies[]", "One body, or many alike. Each has exactly one shape: plane, sphere or box.",
+      "bodies[]", "One body, or many alike. Each has exactly one shape: plane, sphere, box or tube.",
       {
           key<T>("plane", &T::plane, optional(plane_section()), optionally, "the shape: a fixed half space"),
           key<T>("sphere", &T::sphere, optional(sphere_section()), optionally, "the shape: a ball"),
           key<T>("box", &T::box, optional(box_section()), optionally, "the shape: a cuboid"),
-          future<T>("tube", "the inside of a cylinder, with end caps"),
+          key<T>("tube", &T::tube, optional(tube_section()), optionally,
+                 "the shape: the inside of a cylinder, with end caps; needs `fixed: true` or `motion`"),
           key<T>("file", &T::file, text(), optionally,
                  "instead of a shape: bodies from a CSV file, or those that another run left, by its folder; "
                  "see Body files"),

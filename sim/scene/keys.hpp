@@ -37,6 +37,11 @@ struct BoxEntry {
   Distribution<Vec3> size;  ///< full edge lengths
 };
 
+struct TubeEntry {
+  double radius = 0;
+  double length = 0;
+};
+
 struct RotationEntry {
   Vec3 axis = Vec3::UnitZ();
   std::optional<double> degrees;
@@ -67,6 +72,7 @@ struct BodyEntry {
   std::optional<PlaneEntry> plane;
   std::optional<SphereEntry> sphere;
   std::optional<BoxEntry> box;
+  std::optional<TubeEntry> tube;
   std::string file;
   std::string name;
   std::string material;

@@ -42,13 +42,25 @@ void check_file_body(const BodyEntry& body, const Node& node, Reader& reader) {
   if (body.file.empty()) reader.fail_at("file", node, "must be the path of a CSV file or of a run's folder");
 }
 
-void check_plane_body(const Node& node, Reader& reader) {
-  for (const char* key :
-       {"mass", "at", "orientation", "rotate", "velocity", "spin", "fixed", "motion", "repeat", "scatter"})
+/// Keys that a shape cannot have, and why.
+void refuse(std::initializer_list<const char*> keys, const char* why, const Node& node, Reader& reader) {
+  for (const char* key : keys)
     if (const Node* item = node.find(key)) {
       const Reader::Step step(reader, key);
-      reader.fail(item->key_mark, "does not go with a plane, which is fixed where its normal and offset say");
+      reader.fail(item->key_mark, why);
     }
+}
+
+void check_plane_body(const Node& node, Reader& reader) {
+  refuse({"mass", "at", "orientation", "rotate", "velocity", "spin", "fixed", "motion", "repeat", "scatter"},
+         "does not go with a plane, which is fixed where its normal and offset say", node, reader);
+}
+
+void check_tube_body(const BodyEntry& body, const Node& node, Reader& reader) {
+  refuse({"mass", "velocity", "spin", "scatter"}, "does not go with a tube, which never moves freely", node,
+         reader);
+  if (!body.fixed.value_or(false) && !body.motion)
+    reader.fail_at("tube", node, "never moves freely: give `fixed: true` or `motion`");
 }
 
 }  // namespace
@@ -85,12 +97,13 @@ void check_scatter(const ScatterEntry& scatter, const Node& node, Reader& reader
 
 void check_body(const BodyEntry& body, const Node& node, Reader& reader) {
   if (node.find("file")) return check_file_body(body, node, reader);
-  const int shapes = given({"plane", "sphere", "box"}, node);
+  const int shapes = given({"plane", "sphere", "box", "tube"}, node);
   if (shapes != 1)
-    reader.fail(node.mark, fmt::format("must have exactly one shape (plane, sphere or box), not {}",
+    reader.fail(node.mark, fmt::format("must have exactly one shape (plane, sphere, box or tube), not {}",
                                        shapes == 0 ? "none" : std::to_string(shapes)));
   if (body.material.empty()) reader.fail_at("material", node, "is missing; it must be one of `materials`");
   if (body.plane) return check_plane_body(node, reader);
+  if (body.tube) check_tube_body(body, node, reader);
   exclude("orientation", "rotate", node, reader);
   exclude("motion", "velocity", node, reader);
   exclude("motion", "spin", node, reader);

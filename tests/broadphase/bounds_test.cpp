@@ -53,12 +53,19 @@ void exact_half_extents(const BodyGeometry& body, Real extent[3]) {
     extent[a] = body.shape == Shape::sphere ? Real{body.size.x()} : Real{0};
     for (int b = 0; b < 3 && body.shape == Shape::box; ++b)
       extent[a] += std::abs(rotation[a][b]) * body.size[b];
+    // The support of a tube's end, cos(t) x + sin(t) y, is largest where the tangent vanishes.
+    if (body.shape == Shape::tube) {
+      const Real t = std::atan2(rotation[a][1], rotation[a][0]);
+      extent[a] = (std::cos(t) * rotation[a][0] + std::sin(t) * rotation[a][1]) * body.size[0] +
+                  std::abs(rotation[a][2]) * body.size[2];
+    }
   }
 }
 
 BodyGeometry random_body(Random& random) {
   BodyGeometry body;
-  body.shape = random.uniform() < 0.5 ? Shape::sphere : Shape::box;
+  const double shape = random.uniform();
+  body.shape = shape < 0.4 ? Shape::sphere : shape < 0.8 ? Shape::box : Shape::tube;
   const double far = std::pow(10.0, random.uniform(-3, 9));
   body.orientation =
       Quat(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1));
@@ -66,6 +73,12 @@ BodyGeometry random_body(Random& random) {
   for (int a = 0; a < 3; ++a) {
     body.position[a] = far * random.uniform(-1, 1);
     body.size[a] = std::pow(10.0, random.uniform(-3, 1));
+  }
+  if (body.shape == Shape::tube) {
+    body.size.y() = body.size.x();
+    // Aligned, as most tubes are, or nearly.
+    if (random.uniform() < 0.5)
+      body.orientation = Quat(1, random.uniform() < 0.5 ? 0 : random.uniform(0, 1e-8), 0, 0).normalized();
   }
   return body;
 }

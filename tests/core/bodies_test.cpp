@@ -134,6 +134,8 @@ TEST(BodySizes, OfEachShape) {
   EXPECT_EQ(smallest_size(Shape::sphere, size), 3.0);
   EXPECT_EQ(bounding_radius(Shape::plane, size), HUGE_VAL);
   EXPECT_EQ(smallest_size(Shape::plane, size), HUGE_VAL);
+  EXPECT_EQ(bounding_radius(Shape::tube, Vec3(3, 3, 4)), 5.0);
+  EXPECT_EQ(smallest_size(Shape::tube, size), HUGE_VAL);
 }
 
 TEST(BodySizes, EqualMoments) {

@@ -25,16 +25,16 @@ SolverBody random_box(Random& random) {
 struct Problem {
   SolverBody i, j;
   ContactRow row;
+  RowCoupling coupling;
   Vec3 normal;
   double friction;
+
+  void sweep() { sweep_rows(&row, &coupling, 1, normal, friction, i, j); }
 };
 
 Problem random_problem(std::uint64_t item, bool spheres) {
   Random random(11, item);
-  Problem p{random_box(random),
-            random_box(random),
-            {},
-            random_vector(random, 1).normalized(),
+  Problem p{random_box(random),    random_box(random), {}, {}, random_vector(random, 1).normalized(),
             random.uniform(0, 1.2)};
   Vec3 arm_i = random_vector(random, 0.5);
   Vec3 arm_j = random_vector(random, 0.5);
@@ -44,7 +44,7 @@ Problem random_problem(std::uint64_t item, bool spheres) {
     p.i.inverse_inertia = 2.5 * p.i.inverse_mass / arm_i.squaredNorm() * Mat3::Identity();
     p.j.inverse_inertia = 2.5 * p.j.inverse_mass / arm_j.squaredNorm() * Mat3::Identity();
   }
-  p.row = make_row(p.normal, arm_i, arm_j, 0.0, p.i, p.j);
+  p.row = make_row(p.normal, arm_i, arm_j, 0.0, p.i, p.j, p.coupling);
   p.row.target = random.uniform(-0.5, 0.5);
   return p;
 }
@@ -72,8 +72,32 @@ TEST(ContactRow, OneSweepSolvesSpheresExactly) {
   for (std::uint64_t item = 0; item < 20000; ++item) {
     Problem p = random_problem(item, true);
     const double speed = p.row.relative_velocity(p.i, p.j).norm();
-    sweep_rows(&p.row, 1, p.normal, p.friction, p.i, p.j);
+    p.sweep();
     ASSERT_LT(violation(p), 1e-12 * (1 + speed)) << "problem " << item;
+  }
+}
+
+/// A free ball against a free one, or against a body that never moves.
+TEST(ContactRow, TheShortWayOfBallsIsTheLongOne) {
+  for (std::uint64_t item = 0; item < 20000; ++item) {
+    Problem p = random_problem(item, true);
+    if (item % 2 == 0) {
+      p.i.inverse_mass = 0;
+      p.i.inverse_inertia.setZero();
+    }
+    const double target = p.row.target;
+    p.row = make_row(p.normal, p.row.arm_i, p.row.arm_j, 0.0, p.i, p.j, p.coupling);
+    Problem ball = p;
+    ball.row = make_ball_row(p.row.arm_i, p.row.arm_j, 0.0, p.i, p.j);
+    p.row.target = ball.row.target = target;
+    const double speed = 1 + p.row.relative_velocity(p.i, p.j).norm();
+    ASSERT_NEAR(ball.row.normal_mass, p.row.normal_mass, 1e-12 * p.row.normal_mass);
+    ASSERT_NEAR(ball.row.tangent_mass, p.row.tangent_mass, 1e-12 * p.row.tangent_mass);
+    p.sweep();
+    sweep_ball_row(ball.row, ball.normal, ball.friction, ball.i, ball.j);
+    ASSERT_LT(violation(ball), 1e-12 * speed) << "problem " << item;
+    ASSERT_LT((ball.row.impulse - p.row.impulse).norm(), 1e-11 * speed * p.row.normal_mass) << item;
+    ASSERT_LT((ball.j.spin - p.j.spin).norm(), 1e-10 * speed) << item;
   }
 }
 
@@ -81,7 +105,7 @@ TEST(ContactRow, SweepsConvergeToCoulombForAnyBodies) {
   int slow = 0;
   for (std::uint64_t item = 0; item < 2000; ++item) {
     Problem p = random_problem(item, false);
-    for (int sweep = 0; sweep < 2000; ++sweep) sweep_rows(&p.row, 1, p.normal, p.friction, p.i, p.j);
+    for (int sweep = 0; sweep < 2000; ++sweep) p.sweep();
     slow += violation(p) > 1e-9 ? 1 : 0;
   }
   EXPECT_EQ(slow, 0);
@@ -104,7 +128,7 @@ TEST(ContactRow, ConservesMomentumAndMovesTheEnergyThatTheAccountSays) {
     const double e0 = energy();
     const Vec3 p0 = momentum();
     const Vec3 u0 = p.row.relative_velocity(p.i, p.j);
-    sweep_rows(&p.row, 1, p.normal, p.friction, p.i, p.j);
+    p.sweep();
     const Vec3 u1 = p.row.relative_velocity(p.i, p.j);
     EXPECT_LT((momentum() - p0).norm(), 1e-12 * (1 + p0.norm()));
     EXPECT_NEAR(energy() - e0, p.row.impulse.dot(0.5 * (u0 + u1)), 1e-11 * (1 + e0));

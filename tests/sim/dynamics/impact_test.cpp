@@ -1,7 +1,6 @@
 // Time of impact beside bisection in long double.
-#include "sim/dynamics/impact.hpp"
-
 #include "core/rng.hpp"
+#include "sim/dynamics/flight.hpp"
 
 #include <gtest/gtest.h>
 

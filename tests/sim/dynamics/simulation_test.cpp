@@ -156,6 +156,48 @@ bodies:
   EXPECT_NEAR(simulation.body(2).position.x(), 0.6 + 50 * (0.05 - 0.02), 1e-12);
 }
 
+TEST(Simulation, ABallBouncesInATubeMoreThanOnceInAStep) {
+  // Along the sides of a square, a chord in each second: at the midpoint it would be far outside.
+  Simulation simulation(scene_of(R"(
+time: {end: 100, step: 2.5}
+materials: {a: {density: 1000, restitution: 1}}
+bodies:
+  - {tube: {radius: 1.1, length: 1}, rotate: {axis: [1, 0, 0], degrees: 90}, fixed: true, material: a}
+  - {sphere: {radius: 0.1}, at: [0, 0, -0.7071067811865476], velocity: [1.4142135623730951, 0, 0], material: a}
+)"),
+                        {SpaceChoice::host, 1});
+  while (!simulation.finished()) simulation.step();
+  EXPECT_LT((simulation.body(1).position - Vec3(0, 0, -std::sqrt(0.5))).norm(), 1e-11);
+  EXPECT_LT((simulation.body(1).velocity - Vec3(std::sqrt(2.0), 0, 0)).norm(), 1e-11);
+  EXPECT_EQ(simulation.observe().counters.impacts, 100);
+}
+
+TEST(Simulation, ATurningDrumHoldsWhatIsInIt) {
+  // Fast, end over end and about its axis at once; a box wedged between wall and cap now and then.
+  Simulation simulation(scene_of(R"(
+gravity: [0, 0, -9.81]
+time: {end: 3, step: 0.002}
+materials: {a: {density: 1000, restitution: 0.4, friction: 0.5}}
+bodies:
+  - {tube: {radius: 0.5, length: 0.8}, rotate: {axis: [1, 0, 0], degrees: 70}, motion: {spin: [3, 5, 0]}, material: a}
+  - {sphere: {radius: 0.08}, at: [-0.2, -0.2, -0.2], repeat: {count: [3, 3, 2], spacing: [0.17, 0.17, 0.17]}, material: a}
+  - {box: {size: [0.1, 0.15, 0.2]}, at: [-0.15, -0.15, 0.15], repeat: {count: [2, 2, 1], spacing: [0.26, 0.26, 0]}, material: a}
+)"),
+                        {SpaceChoice::host, 1});
+  Snapshot now;
+  while (!simulation.finished()) {
+    simulation.step();
+    ASSERT_LT(simulation.observe().unexplained, 1e-11);
+    simulation.snapshot(now);
+    for (std::size_t k = 1; k < now.bodies.position.size(); ++k) {
+      const Vec3 at = now.bodies.orientation[0].conjugate() * now.bodies.position[k];
+      ASSERT_LT(std::hypot(at.x(), at.y()), 0.5) << "body " << k << " at " << simulation.time();
+      ASSERT_LT(std::abs(at.z()), 0.4) << "body " << k << " at " << simulation.time();
+    }
+  }
+  EXPECT_GT(simulation.observe().ledger.work, 0);
+}
+
 TEST(Simulation, TheLastStepEndsAtTheEnd) {
   Simulation simulation(scene_of(R"(
 time: {end: 1, step: 0.3}

@@ -66,6 +66,18 @@ TEST(SceneBodies, OnlyFreeBodiesHaveFiniteMass) {
   EXPECT_EQ(scene.bodies.spin[1], Vec3(0, 0, 4));
 }
 
+TEST(SceneBodies, TubeHasItsRadiusAndHalfItsLength) {
+  const Scene scene = scene_of(
+      "  - {tube: {radius: 0.5, length: 0.3}, fixed: true, material: glass}\n"
+      "  - {tube: {radius: 2, length: 8}, at: [9, 0, 0], motion: {spin: [0, 0, 1]}, material: glass}\n");
+  EXPECT_EQ(scene.bodies.shape[0], Shape::tube);
+  EXPECT_EQ(scene.bodies.mobility[0], Mobility::fixed);
+  EXPECT_EQ(scene.bodies.size[0], Vec3(0.5, 0.5, 0.15));
+  EXPECT_EQ(scene.bodies.mobility[1], Mobility::prescribed);
+  EXPECT_EQ(scene.bodies.size[1], Vec3(2, 2, 4));
+  EXPECT_EQ(scene.bodies.inverse_mass[1], 0);
+}
+
 TEST(SceneBodies, PlaneTurnsZToItsUnitNormal) {
   for (const Vec3& normal : {Vec3(0, 0, 1), Vec3(0, 0, -3), Vec3(3, 4, 0), Vec3(-1, 2, -5)}) {
     const Scene scene =

@@ -282,7 +282,7 @@ TEST(SceneSchema, NamesEveryKeyOfThisVersionAndNoLaterOne) {
     if (key.presence == Presence::future) return;
     EXPECT_NE(flat.find('"' + key.name + "\":"), std::string::npos) << key.name;
   });
-  for (const char* later : {"\"tube\"", "\"lbvh\"", "\"mixed\"", "\"crosscheck\"", "\"checkpoint_every\""})
+  for (const char* later : {"\"lbvh\"", "\"mixed\"", "\"crosscheck\"", "\"checkpoint_every\""})
     EXPECT_EQ(flat.find(later), std::string::npos) << later;
 }
 

@@ -1,0 +1,136 @@
+// Bullet, in double precision, behind the interface of the benchmark.
+#include "bench/peers/engine.hpp"
+#include "core/error.hpp"
+
+#include <btBulletDynamicsCommon.h>
+#include <map>
+
+namespace scree::bench {
+
+namespace {
+
+static_assert(sizeof(btScalar) == sizeof(double));
+
+/// The first values are Bullet's own defaults. Tuned: overlaps of any depth are parted without velocity,
+/// every approach bounces, and contacts do not act at a distance; a ball then keeps its energy.
+struct BulletSetting {
+  int iterations = 10;
+  bool continuous = false;                 // continuous detection for small fast bodies
+  double restitution_threshold = 0.2;      // m/s
+  double split_impulse_threshold = -0.04;  // m; deeper overlaps are parted without velocity
+  double contact_distance = 0.02;          // m
+  double warm_start = 0.85;                // share of the last impulses
+};
+
+const std::map<std::string, BulletSetting> settings = {
+    {"default", {}},
+    {"continuous", {.continuous = true}},
+    {"tuned", {.restitution_threshold = 0, .split_impulse_threshold = 0, .contact_distance = 0.0005}},
+    {"tuned-50",
+     {.iterations = 50,
+      .restitution_threshold = 0,
+      .split_impulse_threshold = 0,
+      .contact_distance = 0.0005,
+      .warm_start = 1}},
+};
+
+btVector3 to_bullet(const Vec3& v) { return {v.x(), v.y(), v.z()}; }
+Vec3 from_bullet(const btVector3& v) { return {v.x(), v.y(), v.z()}; }
+
+/// The law of two bodies' materials. Each knows the scene by its user pointer, its material by its user
+/// index.
+const ContactLaw& law_of(const btCollisionObject* a, const btCollisionObject* b) {
+  return static_cast<const Scene*>(a->getUserPointer())->law(a->getUserIndex(), b->getUserIndex());
+}
+btScalar friction_of(const btCollisionObject* a, const btCollisionObject* b) { return law_of(a, b).friction; }
+btScalar restitution_of(const btCollisionObject* a, const btCollisionObject* b) {
+  return law_of(a, b).restitution;
+}
+
+std::unique_ptr<btCollisionShape> shape_of(const BodyTable& bodies, std::size_t k) {
+  switch (bodies.shape[k]) {
+    case Shape::sphere:
+      return std::make_unique<btSphereShape>(bodies.size[k].x());
+    case Shape::box:
+      return std::make_unique<btBoxShape>(to_bullet(bodies.size[k]));
+    case Shape::plane:
+      return std::make_unique<btStaticPlaneShape>(btVector3(0, 0, 1), 0);
+    default:
+      throw InputError("Bullet is given spheres, boxes and planes alone");
+  }
+}
+
+class BulletEngine : public Engine {
+ public:
+  BulletEngine(const BulletSetting& setting, const Scene& scene, double step) : scene_(scene), step_(step) {
+    gCalculateCombinedFrictionCallback = friction_of;
+    gCalculateCombinedRestitutionCallback = restitution_of;
+    world_.setGravity(to_bullet(scene.gravity));
+    btContactSolverInfo& solver = world_.getSolverInfo();
+    solver.m_numIterations = setting.iterations;
+    solver.m_restitutionVelocityThreshold = setting.restitution_threshold;
+    solver.m_splitImpulsePenetrationThreshold = setting.split_impulse_threshold;
+    solver.m_warmstartingFactor = setting.warm_start;
+    gContactBreakingThreshold = setting.contact_distance;
+    for (std::size_t k = 0; k < scene.bodies.position.size(); ++k) add_body(k, setting.continuous);
+  }
+
+  void step() override { world_.stepSimulation(step_, 0); }
+
+  void read(BodyTable& bodies) const override {
+    for (std::size_t k = 0; k < bodies_.size(); ++k) {
+      const btRigidBody& body = *bodies_[k];
+      const btQuaternion q = body.getOrientation();
+      bodies.position[k] = from_bullet(body.getCenterOfMassPosition());
+      bodies.orientation[k] = Quat(q.w(), q.x(), q.y(), q.z());
+      bodies.velocity[k] = from_bullet(body.getLinearVelocity());
+      bodies.spin[k] = from_bullet(body.getAngularVelocity());
+    }
+  }
+
+ private:
+  void add_body(std::size_t k, bool continuous) {
+    const BodyTable& all = scene_.bodies;
+    if (all.mobility[k] == Mobility::prescribed) throw InputError("Bullet is given no prescribed bodies");
+    shapes_.push_back(shape_of(all, k));
+    const bool free = all.mobility[k] == Mobility::free;
+    const double mass = free ? 1 / all.inverse_mass[k] : 0;
+    const Vec3 inertia = free ? Vec3(all.inverse_inertia[k].cwiseInverse()) : Vec3::Zero();
+    auto body = std::make_unique<btRigidBody>(mass, nullptr, shapes_.back().get(), to_bullet(inertia));
+    const Quat& q = all.orientation[k];
+    body->setCenterOfMassTransform(
+        btTransform(btQuaternion(q.x(), q.y(), q.z(), q.w()), to_bullet(all.position[k])));
+    body->setLinearVelocity(to_bullet(all.velocity[k]));
+    body->setAngularVelocity(to_bullet(all.spin[k]));
+    body->setActivationState(DISABLE_DEACTIVATION);
+    body->setUserPointer(const_cast<Scene*>(&scene_));
+    body->setUserIndex(all.material[k]);
+    if (continuous && free) {
+      const double size = smallest_size(all.shape[k], all.size[k]);
+      body->setCcdMotionThreshold(size);
+      body->setCcdSweptSphereRadius(0.5 * size);
+    }
+    world_.addRigidBody(body.get());
+    bodies_.push_back(std::move(body));
+  }
+
+  const Scene& scene_;
+  double step_;
+  std::vector<std::unique_ptr<btCollisionShape>> shapes_;
+  std::vector<std::unique_ptr<btRigidBody>> bodies_;  // in the order of the scene
+  btDefaultCollisionConfiguration configuration_;
+  btCollisionDispatcher dispatcher_{&configuration_};
+  btDbvtBroadphase broadphase_;
+  btSequentialImpulseConstraintSolver solver_;
+  btDiscreteDynamicsWorld world_{&dispatcher_, &broadphase_, &solver_, &configuration_};
+};
+
+}  // namespace
+
+std::unique_ptr<Engine> make_bullet(const std::string& setting, const Scene& scene, double step) {
+  const auto found = settings.find(setting);
+  if (found == settings.end()) throw InputError("Bullet has no setting " + setting);
+  return std::make_unique<BulletEngine>(found->second, scene, step);
+}
+
+}  // namespace scree::bench

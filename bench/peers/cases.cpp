@@ -1,0 +1,97 @@
+#include "bench/peers/cases.hpp"
+
+#include "core/error.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace scree::bench {
+
+namespace {
+
+/// Energy with which the free bodies, all spheres, would arrive at the plane z = 0 (J).
+double arrival_energy(const Scene& scene) {
+  const BodyTable& all = scene.bodies;
+  double energy = 0;
+  for (std::size_t k = 0; k < all.position.size(); ++k) {
+    if (all.mobility[k] != Mobility::free) continue;
+    const double height = all.position[k].z() - all.size[k].x();
+    energy += (0.5 * all.velocity[k].squaredNorm() - scene.gravity.z() * height) / all.inverse_mass[k];
+  }
+  return energy;
+}
+
+double energy_end(const Scene& scene, const Findings& f) { return f.energy_change / arrival_energy(scene); }
+double energy_worst(const Scene& scene, const Findings& f) {
+  return f.worst_energy_change / arrival_energy(scene);
+}
+/// Without friction nothing can make a ball spin.
+double energy_in_spin(const Scene& scene, const Findings& f) { return f.spin_energy / arrival_energy(scene); }
+
+const Vec3& launch(const Scene& scene) { return scene.bodies.velocity.back(); }
+const ContactLaw& law(const Scene& scene) {
+  return scene.law(scene.bodies.material.front(), scene.bodies.material.back());
+}
+
+/// A sphere that starts without spin rolls at 5/7 of its speed, whatever the friction.
+double rolling_speed(const Scene& scene, const Findings& f) {
+  return f.newest.velocity.back().x() / (launch(scene).x() * 5 / 7) - 1;
+}
+
+/// Coulomb friction stops it after v^2 / (2 mu g).
+double stop_distance(const Scene& scene, const Findings& f) {
+  const double expected = launch(scene).squaredNorm() / (2 * law(scene).friction * scene.gravity.norm());
+  return (f.newest.position.back() - scene.bodies.position.back()).x() / expected - 1;
+}
+
+double drift(const Scene&, const Findings& f) { return f.worst_drift; }
+double penetration(const Scene&, const Findings& f) { return f.worst_penetration; }
+double relative_mean(const Scene&, const Findings& f) { return f.penetration.relative_mean; }
+double relative_max(const Scene&, const Findings& f) { return f.penetration.relative_max; }
+double rms_speed(const Scene&, const Findings& f) { return f.rms_speed; }
+
+/// Share of the pellets, all bodies but the plate, that are behind the plate at the end.
+double passed(const Scene& scene, const Findings& f) {
+  const double plate = scene.bodies.position.front().x();
+  const auto behind = std::count_if(f.newest.position.begin() + 1, f.newest.position.end(),
+                                    [&](const Vec3& at) { return at.x() > plate; });
+  return static_cast<double>(behind) / static_cast<double>(scene.bodies.position.size() - 1);
+}
+/// Worst of the speeds after the impact, which is e times that before.
+double rebound(const Scene& scene, const Findings& f) {
+  const double expected = -law(scene).restitution * launch(scene).x();
+  double worst = 0;
+  for (std::size_t k = 1; k < f.newest.velocity.size(); ++k)
+    worst = std::max(worst, std::abs(f.newest.velocity[k].x() / expected - 1));
+  return worst;
+}
+
+constexpr Measure end_penetration_mean = {"penetration mean", "r", relative_mean};
+constexpr Measure end_penetration_max = {"penetration max", "r", relative_max};
+
+// A bounce and a stack are judged often enough for their worst, and seldom enough that reading the clock of
+// the process costs nothing beside the steps between. Heaps are judged at their end.
+const std::vector<Case> cases = {
+    {"bounce", 0.25, 0, 0, {{"energy end", "", energy_end}, {"energy worst", "", energy_worst}}},
+    {"roll", 0.25, 0, 0, {{"rolling speed", "", rolling_speed}}},
+    {"slide", 0.25, 0, 0, {{"stop distance", "", stop_distance}}},
+    {"stack", 0.05, 0, 0, {{"drift of the top", "m", drift}, {"penetration worst", "m", penetration}}},
+    {"massratio", 0.05, 0, 0, {{"penetration worst", "m", penetration}, {"drift of the top", "m", drift}}},
+    {"pile", 0, 3, 2, {end_penetration_mean, end_penetration_max, {"rms speed", "m/s", rms_speed}}},
+    {"boxpile", 0, 3, 2, {end_penetration_mean, end_penetration_max}},
+    {"gas", 0.25, 0, 0, {{"energy end", "", energy_end}, {"energy in spin", "", energy_in_spin}}},
+    {"bullet", 0, 0, 0, {{"passed", "", passed}, {"rebound", "", rebound}}},
+};
+
+}  // namespace
+
+const Case& find_case(const std::string& name) {
+  std::string known;
+  for (const Case& c : cases) {
+    if (c.name == name) return c;
+    known += std::string(known.empty() ? "" : ", ") + c.name;
+  }
+  throw InputError("case " + name + ": one of " + known);
+}
+
+}  // namespace scree::bench

@@ -1,0 +1,112 @@
+// Runs one case in one engine, and prints one line of JSON: what it got wrong, and what it cost.
+//
+//   scree_bench_peers --case pile --engine bullet [--setting default] [--step 0.004166666666666667]
+//
+// Times are CPU times of the process, which works with one thread. bench/peers/run calls this for a whole
+// table.
+#include "bench/peers/cases.hpp"
+#include "bench/peers/engine.hpp"
+#include "core/error.hpp"
+
+#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <ctime>
+
+namespace scree::bench {
+
+namespace {
+
+struct Arguments {
+  std::string scenes = SCREE_SOURCE_DIR "/configs/bench";
+  std::string name;
+  std::string engine;
+  std::string setting = "default";
+  double step = 1.0 / 240;  // s
+};
+
+double cpu_seconds() {
+  timespec now;
+  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
+  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+}
+
+struct Cost {
+  double median = 0;  ///< of a step, over the samples that count (s)
+  double total = 0;   ///< of all steps (s)
+};
+
+/// Steps to the scene's end; `judge` sees what the case wants it to see.
+Cost run_case(const Case& wanted, const Scene& scene, double step, Engine& engine, Judge& judge) {
+  const auto steps = std::lround(scene.time.end / step);
+  if (std::abs(static_cast<double>(steps) * step - scene.time.end) > 1e-9 * scene.time.end)
+    throw InputError("--step: must divide the scene's end");
+  const auto per_sample = std::max(std::lround(wanted.watch_every / step), 1L);
+  BodyTable state = scene.bodies;
+  std::vector<double> samples;
+  Cost cost;
+  for (long done = 0; done < steps;) {
+    const long stop = std::min(done + per_sample, steps);
+    const double start = cpu_seconds();
+    for (long k = done; k < stop; ++k) engine.step();
+    const double elapsed = cpu_seconds() - start;
+    cost.total += elapsed;
+    const double half = 0.5 * step;  // times are sums of steps
+    if (static_cast<double>(done) * step > wanted.timed_from - half)
+      samples.push_back(elapsed / static_cast<double>(stop - done));
+    done = stop;
+    if (static_cast<double>(done) * step < wanted.watch_from - half) continue;
+    engine.read(state);
+    judge.see(state);
+  }
+  std::nth_element(samples.begin(), samples.begin() + std::ssize(samples) / 2, samples.end());
+  cost.median = samples[samples.size() / 2];
+  return cost;
+}
+
+int run(const Arguments& arguments) {
+  const Case& wanted = find_case(arguments.name);
+  const Scene scene = read_scene(arguments.scenes + "/" + wanted.name + ".yaml");
+  Judge judge(scene);
+  const auto engine = make_engine(arguments.engine, arguments.setting, scene, arguments.step);
+  const Cost cost = run_case(wanted, scene, arguments.step, *engine, judge);
+
+  nlohmann::ordered_json line = {{"case", wanted.name},
+                                 {"engine", arguments.engine},
+                                 {"setting", arguments.setting},
+                                 {"step", arguments.step},
+                                 {"us_per_step", 1e6 * cost.median},
+                                 {"ms_per_second", 1e3 * cost.total / scene.time.end}};
+  for (const Measure& measure : wanted.measures) {
+    line["errors"][measure.name] = measure.error(scene, judge.findings());
+    line["units"][measure.name] = measure.unit;
+  }
+  std::printf("%s\n", line.dump().c_str());
+  return 0;
+}
+
+}  // namespace
+}  // namespace scree::bench
+
+int main(int argc, char** argv) {
+  scree::bench::Arguments arguments;
+  CLI::App program("One case in one engine: errors and costs as a line of JSON");
+  program.add_option("--case", arguments.name, "the scene NAME.yaml")->required();
+  program.add_option("--engine", arguments.engine, "bullet, ode or scree")->required();
+  program.add_option("--setting", arguments.setting, "of the engine; for scree a list of key=value");
+  program.add_option("--step", arguments.step, "s")->check(CLI::PositiveNumber);
+  program.add_option("--scenes", arguments.scenes, "folder of the scenes");
+  CLI11_PARSE(program, argc, argv);
+  try {
+    return scree::bench::run(arguments);
+  } catch (const scree::InputError& error) {
+    std::fprintf(stderr, "scree_bench_peers: %s\n", error.what());
+    return 2;
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "scree_bench_peers: %s\n", error.what());
+    return 3;
+  }
+}

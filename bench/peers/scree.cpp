@@ -1,0 +1,45 @@
+// scree behind the interface of the benchmark.
+#include "bench/peers/engine.hpp"
+#include "core/error.hpp"
+#include "sim/simulation.hpp"
+
+#include <fmt/format.h>
+
+#include <sstream>
+
+namespace scree::bench {
+
+namespace {
+
+class ScreeEngine : public Engine {
+ public:
+  explicit ScreeEngine(const Scene& scene) : simulation_(scene, {SpaceChoice::host, 1}) {}
+
+  void step() override { simulation_.step(); }
+
+  void read(BodyTable& bodies) const override {
+    Snapshot snapshot;
+    simulation_.snapshot(snapshot);
+    bodies = std::move(snapshot.bodies);
+  }
+
+ private:
+  Simulation simulation_;
+};
+
+}  // namespace
+
+/// A setting is `default`, or a list such as response.iterations=20,response.tolerance=1e-4. The scene is
+/// read again with it, so that it is checked like any other.
+std::unique_ptr<Engine> make_scree(const std::string& setting, const Scene& scene, double step) {
+  std::vector<Override> overrides = {{"time.step", fmt::format("{}", step)}};
+  std::istringstream list(setting == "default" ? "" : setting);
+  for (std::string item; std::getline(list, item, ',');) {
+    const std::size_t equals = item.find('=');
+    if (equals == std::string::npos) throw InputError("setting " + item + ": scree's are key=value");
+    overrides.push_back({item.substr(0, equals), item.substr(equals + 1)});
+  }
+  return std::make_unique<ScreeEngine>(read_scene(scene.source, overrides));
+}
+
+}  // namespace scree::bench

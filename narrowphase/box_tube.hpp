@@ -1,0 +1,27 @@
+// A box in a tube: the contacts are corners of the box.
+#pragma once
+
+#include "narrowphase/box_plane.hpp"
+#include "narrowphase/tube.hpp"
+
+namespace scree {
+
+/// The distance from the axis is convex, so no point of the box is nearer to the wall than its corners. Each
+/// of these has a normal of its own.
+SCREE_HD inline int box_tube(const Solid& box, const Solid& tube, double margin, Manifold* out) {
+  const Mat3 tube_axes = tube.orientation.toRotationMatrix();
+  if (!detail::is_in_tube(tube, tube_axes, box.position, margin)) return 0;
+  const Mat3 axes = box.orientation.toRotationMatrix();
+  int count = 0;
+  for (int c = 0; c < 8; ++c) {
+    const BoxCorner corner = box_corner(box, axes, c);
+    count += detail::wall_contact(tube, tube_axes, corner.position, 0.0, corner.feature, margin, out[count]);
+  }
+  for (const TubePart cap : {tube_cap_below, tube_cap_above}) {
+    if (!box_plane(box, detail::tube_cap(tube, tube_axes, cap), margin, out[count])) continue;
+    out[count++].part = cap;
+  }
+  return count;
+}
+
+}  // namespace scree

@@ -1,0 +1,79 @@
+// Flight inside a substep, as the search for impacts sees it, and the flight of a ball to the wall of a tube.
+#pragma once
+
+#include "core/math.hpp"
+#include "core/tolerances.hpp"
+
+#include <cfloat>
+
+namespace scree {
+
+/// First s >= 0 at which gap + u s + a s^2 / 2 = 0, for gap > 0; 0 for gap <= 0; infinite if there is none.
+/// gap in m, u in m/s, a in m/s^2, s in s.
+SCREE_HD inline double time_of_impact(double gap, double u, double a) {
+  if (gap <= 0) return 0;
+  const double discriminant = u * u - 2 * a * gap;
+  if (discriminant < 0) return HUGE_VAL;
+  // Of the two forms of the root, the one without cancellation.
+  const double root = sqrt(discriminant);
+  if (u > 0) return a < 0 ? (u + root) / -a : HUGE_VAL;
+  return root > u ? 2 * gap / (root - u) : HUGE_VAL;
+}
+
+/// Where a body is at the time s into a substep.
+struct Flight {
+  Vec3 position;      ///< at the midpoint
+  Vec3 acceleration;  ///< gravity, or 0 for bodies that are not free
+
+  SCREE_HD Vec3 at(const Vec3& velocity, double step, double s) const {
+    return position + (s - 0.5 * step) * velocity + (0.5 * s * s) * acceleration;
+  }
+};
+
+/// A ball's flight in a tube, projected along the axis: its centre relative to the axis.
+struct FlightInTube {
+  Flight flight;
+  Vec3 velocity;
+  double reach;  ///< distance of the centre from the axis where the ball touches the wall (m)
+};
+
+struct WallImpact {
+  double time = HUGE_VAL;  ///< into the substep (s)
+  Vec3 outward;            ///< unit, from the axis to where the ball touches
+  double speed;            ///< at which it does (m/s)
+};
+
+/// When the centre leaves the circle of radius `reach`, at `earliest` or later; infinite if it does not. The
+/// normal there is not that at the midpoint, so the gap along that one would say nothing: a ball that slides
+/// by at the midpoint strikes farther on. From where the centre is at `earliest`, the squared distance is
+/// quadratic in time but for gravity's higher orders; these are left to Newton's method.
+SCREE_HD inline WallImpact next_wall_impact(const FlightInTube& ball, double step, double earliest) {
+  WallImpact impact;
+  if (ball.reach <= 0) return impact;
+  double s = earliest;
+  Vec3 e = ball.flight.at(ball.velocity, step, s);
+  Vec3 w = ball.velocity + s * ball.flight.acceleration;
+  const double outward = e.dot(w);
+  const double inside = 0.5 * (ball.reach * ball.reach - e.squaredNorm());
+  // A ball that has just bounced is at the wall and leaves it: its next impact is at the end of its chord.
+  const double gap = outward < 0 ? fmax(inside, DBL_MIN) : inside;
+  s += time_of_impact(gap, -outward, -(w.squaredNorm() + e.dot(ball.flight.acceleration)));
+  if (s == HUGE_VAL) return impact;
+  for (int iteration = 0; iteration < 8; ++iteration) {
+    e = ball.flight.at(ball.velocity, step, s);
+    w = ball.velocity + s * ball.flight.acceleration;
+    if (!(e.dot(w) > 0)) return impact;
+    const double change = 0.5 * (ball.reach * ball.reach - e.squaredNorm()) / e.dot(w);
+    if (s + change <= earliest) break;
+    s += change;
+    if (fabs(change) <= tolerance::impact_time * step) break;
+  }
+  e = ball.flight.at(ball.velocity, step, s);
+  w = ball.velocity + s * ball.flight.acceleration;
+  impact.time = s;
+  impact.outward = e.normalized();
+  impact.speed = impact.outward.dot(w);
+  return impact;
+}
+
+}  // namespace scree
