@@ -42,6 +42,10 @@ inline constexpr double flight_margin = 1e-9;
 inline constexpr double impact_time = 1e-15;
 inline constexpr double impact_residual = 1e-15;
 
+/// Difference from 1 under which a quaternion's length is that of a unit one, but for rounding. It must
+/// exceed what normalising leaves, some 1e-16: a state that was written is then read back to the bit.
+inline constexpr double unit_length = 1e-14;
+
 /// A last step shorter than this share of a step is rounding of end / step, and none.
 inline constexpr double step_count = 1e-9;
 

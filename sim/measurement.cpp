@@ -37,6 +37,7 @@ void measure_totals(const Totals& totals, const EnergyBaseline& baseline, const 
   const double explained =
       out.exchange.energy + l.work + l.integration - l.restitution - l.friction - l.correction;
   out.unexplained = out.energy_scale > 0 ? std::abs(change - explained) / out.energy_scale : 0.0;
+  out.exchange.energy -= out.exchange.mass * gravity.dot(reference);
 }
 
 void measure_regions(const std::vector<Region>& regions, const std::vector<RegionContents>& now,

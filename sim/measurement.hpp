@@ -33,8 +33,8 @@ class EnergyBaseline {
   double scale_ = 0;
 };
 
-/// Energies, momenta, speeds, and what ledger and exchange (already in `out`) do not explain. `totals` are
-/// about `reference`; the potential energy reported is about the origin.
+/// Energies, momenta, speeds, and what ledger and exchange (already in `out`) do not explain. `totals` and
+/// the exchange are about `reference`; the potential energy and the exchange reported are about the origin.
 void measure_totals(const Totals& totals, const EnergyBaseline& baseline, const Vec3& gravity,
                     const Vec3& reference, Observation& out);
 

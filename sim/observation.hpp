@@ -28,9 +28,15 @@ struct Ledger {
 
 /// What bodies brought that appeared, less what those took that went, since t = 0.
 struct Exchange {
+  double mass = 0;                       ///< kg
   double energy = 0;                     ///< J
   Vec3 momentum = Vec3::Zero();          ///< kg m/s
   Vec3 angular_momentum = Vec3::Zero();  ///< about the origin (kg m^2/s)
+
+  friend Exchange operator+(const Exchange& a, const Exchange& b) {
+    return {a.mass + b.mass, a.energy + b.energy, a.momentum + b.momentum,
+            a.angular_momentum + b.angular_momentum};
+  }
 };
 
 /// Over all overlapping pairs at the end of the step, true geometry, planes included (m). `relative`: by the

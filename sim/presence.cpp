@@ -26,6 +26,7 @@ void set_present(std::int64_t k, const BodyTable& start, Bodies<Host>& bodies) {
 
 /// Adds what a body has, or takes it away.
 void book(const Totals& body, double sign, Exchange& exchange) {
+  exchange.mass += sign * body.mass;
   exchange.energy += sign * (body.kinetic_linear + body.kinetic_angular + body.potential);
   exchange.momentum += sign * body.momentum;
   exchange.angular_momentum += sign * body.angular_momentum;

@@ -31,7 +31,7 @@ class Presence {
     double first_potential = 0;  ///< of those that came, when they appear, less that of those that went (J)
   };
   /// The state of a step has been reached: takes out the bodies whose time is over, and brings in those whose
-  /// time has come. Potential energy is about `reference`.
+  /// time has come. Potential energies are about `reference`.
   Change update(std::int64_t step, const Scene& scene, const Vec3& reference, Bodies<Host>& bodies);
 
  private:

@@ -128,7 +128,7 @@ struct Simulation::Parts {
   ContactSet contacts;
   ImpulseMemory memory;
   Ledger ledger;
-  Exchange exchange;
+  Exchange exchange;  // potential energy about `origin`
   Counters counters;
   EnergyBaseline baseline;
   std::vector<RegionContents> contents;         // of each region
@@ -252,9 +252,7 @@ struct Simulation::Parts {
   void come_and_go() {
     const Presence::Change change = presence.update(step, scene, origin, bodies);
     if (!change.any) return;
-    exchange.energy += change.exchange.energy;
-    exchange.momentum += change.exchange.momentum;
-    exchange.angular_momentum += change.exchange.angular_momentum;
+    exchange = exchange + change.exchange;
     baseline.exchange(change.first_potential);
     baseline.extend(totals_of(bodies, parameters.gravity, origin));
     kept_pairs.forget();

@@ -208,19 +208,22 @@ FrameData frame_data(const Snapshot& snapshot, const Camera& camera, const Style
   FrameData data;
   data.uniforms = uniforms_of(bodies, v, style, width, height, shadow_size);
   data.texels.reserve(4 * bodies.shape.size());
+  const auto draws = [&bodies](std::size_t k, Shape shape) {
+    return bodies.shape[k] == shape && bodies.mobility[k] != Mobility::absent;
+  };
   const auto count = [&data] { return static_cast<std::int32_t>(data.texels.size() / 4); };
 
   for (std::size_t k = 0; k < bodies.shape.size(); ++k) {
-    if (bodies.shape[k] == Shape::sphere) append_sphere(data.texels, bodies, k, v, paint(k));
+    if (draws(k, Shape::sphere)) append_sphere(data.texels, bodies, k, v, paint(k));
   }
   data.uniforms.begin[0] = count();
   for (std::size_t k = 0; k < bodies.shape.size(); ++k) {
-    if (bodies.shape[k] == Shape::box) append_box(data.texels, bodies, k, v, paint(k));
+    if (draws(k, Shape::box)) append_box(data.texels, bodies, k, v, paint(k));
   }
   data.uniforms.begin[1] = count();
   std::vector<PlaneFace> faces;
   for (std::size_t k = 0; k < bodies.shape.size(); ++k) {
-    if (bodies.shape[k] == Shape::plane) faces.push_back(face_of(bodies, k, v));
+    if (draws(k, Shape::plane)) faces.push_back(face_of(bodies, k, v));
   }
   for (const PlaneKind kind : {PlaneKind::ground, PlaneKind::wall, PlaneKind::hidden}) {
     for (const PlaneFace& face : faces) {

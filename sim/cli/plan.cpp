@@ -1,8 +1,10 @@
 // scree plan: what a scene will model and what it needs, before anything runs.
 #include "sim/cli/commands.hpp"
+#include "sim/cli/difficulty.hpp"
 #include "sim/model.hpp"
 #include "sim/record/metrics.hpp"
 #include "sim/record/outcome.hpp"
+#include "sim/scene/memory.hpp"
 #include "sim/scene/time_grid.hpp"
 
 #include <fmt/format.h>
@@ -16,7 +18,7 @@ namespace scree::cli {
 namespace {
 
 // In the order of Shape and Mobility.
-constexpr std::array<const char*, 3> shape_words = {"spheres", "boxes", "planes"};
+constexpr std::array<const char*, 4> shape_words = {"spheres", "boxes", "planes", "tubes"};
 constexpr std::array<const char*, 3> mobility_words = {"free", "fixed", "prescribed"};
 
 void print_row(const char* subject, const std::string& text) { fmt::print("{:<13}{}\n", subject, text); }
@@ -26,19 +28,65 @@ std::int64_t count_shape(const Scene& scene, Shape shape) {
 }
 
 void print_bodies(const Scene& scene) {
-  std::array<std::array<std::int64_t, 3>, 3> counts = {};
+  std::array<std::array<std::int64_t, mobility_words.size()>, shape_words.size()> counts = {};
   for (std::size_t k = 0; k < scene.bodies.shape.size(); ++k) {
     ++counts[static_cast<std::size_t>(scene.bodies.shape[k])]
             [static_cast<std::size_t>(scene.bodies.mobility[k])];
   }
   print_row("bodies", fmt::format("{}", scene.bodies.count()));
-  for (std::size_t shape = 0; shape < counts.size(); ++shape) {
-    for (std::size_t mobility = 0; mobility < counts.size(); ++mobility) {
+  for (std::size_t shape = 0; shape < shape_words.size(); ++shape) {
+    for (std::size_t mobility = 0; mobility < mobility_words.size(); ++mobility) {
       if (counts[shape][mobility] == 0) continue;
       print_row("", fmt::format("{} {}: {}", mobility_words[mobility], shape_words[shape],
                                 counts[shape][mobility]));
     }
   }
+  for (const Lifetime& lifetime : scene.lifetimes) {
+    print_row("",
+              fmt::format(
+                  "{} there from {} s{}", lifetime.bodies.count, lifetime.span.from,
+                  std::isfinite(lifetime.span.until) ? fmt::format(" until {} s", lifetime.span.until) : ""));
+  }
+}
+
+/// Past these a run goes on, but a newcomer should know what to expect of it. Contacts reach as far as bodies
+/// travel in a substep: single impacts on a wall as thick as the ball hold to a travel of 4, and some fail
+/// from 8 on; two bodies meet at twice the speed.
+constexpr double largest_travel = 2;
+constexpr double advised_travel = 1;
+constexpr double large_mass_ratio = 100;
+constexpr double large_size_ratio = 20;
+
+/// A little less than x, in two digits.
+double rounded_down(double x) {
+  const double unit = std::pow(10, std::floor(std::log10(x)) - 1);
+  return std::floor(x / unit) * unit;
+}
+
+void print_difficulty(const Scene& scene) {
+  const Difficulty d = difficulty_of(scene);
+  if (d.largest_size > 0)
+    print_row("sizes", fmt::format("{:.3g} m (smallest radius or half edge) to {:.3g} m (largest radius)",
+                                   d.least_size, d.largest_size));
+  if (d.smallest_size == 0 || d.speed == 0) return;
+  const double travel = d.travel(scene.time.step / scene.time.substeps);
+  print_row("speed", fmt::format("up to {:.3g} m/s{}", d.speed,
+                                 d.fall > 0 ? fmt::format(", after a fall of {:.3g} m", d.fall) : ""));
+  print_row("", fmt::format("v dt / smallest size = {:.2g}{}", travel,
+                            travel > largest_travel
+                                ? fmt::format(": bodies may pass through each other; try step <= {:.2g}",
+                                              rounded_down(scene.time.step * advised_travel / travel))
+                                : ": contacts are met in time"));
+  if (d.mass_ratio > large_mass_ratio)
+    print_row("stiff",
+              fmt::format("mass ratio {:.3g}: heavy on light needs many sweeps; raise response.iterations or "
+                          "time.substeps if penetration is large",
+                          d.mass_ratio));
+  if (d.largest_size > large_size_ratio * d.least_size)
+    print_row(
+        "stiff",
+        fmt::format("size ratio {:.3g}: the small bodies set the step, the large ones have many contacts",
+                    d.largest_size / d.least_size));
 }
 
 void print_model(const ModelPlan& plan) {
@@ -84,18 +132,23 @@ std::string narrow_phase_words(const Scene& scene) {
   return "closed forms; boxes by the measured best way";
 }
 
-/// Of the state in its three copies (scene, simulation, picture) and of the contacts of a dense packing,
-/// where a body has 6, each shared by two. Per contact and for the program itself: as measured on lattices of
-/// spheres.
-double memory_estimate(const Scene& scene) {
-  constexpr double bytes_of_program = 6e7;
-  constexpr double bytes_of_pictures = 1.2e8;
-  constexpr double bytes_per_contact = 2300;  // pairs, manifolds, rows of the solver and remembered impulses
-  double bytes_per_body = 3 * bytes_per_contact;
-  for_each_field([&](const char*, const auto& field) { bytes_per_body += 3 * sizeof(field[0]); },
-                 scene.bodies);
-  return bytes_of_program + (scene.render.enabled ? bytes_of_pictures : 0) +
-         static_cast<double>(scene.bodies.count()) * bytes_per_body;
+MemoryNeed memory_of(const Scene& scene) {
+  const double bodies = static_cast<double>(scene.bodies.count());
+  MemoryLoad load{
+      .bodies = bodies,
+      .free_bodies = static_cast<double>(std::ranges::count(scene.bodies.mobility, Mobility::free)),
+      .names = static_cast<double>(scene.body_names.size()),
+      .pictures = scene.render.enabled};
+  for (const auto& [name, id] : scene.body_names) load.name_bytes += static_cast<double>(name.size());
+  return memory_need(load);
+}
+
+std::string memory_words(const Scene& scene) {
+  const MemoryNeed need = memory_of(scene);
+  return fmt::format(
+      "about {}, {} for each body and {} more for each in a dense packing; this machine has {}",
+      bytes_words(need.total()), bytes_words(need.bodies / static_cast<double>(scene.bodies.count())),
+      bytes_words(need.contacts / static_cast<double>(scene.bodies.count())), bytes_words(machine_memory()));
 }
 
 struct OutputPlan {
@@ -111,7 +164,9 @@ OutputPlan plan_output(const Scene& scene, const TimeGrid& grid) {
   OutputPlan plan{.rows = Cadence(grid, scene.record.metrics_every).due(grid.last())};
   const double row =
       bytes_per_number * static_cast<double>(metric_names(scene).size()) + bytes_per_timing_row;
-  plan.bytes = row * static_cast<double>(plan.rows);
+  constexpr double bytes_per_final_row = 300;
+  plan.bytes =
+      row * static_cast<double>(plan.rows) + bytes_per_final_row * static_cast<double>(scene.bodies.count());
   if (!scene.render.enabled) return plan;
   plan.frames = Cadence(grid, 1 / scene.render.fps).due(grid.last());
   plan.bytes += bytes_per_pixel * scene.render.width * scene.render.height * static_cast<double>(plan.frames);
@@ -124,15 +179,6 @@ std::string output_words(const Scene& scene, const OutputPlan& plan) {
   return words + fmt::format(", {} frames of {} x {}", plan.frames, scene.render.width, scene.render.height);
 }
 
-/// Rounded to what an estimate is worth.
-std::string bytes_words(double bytes) {
-  constexpr std::array<const char*, 4> units = {"KiB", "MiB", "GiB", "TiB"};
-  std::size_t unit = 0;
-  for (bytes /= 1024; bytes >= 1000 && unit + 1 < units.size(); ++unit) bytes /= 1024;
-  return fmt::format("about {} {}", bytes < 10 ? std::ceil(bytes * 10) / 10 : std::ceil(bytes / 10) * 10,
-                     units[unit]);
-}
-
 }  // namespace
 
 int plan(const PlanArguments& arguments) {
@@ -143,14 +189,15 @@ int plan(const PlanArguments& arguments) {
   print_bodies(scene);
   print_row("time", fmt::format("{} s in {} steps of {} s, substeps {}", scene.time.end, grid.last(),
                                 scene.time.step, scene.time.substeps));
+  print_difficulty(scene);
   print_model(plan_model(scene));
   print_row("broad phase", broad_phase_words(scene.broadphase));
   print_row("narrow phase", narrow_phase_words(scene));
   print_row("checks",
             fmt::format("{}{}", scene.checks.size(), scene.label.empty() ? "" : ", label " + scene.label));
   print_row("output", output_words(scene, output));
-  print_row("disk", bytes_words(output.bytes));
-  print_row("memory", bytes_words(memory_estimate(scene)));
+  print_row("disk", "about " + bytes_words(output.bytes));
+  print_row("memory", memory_words(scene));
   return status_done;
 }
 

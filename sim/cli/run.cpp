@@ -5,6 +5,7 @@
 #include "sim/cli/console.hpp"
 #include "sim/cli/interrupt.hpp"
 #include "sim/cli/recorder.hpp"
+#include "sim/record/final_state.hpp"
 #include "sim/record/manifest.hpp"
 #include "sim/record/outcome.hpp"
 #include "sim/record/run_folder.hpp"
@@ -14,6 +15,7 @@
 #include <algorithm>
 #include <chrono>
 #include <functional>
+#include <utility>
 
 namespace scree::cli {
 
@@ -74,6 +76,12 @@ void say_summary(const Scene& scene, const RunSummary& summary, const RunFolder&
   console.say(fmt::format("numbers:  {}", (folder / "metrics.csv").string()));
 }
 
+BodyTable state_of(const Simulation& simulation) {
+  Snapshot snapshot;
+  simulation.snapshot(snapshot);
+  return std::move(snapshot.bodies);
+}
+
 /// Does a part of the run. If it fails the run has failed, but what there is by then is still written; the
 /// first error is the one that counts.
 void attempt(RunSummary& summary, Console& console, const std::function<void()>& part) {
@@ -118,6 +126,9 @@ int run(const RunArguments& arguments) {
   }
   attempt(summary, console, [&] { recorder.record_last(simulation); });
   attempt(summary, console, [&] { recorder.finish(); });
+  if (summary.status == "done") {
+    attempt(summary, console, [&] { write_final_state(state_of(simulation), scene, folder / "final.csv"); });
+  }
 
   summary.steps = simulation.steps();
   summary.time = simulation.time();

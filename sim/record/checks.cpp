@@ -46,8 +46,8 @@ double allowance(const Check& check, double unit) {
 }  // namespace
 
 double Probe::value(const Measure& measure) const {
-  const bool of_body = measure.body >= 0;
-  return evaluate(measure, of_body ? Observation{} : observe(), body);
+  static const Observation none;
+  return evaluate(measure, measure.body >= 0 ? none : observe(), body);
 }
 
 void Series::add(double time, double value) {

@@ -23,8 +23,8 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::string_view lock_name = ".lock";
-constexpr std::array<std::string_view, 6> file_names = {"manifest.json", "scene.yaml", "metrics.csv",
-                                                        "timing.csv",    "movie.mp4",  "log.txt"};
+constexpr std::array<std::string_view, 7> file_names = {
+    "manifest.json", "scene.yaml", "metrics.csv", "timing.csv", "final.csv", "movie.mp4", "log.txt"};
 
 /// Whether a run wrote this entry of its folder: a final name, or the part of one that did not get that far.
 bool is_written_by_a_run(const fs::path& entry) {

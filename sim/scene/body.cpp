@@ -1,6 +1,8 @@
 // Closed forms of mass and inertia, and the draws of one body.
 #include "sim/scene/body.hpp"
 
+#include "sim/scene/unit_quaternion.hpp"
+
 #include <cmath>
 
 namespace scree {
@@ -31,8 +33,7 @@ Quat random_orientation(Random& random) {
 Quat orientation_of(const BodyEntry& entry, Random& random) {
   if (entry.orientation) {
     const auto& q = *entry.orientation;
-    const Eigen::Vector4d unit = Eigen::Vector4d(q[0], q[1], q[2], q[3]).stableNormalized();
-    return Quat(unit[0], unit[1], unit[2], unit[3]);
+    return *unit_quaternion(q[0], Vec3(q[1], q[2], q[3]));
   }
   if (entry.rotate) {
     const double angle = entry.rotate->degrees ? *entry.rotate->degrees * pi / 180 : *entry.rotate->radians;
@@ -49,6 +50,15 @@ Vec3 inertia_of(Shape shape, const Vec3& size, double mass) {
 }
 
 bool is_usable(double x) { return x > 0 && std::isfinite(x) && std::isfinite(1 / x); }
+
+/// Gives a free body its mass (kg; else of the density) and inertia; see make_body() for what it returns.
+bool set_mass(const std::optional<double>& given, double density, std::size_t b, BodyTable& bodies) {
+  const double mass = given.value_or(density * volume_of(bodies.shape[b], bodies.size[b]));
+  const Vec3 inertia = inertia_of(bodies.shape[b], bodies.size[b], mass);
+  bodies.inverse_mass[b] = 1 / mass;
+  bodies.inverse_inertia[b] = inertia.cwiseInverse();
+  return is_usable(mass) && is_usable(inertia.minCoeff()) && is_usable(inertia.maxCoeff());
+}
 
 /// A turn of +z to the unit vector n. Exact along the axes; past the horizon it goes by way of -z,
 /// where 1 + n.z would cancel.
@@ -101,12 +111,22 @@ bool make_body(const BodyEntry& entry, std::int64_t k, std::int32_t id, std::uin
   bodies.mobility[b] = entry.fixed.value_or(false) ? Mobility::fixed
                        : entry.motion              ? Mobility::prescribed
                                                    : Mobility::free;
-  if (bodies.mobility[b] != Mobility::free) return true;
-  const double mass = entry.mass.value_or(density * volume_of(bodies.shape[b], bodies.size[b]));
-  const Vec3 inertia = inertia_of(bodies.shape[b], bodies.size[b], mass);
-  bodies.inverse_mass[b] = 1 / mass;
-  bodies.inverse_inertia[b] = inertia.cwiseInverse();
-  return is_usable(mass) && is_usable(inertia.minCoeff()) && is_usable(inertia.maxCoeff());
+  return bodies.mobility[b] != Mobility::free || set_mass(entry.mass, density, b, bodies);
+}
+
+bool make_body(const BodyRow& row, bool fixed, std::int32_t id, double density, BodyTable& bodies) {
+  const auto b = static_cast<std::size_t>(id);
+  bodies.id[b] = id;
+  bodies.shape[b] = row.shape;
+  bodies.size[b] = row.size;
+  bodies.position[b] = row.position;
+  bodies.orientation[b] = row.orientation;
+  bodies.velocity[b] = fixed ? Vec3(Vec3::Zero()) : row.velocity;
+  bodies.spin[b] = fixed ? Vec3(Vec3::Zero()) : row.spin;
+  bodies.mobility[b] = fixed ? Mobility::fixed : Mobility::free;
+  bodies.inverse_mass[b] = 0;
+  bodies.inverse_inertia[b] = Vec3::Zero();
+  return fixed || set_mass(row.mass, density, b, bodies);
 }
 
 }  // namespace scree

@@ -1,7 +1,8 @@
-// From one item of `bodies` to the state of one body.
+// From one item of `bodies`, or one row of a body file, to the state of one body.
 #pragma once
 
 #include "core/bodies.hpp"
+#include "sim/scene/body_file.hpp"
 #include "sim/scene/keys.hpp"
 
 #include <cstdint>
@@ -13,5 +14,8 @@ namespace scree {
 /// inertia, or the inverse of one, is not a positive finite number.
 bool make_body(const BodyEntry& entry, std::int64_t k, std::int32_t id, std::uint64_t seed, double density,
                BodyTable& bodies);
+
+/// The same of a row of a body file. A fixed body has no velocity, whatever the row says.
+bool make_body(const BodyRow& row, bool fixed, std::int32_t id, double density, BodyTable& bodies);
 
 }  // namespace scree

@@ -3,7 +3,9 @@
 #include "sim/scene/build.hpp"
 
 #include "sim/scene/body.hpp"
+#include "sim/scene/body_file.hpp"
 #include "sim/scene/measure.hpp"
+#include "sim/scene/memory.hpp"
 #include "sim/scene/scatter.hpp"
 #include "sim/scene/time_grid.hpp"
 
@@ -12,8 +14,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <unistd.h>
+#include <memory>
 #include <unordered_map>
+#include <utility>
 
 namespace scree {
 namespace {
@@ -24,27 +27,20 @@ struct Slot {
   std::size_t index;  ///< of the entry in `bodies`
   std::int64_t first;
   std::int64_t count;
-  std::int32_t material;
-  TimeGrid::Steps steps;  ///< in whose states the bodies are there
+  std::int32_t material;             ///< -1: each row of the file says its own
+  TimeGrid::Steps steps;             ///< in whose states the bodies are there
+  std::unique_ptr<BodyFile> file{};  ///< where they come from, if from one
 };
 
+constexpr const char* beyond_numbers = "its mass and inertia are beyond what numbers can hold";
+
 /// A product of counts may exceed every integer, but not the doubles.
-double count_of(const BodyEntry& entry) {
+double count_of(const BodyEntry& entry, const BodyFile* file) {
+  if (file) return static_cast<double>(file->count());
   if (entry.scatter) return static_cast<double>(entry.scatter->count);
   if (!entry.repeat) return 1;
   const auto& n = entry.repeat->count;
   return static_cast<double>(n[0]) * static_cast<double>(n[1]) * static_cast<double>(n[2]);
-}
-
-double bytes_per_body() {
-  std::size_t bytes = 0;
-  const BodyTable table;
-  for_each_field([&](const char*, const auto& field) { bytes += sizeof(field[0]); }, table);
-  return static_cast<double>(bytes);
-}
-
-double machine_memory() {
-  return static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGESIZE));
 }
 
 class Builder {
@@ -55,7 +51,10 @@ class Builder {
     find_materials(scene);
     find_laws(scene);
     reserve(scene);
-    for (const Slot& slot : slots_) make_bodies(slot, scene);
+    for (const Slot& slot : slots_) {
+      slot.file ? read_bodies(slot, scene) : make_bodies(slot, scene);
+      name_bodies(slot, scene);
+    }
     for (const Slot& slot : slots_)
       if (slot.entry->scatter) scatter_bodies(slot, scene);
     find_lifetimes(scene);
@@ -75,16 +74,18 @@ class Builder {
   /// `where` is the value that names the material.
   std::int32_t material(const std::string& name, const Node& where) const {
     const auto found = material_of_.find(name);
-    if (found != material_of_.end()) return found->second;
+    if (found == material_of_.end()) reader_.fail(where.mark, no_material(name));
+    return found->second;
+  }
+
+  std::string no_material(std::string_view name) const {
     std::vector<std::string_view> known;
     for (const MaterialEntry& m : entry_.materials) known.push_back(m.name);
-    reader_.fail(where.mark, fmt::format("there is no material {}{}", name, suggestion(name, known)));
+    return fmt::format("there is no material {}{}", name, suggestion(name, known));
   }
 
   void find_laws(Scene& scene) {
     const std::size_t n = scene.materials.size();
-    if (static_cast<double>(n * n * sizeof(ContactLaw)) > machine_memory())
-      reader_.fail({1, 1}, fmt::format("{} materials make more pairs than this machine can hold", n));
     scene.laws.resize(n * n);
     for (std::size_t a = 0; a < n; ++a)
       for (std::size_t b = 0; b < n; ++b) {
@@ -114,40 +115,71 @@ class Builder {
     }
   }
 
-  /// Counts the bodies and checks their number before anything is allocated for them.
+  /// Counts the bodies and checks their number, and the memory of the whole run, before anything is allocated
+  /// for them.
   void reserve(Scene& scene) {
     const Reader::Step step(reader_, "bodies");
     std::unordered_map<std::string_view, SourceMark> names;
-    double total = 0;
-    double bytes = 0;
+    MemoryLoad load{.pictures = scene.render.enabled};
+    slots_.reserve(entry_.bodies.size());
     for (std::size_t i = 0; i < entry_.bodies.size(); ++i) {
       const Reader::Step item(reader_, i);
-      const BodyEntry& body = entry_.bodies[i];
-      const double count = count_of(body);
-      // A name in a map costs about this much besides its letters.
-      const double name_bytes = body.name.empty() ? 0 : 96 + static_cast<double>(body.name.size());
-      total += count;
-      bytes += count * (bytes_per_body() + name_bytes);
-      const char* cause = body.repeat ? "repeat" : "scatter";
-      if (total > std::numeric_limits<std::int32_t>::max())
-        reader_.fail_at(cause, *body.node,
-                        fmt::format("the scene would have {} bodies; at most {} are possible", total,
-                                    std::numeric_limits<std::int32_t>::max()));
-      if (bytes > machine_memory())
-        reader_.fail_at(
-            cause, *body.node,
-            fmt::format("the scene's {:.0f} bodies need {:.0f} bytes, but this machine has {:.0f}", total,
-                        bytes, machine_memory()));
+      BodyEntry& body = entry_.bodies[i];
+      std::unique_ptr<BodyFile> file = open_file(body, scene.source);
+      const double count = count_of(body, file.get());
+      const double first = load.bodies;
+      add_load(body, count, load);
+      require_room(body, load);
       claim_name(body, names);
-      slots_.push_back({&body, i, static_cast<std::int64_t>(total - count), static_cast<std::int64_t>(count),
-                        find_material(body),
-                        grid_.steps_in(span_of(body.from.value_or(0), body.until, *body.node))});
+      slots_.push_back(
+          {&body, i, static_cast<std::int64_t>(first), static_cast<std::int64_t>(count), find_material(body),
+           grid_.steps_in(span_of(body.from.value_or(0), body.until, *body.node)), std::move(file)});
     }
-    for_each_field([&](const char*, auto& field) { field.resize(static_cast<std::size_t>(total)); },
-                   scene.bodies);
+    const auto total = static_cast<std::size_t>(load.bodies);
+    for_each_field([&](const char*, auto& field) { field.resize(total); }, scene.bodies);
+  }
+
+  static void add_load(const BodyEntry& body, double count, MemoryLoad& load) {
+    load.bodies += count;
+    if (!body.plane && !body.motion && !body.fixed.value_or(false)) load.free_bodies += count;
+    if (body.name.empty()) return;
+    load.names += count;
+    load.name_bytes += count * static_cast<double>(body.name.size());
+  }
+
+  void require_room(const BodyEntry& body, const MemoryLoad& load) {
+    const char* cause = body.repeat         ? "repeat"
+                        : body.scatter      ? "scatter"
+                        : body.file.empty() ? "name"
+                                            : "file";
+    constexpr auto most = std::numeric_limits<std::int32_t>::max();
+    if (load.bodies > most)
+      reader_.fail_at(
+          cause, *body.node,
+          fmt::format("the scene would have {} bodies; at most {} are possible", load.bodies, most));
+    const double need = memory_need(load).total();
+    if (need > machine_memory())
+      reader_.fail_at(
+          cause, *body.node,
+          fmt::format("a run of the scene's {:.0f} bodies needs {} of memory, but this machine has {}",
+                      load.bodies, bytes_words(need), bytes_words(machine_memory())));
+  }
+
+  /// The entry keeps where the file is found, for the resolved scene, which may be run from anywhere.
+  std::unique_ptr<BodyFile> open_file(BodyEntry& body, const std::filesystem::path& scene) {
+    if (body.file.empty()) return nullptr;
+    std::filesystem::path found;
+    try {
+      found = find_body_file(std::filesystem::absolute(scene.parent_path() / body.file).lexically_normal());
+    } catch (const InputError& error) {
+      reader_.fail_at("file", *body.node, error.what());
+    }
+    body.file = found.string();
+    return std::make_unique<BodyFile>(found);
   }
 
   std::int32_t find_material(const BodyEntry& body) {
+    if (body.material.empty()) return -1;
     const Reader::Step step(reader_, "material");
     return material(body.material, *body.node->find("material"));
   }
@@ -173,11 +205,39 @@ class Builder {
       const Material& material = scene.materials[static_cast<std::size_t>(slot.material)];
       scene.bodies.material[static_cast<std::size_t>(id)] = slot.material;
       if (!make_body(entry, k, id, scene.seed, material.density, scene.bodies))
-        reader_.fail(entry.node->mark, "its mass and inertia are beyond what numbers can hold");
-      if (entry.name.empty()) continue;
-      const bool many = entry.repeat || entry.scatter;
-      scene.body_names.emplace(many ? fmt::format("{}[{}]", entry.name, k) : entry.name, id);
+        reader_.fail(entry.node->mark, beyond_numbers);
     }
+  }
+
+  void read_bodies(const Slot& slot, Scene& scene) {
+    auto id = static_cast<std::int32_t>(slot.first);
+    slot.file->read([&](const BodyRow& row) {
+      const std::int32_t index = slot.material >= 0 ? slot.material : material_of(row, *slot.file);
+      const Material& material = scene.materials[static_cast<std::size_t>(index)];
+      scene.bodies.material[static_cast<std::size_t>(id)] = index;
+      if (!make_body(row, slot.entry->fixed.value_or(false), id, material.density, scene.bodies))
+        slot.file->fail(BodyColumn::mass, row.mark, beyond_numbers);
+      ++id;
+    });
+  }
+
+  std::int32_t material_of(const BodyRow& row, BodyFile& file) const {
+    if (row.material.empty())
+      file.fail(BodyColumn::material, row.material_mark,
+                "the body needs one: fill the column, or give `material` beside `file` in the scene");
+    const auto found = material_of_.find(row.material);
+    if (found == material_of_.end())
+      file.fail(BodyColumn::material, row.material_mark, no_material(row.material));
+    return found->second;
+  }
+
+  void name_bodies(const Slot& slot, Scene& scene) const {
+    const BodyEntry& entry = *slot.entry;
+    if (entry.name.empty()) return;
+    const bool many = entry.repeat || entry.scatter || slot.file;
+    for (std::int64_t k = 0; k < slot.count; ++k)
+      scene.body_names.emplace(many ? fmt::format("{}[{}]", entry.name, k) : entry.name,
+                               static_cast<std::int32_t>(slot.first + k));
   }
 
   /// Whether the bodies of `other` are where the scene puts them when those of `slot` appear.
@@ -316,7 +376,7 @@ class Builder {
 
 /// Writes the defaults that depend on other keys into the entry.
 void fill_defaults(BodyEntry& body) {
-  if (body.plane) return;
+  if (body.plane || !body.file.empty()) return;
   const bool free = !body.fixed.value_or(false) && !body.motion;
   if (!body.fixed) body.fixed = false;
   if (!body.scatter) {

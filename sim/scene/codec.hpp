@@ -236,14 +236,15 @@ Codec<T> section(std::string name, std::string help, std::vector<Key<T>> list,
           }};
 }
 
-/// A map from names to sections; T has a member `name`. The order is that of the file.
+/// A map from at most so many names to sections; T has a member `name`. The order is that of the file.
 template <class T>
-Codec<std::vector<T>> named(Codec<T> codec) {
-  Type type{.kind = Type::Kind::named};
+Codec<std::vector<T>> named(Codec<T> codec, std::int64_t most) {
+  Type type{.kind = Type::Kind::named, .most = most};
   type.parts.push_back(codec.type);
   return {type,
           [codec, type](std::vector<T>& values, const Node& node, Reader& reader) {
-            if (node.kind != Node::Kind::map) fail_form(node, type, reader);
+            if (node.kind != Node::Kind::map || std::ssize(node.items) > type.most)
+              fail_form(node, type, reader);
             for (const Node& member : node.items) {
               const Reader::Step step(reader, member.key);
               try {

@@ -15,7 +15,7 @@ namespace scree {
 namespace {
 
 constexpr int max_depth = 32;
-constexpr std::int64_t max_aliased_nodes = 1'000'000;
+constexpr std::int64_t max_aliased_nodes = 100'000;
 
 SourceMark to_mark(const YAML::Mark& mark) {
   return {std::max(mark.line, 0) + 1, std::max(mark.column, 0) + 1};

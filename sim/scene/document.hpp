@@ -39,7 +39,7 @@ struct SyntaxError {
 
 /// Parses one YAML document. Throws SyntaxError for broken YAML, and for what YAML allows but a scene does
 /// not: bytes that are not UTF-8, control characters, tabs in indentation, duplicate keys, keys that are not
-/// names, tags, a second document, depth beyond 32, aliases that add more than a million nodes.
+/// names, tags, a second document, depth beyond 32, aliases that add more than 100,000 nodes.
 Node parse_document(const std::string& text);
 
 /// The tree as YAML that parses to the same tree: long lists and maps one item per line, the rest in braces.

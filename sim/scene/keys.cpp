@@ -10,6 +10,9 @@ namespace {
 constexpr Presence required = Presence::required;
 constexpr Presence optionally = Presence::optional;
 
+/// Materials have a law for each pair, regions a sum over all bodies each.
+constexpr std::int64_t most_names = 1000;
+
 /// A default that the member cannot show, because its absence is told from its being given.
 template <class T>
 Key<T> with_default(Key<T> key, std::string fallback) {
@@ -205,9 +208,12 @@ Codec<BodyEntry> body_section() {
           key<T>("box", &T::box, optional(box_section()), optionally, "the shape: a cuboid"),
           key<T>("tube", &T::tube, optional(tube_section()), optionally,
                  "the shape: the inside of a cylinder, with end caps; needs `fixed: true` or `motion`"),
-          future<T>("file", "bodies from a CSV file or from another run"),
+          key<T>("file", &T::file, text(), optionally,
+                 "instead of a shape: bodies from a CSV file, or those that another run left, by its folder; "
+                 "see Body files"),
           key<T>("name", &T::name, identifier(), optionally, "to refer to it in measures"),
-          key<T>("material", &T::material, identifier(), required, "one of `materials`"),
+          key<T>("material", &T::material, identifier(), optionally,
+                 "one of `materials`; required but for a file that has a column of them"),
           key<T>("mass", &T::mass, optional(number(above_zero, "kg")), optionally,
                  "instead of the material's density"),
           with_default(key<T>("at", &T::at, optional(vector("m")), optionally,
@@ -469,13 +475,13 @@ const Codec<SceneEntry>& scene_codec() {
           key<T>("seed", &T::seed, seed_integer(), optionally, "every random choice follows from it"),
           key<T>("gravity", &T::gravity, vector("m/s^2"), optionally, "acceleration of free bodies"),
           key<T>("time", &T::time, time_section(), required, "length and step of the run"),
-          key<T>("materials", &T::materials, named(material_section()), required,
+          key<T>("materials", &T::materials, named(material_section(), most_names), required,
                  "a map of names to materials"),
           key<T>("contacts", &T::contacts, list_of(contact_section()), optionally,
                  "laws of pairs of materials"),
           key<T>("bodies", &T::bodies, list_of(body_section(), 1), required, "the bodies"),
           key<T>("forces", &T::forces, list_of(force_section()), optionally, "forces besides gravity"),
-          key<T>("regions", &T::regions, named(region_section()), optionally,
+          key<T>("regions", &T::regions, named(region_section(), most_names), optionally,
                  "a map of names to boxes to measure in"),
           key<T>("response", &T::response, response_section(), optionally, "how contacts answer"),
           key<T>("broadphase", &T::broadphase, broadphase_section(), optionally, "how pairs are found"),

@@ -73,6 +73,7 @@ struct BodyEntry {
   std::optional<SphereEntry> sphere;
   std::optional<BoxEntry> box;
   std::optional<TubeEntry> tube;
+  std::string file;
   std::string name;
   std::string material;
   std::optional<double> mass;

@@ -38,6 +38,28 @@ Any key can be changed on the command line: `--set time.step=0.001 --set "bodies
 path that the file does not give is created, with its default; list items and names of your own must be in the file.
 )";
 
+constexpr const char* body_files = R"(
+## Body files
+
+`file:` takes bodies from a CSV file: a first line that names its columns, in any order, then one line per body. Its path
+is relative to the scene file. A run that is done leaves its free bodies in `final.csv` in this format, every number
+to the bit; `file: output/NAME` takes that. `name` names them `name[0]`, `name[1]`, ...; `fixed: true` holds them all.
+
+| column | meaning |
+|---|---|
+| `shape` | `sphere` or `box`; required |
+| `radius` | of a sphere (m); empty for a box |
+| `size_x`, `size_y`, `size_z` | full edge lengths of a box (m); empty for a sphere |
+| `x`, `y`, `z` | the centre (m); required |
+| `qw`, `qx`, `qy`, `qz` | orientation, a quaternion of any length but 0; all empty: not turned |
+| `vx`, `vy`, `vz` | velocity (m/s); empty: 0 |
+| `wx`, `wy`, `wz` | spin, world frame (rad/s); empty: 0 |
+| `mass` | kg; empty: from the material's density |
+| `material` | one of `materials`; `material` in the scene goes before it |
+
+Cells are separated by commas and not quoted; columns that are left out count as empty. Blank lines are skipped.
+)";
+
 /// A | within a cell would end it.
 std::string cell(std::string_view text) {
   std::string out;
@@ -105,6 +127,7 @@ void append_measures(std::string& page, MeasureSubject of) {
 std::string scene_reference() {
   std::string page = introduction;
   append_section(page, *scene_codec().type.section);
+  page += body_files;
   page +=
       "\n## Measures\n\nOf one body, by its name; `bed[3]` is a body of a repeat or scatter. World frame.\n";
   append_measures(page, MeasureSubject::body);

@@ -1,7 +1,12 @@
 // Rules across the keys of one section.
 #include "sim/scene/rules.hpp"
 
+#include "sim/scene/unit_quaternion.hpp"
+
 #include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
 
 namespace scree {
 namespace {
@@ -24,6 +29,17 @@ int given(std::initializer_list<const char*> keys, const Node& node) {
   int count = 0;
   for (const char* key : keys) count += node.find(key) != nullptr;
   return count;
+}
+
+void check_file_body(const BodyEntry& body, const Node& node, Reader& reader) {
+  static constexpr std::array allowed = {"file", "name", "material", "fixed", "from", "until"};
+  for (const Node& item : node.items)
+    if (std::find(allowed.begin(), allowed.end(), item.key) == allowed.end()) {
+      const Reader::Step step(reader, item.key);
+      reader.fail(item.key_mark,
+                  "does not go with a file, which says where its bodies are and how they move");
+    }
+  if (body.file.empty()) reader.fail_at("file", node, "must be the path of a CSV file or of a run's folder");
 }
 
 /// Keys that a shape cannot have, and why.
@@ -80,10 +96,12 @@ void check_scatter(const ScatterEntry& scatter, const Node& node, Reader& reader
 }
 
 void check_body(const BodyEntry& body, const Node& node, Reader& reader) {
+  if (node.find("file")) return check_file_body(body, node, reader);
   const int shapes = given({"plane", "sphere", "box", "tube"}, node);
   if (shapes != 1)
     reader.fail(node.mark, fmt::format("must have exactly one shape (plane, sphere, box or tube), not {}",
                                        shapes == 0 ? "none" : std::to_string(shapes)));
+  if (body.material.empty()) reader.fail_at("material", node, "is missing; it must be one of `materials`");
   if (body.plane) return check_plane_body(node, reader);
   if (body.tube) check_tube_body(body, node, reader);
   exclude("orientation", "rotate", node, reader);
@@ -95,8 +113,8 @@ void check_body(const BodyEntry& body, const Node& node, Reader& reader) {
     for (const char* key : {"motion", "velocity", "spin"}) exclude("fixed", key, node, reader);
   if (body.orientation) {
     const auto& q = *body.orientation;
-    const double length = Eigen::Vector4d(q[0], q[1], q[2], q[3]).stableNorm();
-    if (!(length > 0) || !std::isfinite(length)) reader.fail_at("orientation", node, "must not be zero");
+    if (!unit_quaternion(q[0], Vec3(q[1], q[2], q[3])))
+      reader.fail_at("orientation", node, "must not be zero");
   }
 }
 

@@ -80,6 +80,7 @@ Json schema_of(const Type& type) {
     case Type::Kind::named:
       schema["type"] = "object";
       schema["additionalProperties"] = schema_of(type.parts[0]);
+      schema["maxProperties"] = type.most;
       break;
     case Type::Kind::section:
       return properties_of(*type.section);

@@ -50,7 +50,7 @@ std::string words_of(const Type& type) {
       return "a list of " + plural_of(type.parts[0]);
     }
     case Type::Kind::named:
-      return "a map of names";
+      return fmt::format("a map of at most {} names", type.most);
     case Type::Kind::section: {
       std::vector<std::string_view> names;
       for (const KeyType& key : type.section->keys)
@@ -98,7 +98,7 @@ std::string shown(const Node& node) {
     case Node::Kind::list:
       return fmt::format("a list of {}", node.items.size());
     case Node::Kind::map:
-      return "a map";
+      return fmt::format("a map of {}", node.items.size());
   }
   return {};
 }

@@ -48,7 +48,7 @@ struct Type {
   std::vector<std::string> future{};  ///< words of the language that this version does not have
   std::string pattern{};              ///< of text: what is allowed, as a regular expression
   std::string pattern_words{};        ///< the same in words
-  std::int64_t least = 0;             ///< items of a list
+  std::int64_t least = 0;             ///< items of a list, or names
   std::int64_t most = INT64_MAX;
   std::vector<Type> parts{};
   std::shared_ptr<const SectionType> section{};

@@ -64,9 +64,9 @@ TEST_F(ProgramTest, RunWritesTheRunFolder) {
   const Finished run = run_scene(falling_ball(no_pictures + good_check));
   EXPECT_EQ(run.status, 0) << run.error;
   EXPECT_EQ(run.error, "");
-  EXPECT_EQ(
-      files_below(folder_ / "output/fall"),
-      (std::vector<std::string>{"log.txt", "manifest.json", "metrics.csv", "scene.yaml", "timing.csv"}));
+  EXPECT_EQ(files_below(folder_ / "output/fall"),
+            (std::vector<std::string>{"final.csv", "log.txt", "manifest.json", "metrics.csv", "scene.yaml",
+                                      "timing.csv"}));
   EXPECT_EQ(text_of(folder_ / "output/fall/log.txt"), run.out);
   EXPECT_TRUE(contains(run.out, "1 passed, 0 failed")) << run.out;
 
@@ -292,6 +292,35 @@ TEST_F(ProgramTest, PlanSaysWhatWillBeModelledAndRunsNothing) {
   EXPECT_TRUE(Json::accept(scree_in(folder_, {"plan", "--schema"}).out));
   EXPECT_TRUE(contains(scree_in(folder_, {"plan", "--reference"}).out, "restitution"));
   EXPECT_EQ(scree_in(folder_, {"plan"}).status, 2);
+}
+
+TEST_F(ProgramTest, PlanSaysWhatIsHardInWordsForNewcomers) {
+  write_text(folder_ / "fall.yaml", falling_ball());
+  Finished plan = scree_in(folder_, {"plan", "fall.yaml", "--set", "bodies[0].velocity=[1, 0, 0]"});
+  EXPECT_TRUE(contains(plan.out, "v dt / smallest size = 0.1: contacts are met in time")) << plan.out;
+  EXPECT_TRUE(contains(plan.out, "this machine has ")) << plan.out;
+  plan = scree_in(folder_, {"plan", "fall.yaml", "--set", "bodies[0].velocity=[80, 0, 0]"});
+  EXPECT_TRUE(contains(plan.out, "bodies may pass through each other; try step <= 0.0012")) << plan.out;
+}
+
+TEST_F(ProgramTest, ARunStartsFromWhereAnotherEnded) {
+  ASSERT_EQ(run_scene(falling_ball(no_pictures)).status, 0);
+  const std::string next = R"(format: 1
+gravity: [0, 0, -10]
+time: {end: 0.1, step: 0.01}
+materials:
+  clay: {density: 2000}
+  stone: {density: 1000}
+bodies:
+  - {file: output/fall, name: ball}
+checks:
+  - {measure: "ball[0].position.z", at: 0, expect: 9.95, tolerance: 1.0e-12}
+  - {measure: "ball[0].position.z", expect: 9.8, tolerance: 1.0e-12}
+)" + no_pictures;
+  write_text(folder_ / "next.yaml", next);
+  const Finished run = scree_in(folder_, {"run", "next.yaml"});
+  EXPECT_EQ(run.status, 0) << run.out << run.error;
+  EXPECT_TRUE(contains(run.out, "2 passed, 0 failed")) << run.out;
 }
 
 TEST_F(ProgramTest, InfoAndHelp) {

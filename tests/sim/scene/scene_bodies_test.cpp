@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <ctime>
 #include <string>
 #include <tuple>
 
@@ -302,6 +303,39 @@ TEST(SceneBodies, ForcesFindTheirBodies) {
   EXPECT_EQ(b.during.until, 0.5);
   EXPECT_EQ(b1.on.first, 2);
   EXPECT_EQ(b1.on.count, 1);
+}
+
+TEST(SceneBodies, ScatterStaysInsideATube) {
+  BodyTable bodies;
+  for_each_field([](const char*, auto& field) { field.resize(201); }, bodies);
+  bodies.shape[0] = Shape::tube;
+  bodies.mobility[0] = Mobility::fixed;
+  bodies.size[0] = Vec3(0.5, 0.5, 1);
+  bodies.position[0] = Vec3(3, 0, 0);
+  bodies.orientation[0] = Quat(Eigen::AngleAxisd(pi / 2, Vec3::UnitY()));  // along x
+  for (std::size_t k = 1; k <= 200; ++k) {
+    bodies.shape[k] = Shape::sphere;
+    bodies.orientation[k] = Quat::Identity();
+    bodies.size[k] = Vec3(0.05, 0, 0);
+  }
+  const ScatterEntry box{.count = 200, .from = Vec3(2.2, -0.5, -0.5), .to = Vec3(3.8, 0.5, 0.5)};
+  ASSERT_EQ(scatter(bodies, 1, 200, box, {0}, 7), 200);
+  for (std::size_t k = 1; k <= 200; ++k) {
+    const Vec3 x = bodies.position[k];
+    EXPECT_LE(std::hypot(x.y(), x.z()), 0.45 + 1e-12);
+    EXPECT_LE(std::abs(x.x() - 3), 0.95 + 1e-12);
+  }
+}
+
+// A fifth of the 100,000 items that may take 15 s: sanitizers need five times as long.
+TEST(SceneBodies, TwentyThousandItemsLoadInFifteenSeconds) {
+  std::string bodies;
+  for (int k = 0; k < 20000; ++k)
+    bodies += "  - {sphere: {radius: 0.05}, name: b" + std::to_string(k) + ", at: [" + std::to_string(k) +
+              ", 0, 0.5], velocity: [1, 0, 0], material: glass}\n";
+  const std::clock_t start = std::clock();
+  EXPECT_EQ(scene_of(bodies).bodies.count(), 20000);
+  EXPECT_LT(static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC, 15);
 }
 
 }  // namespace

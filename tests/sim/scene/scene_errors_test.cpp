@@ -82,7 +82,7 @@ constexpr BadScene bad_scenes[] = {
     {"not_utf8", 5, 10, "byte 0xE9 is not UTF-8 text"},
     {"two_documents", 8, 1, "a second YAML document"},
     {"tag", 7, 7, "the scene language has no tags"},
-    {"alias_bomb", 7, 36, "aliases add more than 1000000 nodes"},
+    {"alias_bomb", 6, 36, "aliases add more than 100000 nodes"},
     {"alias_loop", 2, 13, "an alias inside its own anchor"},
     {"deep", 2, 38, "nested deeper than 32 levels"},
     {"wrong_format", 2, 9, "format: must be 1, not 2"},
@@ -133,6 +133,13 @@ constexpr BadScene bad_scenes[] = {
     {"body_gone_first", 8, 77, "bodies[2].until: must be at least a step after from, 0.5 s, not 0.501 s"},
     {"check_absent", 10, 36, "checks[0].at: the body is not there at 0.7 s; see its from and until"},
     {"check_over_absent", 10, 38, "checks[0].over: the body is not there at 0 s; see its from and until"},
+    {"file_missing", 8, 12, "bodies[2].file: "},
+    {"file_folder", 8, 12, "is a folder without final.csv, which a run writes when it is done"},
+    {"file_empty_path", 8, 12, "bodies[2].file: must be the path of a CSV file or of a run's folder"},
+    {"file_with_at", 8, 41, "bodies[2].at: does not go with a file"},
+    {"file_with_shape", 8, 41, "bodies[2].sphere: does not go with a file"},
+    {"too_many_names", 8, 52, "bodies[2].repeat: a run of the scene's 1000000002 bodies needs "},
+    {"scatter_too_many", 8, 53, "bodies[2].scatter: a run of the scene's 1000000002 bodies needs "},
     {"force_unknown_body", 9, 10, "forces[0].on: there is no body called bal (did you mean ball?)"},
     {"force_on_fixed", 9, 10, "forces[0].on: wall is not free; forces move free bodies alone"},
     {"force_nothing", 9, 5, "forces[0]: needs force or torque"},
@@ -202,6 +209,13 @@ TEST(BadScenes, ManyErrorsAreCounted) {
   EXPECT_NE(message_of(text).find("and 92 more errors"), std::string::npos) << message_of(text);
 }
 
+TEST(BadScenes, MoreMaterialsThanTheirPairsAllow) {
+  std::string text = "format: 1\ntime: {end: 1, step: 1}\nmaterials:\n";
+  for (int i = 0; i < 1001; ++i) text += "  m" + std::to_string(i) + ": {}\n";
+  EXPECT_EQ(message_of(text + "bodies:\n  - {sphere: {radius: 1}, material: m0}\n"),
+            "test.yaml:4:3: materials: must be a map of at most 1000 names, not a map of 1001");
+}
+
 TEST(BadScenes, FilesThatAreNone) {
   const auto message = [](const std::filesystem::path& file) {
     try {
@@ -225,9 +239,10 @@ TEST(BadScenes, MoreBodiesThanMemoryAreRefusedBeforeAllocation) {
       "  - {sphere: {radius: 1}, material: glass, repeat: {count: [2000, 1000, 1000], spacing: [1, 1, 1]},"
       " name: " +
       std::string(10000, 'a') + "}\n");
-  EXPECT_TRUE(begins_with(message, "test.yaml:5:52: bodies[0].repeat: the scene's 2000000000 bodies need "))
+  EXPECT_TRUE(
+      begins_with(message, "test.yaml:5:52: bodies[0].repeat: a run of the scene's 2000000000 bodies needs "))
       << message;
-  EXPECT_NE(message.find(" bytes, but this machine has "), std::string::npos);
+  EXPECT_NE(message.find("iB of memory, but this machine has "), std::string::npos) << message;
 }
 
 // No prefix of a scene, and no scene with one byte changed, may do anything but load or be refused.

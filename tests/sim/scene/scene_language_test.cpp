@@ -49,8 +49,15 @@ bodies:
     name: paddle
     at: [0, 0, -4]
     rotate: {axis: [1, 1, 0], radians: 1}
-    motion: {velocity: [0, 0, 1], spin: [0, 0, 3.14]}
+    motion: {velocity: [0, 0, 1], spin: [0, 0, 3.14], about: [1, 0, -4]}
+    from: 0.5
+    until: 5
     material: glass
+forces:
+  - {on: puck, force: [1, 0, 0], torque: [0, 0.5, 0], from: 1, until: 2}
+  - {on: bed, force: [0, 0, 1]}
+regions:
+  exit: {from: [-1, -1, -1], to: [1, 1, 0]}
 response: {mode: default, iterations: 20, tolerance: 1e-6, warm_start: false, restitution_threshold: 0.25}
 broadphase: {method: uniform_grid, levels: 4}
 narrowphase: {box_box: ccd_gjk}
@@ -78,6 +85,17 @@ TEST(SceneLanguage, EveryKeyReachesTheScene) {
   EXPECT_EQ(scene.time.step, 0.002);
   EXPECT_EQ(scene.time.substeps, 3);
   EXPECT_EQ(scene.bodies.count(), 1 + 1 + 1 + 24 + 20 + 1 + 1 + 1);
+  EXPECT_EQ(scene.motions.at(0).about, Vec3(1, 0, -4));
+  ASSERT_EQ(scene.lifetimes.size(), 1u);
+  EXPECT_EQ(scene.lifetimes[0].bodies.first, 49);
+  EXPECT_EQ(scene.lifetimes[0].span.from, 0.5);
+  EXPECT_EQ(scene.lifetimes[0].span.until, 5);
+  ASSERT_EQ(scene.forces.size(), 2u);
+  EXPECT_EQ(scene.forces[0].torque, Vec3(0, 0.5, 0));
+  EXPECT_EQ(scene.forces[1].on.count, 24);
+  ASSERT_EQ(scene.regions.size(), 1u);
+  EXPECT_EQ(scene.regions[0].name, "exit");
+  EXPECT_EQ(scene.regions[0].to, Vec3(1, 1, 0));
   EXPECT_EQ(scene.response.iterations, 20);
   EXPECT_EQ(scene.response.tolerance, 1e-6);
   EXPECT_FALSE(scene.response.warm_start);
@@ -102,7 +120,7 @@ TEST(SceneLanguage, EveryKeyReachesTheScene) {
   EXPECT_EQ(scene.checks[0].at, 3.0);
   EXPECT_EQ(scene.checks[0].expect, 1.428571);
   EXPECT_EQ(scene.checks[0].tolerance, 1e-9);
-  EXPECT_EQ(scene.checks[0].mark.line, 41);
+  EXPECT_EQ(scene.checks[0].mark.line, 48);
   EXPECT_EQ(scene.checks[1].reduce, Reduce::crossings);
   EXPECT_EQ(scene.checks[1].level, 0.1);
   EXPECT_EQ((*scene.checks[1].over)[1], 6);

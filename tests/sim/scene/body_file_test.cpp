@@ -1,0 +1,162 @@
+// Body files: what each column says, and every way in which a file can be wrong.
+#include "sim/scene/body_file.hpp"
+
+#include "core/error.hpp"
+#include "sim/scene/scene.hpp"
+#include "tests/sim/record/temporary_folder.hpp"
+
+#include <gtest/gtest.h>
+
+#include <ctime>
+
+namespace scree {
+namespace {
+
+class BodyFileTest : public testing::Test {
+ protected:
+  Scene scene_with(const std::string& csv, const std::string& more = "material: glass") {
+    write_text(folder_ / "bed.csv", csv);
+    return parse_scene(
+        "format: 1\nname: a\ntime: {end: 1, step: 0.1}\n"
+        "materials: {glass: {density: 2500}, steel: {density: 8000}}\nbodies:\n"
+        "  - {sphere: {radius: 1}, at: [9, 9, 9], material: steel}\n  - {file: bed.csv, " +
+            more + "}\n",
+        folder_ / "scene.yaml");
+  }
+
+  /// Less the folder's path, and the scene's line.
+  std::string message_of(const std::string& csv, const std::string& more = "material: glass") {
+    try {
+      scene_with(csv, more);
+    } catch (const InputError& error) {
+      const std::string text = error.what();
+      const std::string start = (folder_ / "").string();
+      return text.rfind(start, 0) == 0 ? text.substr(start.size()) : text;
+    }
+    return "no error";
+  }
+
+  TemporaryFolder folder_;
+};
+
+TEST_F(BodyFileTest, EachColumnIsRead) {
+  const Scene scene = scene_with(
+      "z,y,x,shape,radius,size_x,size_y,size_z,qw,qx,qy,qz,vx,vy,vz,wx,wy,wz,mass,material\n"
+      "3,2,1,sphere,0.5,,,,,,,,4,5,6,7,8,9,,glass\n"
+      " 30 , 20,10\t,box,,1,2,3,0,0,0,-2,,,,,,,12,steel\n",
+      "name: b");
+  const BodyTable& bodies = scene.bodies;
+  ASSERT_EQ(bodies.count(), 3);
+  EXPECT_EQ(scene.body_names.at("b[1]"), 2);
+  EXPECT_EQ(bodies.id[2], 2);
+  EXPECT_EQ(bodies.shape[1], Shape::sphere);
+  EXPECT_EQ(bodies.size[1].x(), 0.5);
+  EXPECT_EQ(bodies.position[1], Vec3(1, 2, 3));
+  EXPECT_EQ(bodies.velocity[1], Vec3(4, 5, 6));
+  EXPECT_EQ(bodies.spin[1], Vec3(7, 8, 9));
+  EXPECT_EQ(bodies.orientation[1].coeffs(), Quat::Identity().coeffs());
+  EXPECT_EQ(bodies.shape[2], Shape::box);
+  EXPECT_EQ(bodies.size[2], Vec3(0.5, 1, 1.5));
+  EXPECT_EQ(bodies.position[2], Vec3(10, 20, 30));
+  EXPECT_EQ(bodies.orientation[2].coeffs(), Quat(0, 0, 0, -1).coeffs());
+  EXPECT_EQ(bodies.velocity[2], Vec3(0, 0, 0));
+  EXPECT_EQ(bodies.material[2], 1);
+  EXPECT_NEAR(1 / bodies.inverse_mass[2], 12, 1e-14);
+}
+
+TEST_F(BodyFileTest, TheFirstBodyHasNoMaterial) {
+  EXPECT_EQ(message_of("shape,radius,x,y,z,material\nsphere,1,0,0,0,\n", "name: b"),
+            "bed.csv:2:16: material: the body needs one: fill the column, or give `material` beside `file` "
+            "in the scene");
+  EXPECT_EQ(message_of("shape,radius,x,y,z,material\nsphere,1,0,0,0,gloss\n", "name: b"),
+            "bed.csv:2:16: material: there is no material gloss (did you mean glass?)");
+}
+
+TEST_F(BodyFileTest, FormsOfTextThatPeopleHave) {
+  EXPECT_EQ(scene_with("\xEF\xBB\xBFshape,radius,x,y,z\r\nsphere,1,0,0,0\r\n").bodies.count(), 2);
+  EXPECT_EQ(scene_with("shape,radius,x,y,z\nsphere,1,0,0,+.5").bodies.position[1].z(), 0.5);
+  EXPECT_EQ(scene_with("\nshape,radius,x,y,z\n\n  \nsphere,1,0,0,1e-3\n\n").bodies.position[1].z(), 1e-3);
+}
+
+TEST_F(BodyFileTest, AFixedFileStandsStill) {
+  const Scene scene = scene_with("shape,radius,x,y,z,vx\nsphere,1,0,0,0,5\n", "material: glass, fixed: true");
+  EXPECT_EQ(scene.bodies.mobility[1], Mobility::fixed);
+  EXPECT_EQ(scene.bodies.velocity[1], Vec3(0, 0, 0));
+  EXPECT_EQ(scene.bodies.inverse_mass[1], 0);
+}
+
+TEST_F(BodyFileTest, EveryFaultIsToldAtItsPlace) {
+  const std::string head = "shape,radius,size_x,size_y,size_z,x,y,z,qw,qx,qy,qz,mass\n";
+  const std::pair<std::string, const char*> faults[] = {
+      {"", "bed.csv:1:1: the file is empty; its first line names the columns, of shape,radius,"},
+      {"\n\n", "bed.csv:1:1: the file is empty"},
+      {head, "bed.csv:1:1: there are no bodies, only the names of the columns"},
+      {"shape,raduis,x,y,z\n", "bed.csv:1:7: unknown column raduis (did you mean radius?)"},
+      {"shape;x;y;z\n", "bed.csv:1:1: unknown column shape;x;y;z (known: shape,radius,"},
+      {"shape,x,y,z,x\n", "bed.csv:1:13: x: the column is there twice"},
+      {"shape,x,z\n", "bed.csv:1:1: y: the column is missing; shape, x, y and z are needed"},
+      {"x,y,z\n1,2,3\n", "bed.csv:1:1: shape: the column is missing"},
+      {"shape,x,y,z\nsphere,1,2\n", "bed.csv:2:1: has 3 cells; the header names 4 columns"},
+      {"shape,x,y,z\nsphere,1,2,3,4\n", "bed.csv:2:1: has 5 cells; the header names 4 columns"},
+      {head + "shpere,1,,,,0,0,0,,,,,\n",
+       "bed.csv:2:1: shape: must be one of sphere, box, not shpere (did you mean sphere?)"},
+      {head + ",1,,,,0,0,0,,,,,\n", "bed.csv:2:1: shape: must be one of sphere, box, not nothing"},
+      {head + "sphere,-1,,,,0,0,0,,,,,\n", "bed.csv:2:8: radius: must be a number > 0 (m), not -1"},
+      {head + "sphere,0,,,,0,0,0,,,,,\n", "bed.csv:2:8: radius: must be a number > 0 (m), not 0"},
+      {head + "sphere,,,,,0,0,0,,,,,\n", "bed.csv:2:8: radius: a sphere needs it, a number > 0 (m)"},
+      {head + "sphere,1,2,,,0,0,0,,,,,\n", "bed.csv:2:10: size_x: does not go with a sphere; leave it empty"},
+      {head + "box,,1,1,,0,0,0,,,,,\n", "bed.csv:2:10: size_z: a box needs it"},
+      {head + "box,1,1,1,1,0,0,0,,,,,\n", "bed.csv:2:5: radius: does not go with a box"},
+      {head + "box,,1,-1,1,0,0,0,,,,,\n", "bed.csv:2:8: size_y: must be a number > 0 (m), not -1"},
+      {head + "sphere,1,,,,nan,0,0,,,,,\n", "bed.csv:2:13: x: must be a number (m), not nan"},
+      {head + "sphere,1,,,,0,inf,0,,,,,\n", "bed.csv:2:15: y: must be a number (m), not inf"},
+      {head + "sphere,1,,,,0,0,1e999,,,,,\n", "bed.csv:2:17: z: 1e999 is out of range"},
+      {head + "sphere,1,,,,0,,0,,,,,\n", "bed.csv:2:15: y: must be a number (m), not nothing"},
+      {head + "sphere,1,,,,0,0,zero,,,,,\n", "bed.csv:2:17: z: must be a number (m), not zero"},
+      {head + "sphere,1,,,,0,0,1 2,,,,,\n", "bed.csv:2:17: z: must be a number (m), not 1 2"},
+      {head + "sphere,1,,,,0,0,0,0,0,0,0,\n", "bed.csv:2:19: qw: the quaternion must not be zero"},
+      {head + "sphere,1,,,,0,0,0,1,0,,0,\n",
+       "bed.csv:2:23: qy: must be a number, as the others of qw, qx, qy, qz"},
+      {head + "sphere,1,,,,0,0,0,,,,,0\n", "bed.csv:2:23: mass: must be a number > 0 (kg), not 0"},
+      {head + "sphere,1e-200,,,,0,0,0,,,,,\n",
+       "bed.csv:2:1: mass: its mass and inertia are beyond what numbers can hold"},
+      {head + "sphere,1,,,,0,0,0,,,,,\n\nsphere,1,,,,0,x,0,,,,,\n",
+       "bed.csv:4:15: y: must be a number (m), not x"},
+      {std::string("shape\0", 6), "bed.csv:1:6: byte 0x00 is no text of a body file"},
+      {std::string(5000, 'x'), "bed.csv:1:1: is longer than 4095 bytes"},
+      {std::string(5000, ' '), "bed.csv:1:1: is longer than 4095 bytes"},
+  };
+  for (const auto& [csv, expected] : faults) {
+    const std::string message = message_of(csv);
+    EXPECT_EQ(message.rfind(expected, 0), 0u) << expected << "\n" << message;
+  }
+}
+
+TEST_F(BodyFileTest, ARunsFolderStandsForItsFinalState) {
+  std::filesystem::create_directory(folder_ / "run");
+  write_text(folder_ / "run/final.csv", "shape,radius,x,y,z\nsphere,1,0,0,0\n");
+  EXPECT_EQ(find_body_file(folder_ / "run"), folder_ / "run/final.csv");
+  EXPECT_EQ(find_body_file(folder_ / "run/final.csv"), folder_ / "run/final.csv");
+  EXPECT_THROW(find_body_file(folder_ / "walk"), InputError);
+  EXPECT_THROW(find_body_file("/dev/zero"), InputError);
+}
+
+TEST_F(BodyFileTest, TheResolvedSceneRunsFromAnywhere) {
+  const Scene scene = scene_with("shape,radius,x,y,z\nsphere,1,0,0,7\n");
+  const Scene again = parse_scene(scene.resolved, "elsewhere.yaml");
+  EXPECT_EQ(again.bodies.position, scene.bodies.position);
+  EXPECT_EQ(again.resolved, scene.resolved);
+}
+
+TEST_F(BodyFileTest, AHundredThousandRowsLoadInASecond) {
+  std::string csv = "shape,radius,x,y,z,qw,qx,qy,qz,vx,vy,vz,wx,wy,wz\n";
+  for (int k = 0; k < 100000; ++k)
+    csv +=
+        "sphere,0.05," + std::to_string(k) + ".123456789012345,0.1,0.2,0.5,0.5,0.5,0.5,1,2,3,0.1,0.2,0.3\n";
+  const std::clock_t start = std::clock();
+  EXPECT_EQ(scene_with(csv).bodies.count(), 100001);
+  EXPECT_LT(static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC, 1.0);
+}
+
+}  // namespace
+}  // namespace scree
