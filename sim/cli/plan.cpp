@@ -16,7 +16,7 @@ namespace scree::cli {
 namespace {
 
 // In the order of Shape and Mobility.
-constexpr std::array<const char*, 3> shape_words = {"spheres", "boxes", "planes"};
+constexpr std::array<const char*, 4> shape_words = {"spheres", "boxes", "planes", "tubes"};
 constexpr std::array<const char*, 3> mobility_words = {"free", "fixed", "prescribed"};
 
 void print_row(const char* subject, const std::string& text) { fmt::print("{:<13}{}\n", subject, text); }
@@ -26,14 +26,14 @@ std::int64_t count_shape(const Scene& scene, Shape shape) {
 }
 
 void print_bodies(const Scene& scene) {
-  std::array<std::array<std::int64_t, 3>, 3> counts = {};
+  std::array<std::array<std::int64_t, mobility_words.size()>, shape_words.size()> counts = {};
   for (std::size_t k = 0; k < scene.bodies.shape.size(); ++k) {
     ++counts[static_cast<std::size_t>(scene.bodies.shape[k])]
             [static_cast<std::size_t>(scene.bodies.mobility[k])];
   }
   print_row("bodies", fmt::format("{}", scene.bodies.count()));
   for (std::size_t shape = 0; shape < counts.size(); ++shape) {
-    for (std::size_t mobility = 0; mobility < counts.size(); ++mobility) {
+    for (std::size_t mobility = 0; mobility < mobility_words.size(); ++mobility) {
       if (counts[shape][mobility] == 0) continue;
       print_row("", fmt::format("{} {}: {}", mobility_words[mobility], shape_words[shape],
                                 counts[shape][mobility]));
