@@ -11,8 +11,8 @@
 
 namespace scree {
 
-/// The bounds of what takes no part in the broad phase (planes): the empty box. No other box may be infinite
-/// or inverted.
+/// The bounds of what takes no part in the broad phase (planes, and bodies that are not there): the empty
+/// box. No other box may be infinite or inverted.
 SCREE_HD constexpr Aabb absent_bounds() {
   constexpr float infinity = std::numeric_limits<float>::infinity();
   return {{infinity, infinity, infinity}, {-infinity, -infinity, -infinity}};

@@ -8,6 +8,7 @@ namespace {
 
 struct ComputeBounds {
   ConstView<Shape> shape;
+  ConstView<Mobility> mobility;
   ConstView<Vec3> position;
   ConstView<Quat> orientation;
   ConstView<Vec3> size;
@@ -15,7 +16,9 @@ struct ComputeBounds {
   Vec3 origin;
   View<Aabb> bounds;
   SCREE_HD void operator()(std::int64_t i) const {
-    bounds[i] = bounds_of({shape[i], position[i], orientation[i], size[i]}, margin[i], origin);
+    bounds[i] = mobility[i] == Mobility::absent
+                    ? absent_bounds()
+                    : bounds_of({shape[i], position[i], orientation[i], size[i]}, margin[i], origin);
   }
 };
 
@@ -24,9 +27,9 @@ struct ComputeBounds {
 template <class Space>
 void compute_bounds(const ConstBodyView& bodies, ConstView<double> margin, const Vec3& origin,
                     View<Aabb> bounds) {
-  parallel::for_each<Space>(
-      "broadphase.bounds", bodies.count(),
-      ComputeBounds{bodies.shape, bodies.position, bodies.orientation, bodies.size, margin, origin, bounds});
+  parallel::for_each<Space>("broadphase.bounds", bodies.count(),
+                            ComputeBounds{bodies.shape, bodies.mobility, bodies.position, bodies.orientation,
+                                          bodies.size, margin, origin, bounds});
 }
 
 #define SCREE_INSTANTIATE(Space) \

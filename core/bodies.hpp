@@ -26,6 +26,7 @@ enum class Mobility : std::uint8_t {
   free,        ///< moved by forces and contacts
   fixed,       ///< never moves
   prescribed,  ///< moves as its `motion` says, whatever hits it
+  absent,      ///< not there (yet, or any more): touches nothing, counts nowhere
 };
 
 template <class T>

@@ -129,7 +129,7 @@ struct FindContacts {
   int test_plane(std::int64_t candidate, Manifold* out, NarrowPhaseStats& stats) const {
     const std::int32_t plane = planes[candidate / bodies.count()];
     const auto body = static_cast<std::int32_t>(candidate % bodies.count());
-    if (bodies.mobility[body] != Mobility::free) return 0;
+    if (bodies.mobility[body] != Mobility::free || bodies.mobility[plane] == Mobility::absent) return 0;
     const Vec3 up = bodies.orientation[plane] * Vec3::UnitZ();
     const double reach =
         bounding_radius(bodies.shape[body], bodies.size[body]) + margin[plane] + margin[body];

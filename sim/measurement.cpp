@@ -34,7 +34,8 @@ void measure_totals(const Totals& totals, const EnergyBaseline& baseline, const 
   const Ledger& l = out.ledger;
   const double change =
       totals.kinetic_linear + totals.kinetic_angular + totals.potential - baseline.first_total();
-  const double explained = l.work + l.integration - l.restitution - l.friction - l.correction;
+  const double explained =
+      out.exchange.energy + l.work + l.integration - l.restitution - l.friction - l.correction;
   out.unexplained = out.energy_scale > 0 ? std::abs(change - explained) / out.energy_scale : 0.0;
 }
 

@@ -12,13 +12,16 @@
 
 namespace scree {
 
-/// What the energies of a run are compared with: their values at t = 0, and the largest K + |U - U0| since,
-/// but at least what lifts every free body by its own size. A scene in which nothing moves would else be
-/// measured against the rounding of its potential energy.
+/// What the energies of a run are compared with: their values at t = 0, and the largest K + |U - U0| since
+/// (U0 is the potential energy that the bodies which are there had when they appeared), but at least what
+/// lifts every free body by its own size. A scene in which nothing moves would else be measured against the
+/// rounding of its potential energy.
 class EnergyBaseline {
  public:
   void start(const Totals& totals, double least_scale);
   void extend(const Totals& totals);
+  /// Bodies came or went whose potential energy when they appeared was so much in sum (J).
+  void exchange(double first_potential) { first_potential_ += first_potential; }
   bool is_finite() const;
   double scale() const { return scale_; }
   double first_total() const { return first_total_; }
@@ -30,8 +33,8 @@ class EnergyBaseline {
   double scale_ = 0;
 };
 
-/// Energies, momenta, speeds, and what the ledger (already in `out`) does not explain. `totals` are about
-/// `reference`; the potential energy reported is about the origin.
+/// Energies, momenta, speeds, and what ledger and exchange (already in `out`) do not explain. `totals` are
+/// about `reference`; the potential energy reported is about the origin.
 void measure_totals(const Totals& totals, const EnergyBaseline& baseline, const Vec3& gravity,
                     const Vec3& reference, Observation& out);
 

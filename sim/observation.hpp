@@ -4,6 +4,7 @@
 #include "core/math.hpp"
 
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 namespace scree {
@@ -23,6 +24,13 @@ struct Ledger {
             a.correction + b.correction,   a.work + b.work,
             a.integration + b.integration, a.angular_correction + b.angular_correction};
   }
+};
+
+/// What bodies brought that appeared, less what those took that went, since t = 0.
+struct Exchange {
+  double energy = 0;                     ///< J
+  Vec3 momentum = Vec3::Zero();          ///< kg m/s
+  Vec3 angular_momentum = Vec3::Zero();  ///< about the origin (kg m^2/s)
 };
 
 /// Over all overlapping pairs at the end of the step, true geometry, planes included (m). `relative`: by the
@@ -61,6 +69,7 @@ struct Observation {
   double kinetic_angular = 0;
   double potential = 0;  ///< -sum m g.x
   Ledger ledger;
+  Exchange exchange;
   double energy_scale = 0;  ///< largest K + |U - U0| so far (J)
   double unexplained = 0;   ///< |energy change that the ledger does not explain| / energy_scale
   Vec3 momentum = Vec3::Zero();
@@ -70,8 +79,8 @@ struct Observation {
   double gap_mean = 0;        ///< mean |gap| of loaded contact points (m)
   std::int64_t contacts = 0;  ///< contact points that carried an impulse in the last step
   std::int64_t pairs = 0;     ///< size of the PCS
-  std::int64_t bodies = 0;
-  double speed_max = 0;  ///< of the free bodies (m/s)
+  std::int64_t bodies = 0;    ///< that are there
+  double speed_max = 0;       ///< of the free bodies (m/s)
   double speed_rms = 0;
   double coordination_mean = 0;      ///< loaded contacts per free body, counted for each of its two
   std::vector<RegionState> regions;  ///< in the order of the scene
@@ -80,7 +89,7 @@ struct Observation {
   double total() const { return kinetic() + potential; }
 };
 
-/// One body at one instant.
+/// One body at one instant. All NaN while it is absent.
 struct BodyState {
   Vec3 position = Vec3::Zero();
   Vec3 velocity = Vec3::Zero();
@@ -89,6 +98,12 @@ struct BodyState {
   Quat start_orientation = Quat::Identity();
   Vec3 acceleration = Vec3::Zero();  ///< change of velocity over the last step / step
   Vec3 force = Vec3::Zero();         ///< contact impulse on it over the last step / step (N)
+
+  static BodyState absent() {
+    const Vec3 none = Vec3::Constant(std::numeric_limits<double>::quiet_NaN());
+    const Quat no_orientation(none.x(), none.x(), none.x(), none.x());
+    return {none, none, none, no_orientation, no_orientation, none, none};
+  }
 };
 
 }  // namespace scree

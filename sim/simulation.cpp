@@ -14,6 +14,7 @@
 #include "sim/measurement.hpp"
 #include "sim/model.hpp"
 #include "sim/pair_finder.hpp"
+#include "sim/presence.hpp"
 #include "sim/scene/time_grid.hpp"
 
 #include <fmt/format.h>
@@ -57,7 +58,7 @@ Vec3 middle_of(const BodyTable& bodies) {
   return count > 0 ? Vec3(sum / count) : sum;
 }
 
-/// Energy that lifts every free body by its own size (J).
+/// Energy that lifts every free body of the scene by its own size (J).
 double lifting_energy(const Scene& scene) {
   double energy = 0;
   const BodyTable& bodies = scene.bodies;
@@ -92,6 +93,7 @@ struct MovingState {
 struct Simulation::Parts {
   Scene scene;
   TimeGrid grid;
+  Presence presence;
   tbb::global_control threads;
   ResponseParameters parameters;
   Vec3 origin;
@@ -120,6 +122,7 @@ struct Simulation::Parts {
   ContactSet contacts;
   ImpulseMemory memory;
   Ledger ledger;
+  Exchange exchange;
   Counters counters;
   EnergyBaseline baseline;
   std::vector<RegionContents> contents;         // of each region
@@ -130,6 +133,7 @@ struct Simulation::Parts {
   Parts(const Scene& s, const SimulationOptions& options)
       : scene(s),
         grid(s.time),
+        presence(s, grid),
         threads(tbb::global_control::max_allowed_parallelism,
                 options.threads > 0
                     ? static_cast<std::size_t>(options.threads)
@@ -139,8 +143,10 @@ struct Simulation::Parts {
         narrow_phase(s.narrowphase),
         end_narrow_phase(s.narrowphase) {
     copy_bodies(bodies, scene.bodies);
+    presence.begin(bodies);
     copy(laws, table_of(scene));
     copy(paths, prescribed_paths(scene));
+    for (PrescribedPath& path : paths.view()) path.start = grid.time(presence.first_step(path.body));
     const bool on_device = options.space == SpaceChoice::cuda ||
                            (options.space == SpaceChoice::automatic && device_info().available);
     pair_finder = make_pair_finder(scene.broadphase, on_device, origin);
@@ -255,9 +261,22 @@ struct Simulation::Parts {
       throw RunError(fmt::format("step {} (t = {} s): {}", step + 1, grid.time(step), error.what()));
     }
     ++step;
+    come_and_go();
     contents_before = std::exchange(contents, region_contents());
     last_step = dt;
     observed = false;
+  }
+
+  /// Bodies whose time has come or is over.
+  void come_and_go() {
+    const Presence::Change change = presence.update(step, scene, origin, bodies);
+    if (!change.any) return;
+    exchange.energy += change.exchange.energy;
+    exchange.momentum += change.exchange.momentum;
+    exchange.angular_momentum += change.exchange.angular_momentum;
+    baseline.exchange(change.first_potential);
+    baseline.extend(totals_of(bodies, parameters.gravity, origin));
+    pairs = {};  // those of the bodies that went are no more
   }
 
   std::string non_finite_body() const {
@@ -299,6 +318,7 @@ BodyState Simulation::body(std::int32_t id) const {
   const Parts& p = *parts_;
   const auto k = static_cast<std::size_t>(id);
   const ConstBodyView views = view_of(std::as_const(p.bodies));
+  if (views.mobility[id] == Mobility::absent) return BodyState::absent();
   BodyState state{.position = views.position[id],
                   .velocity = views.velocity[id],
                   .spin = views.spin[id],
@@ -306,7 +326,7 @@ BodyState Simulation::body(std::int32_t id) const {
                   .start_orientation = p.first_orientation[k],
                   .acceleration = Vec3::Zero(),
                   .force = Vec3::Zero()};
-  if (p.last_step == 0) return state;
+  if (p.step == 0 || !p.presence.holds(id, p.step - 1)) return state;
   state.acceleration = (state.velocity - p.start.velocity[k]) / p.last_step;
   // On a free body the contact impulse is what gravity does not explain of the change of its momentum.
   state.force = views.mobility[id] == Mobility::free
@@ -323,7 +343,8 @@ const Observation& Simulation::observe() {
   o.time = time();
   o.step = p.step;
   o.ledger = p.ledger;
-  o.bodies = p.bodies.count();
+  o.exchange = p.exchange;
+  o.bodies = p.presence.count();
   o.counters = p.counters;
   const Totals totals = totals_of(p.bodies, p.parameters.gravity, p.origin);
   measure_totals(totals, p.baseline, p.parameters.gravity, p.origin, o);

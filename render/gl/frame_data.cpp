@@ -137,7 +137,7 @@ std::array<Vec4f, 3> shadow_rows(const BodyTable& bodies, const View& v, int sha
   const Vec3 focus = light.transpose() * v.focus;
   Eigen::AlignedBox3d bounds;
   for (std::size_t k = 0; k < bodies.shape.size(); ++k) {
-    if (bodies.shape[k] == Shape::plane) continue;
+    if (bodies.shape[k] == Shape::plane || bodies.mobility[k] == Mobility::absent) continue;
     const Vec3 center = light.transpose() * (bodies.position[k] - v.eye);
     const Vec3 radius = Vec3::Constant(bounding_radius(bodies.shape[k], bodies.size[k]));
     const Vec3 low = (center - radius).cwiseMax(focus - Vec3::Constant(reach));

@@ -66,23 +66,7 @@ struct BodyTotals {
   ConstBodyView bodies;
   Vec3 gravity;
   Vec3 reference;
-  SCREE_HD Totals operator()(std::int64_t k) const {
-    if (bodies.mobility[k] != Mobility::free) return {};
-    const double mass = 1.0 / bodies.inverse_mass[k];
-    const Vec3& x = bodies.position[k];
-    const Vec3& v = bodies.velocity[k];
-    Totals t;
-    t.kinetic_linear = 0.5 * mass * v.squaredNorm();
-    t.kinetic_angular = rotational_energy(bodies.orientation[k], bodies.spin[k], bodies.inverse_inertia[k]);
-    t.potential = -mass * gravity.dot(x - reference);
-    t.mass = mass;
-    t.momentum = mass * v;
-    t.angular_momentum =
-        mass * x.cross(v) + spin_momentum(bodies.orientation[k], bodies.spin[k], bodies.inverse_inertia[k]);
-    t.speed_squared = v.squaredNorm();
-    t.count = 1;
-    return t;
-  }
+  SCREE_HD Totals operator()(std::int64_t k) const { return totals_of_body(bodies, k, gravity, reference); }
 };
 
 struct Speed {

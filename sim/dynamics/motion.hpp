@@ -3,6 +3,7 @@
 
 #include "core/array.hpp"
 #include "core/bodies.hpp"
+#include "sim/dynamics/rotation.hpp"
 #include "sim/dynamics/state.hpp"
 
 namespace scree {
@@ -41,7 +42,26 @@ struct Totals {
   }
 };
 
-/// Potential energy is -m g.(x - reference).
+/// One body's share; nothing unless it is free. Potential energy is -m g.(x - reference).
+SCREE_HD inline Totals totals_of_body(const ConstBodyView& bodies, std::int64_t k, const Vec3& gravity,
+                                      const Vec3& reference) {
+  if (bodies.mobility[k] != Mobility::free) return {};
+  const double mass = 1.0 / bodies.inverse_mass[k];
+  const Vec3& x = bodies.position[k];
+  const Vec3& v = bodies.velocity[k];
+  Totals t;
+  t.kinetic_linear = 0.5 * mass * v.squaredNorm();
+  t.kinetic_angular = rotational_energy(bodies.orientation[k], bodies.spin[k], bodies.inverse_inertia[k]);
+  t.potential = -mass * gravity.dot(x - reference);
+  t.mass = mass;
+  t.momentum = mass * v;
+  t.angular_momentum =
+      mass * x.cross(v) + spin_momentum(bodies.orientation[k], bodies.spin[k], bodies.inverse_inertia[k]);
+  t.speed_squared = v.squaredNorm();
+  t.count = 1;
+  return t;
+}
+
 Totals totals_of(const Bodies<Host>& bodies, const Vec3& gravity, const Vec3& reference);
 double largest_speed(const Bodies<Host>& bodies);
 

@@ -26,7 +26,8 @@ std::vector<PrescribedPath> prescribed_paths(const Scene& scene) {
                      .arm = centre - pivot,
                      .orientation = scene.bodies.orientation[k],
                      .velocity = motion.velocity,
-                     .spin = motion.spin});
+                     .spin = motion.spin,
+                     .start = 0});
   }
   return paths;
 }

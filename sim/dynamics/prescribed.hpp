@@ -19,23 +19,25 @@ struct PrescribedPath {
   Quat orientation;  ///< at the start
   Vec3 velocity;     ///< of the pivot (m/s)
   Vec3 spin;         ///< rad/s
+  double start;      ///< s; the body appears then if it was not there before
 
-  /// Puts the body where it is at a time after the start (s), with the velocity that it has there. The turn
+  /// Puts the body, if it is there, where it is at a time (s), with the velocity that it has there. The turn
   /// is that of the start's pose, whole: nothing adds up over the steps, so the radius stays.
   SCREE_HD void place(double time, const BodyView& bodies) const {
-    const Quat turn = rotation_of(time * spin);
+    if (bodies.mobility[body] != Mobility::prescribed) return;
+    const Quat turn = rotation_of((time - start) * spin);
     const Vec3 now = turn * arm;
-    bodies.position[body] = pivot + time * velocity + now;
+    bodies.position[body] = pivot + (time - start) * velocity + now;
     bodies.orientation[body] = (turn * orientation).normalized();
     bodies.velocity[body] = velocity + spin.cross(now);
     bodies.spin[body] = spin;
   }
 };
 
-/// Of the scene's motions, in their order.
+/// Of the scene's motions, in their order; all start at 0.
 std::vector<PrescribedPath> prescribed_paths(const Scene& scene);
 
-/// Places every prescribed body for a time since the start (s).
+/// Places every prescribed body for a time (s).
 void place_prescribed(const Array<PrescribedPath, Host>& paths, double time, Bodies<Host>& bodies);
 
 }  // namespace scree

@@ -25,6 +25,7 @@ struct Slot {
   std::int64_t first;
   std::int64_t count;
   std::int32_t material;
+  TimeGrid::Steps steps;  ///< in whose states the bodies are there
 };
 
 /// A product of counts may exceed every integer, but not the doubles.
@@ -48,7 +49,7 @@ double machine_memory() {
 
 class Builder {
  public:
-  Builder(SceneEntry& entry, Reader& reader) : entry_(entry), reader_(reader) {}
+  Builder(SceneEntry& entry, Reader& reader) : entry_(entry), reader_(reader), grid_(entry.time) {}
 
   void build(Scene& scene) {
     find_materials(scene);
@@ -57,6 +58,7 @@ class Builder {
     for (const Slot& slot : slots_) make_bodies(slot, scene);
     for (const Slot& slot : slots_)
       if (slot.entry->scatter) scatter_bodies(slot, scene);
+    find_lifetimes(scene);
     find_motions(scene);
     find_forces(scene);
     find_checks(scene);
@@ -138,7 +140,8 @@ class Builder {
                         bytes, machine_memory()));
       claim_name(body, names);
       slots_.push_back({&body, i, static_cast<std::int64_t>(total - count), static_cast<std::int64_t>(count),
-                        find_material(body)});
+                        find_material(body),
+                        grid_.steps_in(span_of(body.from.value_or(0), body.until, *body.node))});
     }
     for_each_field([&](const char*, auto& field) { field.resize(static_cast<std::size_t>(total)); },
                    scene.bodies);
@@ -177,11 +180,17 @@ class Builder {
     }
   }
 
+  /// Whether the bodies of `other` are where the scene puts them when those of `slot` appear.
+  static bool is_in_place(const Slot& other, const Slot& slot, const Scene& scene) {
+    const bool fixed = scene.bodies.mobility[static_cast<std::size_t>(other.first)] == Mobility::fixed;
+    return fixed ? other.steps.holds(slot.steps.first) : other.steps.first == slot.steps.first;
+  }
+
   /// Obstacles are the bodies with a place: those of no scatter, and of scatters before this one.
   void scatter_bodies(const Slot& slot, Scene& scene) {
     std::vector<std::int32_t> obstacles;
     for (const Slot& other : slots_)
-      if (!other.entry->scatter || other.first < slot.first)
+      if (is_in_place(other, slot, scene) && (!other.entry->scatter || other.first < slot.first))
         for (std::int64_t k = 0; k < other.count; ++k)
           obstacles.push_back(static_cast<std::int32_t>(other.first + k));
     const std::int64_t fitted =
@@ -193,6 +202,14 @@ class Builder {
                     fmt::format("only {} of {} bodies fit without overlap; make the region larger or the "
                                 "bodies fewer or smaller",
                                 fitted, slot.count));
+  }
+
+  void find_lifetimes(Scene& scene) {
+    for (const Slot& slot : slots_)
+      if (slot.entry->from || slot.entry->until)
+        scene.lifetimes.push_back(
+            {{static_cast<std::int32_t>(slot.first), static_cast<std::int32_t>(slot.count)},
+             {slot.entry->from.value_or(0), slot.entry->until.value_or(HUGE_VAL)}});
   }
 
   /// Once every body has its place: the centre of a body that turns about a point moves by that too.
@@ -241,7 +258,7 @@ class Builder {
     const double end = entry_.time.end;
     if (from >= end)
       reader_.fail_at("from", node, fmt::format("must be before the end, {} s, not {} s", end, from));
-    const TimeGrid::Steps steps = TimeGrid(entry_.time).steps_in(span);
+    const TimeGrid::Steps steps = grid_.steps_in(span);
     if (steps.first >= steps.end)
       reader_.fail_at("until", node,
                       fmt::format("must be at least a step after from, {} s, not {} s", from, span.until));
@@ -253,8 +270,9 @@ class Builder {
     for (std::size_t i = 0; i < entry_.checks.size(); ++i) {
       const Reader::Step item(reader_, i);
       const CheckEntry& check = entry_.checks[i];
+      Measure measure;
       try {
-        parse_measure(check.measure, scene);
+        measure = parse_measure(check.measure, scene);
       } catch (const InputError& error) {
         reader_.fail_at("measure", *check.node, error.what());
       }
@@ -266,12 +284,32 @@ class Builder {
         reader_.fail_at(
             "over", *check.node,
             fmt::format("must end at the end, {} s, or before, not at {} s", end, (*check.over)[1]));
+      if (measure.body >= 0) require_presence(measure.body, check);
       scene.checks.push_back(check);
     }
   }
 
+  /// Of the body that a check is about, at all times that it asks for.
+  void require_presence(std::int32_t body, const CheckEntry& check) {
+    const auto after =
+        std::find_if(slots_.begin(), slots_.end(), [&](const Slot& s) { return s.first > body; });
+    const Slot& slot = *std::prev(after);
+    const double end = entry_.time.end;
+    const auto first = check.over ? grid_.first_in((*check.over)[0]) : grid_.nearest(check.at.value_or(end));
+    const auto last = check.over ? grid_.last_in((*check.over)[1]) : first;
+    for (const std::int64_t step : {first, last})
+      if (!slot.steps.holds(step))
+        reader_.fail_at(
+            check.over ? "over"
+            : check.at ? "at"
+                       : "measure",
+            *check.node,
+            fmt::format("the body is not there at {:.9g} s; see its from and until", grid_.time(step)));
+  }
+
   SceneEntry& entry_;
   Reader& reader_;
+  TimeGrid grid_;
   std::vector<Slot> slots_;
   std::unordered_map<std::string_view, std::int32_t> material_of_;
 };

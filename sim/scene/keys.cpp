@@ -181,16 +181,18 @@ Codec<RepeatEntry> repeat_section() {
 
 Codec<ScatterEntry> scatter_section() {
   using T = ScatterEntry;
-  return section<T>("bodies[].scatter",
-                    "The body again and again at random places, in random orientations unless one is given. "
-                    "Centres lie between the two corners, and no body overlaps another one of the scene. "
-                    "Bodies are called `name[0]`, `name[1]`, ...",
-                    {
-                        key<T>("count", &T::count, large_integer(at_least(1)), required, "how many"),
-                        key<T>("from", &T::from, vector("m"), required, "lower corner"),
-                        key<T>("to", &T::to, vector("m"), required, "upper corner"),
-                    },
-                    check_scatter);
+  return section<T>(
+      "bodies[].scatter",
+      "The body again and again at random places, in random orientations unless one is given. "
+      "Centres lie between the two corners, and no body overlaps another one that appears at the "
+      "same time, or a fixed one. "
+      "Bodies are called `name[0]`, `name[1]`, ...",
+      {
+          key<T>("count", &T::count, large_integer(at_least(1)), required, "how many"),
+          key<T>("from", &T::from, vector("m"), required, "lower corner"),
+          key<T>("to", &T::to, vector("m"), required, "upper corner"),
+      },
+      check_scatter);
 }
 
 Codec<BodyEntry> body_section() {
@@ -226,8 +228,13 @@ Codec<BodyEntry> body_section() {
                  "the body moves as prescribed"),
           key<T>("repeat", &T::repeat, optional(repeat_section()), optionally, "many on a lattice"),
           key<T>("scatter", &T::scatter, optional(scatter_section()), optionally, "many at random places"),
-          future<T>("from", "when the body appears"),
-          future<T>("until", "when the body is gone"),
+          with_default(
+              key<T>("from", &T::from, optional(number(not_negative, "s")), optionally,
+                     "when the body appears, in the state given here; its motion starts then. Taken at "
+                     "the nearest step, as is `until`"),
+              "0"),
+          key<T>("until", &T::until, optional(number(above_zero, "s")), optionally,
+                 "when the body is gone; never if not given"),
       },
       check_body);
 }

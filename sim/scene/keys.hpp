@@ -85,6 +85,8 @@ struct BodyEntry {
   std::optional<MotionEntry> motion;
   std::optional<RepeatEntry> repeat;
   std::optional<ScatterEntry> scatter;
+  std::optional<double> from;
+  std::optional<double> until;
   const Node* node = nullptr;
 };
 

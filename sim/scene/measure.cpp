@@ -136,6 +136,8 @@ const std::vector<MeasureInfo>& measure_table() {
       {K::energy_work, "energy.work", S::run, false, "J", "done by prescribed bodies since the start"},
       {K::energy_integration, "energy.integration", S::run, false, "J",
        "drift of the free rotation since the start"},
+      {K::energy_exchange, "energy.exchange", S::run, false, "J",
+       "that came with bodies which appeared, less what went with bodies, since the start"},
       {K::dissipated_restitution, "energy.dissipated.restitution", S::run, false, "J",
        "lost in normal impulses since the start"},
       {K::dissipated_friction, "energy.dissipated.friction", S::run, false, "J",
@@ -155,7 +157,7 @@ const std::vector<MeasureInfo>& measure_table() {
       {K::contacts_count, "contacts.count", S::run, false, "",
        "contact points that carried an impulse in the last step"},
       {K::pairs_count, "pairs.count", S::run, false, "", "potentially colliding pairs"},
-      {K::bodies_count, "bodies.count", S::run, false, "", "bodies in the scene"},
+      {K::bodies_count, "bodies.count", S::run, false, "", "bodies that are there"},
       {K::speed_max, "speed.max", S::run, false, "m/s", "of the free bodies"},
       {K::speed_rms, "speed.rms", S::run, false, "m/s", "of the free bodies"},
       {K::coordination_mean, "coordination.mean", S::run, false, "",
@@ -213,6 +215,8 @@ double evaluate(const Measure& measure, const Observation& observation,
       return o.ledger.work;
     case MeasureKind::energy_integration:
       return o.ledger.integration;
+    case MeasureKind::energy_exchange:
+      return o.exchange.energy;
     case MeasureKind::dissipated_restitution:
       return o.ledger.restitution;
     case MeasureKind::dissipated_friction:

@@ -28,6 +28,7 @@ enum class MeasureKind {
   energy_unexplained,
   energy_work,
   energy_integration,
+  energy_exchange,
   dissipated_restitution,
   dissipated_friction,
   dissipated_correction,

@@ -56,6 +56,12 @@ struct TimeSpan {
   double until = HUGE_VAL;
 };
 
+/// When bodies exist. Outside the span they are not there at all.
+struct Lifetime {
+  BodyRange bodies;
+  TimeSpan span;
+};
+
 /// A constant force on the centre of each of the bodies, and a torque on each, in the world frame. The bodies
 /// are free ones.
 struct AppliedForce {
@@ -141,8 +147,9 @@ struct Scene {
   Vec3 gravity = Vec3::Zero();  ///< m/s^2
   TimeSettings time;
   std::vector<Material> materials;
-  std::vector<ContactLaw> laws;                    ///< materials x materials, symmetric; see law()
-  BodyTable bodies;                                ///< at t = 0; id[k] = k
+  std::vector<ContactLaw> laws;     ///< materials x materials, symmetric; see law()
+  BodyTable bodies;                 ///< at t = 0, or when they appear; id[k] = k
+  std::vector<Lifetime> lifetimes;  ///< of those that are not there all the time, by ascending body
   std::map<std::string, std::int32_t> body_names;  ///< named bodies, name[k] of a repeat included
   std::vector<Motion> motions;                     ///< of the prescribed bodies, by ascending body
   std::vector<Region> regions;

@@ -26,6 +26,7 @@ Observation numbered() {
   o.kinetic_angular = 2;
   o.potential = 4;
   o.ledger = {8, 16, 32, 64, 128, Vec3::Zero()};
+  o.exchange.energy = 130;
   o.unexplained = 256;
   o.momentum = {3, 4, 12};
   o.angular_momentum = {30, 40, 120};
@@ -65,6 +66,7 @@ TEST(Measure, EachNameHasItsValue) {
       {"energy.unexplained", 256},
       {"energy.work", 64},
       {"energy.integration", 128},
+      {"energy.exchange", 130},
       {"energy.dissipated.restitution", 8},
       {"energy.dissipated.friction", 16},
       {"energy.dissipated.correction", 32},

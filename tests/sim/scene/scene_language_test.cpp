@@ -264,7 +264,7 @@ TEST(SceneSchema, NamesEveryKeyOfThisVersionAndNoLaterOne) {
     if (key.presence == Presence::future) return;
     EXPECT_NE(flat.find('"' + key.name + "\":"), std::string::npos) << key.name;
   });
-  for (const char* later : {"\"lbvh\"", "\"mixed\"", "\"regions\"", "\"checkpoint_every\""})
+  for (const char* later : {"\"lbvh\"", "\"mixed\"", "\"crosscheck\"", "\"checkpoint_every\""})
     EXPECT_EQ(flat.find(later), std::string::npos) << later;
 }
 
@@ -341,8 +341,8 @@ TEST(Override, NamesTheUnknownPartOfThePath) {
   EXPECT_EQ(message("bodies[-1].mass", "1"), "--set bodies[-1].mass=1: [-1].mass is no index such as [2]");
   EXPECT_EQ(message("materials.glas.density", "1"),
             "--set materials.glas.density=1: materials has no glas (did you mean glass?)");
-  EXPECT_EQ(message("regions.exit", "1"),
-            "--set regions.exit=1: regions is part of the scene language but not in this version");
+  EXPECT_EQ(message("crosscheck.of", "1"),
+            "--set crosscheck.of=1: crosscheck is part of the scene language but not in this version");
   EXPECT_EQ(message("time..step", "1"), "--set time..step=1: the path has an empty part");
   EXPECT_EQ(message("", "1"), "--set =1: the path has an empty part");
   EXPECT_EQ(message("time.step", "[1"), "--set time.step=[1: broken YAML: end of sequence flow not found");

@@ -1,0 +1,88 @@
+#include "sim/presence.hpp"
+
+#include "sim/dynamics/motion.hpp"
+
+#include <algorithm>
+#include <utility>
+
+namespace scree {
+
+namespace {
+
+void set_absent(std::int64_t k, Bodies<Host>& bodies) {
+  const BodyView views = view_of(bodies);
+  views.mobility[k] = Mobility::absent;
+  views.inverse_mass[k] = 0;
+  views.inverse_inertia[k] = Vec3::Zero();
+}
+
+void set_present(std::int64_t k, const BodyTable& start, Bodies<Host>& bodies) {
+  const BodyView views = view_of(bodies);
+  const auto from = static_cast<std::size_t>(k);
+  views.mobility[k] = start.mobility[from];
+  views.inverse_mass[k] = start.inverse_mass[from];
+  views.inverse_inertia[k] = start.inverse_inertia[from];
+}
+
+/// Adds what a body has, or takes it away.
+void book(const Totals& body, double sign, Exchange& exchange) {
+  exchange.energy += sign * (body.kinetic_linear + body.kinetic_angular + body.potential);
+  exchange.momentum += sign * body.momentum;
+  exchange.angular_momentum += sign * body.angular_momentum;
+}
+
+}  // namespace
+
+Presence::Presence(const Scene& scene, const TimeGrid& grid) : count_(scene.bodies.count()) {
+  for (const Lifetime& lifetime : scene.lifetimes)
+    windows_.push_back({lifetime.bodies, grid.steps_in(lifetime.span)});
+}
+
+const Presence::Window* Presence::window_of(std::int32_t body) const {
+  const auto after = std::upper_bound(windows_.begin(), windows_.end(), body,
+                                      [](std::int32_t id, const Window& w) { return id < w.bodies.first; });
+  if (after == windows_.begin()) return nullptr;
+  const Window& window = *std::prev(after);
+  return body < window.bodies.first + window.bodies.count ? &window : nullptr;
+}
+
+bool Presence::holds(std::int32_t body, std::int64_t step) const {
+  const Window* window = window_of(body);
+  return window == nullptr || window->steps.holds(step);
+}
+
+std::int64_t Presence::first_step(std::int32_t body) const {
+  const Window* window = window_of(body);
+  return window == nullptr ? 0 : window->steps.first;
+}
+
+void Presence::begin(Bodies<Host>& bodies) {
+  for (const Window& window : windows_) {
+    if (window.steps.holds(0)) continue;
+    for (std::int32_t k = 0; k < window.bodies.count; ++k) set_absent(window.bodies.first + k, bodies);
+    count_ -= window.bodies.count;
+  }
+}
+
+Presence::Change Presence::update(std::int64_t step, const Scene& scene, const Vec3& reference,
+                                  Bodies<Host>& bodies) {
+  Change change;
+  for (const Window& window : windows_) {
+    const bool comes = window.steps.first == step;
+    if (!comes && window.steps.end != step) continue;
+    change.any = true;
+    const double sign = comes ? 1 : -1;
+    count_ += comes ? window.bodies.count : -window.bodies.count;
+    for (std::int64_t k = window.bodies.first; k < window.bodies.first + window.bodies.count; ++k) {
+      if (comes) set_present(k, scene.bodies, bodies);
+      const Totals now = totals_of_body(view_of(std::as_const(bodies)), k, scene.gravity, reference);
+      book(now, sign, change.exchange);
+      const Vec3 start = scene.bodies.position[static_cast<std::size_t>(k)] - reference;
+      change.first_potential -= sign * now.mass * scene.gravity.dot(start);
+      if (!comes) set_absent(k, bodies);
+    }
+  }
+  return change;
+}
+
+}  // namespace scree

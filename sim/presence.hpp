@@ -1,0 +1,48 @@
+// Bodies that come and go.
+#pragma once
+
+#include "core/bodies.hpp"
+#include "sim/observation.hpp"
+#include "sim/scene/scene.hpp"
+#include "sim/scene/time_grid.hpp"
+
+#include <cstdint>
+#include <vector>
+
+namespace scree {
+
+/// Who is there in the state of which step. A body that is not has Mobility::absent and no mass; until it
+/// appears the rest of its state waits as the scene gives it.
+class Presence {
+ public:
+  Presence(const Scene& scene, const TimeGrid& grid);
+
+  bool holds(std::int32_t body, std::int64_t step) const;
+  /// First step in whose state the body is there.
+  std::int64_t first_step(std::int32_t body) const;
+  std::int64_t count() const { return count_; }  ///< bodies that are there
+
+  /// To be called at t = 0: takes out the bodies that come later.
+  void begin(Bodies<Host>& bodies);
+
+  struct Change {
+    bool any = false;
+    Exchange exchange;
+    double first_potential = 0;  ///< of those that came, when they appear, less that of those that went (J)
+  };
+  /// The state of a step has been reached: takes out the bodies whose time is over, and brings in those whose
+  /// time has come. Potential energy is about `reference`.
+  Change update(std::int64_t step, const Scene& scene, const Vec3& reference, Bodies<Host>& bodies);
+
+ private:
+  struct Window {
+    BodyRange bodies;
+    TimeGrid::Steps steps;
+  };
+  const Window* window_of(std::int32_t body) const;
+
+  std::vector<Window> windows_;  // by ascending body
+  std::int64_t count_;
+};
+
+}  // namespace scree
