@@ -67,6 +67,11 @@ Mat3 axes_of(const Camera& camera) {
   return axes;
 }
 
+double grid_cell(const Camera& camera) {
+  const double half_height = (camera.to - camera.from).norm() * std::tan(0.5 * camera.fov * pi / 180);
+  return std::pow(10.0, std::floor(std::log10(half_height / 4)));
+}
+
 Vec3 up_of(const Vec3& gravity) { return gravity.norm() > 0 ? Vec3(-gravity.normalized()) : Vec3::UnitZ(); }
 
 Camera frame_all(const Snapshot& snapshot, const Vec3& gravity, double aspect, double fov) {

@@ -45,13 +45,13 @@ TEST(Color, TintIsSmallAndDependsOnTheBodyAlone) {
 
 TEST(Color, ValueRangeIsThatOfTheMovingBodies) {
   Snapshot snapshot;
-  EXPECT_EQ(value_range(snapshot, ColorBy::speed), (std::array<double, 2>{0, 1}));
+  EXPECT_EQ(value_range({snapshot}, ColorBy::speed), (std::array<double, 2>{0, 1}));
   add_sphere(snapshot, Vec3::Zero(), 0.5);
-  EXPECT_EQ(value_range(snapshot, ColorBy::speed), (std::array<double, 2>{0, 1}));
-  EXPECT_EQ(value_range(snapshot, ColorBy::size), (std::array<double, 2>{0, 1}));
+  EXPECT_EQ(value_range({snapshot}, ColorBy::speed), (std::array<double, 2>{0, 1}));
+  EXPECT_EQ(value_range({snapshot}, ColorBy::size), (std::array<double, 2>{0, 1}));
   for (int k = 0; k < 100; ++k) add_sphere(snapshot, Vec3::Zero(), 1 + 0.01 * k);
   add_body(snapshot, Shape::box, Vec3::Zero(), Vec3::Constant(100), Mobility::fixed);
-  const auto [low, high] = value_range(snapshot, ColorBy::size);
+  const auto [low, high] = value_range({snapshot}, ColorBy::size);
   EXPECT_NEAR(low, 1.01, 0.02);
   EXPECT_NEAR(high, 1.97, 0.02);
 }

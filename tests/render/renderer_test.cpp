@@ -81,7 +81,7 @@ TEST_P(Silhouette, IsTheEllipseOfTheTangentCone) {
     const Vec3 center = origin + GetParam();
     add_sphere(snapshot, center, 0.8);
     const Camera camera{origin + Vec3(0, -4, 0), origin, Vec3::UnitZ(), 60};
-    const Blob seen = silhouette(renderer().draw(snapshot, camera, masked()));
+    const Blob seen = silhouette(renderer().draw({snapshot}, camera, masked()));
     const Blob expected = projected_sphere(camera, center, 0.8);
     // A quarter of a pixel of the radius.
     EXPECT_NEAR(seen.area, expected.area, 0.25 * std::sqrt(4 * pi * expected.area));
@@ -103,7 +103,7 @@ TEST(Renderer, NearerSurfaceHidesTheOther) {
   Style style = masked();
   style.palette = {Color(0.9f, 0, 0), Color(0, 0, 0.9f)};
   const Camera camera{{0, -100, 0}, Vec3::Zero(), Vec3::UnitZ(), 1.4};
-  const Image image = renderer().draw(snapshot, camera, style);
+  const Image image = renderer().draw({snapshot}, camera, style);
   int blue = 0;
   for (int y = 0; y < height; ++y) {
     for (int x = 0; x < width; ++x) {
@@ -120,7 +120,7 @@ TEST(Renderer, BoxFaceHasItsSize) {
   Snapshot snapshot;
   add_body(snapshot, Shape::box, Vec3::Zero(), Vec3(0.5, 1, 0.25));
   const Camera camera{{0, -5, 0}, Vec3::Zero(), Vec3::UnitZ(), 40};
-  const Blob seen = silhouette(renderer().draw(snapshot, camera, masked()));
+  const Blob seen = silhouette(renderer().draw({snapshot}, camera, masked()));
   const double scale = height / (2 * 4 * std::tan(20 * pi / 180));  // of the front face, 4 m away
   EXPECT_NEAR(seen.area, scale * 1 * scale * 0.5, 0.5 * 2 * scale * 1.5);
 }
@@ -145,11 +145,11 @@ TEST(Renderer, SameInputGivesTheSameBytes) {
   for (const ColorBy color_by : {ColorBy::material, ColorBy::speed, ColorBy::size}) {
     Style style;
     style.color_by = color_by;
-    const Image first = renderer().draw(snapshot, camera, style);
+    const Image first = renderer().draw({snapshot}, camera, style);
     const Image other = renderer().draw({}, camera, style);
     EXPECT_NE(first.rgb, other.rgb);
-    EXPECT_EQ(first.rgb, renderer().draw(snapshot, camera, style).rgb);
-    EXPECT_EQ(first.rgb, make_osmesa_renderer(width, height)->draw(snapshot, camera, style).rgb);
+    EXPECT_EQ(first.rgb, renderer().draw({snapshot}, camera, style).rgb);
+    EXPECT_EQ(first.rgb, make_osmesa_renderer(width, height)->draw({snapshot}, camera, style).rgb);
   }
 }
 
@@ -161,8 +161,8 @@ TEST(Renderer, ShadowDarkensTheGround) {
   Snapshot shaded = bare;
   add_sphere(shaded, {0, 0, 1.5}, 0.5);
   const Camera camera{{0, -6, 5}, {0, 0, 0.5}, Vec3::UnitZ(), 50};
-  const Image before = renderer().draw(bare, camera, {});
-  const Image after = renderer().draw(shaded, camera, {});
+  const Image before = renderer().draw({bare}, camera, {});
+  const Image after = renderer().draw({shaded}, camera, {});
   const Blob sphere = projected_sphere(camera, {0, 0, 1.5}, 0.5);
   const double sphere_radius = std::sqrt(sphere.area / pi);
   int darker = 0, brighter = 0;
@@ -193,7 +193,7 @@ TEST(Renderer, RowsRunFromTheTop) {
   Snapshot snapshot;
   add_sphere(snapshot, {0, 0, 1}, 0.4);
   const Blob seen =
-      silhouette(renderer().draw(snapshot, {{0, -5, 0}, Vec3::Zero(), Vec3::UnitZ(), 40}, masked()));
+      silhouette(renderer().draw({snapshot}, {{0, -5, 0}, Vec3::Zero(), Vec3::UnitZ(), 40}, masked()));
   EXPECT_LT(seen.y, height / 2);
 }
 
@@ -201,9 +201,9 @@ TEST(Renderer, PlaneSeenFromBehindHidesNothing) {
   Snapshot snapshot;
   add_sphere(snapshot, Vec3::Zero(), 0.5);
   const Camera camera{{0, -5, 0}, Vec3::Zero(), Vec3::UnitZ(), 40};
-  const Image alone = renderer().draw(snapshot, camera, masked());
+  const Image alone = renderer().draw({snapshot}, camera, masked());
   add_plane(snapshot, Vec3::UnitY(), -2);
-  EXPECT_EQ(renderer().draw(snapshot, camera, masked()).rgb, alone.rgb);
+  EXPECT_EQ(renderer().draw({snapshot}, camera, masked()).rgb, alone.rgb);
 }
 
 TEST(Renderer, MillimetresLookLikeMetres) {
@@ -211,15 +211,15 @@ TEST(Renderer, MillimetresLookLikeMetres) {
   Snapshot small = large;
   for (Vec3& p : small.bodies.position) p *= 1e-3;
   for (Vec3& s : small.bodies.size) s *= 1e-3;
-  const Image a = renderer().draw(large, frame_all(large, {0, 0, -9.81}, 4.0 / 3), {});
-  const Image b = renderer().draw(small, frame_all(small, {0, 0, -9.81}, 4.0 / 3), {});
+  const Image a = renderer().draw({large}, frame_all(large, {0, 0, -9.81}, 4.0 / 3), {});
+  const Image b = renderer().draw({small}, frame_all(small, {0, 0, -9.81}, 4.0 / 3), {});
   std::size_t differing = 0;
   for (std::size_t k = 0; k < a.rgb.size(); ++k) differing += std::abs(a.rgb[k] - b.rgb[k]) > 8 ? 1 : 0;
   EXPECT_LT(static_cast<double>(differing), 0.01 * static_cast<double>(a.rgb.size()));
 }
 
 TEST(NullRenderer, DrawsBlackWithoutOpenGl) {
-  const Image image = make_null_renderer(7, 5)->draw(small_pile(), {}, {});
+  const Image image = make_null_renderer(7, 5)->draw({small_pile()}, {}, {});
   EXPECT_EQ(image.width, 7);
   EXPECT_EQ(image.height, 5);
   EXPECT_EQ(image.rgb, std::vector<std::uint8_t>(7 * 5 * 3, 0));
