@@ -92,7 +92,7 @@ std::string time_words(double seconds, double interval) {
 }
 
 Annotator::Annotator(Annotation annotation, int picture_height, double interval)
-    : annotation_(std::move(annotation)), font_(std::max(picture_height / 42, 11)), interval_(interval) {}
+    : annotation_(annotation), font_(std::max(picture_height / 42, 11)), interval_(interval) {}
 
 void Annotator::annotate(Image& image, const Frame& frame, const Style& style) const {
   std::string note;
@@ -104,8 +104,8 @@ void Annotator::annotate(Image& image, const Frame& frame, const Style& style) c
   if (!annotation_.legend) return;
   if (is_scale(style.color_by)) {
     draw_scale(image, frame, style);
-  } else if (annotation_.kinds.size() > 1) {
-    draw_kinds(image, style);
+  } else if (frame.kinds.size() > 1) {
+    draw_kinds(image, frame, style);
   }
 }
 
@@ -150,16 +150,15 @@ void Annotator::draw_scale(Image& image, const Frame& frame, const Style& style)
 }
 
 // At the right edge: a square of each colour, with its name.
-void Annotator::draw_kinds(Image& image, const Style& style) const {
+void Annotator::draw_kinds(Image& image, const Frame& frame, const Style& style) const {
   // More would fill the picture; those that are left out are counted.
   constexpr std::size_t most = 12;
   const std::vector<Color>& palette =
       style.color_by == ColorBy::material ? style.palette : category_palette();
-  const std::size_t shown = std::min(annotation_.kinds.size(), most);
-  std::vector<std::string> rows(annotation_.kinds.begin(),
-                                annotation_.kinds.begin() + static_cast<std::ptrdiff_t>(shown));
-  if (shown < annotation_.kinds.size())
-    rows.push_back(fmt::format("and {} more", annotation_.kinds.size() - shown));
+  const std::size_t shown = std::min(frame.kinds.size(), most);
+  std::vector<std::string> rows(frame.kinds.begin(),
+                                frame.kinds.begin() + static_cast<std::ptrdiff_t>(shown));
+  if (shown < frame.kinds.size()) rows.push_back(fmt::format("and {} more", frame.kinds.size() - shown));
   const std::string title = title_of(style.color_by);
   const int em = font_.size(), line = 3 * em / 2;
   int label_width = font_.width(title) - line;

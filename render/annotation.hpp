@@ -15,8 +15,6 @@ namespace scree::render {
 struct Annotation {
   bool legend = true;
   bool time_stamp = true;
-  /// Names of the kinds that colours stand for (materials, levels), in the order of the palette.
-  std::vector<std::string> kinds{};
 };
 
 /// Pictures less high than this have no room for text that can be read (pixels).
@@ -43,7 +41,7 @@ class Annotator {
 
  private:
   void draw_scale(Image& image, const Frame& frame, const Style& style) const;
-  void draw_kinds(Image& image, const Style& style) const;
+  void draw_kinds(Image& image, const Frame& frame, const Style& style) const;
   void draw_note(Image& image, const std::string& words) const;
 
   Annotation annotation_;

@@ -5,6 +5,7 @@
 #include "render/color.hpp"
 
 #include <cstdint>
+#include <string>
 #include <vector>
 
 namespace scree::render {
@@ -22,7 +23,9 @@ struct Frame {
   // By place in the snapshot; empty unless the colours ask for it.
   std::vector<double> force{};        ///< sum of the contact forces on the body (N)
   std::vector<std::int32_t> level{};  ///< of the hierarchical grid
-  std::vector<Line> lines{};          ///< the later ones on top
+  /// Names of the kinds that the colours stand for (materials, levels), in the order of the palette.
+  std::vector<std::string> kinds{};
+  std::vector<Line> lines{};  ///< the later ones on top
 };
 
 }  // namespace scree::render

@@ -3,6 +3,7 @@
 
 #include "broadphase/broad_phase.hpp"
 #include "core/bodies.hpp"
+#include "sim/inspection.hpp"
 
 #include <memory>
 
@@ -14,6 +15,8 @@ class PairFinder {
   /// The PCS of the bodies, each box fat by its margin (m). Valid until the next call.
   virtual ConstView<Pair> find(const Bodies<Host>& bodies, const Array<double, Host>& margin) = 0;
   virtual const char* space_name() const = 0;
+  /// Of the last call of find().
+  virtual GridOccupancy grid_occupancy() const = 0;
 };
 
 /// `on_device`: the PCS is made on the GPU; throws InputError if there is none. `origin`: the local origin to

@@ -293,6 +293,41 @@ BodyState Simulation::body(std::int32_t id) const {
   return state;
 }
 
+std::vector<BodyPair> Simulation::pairs() {
+  Parts& p = *parts_;
+  if (p.pairs.data() == nullptr) p.find_pairs(0);
+  std::vector<BodyPair> pairs;
+  for (const Pair& pair : p.pairs) pairs.push_back({pair.i, pair.j});
+  return pairs;
+}
+
+std::vector<ContactForce> Simulation::contact_forces() const {
+  const Parts& p = *parts_;
+  const ConstView<Contact> contacts = p.contacts.contacts.view();
+  const ConstView<ContactRow> rows = p.contacts.rows.view();
+  const ConstBodyView views = view_of(p.bodies);
+  std::vector<ContactForce> forces;
+  for (std::int64_t c = 0; c < contacts.size(); ++c) {
+    const Contact& contact = contacts[c];
+    if (contact.impulse.isZero(0)) continue;
+    // From the body that moves freely: the centre of a plane is nowhere near.
+    const bool from_j = views.mobility[contact.j] == Mobility::free;
+    Vec3 arm = Vec3::Zero();
+    for (int k = 0; k < contact.count; ++k) {
+      const ContactRow& row = rows[c * Manifold::max_points + k];
+      arm += (from_j ? row.arm_j : row.arm_i) / contact.count;
+    }
+    forces.push_back({contact.i, contact.j, contact.impulse / p.last_substep,
+                      views.position[from_j ? contact.j : contact.i] + arm});
+  }
+  return forces;
+}
+
+GridOccupancy Simulation::grid_occupancy() {
+  if (parts_->pairs.data() == nullptr) parts_->find_pairs(0);
+  return parts_->pair_finder->grid_occupancy();
+}
+
 const Observation& Simulation::observe() {
   Parts& p = *parts_;
   if (p.observed) return p.observation;

@@ -10,6 +10,9 @@ void check_plane(const PlaneEntry& plane, const Node& node, Reader& reader);
 void check_rotation(const RotationEntry& rotation, const Node& node, Reader& reader);
 void check_scatter(const ScatterEntry& scatter, const Node& node, Reader& reader);
 void check_body(const BodyEntry& body, const Node& node, Reader& reader);
+void check_orbit(const OrbitSettings& orbit, const Node& node, Reader& reader);
+void check_keyframe(const CameraKeySettings& key, const Node& node, Reader& reader);
+void check_render(const RenderSettings& render, const Node& node, Reader& reader);
 void check_camera(const CameraSettings& camera, const Node& node, Reader& reader);
 void check_check(const CheckEntry& check, const Node& node, Reader& reader);
 template <class T>
