@@ -33,15 +33,6 @@ std::string title_of(ColorBy color_by) {
   return "";
 }
 
-// 1, 2 or 5 times a power of ten: the nearest one that is not less.
-double rounded_up(double value) {
-  const double power = std::pow(10.0, std::floor(std::log10(value)));
-  for (const double factor : {1.0, 2.0, 5.0}) {
-    if (factor * power >= value * (1 - 1e-9)) return factor * power;
-  }
-  return 10 * power;
-}
-
 struct Clipped {
   bool below = false, above = false;
 };
@@ -58,18 +49,36 @@ Clipped clipped_by(const std::array<double, 2>& range, const Frame& frame, Color
   return clipped;
 }
 
+// Round values and the two ends, `least_apart` or more from one another.
+std::vector<double> ticks_with_ends(double low, double high, double least_apart) {
+  std::vector<double> ticks = {low};
+  for (const double tick : round_ticks(low, high, 5)) {
+    if (tick - low >= least_apart && high - tick >= least_apart) ticks.push_back(tick);
+  }
+  ticks.push_back(high);
+  return ticks;
+}
+
 bool has_plane(const BodyTable& bodies) {
   return std::find(bodies.shape.begin(), bodies.shape.end(), Shape::plane) != bodies.shape.end();
 }
 
 }  // namespace
 
+double rounded_up(double value) {
+  const double power = std::pow(10.0, std::floor(std::log10(value)));
+  for (const double factor : {1.0, 2.0, 5.0}) {
+    if (factor * power >= value * (1 - 1e-9)) return factor * power;
+  }
+  return 10 * power;
+}
+
 std::vector<double> round_ticks(double low, double high, int count) {
   const double step = rounded_up((high - low) / count);
   std::vector<double> ticks;
   const double tolerance = 1e-6 * step;
   for (double k = std::ceil((low - tolerance) / step); k * step <= high + tolerance; ++k) {
-    ticks.push_back(k * step);
+    ticks.push_back(k * step + 0.0);  // + 0: no negative zero
   }
   return ticks;
 }
@@ -81,7 +90,7 @@ std::string length_words(double metres) {
   };
   for (const Unit& unit : {Unit{1e3, "km"}, Unit{1, "m"}, Unit{1e-3, "mm"}, Unit{1e-6, "µm"}}) {
     // A tenth of a metre reads better than a hundred millimetres.
-    if (metres >= 0.0999 * unit.metres) return fmt::format("{:.4g} {}", metres / unit.metres, unit.name);
+    if (metres >= 0.0999 * unit.metres) return fmt::format("{:.3g} {}", metres / unit.metres, unit.name);
   }
   return fmt::format("{:.3g} m", metres);
 }
@@ -122,15 +131,16 @@ void Annotator::draw_scale(Image& image, const Frame& frame, const Style& style)
   const Clipped clipped = clipped_by(*style.range, frame, style.color_by);
   const std::string title = title_of(style.color_by);
   const int em = font_.size(), bar_width = em, bar_height = 12 * em;
-  std::vector<double> ticks = round_ticks(low, high, 5);
-  int label_width = font_.width(title) - bar_width - em;
+  const double least_apart = 1.4 * em / bar_height * (high - low);
+  const std::vector<double> ticks = ticks_with_ends(low, high, least_apart);
+  int label_width = font_.width(title) - bar_width - em / 2;
   const auto label_of = [&](double tick, bool first, bool last) {
     const char* sign = last && clipped.above ? "≥ " : first && clipped.below ? "≤ " : "";
-    return sign + fmt::format("{:.6g}", tick);
+    return sign + fmt::format("{:.3g}", tick);
   };
   // Room for the sign whether it is there or not, so that nothing moves from frame to frame.
   for (const double tick : ticks) {
-    label_width = std::max(label_width, font_.width("≥ " + fmt::format("{:.6g}", tick)));
+    label_width = std::max(label_width, font_.width("≥ " + fmt::format("{:.3g}", tick)));
   }
   const int width = bar_width + em / 2 + label_width + em;
   const int left = image.width - em - width, top = em;

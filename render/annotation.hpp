@@ -23,6 +23,9 @@ inline constexpr int least_annotated_height = 240;
 /// Round numbers, 1, 2 or 5 times a power of ten apart, in [low, high], low < high: about `count` of them.
 std::vector<double> round_ticks(double low, double high, int count);
 
+/// 1, 2 or 5 times a power of ten: the nearest one that is not less than a positive value.
+double rounded_up(double value);
+
 /// A length in words, with the unit that suits it: "0.5 m", "2 mm".
 std::string length_words(double metres);
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <future>
 
 namespace scree::render::gl {
 
@@ -158,8 +159,10 @@ FrameData frame_data(const Frame& frame, const Camera& camera, const Style& styl
       lit.push_back(light.disc_of(bodies, k));
     }
   }
+  // The two take about as long, and most of the time of this function.
+  auto casting = std::async(std::launch::async, [&] { return visible_discs(lit, shadow_size, shadow_size); });
   const std::vector<std::int32_t> shown = visible_discs(seen, width, height);
-  const std::vector<std::int32_t> casters = visible_discs(lit, shadow_size, shadow_size);
+  const std::vector<std::int32_t> casters = casting.get();
 
   Packing packing(frame, v, style, style.cell.value_or(grid_cell(camera)), data);
   std::array<std::int32_t, 4>&begin = data.uniforms.begin, &after = data.uniforms.after;

@@ -74,13 +74,14 @@ LightView::LightView(const BodyTable& bodies, const View& v, int map_size)
   if (bounds.isEmpty()) bounds.extend(focus);
   // Sizes in steps and corners on multiples of a texel keep the edges of shadows still while bodies move.
   const double least = 0.01 * v.view;
-  const double wanted = 1.05 * std::max({bounds.sizes().x(), bounds.sizes().y(), least});
+  // A fifth more than the bodies take, for penumbras.
+  const double wanted = 1.2 * std::max({bounds.sizes().x(), bounds.sizes().y(), least});
   size_ = std::exp2(std::ceil(8 * std::log2(wanted)) / 8);
   corner_ = bounds.center() - Vec3::Constant(0.5 * size_);
   for (int axis = 0; axis < 2; ++axis) corner_[axis] = texel() * std::floor(corner_[axis] / texel());
   // Receivers in front of the first caster and behind the last one, on the ground, have depths as well.
-  depth_ = 2 * bounds.sizes().z() + 4 * size_;
-  corner_.z() = bounds.center().z() - 0.5 * depth_;
+  depth_ = 2 * reach;
+  corner_.z() = focus.z() - reach;
   nearest_ = (bounds.min().z() - corner_.z()) / depth_;
 }
 

@@ -73,10 +73,10 @@ std::vector<float> sorted_sample(const std::vector<Disc>& discs, float Disc::*me
   return values;
 }
 
-// About four cells to the radius of a typical disc: fewer cover badly, more take longer.
+// About three cells to the radius of a typical disc: fewer cover badly, more take longer.
 float cell_for(const std::vector<Disc>& discs) {
   const std::vector<float> radii = sorted_sample(discs, &Disc::outer);
-  return std::clamp(radii[radii.size() / 2] / 4, 1.0f, 16.0f);
+  return std::clamp(radii[radii.size() / 2] / 3, 1.0f, 16.0f);
 }
 
 // Indices by ascending depth, as near as 4096 classes tell; a few discs far off share the outer ones.

@@ -80,32 +80,35 @@ double expected_speed(const Scene& scene, const render::Frame& start) {
   return speed;
 }
 
-double largest_mass(const BodyTable& bodies) {
-  double mass = 0;
+double mean_mass(const BodyTable& bodies) {
+  double sum = 0, count = 0;
   for (const double inverse : bodies.inverse_mass) {
-    if (inverse > 0) mass = std::max(mass, 1 / inverse);
+    if (inverse == 0) continue;
+    sum += 1 / inverse;
+    count += 1;
   }
-  return mass > 0 ? mass : 1;
+  return count > 0 ? sum / count : 1;
 }
 
 // The weight of as many of the heaviest bodies as lie along an edge of a cube of all; without gravity, the
 // force that takes such a body's speed in one step (N).
 double expected_force(const Scene& scene, double speed) {
-  const double mass = largest_mass(scene.bodies);
+  const double mass = mean_mass(scene.bodies);
   if (scene.gravity.norm() == 0) return mass * speed / scene.time.step;
   return mass * scene.gravity.norm() * std::cbrt(static_cast<double>(scene.bodies.count()));
 }
 
 std::array<double, 2> range_of(const Scene& scene, const render::Frame& start, render::ColorBy color) {
   if (scene.render.range) return *scene.render.range;
-  const double speed = expected_speed(scene, start);
+  // Of a scene at rest without gravity.
+  const double speed = std::max(expected_speed(scene, start), 1e-6);
   switch (color) {
     case render::ColorBy::speed:
-      return {0, speed};
+      return {0, render::rounded_up(speed)};
     case render::ColorBy::kinetic_energy:
-      return {0, 0.5 * largest_mass(scene.bodies) * speed * speed};
+      return {0, render::rounded_up(0.5 * mean_mass(scene.bodies) * speed * speed)};
     case render::ColorBy::force:
-      return {0, 2 * expected_force(scene, speed)};
+      return {0, render::rounded_up(2 * expected_force(scene, speed))};
     default:
       return render::value_range(start, color);
   }

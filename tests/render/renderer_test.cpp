@@ -182,6 +182,80 @@ TEST(Renderer, ShadowDarkensTheGround) {
   EXPECT_EQ(brighter, 0);
 }
 
+TEST(Renderer, ShadowsSoftenWithTheHeightOfWhatCastsThem) {
+  // A fixed plate at a height, looked at from beside: of its shadow on the ground, the share of pixels that
+  // are neither dark nor lit grows with the height.
+  Snapshot bare;
+  add_plane(bare, Vec3::UnitZ(), 0);
+  Style style;
+  style.cell = 100;
+  double last = 0;
+  for (const double plate : {0.3, 1.2, 4.8}) {
+    Snapshot shaded = bare;
+    add_body(shaded, Shape::box, {0, 0, plate}, {0.5, 0.5, 0.05}, Mobility::fixed);
+    // Light goes down by 1, right by 0.62 and ahead by 0.38. The camera looks down on the shadow from below
+    // the plate.
+    const Vec3 middle(0.62 * plate, 0.38 * plate, 0);
+    const Camera camera{middle + Vec3(2, -3, 0.29), middle, Vec3::UnitZ(), 40};
+    const Image before = renderer().draw({bare}, camera, style);
+    const Image after = renderer().draw({shaded}, camera, style);
+    double dark = 0, half_lit = 0;
+    for (int y = height / 3; y < height; ++y) {
+      for (int x = 0; x < width; ++x) {
+        const double ratio = brightness(after, x, y) / brightness(before, x, y);
+        dark += ratio < 0.5 ? 1 : 0;
+        half_lit += ratio > 0.5 && ratio < 0.9 ? 1 : 0;
+      }
+    }
+    EXPECT_GT(half_lit / (dark + half_lit), 1.15 * last) << plate;
+    last = half_lit / (dark + half_lit);
+  }
+}
+
+Snapshot drum(double turn) {
+  Snapshot snapshot;
+  // Its axis along the view.
+  const Quat lying = Quat::FromTwoVectors(Vec3::UnitZ(), Vec3::UnitY());
+  add_body(snapshot, Shape::tube, Vec3::Zero(), {1, 1, 0.4}, Mobility::prescribed,
+           lying * Quat(Eigen::AngleAxisd(turn, Vec3::UnitZ())));
+  return snapshot;
+}
+
+TEST(Renderer, TubeShowsItsContentsAndItsTurn) {
+  const Camera camera{{0, -6, 1}, Vec3::Zero(), Vec3::UnitZ(), 40};
+  Snapshot filled = drum(0);
+  add_sphere(filled, {0, 0, 0}, 0.3);
+  const Image empty = renderer().draw({drum(0)}, camera, masked());
+  const Image full = renderer().draw({filled}, camera, masked());
+  const Blob sphere = projected_sphere(camera, {0, 0, 0}, 0.3);
+  const auto x = static_cast<int>(sphere.x), y = static_cast<int>(sphere.y);
+  EXPECT_TRUE(is_background(empty, x, y)) << "through both end caps";
+  EXPECT_FALSE(is_background(full, x, y));
+  EXPECT_NE(renderer().draw({drum(0.1)}, camera, masked()).rgb, empty.rgb);
+  // Radius 1 at some 6 m: the wall ends where the circle of its rim does.
+  EXPECT_TRUE(is_background(empty, width / 2 + 100, height / 2));
+}
+
+TEST(Renderer, LinesAreAsWideAsTheySay) {
+  Frame frame;
+  Line line{.from = {-1, 0, 0}, .to = {1, 0, 0}, .width = 12, .color = Color(1, 0, 1)};
+  frame.lines = {line};
+  const Camera camera{{0, -4, 0}, Vec3::Zero(), Vec3::UnitZ(), 60};
+  const Image image = renderer().draw(frame, camera, masked());
+  int rows = 0;
+  for (int y = 0; y < height; ++y) rows += is_background(image, width / 2, y) ? 0 : 1;
+  EXPECT_NEAR(rows, 12.0 * height / 720, 1);
+  // Behind a body it shows as much as it says.
+  add_sphere(frame.snapshot, Vec3::Zero(), 0.5);
+  frame.lines[0].where_hidden = 0;
+  const Image hidden = renderer().draw(frame, camera, masked());
+  const Image alone = renderer().draw({frame.snapshot}, camera, masked());
+  EXPECT_EQ(pixel(hidden, width / 2, height / 2), pixel(alone, width / 2, height / 2));
+  // One that passes the eye is cut, and one behind it is not seen.
+  frame.lines = {{.from = {0, -8, 0.01}, .to = {0, 8, 0.01}}, {.from = {-1, -9, 0}, .to = {1, -9, 0}}};
+  EXPECT_NE(renderer().draw(frame, camera, masked()).rgb, std::vector<std::uint8_t>());
+}
+
 TEST(Renderer, FlatBackgroundKeepsItsColor) {
   Style style;
   style.zenith = style.horizon = Color::Constant(128 / 255.0f);

@@ -27,7 +27,7 @@ float lit_share(Surface s, float facing, int samples, float phase) {
                (length(shadow[2].xyz) / (dot(shadow[0].xyz, shadow[0].xyz) * max(facing, 0.15)));
   const mat2 golden = mat2(-0.73736888, 0.67549029, -0.67549029, -0.73736888);
   float texel = 1.0 / float(textureSize(shadow_depths, 0).x);
-  float reach = clamp(penumbra.x * (place.z - penumbra.y), 1.5 * texel, 48.0 * texel);
+  float reach = clamp(penumbra.x * (place.z - penumbra.y), 1.5 * texel, 0.1);
 
   int taps = samples == 1 ? 12 : 5;
   vec2 turn = vec2(cos(phase), sin(phase));
