@@ -7,8 +7,11 @@
 
 #include <cstdint>
 #include <memory>
+#include <vector>
 
 namespace scree {
+
+struct GridLevel;
 
 /// A closed axis-aligned box (m, relative to the local origin): boxes that only touch overlap.
 struct Aabb {
@@ -42,6 +45,8 @@ class BroadPhase {
 
   /// About the last call of find().
   virtual const BroadPhaseStats& stats() const = 0;
+  /// The levels of the hierarchical grid in the last call of find(); null for methods without one.
+  virtual const std::vector<GridLevel>* grid_levels() const { return nullptr; }
 };
 
 template <class Space>

@@ -82,6 +82,7 @@ class HierarchicalGrid final : public BroadPhase<Space> {
   }
 
   const BroadPhaseStats& stats() const override { return stats_; }
+  const std::vector<GridLevel>* grid_levels() const override { return &plan_.levels; }
 
  private:
   /// Level and cell of each object.

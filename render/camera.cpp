@@ -17,21 +17,34 @@ struct Ball {
 // Nearer to edge-on than this (cosine), a plane is a wall: nothing comes to rest on it.
 constexpr double wall_cosine = 0.25;
 
-// Where a ball comes to rest on the planes if it falls freely; the ball itself if it meets none.
-Ball landed(const Ball& ball, const BodyTable& bodies, const Vec3& up) {
-  double fall = std::numeric_limits<double>::infinity();
+struct Floor {
+  Vec3 normal, point;
+};
+
+// What bodies can come to rest on.
+std::vector<Floor> floors_of(const BodyTable& bodies, const Vec3& up) {
+  std::vector<Floor> floors;
   for (std::size_t k = 0; k < bodies.shape.size(); ++k) {
     if (bodies.shape[k] != Shape::plane) continue;
     const Vec3 normal = bodies.orientation[k] * Vec3::UnitZ();
-    if (normal.dot(up) < wall_cosine) continue;
-    const double gap = normal.dot(ball.center - bodies.position[k]) - ball.radius;
-    if (gap > 0) fall = std::min(fall, gap / normal.dot(up));
+    if (normal.dot(up) >= wall_cosine) floors.push_back({normal, bodies.position[k]});
+  }
+  return floors;
+}
+
+// Where a ball comes to rest on the floors if it falls freely; the ball itself if it meets none.
+Ball landed(const Ball& ball, const std::vector<Floor>& floors, const Vec3& up) {
+  double fall = std::numeric_limits<double>::infinity();
+  for (const Floor& floor : floors) {
+    const double gap = floor.normal.dot(ball.center - floor.point) - ball.radius;
+    if (gap > 0) fall = std::min(fall, gap / floor.normal.dot(up));
   }
   return std::isfinite(fall) ? Ball{ball.center - fall * up, ball.radius} : ball;
 }
 
 // The balls to be seen.
 std::vector<Ball> subjects(const BodyTable& bodies, const Vec3& up) {
+  const std::vector<Floor> floors = floors_of(bodies, up);
   std::vector<Ball> moving, fixed;
   Eigen::AlignedBox3d bounds;
   for (std::size_t k = 0; k < bodies.shape.size(); ++k) {
@@ -43,7 +56,7 @@ std::vector<Ball> subjects(const BodyTable& bodies, const Vec3& up) {
     }
     moving.push_back(ball);
     bounds.extend(ball.center);
-    if (bodies.mobility[k] == Mobility::free) moving.push_back(landed(ball, bodies, up));
+    if (bodies.mobility[k] == Mobility::free) moving.push_back(landed(ball, floors, up));
   }
   if (moving.empty()) return fixed;
   double extent = bounds.diagonal().norm();
@@ -65,6 +78,11 @@ Mat3 axes_of(const Camera& camera) {
   Mat3 axes;
   axes << right, right.cross(forward), forward;
   return axes;
+}
+
+double grid_cell(const Camera& camera) {
+  const double half_height = (camera.to - camera.from).norm() * std::tan(0.5 * camera.fov * pi / 180);
+  return std::pow(10.0, std::floor(std::log10(half_height / 4)));
 }
 
 Vec3 up_of(const Vec3& gravity) { return gravity.norm() > 0 ? Vec3(-gravity.normalized()) : Vec3::UnitZ(); }

@@ -24,4 +24,8 @@ Vec3 up_of(const Vec3& gravity);
 /// `fov` as in Camera.
 Camera frame_all(const Snapshot& snapshot, const Vec3& gravity, double aspect, double fov = 40);
 
+/// Width of the cells of the grid on planes: a power of ten (m), some 8 to 80 of them over the height of the
+/// picture.
+double grid_cell(const Camera& camera);
+
 }  // namespace scree::render

@@ -61,6 +61,19 @@ const std::vector<Color>& default_palette() {
   return palette;
 }
 
+const std::vector<Color>& category_palette() {
+  static const std::vector<Color> palette = {
+      {0.000f, 0.447f, 0.698f},  // blue
+      {0.902f, 0.624f, 0.000f},  // orange
+      {0.000f, 0.620f, 0.451f},  // bluish green
+      {0.800f, 0.475f, 0.655f},  // reddish purple
+      {0.337f, 0.706f, 0.914f},  // sky blue
+      {0.835f, 0.369f, 0.000f},  // vermillion
+      {0.941f, 0.894f, 0.259f},  // yellow
+  };
+  return palette;
+}
+
 Color scale_color(double t) {
   const float s = static_cast<float>(std::clamp(t, 0.0, 1.0));
   const float lightness = 0.34f + 0.56f * s;

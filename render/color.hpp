@@ -23,6 +23,10 @@ Color linear_of_oklab(const Vec3f& lab);
 /// sRGB colours for material 0, 1, ...; materials beyond the last start over.
 const std::vector<Color>& default_palette();
 
+/// sRGB colours for kinds that have to be told apart by eye, with any common colour blindness too (Okabe and
+/// Ito 2008, "Color universal design", without black).
+const std::vector<Color>& category_palette();
+
 /// Linear light for t in 0 to 1, clamped: dark violet to light yellow, with lightness linear in t in OKLab,
 /// so that equal steps look equal and the order survives in grey.
 Color scale_color(double t);

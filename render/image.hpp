@@ -1,6 +1,7 @@
 // A picture in memory.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -12,5 +13,11 @@ struct Image {
   int height = 0;
   std::vector<std::uint8_t> rgb;
 };
+
+/// The three bytes of a pixel inside the image.
+inline std::uint8_t* pixel_of(Image& image, int x, int y) {
+  return &image.rgb[3 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(image.width) +
+                         static_cast<std::size_t>(x))];
+}
 
 }  // namespace scree::render

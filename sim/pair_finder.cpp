@@ -1,9 +1,12 @@
 #include "sim/pair_finder.hpp"
 
 #include "broadphase/bounds.hpp"
+#include "broadphase/grid_level.hpp"
 #include "core/error.hpp"
 #include "core/timing.hpp"
 
+#include <algorithm>
+#include <tuple>
 #include <type_traits>
 #include <utility>
 
@@ -36,7 +39,34 @@ class PairFinderIn final : public PairFinder {
 
   const char* space_name() const override { return Space::name; }
 
+  GridOccupancy grid_occupancy() const override {
+    GridOccupancy grid;
+    const std::vector<GridLevel>* levels = broad_phase_->grid_levels();
+    if (levels == nullptr || levels->empty()) return grid;
+    for (const GridLevel& level : *levels) grid.width.push_back(level.cell);
+    for (const Aabb& box : host_bounds_.view()) {
+      grid.level.push_back(is_absent(box) ? 0 : level_of_extent(levels->data(), extent_of(box)));
+      if (!is_absent(box)) grid.cells.push_back(cell_around(box, *levels, grid.level.back()));
+    }
+    const auto key = [](const OccupiedCell& c) {
+      return std::tuple(c.level, c.low.z(), c.low.y(), c.low.x());
+    };
+    std::ranges::sort(grid.cells, {}, key);
+    const auto repeated = std::ranges::unique(grid.cells);
+    grid.cells.erase(repeated.begin(), repeated.end());
+    return grid;
+  }
+
  private:
+  OccupiedCell cell_around(const Aabb& box, const std::vector<GridLevel>& levels, int number) const {
+    const GridLevel& level = levels[static_cast<std::size_t>(number)];
+    OccupiedCell cell{number, Vec3::Zero(), level.cell};
+    for (int a = 0; a < 3; ++a) {
+      cell.low[a] = level.cell * (level.cell_of(centre_of(box, a), a) + level.first[a]) + origin_[a];
+    }
+    return cell;
+  }
+
   std::unique_ptr<BroadPhase<Space>> broad_phase_;
   Vec3 origin_;
   Array<Aabb, Host> host_bounds_;

@@ -4,6 +4,7 @@
 #include "broadphase/broad_phase.hpp"
 #include "core/bodies.hpp"
 #include "sim/dynamics/motion.hpp"
+#include "sim/inspection.hpp"
 
 #include <cstdint>
 #include <memory>
@@ -16,6 +17,8 @@ class PairFinder {
   /// The PCS of the bodies, each box fat by its margin (m). Valid until the next call.
   virtual ConstView<Pair> find(const Bodies<Host>& bodies, const Array<double, Host>& margin) = 0;
   virtual const char* space_name() const = 0;
+  /// Of the last call of find().
+  virtual GridOccupancy grid_occupancy() const = 0;
 };
 
 /// `on_device`: the PCS is made on the GPU; throws InputError if there is none. `origin`: the local origin to
@@ -36,6 +39,7 @@ class KeptPairs {
   /// The bodies are others: the next call makes the pairs anew.
   void forget() { kept_ = false; }
 
+  GridOccupancy grid_occupancy() const { return finder_->grid_occupancy(); }
   std::int64_t times_made() const { return times_made_; }
   const char* space_name() const { return finder_->space_name(); }
 

@@ -122,7 +122,6 @@ struct Simulation::Parts {
   MovingState start;        // of the last step
   std::vector<Quat> first_orientation;
   std::vector<Vec3> contact_impulse;  // on each body that is not free, over the last step
-  ConstView<Pair> pairs;
   Array<double, Host> contact_margin;
   Array<SolverBody, Host> solver;
   ContactSet contacts;
@@ -171,7 +170,7 @@ struct Simulation::Parts {
   /// `remaining`: of the step, from the start of the substep (s).
   ConstView<Manifold> find_contacts(double h, double remaining) {
     contact_margins(bodies, h, tolerance::contact_slack, parameters, contact_margin);
-    pairs = kept_pairs.covering(bodies, contact_margin, remaining + h, parameters);
+    const ConstView<Pair> pairs = kept_pairs.covering(bodies, contact_margin, remaining + h, parameters);
     counters.pcs_made = kept_pairs.times_made();
     const timing::Region region("narrowphase");
     const ConstView<Manifold> manifolds =
@@ -179,6 +178,12 @@ struct Simulation::Parts {
     counters.ccd_calls += narrow_phase.stats().ccd_calls;
     counters.ccd_rejected += narrow_phase.stats().ccd_rejected;
     return manifolds;
+  }
+
+  /// For the state as it is; fills contact_margin for it too.
+  ConstView<Pair> pairs_now() {
+    contact_margins(bodies, 0, tolerance::contact_slack, parameters, contact_margin);
+    return kept_pairs.covering(bodies, contact_margin, 0, parameters);
   }
 
   /// Moreau's midpoint step: free flight to the midpoint, contacts there, impulses, free flight to the end.
@@ -315,6 +320,39 @@ BodyState Simulation::body(std::int32_t id) const {
   return state;
 }
 
+std::vector<BodyPair> Simulation::pairs() {
+  std::vector<BodyPair> pairs;
+  for (const Pair& pair : parts_->pairs_now()) pairs.push_back({pair.i, pair.j});
+  return pairs;
+}
+
+std::vector<ContactForce> Simulation::contact_forces() const {
+  const Parts& p = *parts_;
+  const ConstView<Contact> contacts = p.contacts.contacts.view();
+  const ConstView<ContactRow> rows = p.contacts.rows.view();
+  const ConstBodyView views = view_of(p.bodies);
+  std::vector<ContactForce> forces;
+  for (std::int64_t c = 0; c < contacts.size(); ++c) {
+    const Contact& contact = contacts[c];
+    if (contact.impulse.isZero(0)) continue;
+    // From the body that moves freely: the centre of a plane is nowhere near.
+    const bool from_j = views.mobility[contact.j] == Mobility::free;
+    Vec3 arm = Vec3::Zero();
+    for (int k = 0; k < contact.count; ++k) {
+      const ContactRow& row = rows[contact.first_row + k];
+      arm += (from_j ? row.arm_j : row.arm_i) / contact.count;
+    }
+    forces.push_back({contact.i, contact.j, contact.impulse / p.last_substep,
+                      views.position[from_j ? contact.j : contact.i] + arm});
+  }
+  return forces;
+}
+
+GridOccupancy Simulation::grid_occupancy() {
+  parts_->pairs_now();
+  return parts_->kept_pairs.grid_occupancy();
+}
+
 const Observation& Simulation::observe() {
   Parts& p = *parts_;
   if (p.observed) return p.observation;
@@ -331,11 +369,10 @@ const Observation& Simulation::observe() {
   o.speed_max = largest_speed(p.bodies);
   measure_regions(p.scene.regions, p.contents, p.contents_before, p.last_step, o.regions);
   measure_contacts(p.contacts, totals.count, o);
-  contact_margins(p.bodies, 0, tolerance::contact_slack, p.parameters, p.contact_margin);
-  p.pairs = p.kept_pairs.covering(p.bodies, p.contact_margin, 0, p.parameters);
-  o.pairs = p.pairs.size();
+  const ConstView<Pair> pairs = p.pairs_now();
+  o.pairs = pairs.size();
   measure_penetration(
-      p.end_narrow_phase.find(view_of(std::as_const(p.bodies)), p.pairs, p.contact_margin.view()),
+      p.end_narrow_phase.find(view_of(std::as_const(p.bodies)), pairs, p.contact_margin.view()),
       view_of(std::as_const(p.bodies)), o.penetration);
   p.observed = true;
   return o;

@@ -2,11 +2,13 @@
 #pragma once
 
 #include "core/snapshot.hpp"
+#include "sim/inspection.hpp"
 #include "sim/observation.hpp"
 #include "sim/scene/scene.hpp"
 
 #include <cstdint>
 #include <memory>
+#include <vector>
 
 namespace scree {
 
@@ -39,6 +41,13 @@ class Simulation {
   /// 64-bit hash of the state: the same for any number of threads, and for any broad phase.
   std::uint64_t state_hash() const;
   BodyState body(std::int32_t id) const;
+  /// The pairs of the last step's broad phase (before the first step, of the start), each once.
+  std::vector<BodyPair> pairs();
+  /// The contacts of the last substep that carried a force.
+  std::vector<ContactForce> contact_forces() const;
+  /// The grid behind pairs().
+  GridOccupancy grid_occupancy();
+
   /// Computed when asked for; costs a narrow phase for the penetration.
   const Observation& observe();
 

@@ -12,8 +12,10 @@
   X(BindBuffer, BINDBUFFER)                         \
   X(BindBufferBase, BINDBUFFERBASE)                 \
   X(BindFramebuffer, BINDFRAMEBUFFER)               \
+  X(BindSampler, BINDSAMPLER)                       \
   X(BindTexture, BINDTEXTURE)                       \
   X(BindVertexArray, BINDVERTEXARRAY)               \
+  X(BlendFunc, BLENDFUNC)                           \
   X(BufferData, BUFFERDATA)                         \
   X(CheckFramebufferStatus, CHECKFRAMEBUFFERSTATUS) \
   X(ClearBufferfv, CLEARBUFFERFV)                   \
@@ -24,6 +26,7 @@
   X(DeleteBuffers, DELETEBUFFERS)                   \
   X(DeleteFramebuffers, DELETEFRAMEBUFFERS)         \
   X(DeleteProgram, DELETEPROGRAM)                   \
+  X(DeleteSamplers, DELETESAMPLERS)                 \
   X(DeleteShader, DELETESHADER)                     \
   X(DeleteTextures, DELETETEXTURES)                 \
   X(DeleteVertexArrays, DELETEVERTEXARRAYS)         \
@@ -35,6 +38,7 @@
   X(FramebufferTexture, FRAMEBUFFERTEXTURE)         \
   X(GenBuffers, GENBUFFERS)                         \
   X(GenFramebuffers, GENFRAMEBUFFERS)               \
+  X(GenSamplers, GENSAMPLERS)                       \
   X(GenTextures, GENTEXTURES)                       \
   X(GenVertexArrays, GENVERTEXARRAYS)               \
   X(GetError, GETERROR)                             \
@@ -48,6 +52,7 @@
   X(LinkProgram, LINKPROGRAM)                       \
   X(PixelStorei, PIXELSTOREI)                       \
   X(ReadPixels, READPIXELS)                         \
+  X(SamplerParameteri, SAMPLERPARAMETERI)           \
   X(ShaderSource, SHADERSOURCE)                     \
   X(TexBuffer, TEXBUFFER)                           \
   X(TexImage2D, TEXIMAGE2D)                         \

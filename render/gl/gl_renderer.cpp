@@ -16,17 +16,27 @@ namespace {
 
 using namespace std::string_view_literals;
 
-constexpr int shadow_size = 1536;
+// As many texels as the picture has pixels, and some more: shadows are seen from nearby too.
+int shadow_size_for(int width, int height) { return std::clamp(6 * std::max(width, height) / 5, 512, 4096); }
 
 // Texture units; each sampler of the shaders has its own for good.
-enum Unit : GLint { bodies_unit, tags_unit, geometry_unit, occlusion_unit, shadow_unit, unit_count };
-constexpr std::array<const char*, unit_count> samplers = {"bodies", "tags", "geometry", "occlusion",
-                                                          "shadow_map"};
+enum Unit : GLint {
+  bodies_unit,
+  lines_unit,
+  tags_unit,
+  geometry_unit,
+  occlusion_unit,
+  shadow_unit,
+  depths_unit,
+  unit_count
+};
+constexpr std::array<const char*, unit_count> samplers = {
+    "bodies", "lines", "tags", "geometry", "occlusion", "shadow_map", "shadow_depths"};
 
 // Binds the uniform block and the samplers that the program has; asking for others is harmless.
 Program make_pass(const Functions& gl, const char* name, std::vector<std::string_view> vertex,
-                  std::vector<std::string_view> fragment, bool shadow = false) {
-  const std::string_view head = shadow ? "#version 330 core\n#define SHADOW\n"sv : "#version 330 core\n"sv;
+                  std::vector<std::string_view> fragment, std::string_view variant = ""sv) {
+  const std::string head = "#version 330 core\n" + std::string(variant);
   vertex.insert(vertex.begin(), {head, shaders::common});
   fragment.insert(fragment.begin(), {head, shaders::common});
   Program program = make_program(gl, name, vertex, fragment);
@@ -38,26 +48,32 @@ Program make_pass(const Functions& gl, const char* name, std::vector<std::string
   return program;
 }
 
+constexpr std::string_view for_shadow = "#define SHADOW\n", for_tube = "#define TUBE\n";
+
 struct Passes {
   explicit Passes(const Functions& gl)
       : sphere_shadow(make_pass(gl, "sphere shadow", {shaders::sphere_vert},
-                                {shaders::sphere, shaders::sphere_frag}, true)),
-        box_shadow(make_pass(gl, "box shadow", {shaders::box_vert}, {shaders::flat_frag}, true)),
+                                {shaders::sphere, shaders::sphere_frag}, for_shadow)),
+        box_shadow(make_pass(gl, "box shadow", {shaders::box_vert}, {shaders::flat_frag}, for_shadow)),
         sphere(make_pass(gl, "sphere", {shaders::sphere_vert}, {shaders::sphere, shaders::sphere_frag})),
         box(make_pass(gl, "box", {shaders::box_vert}, {shaders::flat_frag})),
         plane(make_pass(gl, "plane", {shaders::plane_vert}, {shaders::plane, shaders::plane_frag})),
-        geometry(make_pass(gl, "geometry", {shaders::picture_vert},
-                           {shaders::sphere, shaders::plane, shaders::surface, shaders::geometry_frag})),
+        tube(make_pass(gl, "tube", {shaders::plane_vert}, {shaders::tube, shaders::tube_frag}, for_tube)),
+        geometry(make_pass(
+            gl, "geometry", {shaders::picture_vert},
+            {shaders::sphere, shaders::plane, shaders::tube, shaders::surface, shaders::geometry_frag})),
         occlusion(make_pass(gl, "occlusion", {shaders::picture_vert}, {shaders::occlusion_frag})),
         smooth(make_pass(gl, "smooth", {shaders::picture_vert}, {shaders::smooth_frag})),
-        shade(make_pass(gl, "shade", {shaders::picture_vert},
-                        {shaders::sphere, shaders::plane, shaders::surface, shaders::shade_frag})) {}
+        shade(make_pass(
+            gl, "shade", {shaders::picture_vert},
+            {shaders::sphere, shaders::plane, shaders::tube, shaders::surface, shaders::shade_frag})),
+        line(make_pass(gl, "line", {shaders::line_vert}, {shaders::line_frag})) {}
 
-  Program sphere_shadow, box_shadow, sphere, box, plane, geometry, occlusion, smooth, shade;
+  Program sphere_shadow, box_shadow, sphere, box, plane, tube, geometry, occlusion, smooth, shade, line;
 };
 
 struct Images {
-  Images(const Functions& gl, int width, int height)
+  Images(const Functions& gl, int width, int height, int shadow_size)
       : shadow(make_shadow_image(gl, shadow_size)),
         tags(make_image(gl, tag_format, 2 * width, 2 * height)),
         depth(make_image(gl, depth_format, 2 * width, 2 * height)),
@@ -88,12 +104,17 @@ class GlRenderer : public Renderer {
         gl_(made_current(*context_)),
         width_(width),
         height_(height),
+        shadow_size_(shadow_size_for(width, height)),
         passes_(gl_),
-        images_(gl_, width, height),
+        images_(gl_, width, height, shadow_size_),
+        depths_(make_depth_sampler(gl_)),
         no_attributes_(make_vertex_array(gl_)),
         uniforms_(make_buffer(gl_)),
         bodies_(make_buffer(gl_)),
-        bodies_view_(make_buffer_texture(gl_, bodies_)) {
+        bodies_view_(make_buffer_texture(gl_, bodies_)),
+        lines_(make_buffer(gl_)),
+        lines_view_(make_buffer_texture(gl_, lines_)) {
+    gl_.BindSampler(depths_unit, depths_.name());
     gl_.BindVertexArray(no_attributes_.name());
     gl_.PixelStorei(GL_PACK_ALIGNMENT, 1);
     gl_.GetIntegerv(GL_MAX_TEXTURE_BUFFER_SIZE, &most_texels_);
@@ -101,43 +122,51 @@ class GlRenderer : public Renderer {
   // The members' objects are deleted after this.
   ~GlRenderer() override { context_->make_current(); }
 
-  Image draw(const Snapshot& snapshot, const Camera& camera, const Style& style) override {
+  Image draw(const Frame& frame, const Camera& camera, const Style& style) override {
     context_->make_current();
-    const FrameData data = frame_data(snapshot, camera, style, width_, height_, shadow_size);
+    const FrameData data = frame_data(frame, camera, style, width_, height_, shadow_size_);
     upload(data);
     draw_shadow(data);
     draw_tags(data);
     draw_occlusion();
     draw_picture(passes_.shade, images_.to_color);
+    draw_lines(static_cast<int>(data.lines.size() / 3));
     return read_back();
   }
 
  private:
   void upload(const FrameData& data) {
-    if (data.texels.size() > static_cast<std::size_t>(most_texels_)) {
-      throw RunError("OpenGL draws at most " + std::to_string(most_texels_ / 4) +
-                     " bodies here; the scene has " + std::to_string(data.texels.size() / 4));
-    }
     gl_.BindBuffer(GL_UNIFORM_BUFFER, uniforms_.name());
     gl_.BufferData(GL_UNIFORM_BUFFER, sizeof(data.uniforms), &data.uniforms, GL_STREAM_DRAW);
     gl_.BindBufferBase(GL_UNIFORM_BUFFER, 0, uniforms_.name());
-    gl_.BindBuffer(GL_TEXTURE_BUFFER, bodies_.name());
-    gl_.BufferData(GL_TEXTURE_BUFFER, static_cast<GLsizeiptr>(data.texels.size() * sizeof(Vec4f)),
-                   data.texels.data(), GL_STREAM_DRAW);
+    upload(bodies_, data.texels, "bodies, casters of shadows counted again");
+    upload(lines_, data.lines, "lines");
     bind(bodies_unit, GL_TEXTURE_BUFFER, bodies_view_);
+    bind(lines_unit, GL_TEXTURE_BUFFER, lines_view_);
     bind(tags_unit, GL_TEXTURE_2D, images_.tags);
     bind(geometry_unit, GL_TEXTURE_2D, images_.geometry);
     bind(shadow_unit, GL_TEXTURE_2D, images_.shadow);
+    bind(depths_unit, GL_TEXTURE_2D, images_.shadow);
+  }
+
+  void upload(const Buffer& buffer, const std::vector<Vec4f>& texels, const char* what) {
+    if (texels.size() > static_cast<std::size_t>(most_texels_)) {
+      throw RunError("OpenGL reads at most " + std::to_string(most_texels_) +
+                     " texels here; this picture's " + what + ", take " + std::to_string(texels.size()));
+    }
+    gl_.BindBuffer(GL_TEXTURE_BUFFER, buffer.name());
+    gl_.BufferData(GL_TEXTURE_BUFFER, static_cast<GLsizeiptr>(texels.size() * sizeof(Vec4f)), texels.data(),
+                   GL_STREAM_DRAW);
   }
 
   void draw_shadow(const FrameData& data) {
     const GLfloat far = 1;
-    target(images_.to_shadow, shadow_size, shadow_size);
+    target(images_.to_shadow, shadow_size_, shadow_size_);
     gl_.ClearBufferfv(GL_DEPTH, 0, &far);
     gl_.Enable(GL_DEPTH_TEST);
     gl_.DepthFunc(GL_LESS);
-    draw_triangles(passes_.sphere_shadow, data.spheres());
-    draw_triangles(passes_.box_shadow, 6 * data.boxes());
+    draw_triangles(passes_.sphere_shadow, data.casting_spheres());
+    draw_triangles(passes_.box_shadow, 6 * data.casting_boxes());
   }
 
   void draw_tags(const FrameData& data) {
@@ -149,6 +178,7 @@ class GlRenderer : public Renderer {
     gl_.DepthFunc(GL_GREATER);
     draw_triangles(passes_.sphere, data.spheres());
     draw_triangles(passes_.box, 6 * data.boxes());
+    draw_triangles(passes_.tube, data.tubes());
     draw_triangles(passes_.plane, data.grounds());
     gl_.Disable(GL_DEPTH_TEST);
   }
@@ -159,6 +189,13 @@ class GlRenderer : public Renderer {
     bind(occlusion_unit, GL_TEXTURE_2D, images_.raw_occlusion);
     draw_picture(passes_.smooth, images_.to_occlusion);
     bind(occlusion_unit, GL_TEXTURE_2D, images_.occlusion);
+  }
+
+  void draw_lines(int count) {
+    gl_.Enable(GL_BLEND);
+    gl_.BlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
+    draw_triangles(passes_.line, 2 * count);
+    gl_.Disable(GL_BLEND);
   }
 
   Image read_back() {
@@ -196,13 +233,16 @@ class GlRenderer : public Renderer {
 
   std::unique_ptr<Context> context_;
   Functions gl_;
-  int width_, height_;
+  int width_, height_, shadow_size_;
   GLint most_texels_ = 0;  // that a buffer texture shows
   Passes passes_;
   Images images_;
+  Sampler depths_;
   VertexArray no_attributes_;
   Buffer uniforms_, bodies_;
   Texture bodies_view_;
+  Buffer lines_;
+  Texture lines_view_;
 };
 
 }  // namespace

@@ -70,6 +70,16 @@ Texture make_shadow_image(const Functions& gl, int size) {
   return texture;
 }
 
+Sampler make_depth_sampler(const Functions& gl) {
+  GLuint name = 0;
+  gl.GenSamplers(1, &name);
+  gl.SamplerParameteri(name, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
+  gl.SamplerParameteri(name, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
+  gl.SamplerParameteri(name, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
+  gl.SamplerParameteri(name, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
+  return {gl, name};
+}
+
 Texture make_buffer_texture(const Functions& gl, const Buffer& buffer) {
   // The buffer becomes an object with its first binding, and only an object can be viewed.
   gl.BindBuffer(GL_TEXTURE_BUFFER, buffer.name());

@@ -36,6 +36,7 @@ inline void delete_buffer(const Functions& gl, GLuint name) { gl.DeleteBuffers(1
 inline void delete_texture(const Functions& gl, GLuint name) { gl.DeleteTextures(1, &name); }
 inline void delete_framebuffer(const Functions& gl, GLuint name) { gl.DeleteFramebuffers(1, &name); }
 inline void delete_vertex_array(const Functions& gl, GLuint name) { gl.DeleteVertexArrays(1, &name); }
+inline void delete_sampler(const Functions& gl, GLuint name) { gl.DeleteSamplers(1, &name); }
 inline void delete_shader(const Functions& gl, GLuint name) { gl.DeleteShader(name); }
 inline void delete_program(const Functions& gl, GLuint name) { gl.DeleteProgram(name); }
 }  // namespace detail
@@ -44,6 +45,7 @@ using Buffer = Object<detail::delete_buffer>;
 using Texture = Object<detail::delete_texture>;
 using Framebuffer = Object<detail::delete_framebuffer>;
 using VertexArray = Object<detail::delete_vertex_array>;
+using Sampler = Object<detail::delete_sampler>;
 using Shader = Object<detail::delete_shader>;
 using Program = Object<detail::delete_program>;
 
@@ -68,6 +70,9 @@ Texture make_image(const Functions& gl, const PixelFormat& format, int width, in
 
 /// A depth image that is compared as it is read, with bilinear weights; outside it everything is lit.
 Texture make_shadow_image(const Functions& gl, int size);
+
+/// Reads a depth image as numbers, whatever the image says about comparisons.
+Sampler make_depth_sampler(const Functions& gl);
 
 /// A view of a buffer as an array of four floats each.
 Texture make_buffer_texture(const Functions& gl, const Buffer& buffer);

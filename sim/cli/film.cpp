@@ -7,99 +7,120 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <cmath>
+#include <chrono>
+#include <utility>
 
 namespace scree::cli {
 
 namespace {
 
-render::ColorBy color_by(ColorBy color) {
-  switch (color) {
-    case ColorBy::material:
-      break;
-    case ColorBy::speed:
-      return render::ColorBy::speed;
-    case ColorBy::size:
-      return render::ColorBy::size;
-  }
-  return render::ColorBy::material;
-}
+constexpr std::size_t most_waiting = 2;
 
-render::Camera camera_for(const Scene& scene, const Snapshot& start) {
-  const RenderSettings& render = scene.render;
-  if (!render.camera) {
-    return render::frame_all(start, scene.gravity, static_cast<double>(render.width) / render.height);
-  }
-  return {.from = render.camera->from,
-          .to = render.camera->to,
-          .up = render::up_of(scene.gravity),
-          .fov = render.camera->fov};
-}
+/// Adds its own lifetime to an account of this thread.
+class Stopwatch {
+ public:
+  explicit Stopwatch(double& seconds) : seconds_(seconds) {}
+  ~Stopwatch() { seconds_ += std::chrono::duration<double>(Clock::now() - start_).count(); }
+  Stopwatch(const Stopwatch&) = delete;
+  Stopwatch& operator=(const Stopwatch&) = delete;
 
-/// One colour scale for all frames, known before the first is drawn. Speeds: those at the start, and that of
-/// a fall through the height of the scene.
-std::array<double, 2> range_for(const Scene& scene, const Snapshot& start, render::ColorBy color) {
-  std::array<double, 2> range = render::value_range(start, color);
-  if (color != render::ColorBy::speed) return range;
-  double lowest = HUGE_VAL, highest = -HUGE_VAL;
-  for (const Vec3& x : start.bodies.position) {
-    lowest = std::min(lowest, -scene.gravity.dot(x));
-    highest = std::max(highest, -scene.gravity.dot(x));
-  }
-  if (highest > lowest) range[1] = std::max(range[1], std::sqrt(2 * (highest - lowest)));
-  return range;
-}
+ private:
+  using Clock = std::chrono::steady_clock;
+  double& seconds_;
+  Clock::time_point start_ = Clock::now();
+};
 
 }  // namespace
 
-Film::Film(const Scene& scene, const RunFolder& folder, Console& console)
-    : folder_(folder),
-      console_(console),
-      fps_(scene.render.fps),
-      frames_due_(TimeGrid(scene.time), 1 / scene.render.fps) {
-  snapshot_.bodies = scene.bodies;
-  camera_ = camera_for(scene, snapshot_);
-  style_.color_by = color_by(scene.render.color);
-  style_.range = range_for(scene, snapshot_, style_.color_by);
-  try {
-    renderer_ = render::make_osmesa_renderer(scene.render.width, scene.render.height);
-  } catch (const RunError& error) {
-    console_.warn(fmt::format("no pictures: {}", error.what()));
+/// What draws: made, used and deleted by one thread, as OpenGL wants it.
+class Film::Studio {
+ public:
+  Studio(const RenderSettings& render, const FilmLook& look)
+      : look_(look),
+        renderer_(render::make_osmesa_renderer(render.width, render.height)),
+        annotator_(look.annotation, render.height, 1 / render.fps) {}
+
+  render::Image draw(const render::Frame& frame) {
+    render::Image image = renderer_->draw(frame, look_.camera(frame.snapshot.time), look_.style);
+    annotator_.annotate(image, frame, look_.style);
+    return image;
   }
-}
+
+ private:
+  const FilmLook& look_;
+  std::unique_ptr<render::Renderer> renderer_;
+  render::Annotator annotator_;
+};
+
+Film::Film(const Scene& scene, const RunFolder& folder, Console& console)
+    : scene_(scene),
+      folder_(folder),
+      console_(console),
+      look_(look_of(scene)),
+      frames_due_(TimeGrid(scene.time), 1 / scene.render.fps),
+      writer_(most_waiting, [this](Picture& picture) { write(picture); }),
+      drawer_(most_waiting,
+              [this, studio = std::shared_ptr<Studio>()](Shot& shot) mutable { draw(studio, shot); }) {}
 
 void Film::record(Simulation& simulation) {
-  const std::int64_t due = renderer_ ? frames_due_.due(simulation.steps()) : 0;
-  if (due == 0) return;
-  render::Image image;
-  simulation.snapshot(snapshot_);
-  try {
-    const timing::Region region("render.draw");
-    image = renderer_->draw(snapshot_, camera_, style_);
-  } catch (const RunError& error) {
-    console_.warn(fmt::format("no pictures after t = {} s: {}", simulation.time(), error.what()));
-    renderer_.reset();
-    return;
-  }
+  const std::int64_t due = frames_due_.due(simulation.steps());
+  if (due > 0) say_trouble();
+  if (due == 0 || stopped_) return;
   // Where frames come faster than steps one picture stands for several, so that the movie keeps its pace.
-  for (std::int64_t k = 0; k < due; ++k) write_frame(image);
+  Shot shot{frame_of(scene_, look_, simulation), due};
+  const timing::Region region("render.wait");
+  drawer_.push(std::move(shot));
 }
 
-void Film::write_frame(const render::Image& image) {
-  const timing::Region region("render.write");
-  const std::filesystem::path file = folder_.frames() / fmt::format("{:05}.png", frames_);
-  render::write_png(file, image);
-  ++frames_;
+void Film::draw(std::shared_ptr<Studio>& studio, const Shot& shot) {
+  // Only this thread writes it.
+  if (!trouble_.empty()) return;
+  render::Image image;
+  try {
+    const Stopwatch watch(draw_seconds_);
+    if (!studio) studio = std::make_shared<Studio>(scene_.render, look_);
+    image = studio->draw(shot.frame);
+  } catch (const RunError& error) {
+    const std::lock_guard lock(trouble_mutex_);
+    trouble_ = fmt::format("no pictures from t = {} s on: {}", shot.frame.snapshot.time, error.what());
+    return;
+  }
+  writer_.push({std::move(image), shot.copies});
+}
+
+void Film::write(const Picture& picture) {
+  const Stopwatch watch(write_seconds_);
+  for (std::int64_t k = 0; k < picture.copies; ++k) {
+    render::write_png(folder_.frames() / fmt::format("{:05}.png", frames_.load()), picture.image);
+    ++frames_;
+  }
+}
+
+void Film::say_trouble() {
+  const std::lock_guard lock(trouble_mutex_);
+  if (stopped_ || trouble_.empty()) return;
+  console_.warn(trouble_);
+  stopped_ = true;
 }
 
 void Film::finish() {
-  if (frames_ == 0) return;
+  {
+    const timing::Region region("render.wait");
+    drawer_.finish();
+    writer_.finish();
+  }
+  timing::add("render.draw", draw_seconds_);
+  timing::add("render.write", write_seconds_);
+  say_trouble();
+  if (frames_ > 0) make_movie();
+}
+
+void Film::make_movie() {
   const std::filesystem::path frames = folder_.frames();
   const std::filesystem::path file = folder_ / "movie.mp4";
   try {
     const timing::Region region("render.movie");
-    render::make_movie(frames, fps_, file);
+    render::make_movie(frames, scene_.render.fps, file);
   } catch (const RunError& error) {
     console_.warn(fmt::format("no movie, but the frames are in {}: {}", frames.string(), error.what()));
     return;

@@ -1,16 +1,19 @@
-// The frames of a run and the movie made of them. Trouble with pictures never costs the numbers: it is said,
-// noted in the manifest, and the run goes on without them.
+// The frames of a run and the movie made of them. They are drawn and written by two threads while the run
+// goes on. Trouble with pictures never costs the numbers: it is said, noted in the manifest, and the run goes
+// on without them; only a frame that cannot be written ends it, as any other file would.
 #pragma once
 
-#include "core/snapshot.hpp"
-#include "render/renderer.hpp"
 #include "sim/cli/console.hpp"
+#include "sim/cli/film_look.hpp"
+#include "sim/cli/worker.hpp"
 #include "sim/record/run_folder.hpp"
 #include "sim/scene/time_grid.hpp"
 #include "sim/simulation.hpp"
 
+#include <atomic>
 #include <cstdint>
 #include <memory>
+#include <mutex>
 #include <string>
 
 namespace scree::cli {
@@ -19,10 +22,11 @@ class Film {
  public:
   Film(const Scene& scene, const RunFolder& folder, Console& console);
 
-  /// Draws the frames that are due at the present state: frame k at the step nearest to k / fps. Throws
-  /// RunError if one cannot be written.
+  /// Takes the frames that are due at the present state: frame k at the step nearest to k / fps. Waits while
+  /// two others have not been begun: none is left out. Throws RunError if an earlier one could not be
+  /// written.
   void record(Simulation& simulation);
-  /// Makes the movie of the frames drawn.
+  /// Makes the movie of the frames, once all are there. Throws like record().
   void finish();
 
   std::int64_t frames() const { return frames_; }
@@ -30,18 +34,35 @@ class Film {
   const std::string& movie() const { return movie_; }
 
  private:
-  void write_frame(const render::Image& image);
+  struct Shot {
+    render::Frame frame;
+    std::int64_t copies;
+  };
+  struct Picture {
+    render::Image image;
+    std::int64_t copies;
+  };
+  class Studio;
+  void draw(std::shared_ptr<Studio>& studio, const Shot& shot);
+  void write(const Picture& picture);
+  void say_trouble();
+  void make_movie();
 
+  const Scene& scene_;
   const RunFolder& folder_;
   Console& console_;
-  double fps_;
+  FilmLook look_;
   Cadence frames_due_;
-  std::unique_ptr<render::Renderer> renderer_;  ///< null once drawing has failed
-  render::Camera camera_;
-  render::Style style_;
-  Snapshot snapshot_;
-  std::int64_t frames_ = 0;
+  bool stopped_ = false;  ///< no more frames: drawing has failed
+  std::atomic<std::int64_t> frames_ = 0;
   std::string movie_;
+  // Of the threads. Each time is touched by one of them, and read when both have ended.
+  double draw_seconds_ = 0, write_seconds_ = 0;
+  std::mutex trouble_mutex_;
+  std::string trouble_;
+  // The first hands its pictures to the second, so it is made later and ends before.
+  Worker<Picture> writer_;
+  Worker<Shot> drawer_;
 };
 
 }  // namespace scree::cli

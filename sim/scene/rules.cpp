@@ -130,8 +130,36 @@ void check_region(const Region& region, const Node& node, Reader& reader) {
                                  region.from[k]));
 }
 
+void check_orbit(const OrbitSettings&, const Node& node, Reader& reader) {
+  exclude("degrees", "degrees_per_second", node, reader);
+  if (given({"degrees", "degrees_per_second"}, node) == 0)
+    reader.fail(node.mark, "needs degrees or degrees_per_second");
+}
+
+void check_keyframe(const CameraKeySettings& key, const Node& node, Reader& reader) {
+  if (key.from == key.to) reader.fail(node.mark, "`from` and `to` must not be the same point");
+}
+
 void check_camera(const CameraSettings& camera, const Node& node, Reader& reader) {
-  if (camera.from == camera.to) reader.fail(node.mark, "`from` and `to` must not be the same point");
+  for (const char* other : {"from", "to", "fov", "orbit"}) exclude("keyframes", other, node, reader);
+  if (camera.from.has_value() != camera.to.has_value())
+    reader.fail(node.mark, "`from` and `to` must be given together, or neither");
+  if (camera.from && *camera.from == *camera.to)
+    reader.fail(node.mark, "`from` and `to` must not be the same point");
+  for (std::size_t k = 1; k < camera.keyframes.size(); ++k) {
+    const double before = camera.keyframes[k - 1].at, at = camera.keyframes[k].at;
+    if (at <= before)
+      reader.fail_at("keyframes", node,
+                     fmt::format("must be in order of time, but {} s follows {} s", at, before));
+  }
+}
+
+void check_render(const RenderSettings& render, const Node& node, Reader& reader) {
+  if (!render.range) return;
+  if ((*render.range)[0] >= (*render.range)[1])
+    reader.fail_at("range", node, "must be [low, high] with low < high");
+  if (render.color == ColorBy::material || render.color == ColorBy::level || render.color == ColorBy::id)
+    reader.fail_at("range", node, "needs a color that is a number: speed, size, kinetic_energy or force");
 }
 
 void check_check(const CheckEntry& check, const Node& node, Reader& reader) {

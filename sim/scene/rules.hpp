@@ -13,6 +13,9 @@ void check_scatter(const ScatterEntry& scatter, const Node& node, Reader& reader
 void check_body(const BodyEntry& body, const Node& node, Reader& reader);
 void check_force(const ForceEntry& force, const Node& node, Reader& reader);
 void check_region(const Region& region, const Node& node, Reader& reader);
+void check_orbit(const OrbitSettings& orbit, const Node& node, Reader& reader);
+void check_keyframe(const CameraKeySettings& key, const Node& node, Reader& reader);
+void check_render(const RenderSettings& render, const Node& node, Reader& reader);
 void check_camera(const CameraSettings& camera, const Node& node, Reader& reader);
 void check_check(const CheckEntry& check, const Node& node, Reader& reader);
 template <class T>

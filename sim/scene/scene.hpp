@@ -96,12 +96,28 @@ struct ModelSettings {
   std::optional<bool> restitution;
 };
 
-enum class ColorBy { material, speed, size };
+enum class ColorBy { material, speed, size, kinetic_energy, force, level, id };
+enum class Overlay { grid, pairs, forces };
+
+/// A turn about the axis through the camera's `to` against gravity; one of the two is given.
+struct OrbitSettings {
+  std::optional<double> degrees;             ///< over the whole run
+  std::optional<double> degrees_per_second;  ///< of simulated time
+};
+
+struct CameraKeySettings {
+  double at = 0;             ///< s
+  Vec3 from = Vec3::Zero();  ///< m
+  Vec3 to = Vec3::Zero();    ///< m
+  double fov = 40;           ///< vertical, degrees
+};
 
 struct CameraSettings {
-  Vec3 from = Vec3(3, -4, 2);  ///< m
-  Vec3 to = Vec3::Zero();      ///< m
-  double fov = 40;             ///< vertical, degrees
+  std::optional<Vec3> from;  ///< m; absent, together with `to`: chosen to see every body
+  std::optional<Vec3> to;    ///< m
+  double fov = 40;           ///< vertical, degrees
+  std::optional<OrbitSettings> orbit;
+  std::vector<CameraKeySettings> keyframes;  ///< instead of all that; by ascending time
 };
 
 struct RenderSettings {
@@ -111,6 +127,11 @@ struct RenderSettings {
   double fps = 30;                       ///< frames per simulated second
   std::optional<CameraSettings> camera;  ///< absent: chosen to see every body
   ColorBy color = ColorBy::material;
+  std::optional<std::array<double, 2>>
+      range;                       ///< of the colour scale, SI units; absent: guessed from the scene
+  std::optional<bool> legend;      ///< absent: where there is room for it
+  std::optional<bool> time_stamp;  ///< likewise
+  std::vector<Overlay> overlay;
 };
 
 struct RecordSettings {

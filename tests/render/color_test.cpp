@@ -45,15 +45,52 @@ TEST(Color, TintIsSmallAndDependsOnTheBodyAlone) {
 
 TEST(Color, ValueRangeIsThatOfTheMovingBodies) {
   Snapshot snapshot;
-  EXPECT_EQ(value_range(snapshot, ColorBy::speed), (std::array<double, 2>{0, 1}));
+  EXPECT_EQ(value_range({snapshot}, ColorBy::speed), (std::array<double, 2>{0, 1}));
   add_sphere(snapshot, Vec3::Zero(), 0.5);
-  EXPECT_EQ(value_range(snapshot, ColorBy::speed), (std::array<double, 2>{0, 1}));
-  EXPECT_EQ(value_range(snapshot, ColorBy::size), (std::array<double, 2>{0, 1}));
+  EXPECT_EQ(value_range({snapshot}, ColorBy::speed), (std::array<double, 2>{0, 1}));
+  EXPECT_EQ(value_range({snapshot}, ColorBy::size), (std::array<double, 2>{0, 1}));
   for (int k = 0; k < 100; ++k) add_sphere(snapshot, Vec3::Zero(), 1 + 0.01 * k);
   add_body(snapshot, Shape::box, Vec3::Zero(), Vec3::Constant(100), Mobility::fixed);
-  const auto [low, high] = value_range(snapshot, ColorBy::size);
+  const auto [low, high] = value_range({snapshot}, ColorBy::size);
   EXPECT_NEAR(low, 1.01, 0.02);
   EXPECT_NEAR(high, 1.97, 0.02);
+}
+
+TEST(Coloring, ScalesShowTheirQuantity) {
+  Frame frame;
+  add_sphere(frame.snapshot, Vec3::Zero(), 0.5);
+  frame.snapshot.bodies.velocity[0] = Vec3(0, 3, 4);
+  frame.snapshot.bodies.inverse_mass[0] = 0.5;
+  frame.force = {7};
+  struct Case {
+    ColorBy color_by;
+    double value;
+  };
+  for (const Case& c : {Case{ColorBy::speed, 5}, Case{ColorBy::size, 0.5}, Case{ColorBy::kinetic_energy, 25},
+                        Case{ColorBy::force, 7}}) {
+    EXPECT_TRUE(is_scale(c.color_by));
+    EXPECT_DOUBLE_EQ(value_of(frame, c.color_by, 0), c.value);
+    const Painter painter(frame, c.color_by, {0, 2 * c.value}, {});
+    EXPECT_LT((painter(0) - scale_color(0.5)).norm(), 1e-6f);
+  }
+}
+
+TEST(Coloring, KindsAreToldApart) {
+  Frame frame;
+  for (int k = 0; k < 3; ++k) add_sphere(frame.snapshot, Vec3::Zero(), 0.5);
+  frame.level = {0, 1, 1};
+  const Painter levels(frame, ColorBy::level, {0, 1}, {});
+  EXPECT_EQ(levels(0), linear_of(category_palette()[0]));
+  EXPECT_EQ(levels(1), linear_of(category_palette()[1]));
+  EXPECT_EQ(levels(2), levels(1));
+  const Painter ids(frame, ColorBy::id, {0, 1}, {});
+  EXPECT_GT((oklab_of(ids(0)) - oklab_of(ids(1))).norm(), 0.1f);
+}
+
+TEST(Coloring, FixedBodiesStayInTheBackground) {
+  Frame frame;
+  add_body(frame.snapshot, Shape::box, Vec3::Zero(), Vec3::Ones(), Mobility::fixed);
+  EXPECT_EQ(Painter(frame, ColorBy::speed, {0, 1}, {})(0), Painter(frame, ColorBy::id, {0, 1}, {})(0));
 }
 
 }  // namespace

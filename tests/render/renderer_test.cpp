@@ -81,7 +81,7 @@ TEST_P(Silhouette, IsTheEllipseOfTheTangentCone) {
     const Vec3 center = origin + GetParam();
     add_sphere(snapshot, center, 0.8);
     const Camera camera{origin + Vec3(0, -4, 0), origin, Vec3::UnitZ(), 60};
-    const Blob seen = silhouette(renderer().draw(snapshot, camera, masked()));
+    const Blob seen = silhouette(renderer().draw({snapshot}, camera, masked()));
     const Blob expected = projected_sphere(camera, center, 0.8);
     // A quarter of a pixel of the radius.
     EXPECT_NEAR(seen.area, expected.area, 0.25 * std::sqrt(4 * pi * expected.area));
@@ -103,7 +103,7 @@ TEST(Renderer, NearerSurfaceHidesTheOther) {
   Style style = masked();
   style.palette = {Color(0.9f, 0, 0), Color(0, 0, 0.9f)};
   const Camera camera{{0, -100, 0}, Vec3::Zero(), Vec3::UnitZ(), 1.4};
-  const Image image = renderer().draw(snapshot, camera, style);
+  const Image image = renderer().draw({snapshot}, camera, style);
   int blue = 0;
   for (int y = 0; y < height; ++y) {
     for (int x = 0; x < width; ++x) {
@@ -120,7 +120,7 @@ TEST(Renderer, BoxFaceHasItsSize) {
   Snapshot snapshot;
   add_body(snapshot, Shape::box, Vec3::Zero(), Vec3(0.5, 1, 0.25));
   const Camera camera{{0, -5, 0}, Vec3::Zero(), Vec3::UnitZ(), 40};
-  const Blob seen = silhouette(renderer().draw(snapshot, camera, masked()));
+  const Blob seen = silhouette(renderer().draw({snapshot}, camera, masked()));
   const double scale = height / (2 * 4 * std::tan(20 * pi / 180));  // of the front face, 4 m away
   EXPECT_NEAR(seen.area, scale * 1 * scale * 0.5, 0.5 * 2 * scale * 1.5);
 }
@@ -145,11 +145,11 @@ TEST(Renderer, SameInputGivesTheSameBytes) {
   for (const ColorBy color_by : {ColorBy::material, ColorBy::speed, ColorBy::size}) {
     Style style;
     style.color_by = color_by;
-    const Image first = renderer().draw(snapshot, camera, style);
+    const Image first = renderer().draw({snapshot}, camera, style);
     const Image other = renderer().draw({}, camera, style);
     EXPECT_NE(first.rgb, other.rgb);
-    EXPECT_EQ(first.rgb, renderer().draw(snapshot, camera, style).rgb);
-    EXPECT_EQ(first.rgb, make_osmesa_renderer(width, height)->draw(snapshot, camera, style).rgb);
+    EXPECT_EQ(first.rgb, renderer().draw({snapshot}, camera, style).rgb);
+    EXPECT_EQ(first.rgb, make_osmesa_renderer(width, height)->draw({snapshot}, camera, style).rgb);
   }
 }
 
@@ -161,8 +161,8 @@ TEST(Renderer, ShadowDarkensTheGround) {
   Snapshot shaded = bare;
   add_sphere(shaded, {0, 0, 1.5}, 0.5);
   const Camera camera{{0, -6, 5}, {0, 0, 0.5}, Vec3::UnitZ(), 50};
-  const Image before = renderer().draw(bare, camera, {});
-  const Image after = renderer().draw(shaded, camera, {});
+  const Image before = renderer().draw({bare}, camera, {});
+  const Image after = renderer().draw({shaded}, camera, {});
   const Blob sphere = projected_sphere(camera, {0, 0, 1.5}, 0.5);
   const double sphere_radius = std::sqrt(sphere.area / pi);
   int darker = 0, brighter = 0;
@@ -182,6 +182,80 @@ TEST(Renderer, ShadowDarkensTheGround) {
   EXPECT_EQ(brighter, 0);
 }
 
+TEST(Renderer, ShadowsSoftenWithTheHeightOfWhatCastsThem) {
+  // A fixed plate at a height, looked at from beside: of its shadow on the ground, the share of pixels that
+  // are neither dark nor lit grows with the height.
+  Snapshot bare;
+  add_plane(bare, Vec3::UnitZ(), 0);
+  Style style;
+  style.cell = 100;
+  double last = 0;
+  for (const double plate : {0.3, 1.2, 4.8}) {
+    Snapshot shaded = bare;
+    add_body(shaded, Shape::box, {0, 0, plate}, {0.5, 0.5, 0.05}, Mobility::fixed);
+    // Light goes down by 1, right by 0.62 and ahead by 0.38. The camera looks down on the shadow from below
+    // the plate.
+    const Vec3 middle(0.62 * plate, 0.38 * plate, 0);
+    const Camera camera{middle + Vec3(2, -3, 0.29), middle, Vec3::UnitZ(), 40};
+    const Image before = renderer().draw({bare}, camera, style);
+    const Image after = renderer().draw({shaded}, camera, style);
+    double dark = 0, half_lit = 0;
+    for (int y = height / 3; y < height; ++y) {
+      for (int x = 0; x < width; ++x) {
+        const double ratio = brightness(after, x, y) / brightness(before, x, y);
+        dark += ratio < 0.5 ? 1 : 0;
+        half_lit += ratio > 0.5 && ratio < 0.9 ? 1 : 0;
+      }
+    }
+    EXPECT_GT(half_lit / (dark + half_lit), 1.15 * last) << plate;
+    last = half_lit / (dark + half_lit);
+  }
+}
+
+Snapshot drum(double turn) {
+  Snapshot snapshot;
+  // Its axis along the view.
+  const Quat lying = Quat::FromTwoVectors(Vec3::UnitZ(), Vec3::UnitY());
+  add_body(snapshot, Shape::tube, Vec3::Zero(), {1, 1, 0.4}, Mobility::prescribed,
+           lying * Quat(Eigen::AngleAxisd(turn, Vec3::UnitZ())));
+  return snapshot;
+}
+
+TEST(Renderer, TubeShowsItsContentsAndItsTurn) {
+  const Camera camera{{0, -6, 1}, Vec3::Zero(), Vec3::UnitZ(), 40};
+  Snapshot filled = drum(0);
+  add_sphere(filled, {0, 0, 0}, 0.3);
+  const Image empty = renderer().draw({drum(0)}, camera, masked());
+  const Image full = renderer().draw({filled}, camera, masked());
+  const Blob sphere = projected_sphere(camera, {0, 0, 0}, 0.3);
+  const auto x = static_cast<int>(sphere.x), y = static_cast<int>(sphere.y);
+  EXPECT_TRUE(is_background(empty, x, y)) << "through both end caps";
+  EXPECT_FALSE(is_background(full, x, y));
+  EXPECT_NE(renderer().draw({drum(0.1)}, camera, masked()).rgb, empty.rgb);
+  // Radius 1 at some 6 m: the wall ends where the circle of its rim does.
+  EXPECT_TRUE(is_background(empty, width / 2 + 100, height / 2));
+}
+
+TEST(Renderer, LinesAreAsWideAsTheySay) {
+  Frame frame;
+  Line line{.from = {-1, 0, 0}, .to = {1, 0, 0}, .width = 12, .color = Color(1, 0, 1)};
+  frame.lines = {line};
+  const Camera camera{{0, -4, 0}, Vec3::Zero(), Vec3::UnitZ(), 60};
+  const Image image = renderer().draw(frame, camera, masked());
+  int rows = 0;
+  for (int y = 0; y < height; ++y) rows += is_background(image, width / 2, y) ? 0 : 1;
+  EXPECT_NEAR(rows, 12.0 * height / 720, 1);
+  // Behind a body it shows as much as it says.
+  add_sphere(frame.snapshot, Vec3::Zero(), 0.5);
+  frame.lines[0].where_hidden = 0;
+  const Image hidden = renderer().draw(frame, camera, masked());
+  const Image alone = renderer().draw({frame.snapshot}, camera, masked());
+  EXPECT_EQ(pixel(hidden, width / 2, height / 2), pixel(alone, width / 2, height / 2));
+  // One that passes the eye is cut, and one behind it is not seen.
+  frame.lines = {{.from = {0, -8, 0.01}, .to = {0, 8, 0.01}}, {.from = {-1, -9, 0}, .to = {1, -9, 0}}};
+  EXPECT_NE(renderer().draw(frame, camera, masked()).rgb, std::vector<std::uint8_t>());
+}
+
 TEST(Renderer, FlatBackgroundKeepsItsColor) {
   Style style;
   style.zenith = style.horizon = Color::Constant(128 / 255.0f);
@@ -193,7 +267,7 @@ TEST(Renderer, RowsRunFromTheTop) {
   Snapshot snapshot;
   add_sphere(snapshot, {0, 0, 1}, 0.4);
   const Blob seen =
-      silhouette(renderer().draw(snapshot, {{0, -5, 0}, Vec3::Zero(), Vec3::UnitZ(), 40}, masked()));
+      silhouette(renderer().draw({snapshot}, {{0, -5, 0}, Vec3::Zero(), Vec3::UnitZ(), 40}, masked()));
   EXPECT_LT(seen.y, height / 2);
 }
 
@@ -201,9 +275,9 @@ TEST(Renderer, PlaneSeenFromBehindHidesNothing) {
   Snapshot snapshot;
   add_sphere(snapshot, Vec3::Zero(), 0.5);
   const Camera camera{{0, -5, 0}, Vec3::Zero(), Vec3::UnitZ(), 40};
-  const Image alone = renderer().draw(snapshot, camera, masked());
+  const Image alone = renderer().draw({snapshot}, camera, masked());
   add_plane(snapshot, Vec3::UnitY(), -2);
-  EXPECT_EQ(renderer().draw(snapshot, camera, masked()).rgb, alone.rgb);
+  EXPECT_EQ(renderer().draw({snapshot}, camera, masked()).rgb, alone.rgb);
 }
 
 TEST(Renderer, MillimetresLookLikeMetres) {
@@ -211,15 +285,15 @@ TEST(Renderer, MillimetresLookLikeMetres) {
   Snapshot small = large;
   for (Vec3& p : small.bodies.position) p *= 1e-3;
   for (Vec3& s : small.bodies.size) s *= 1e-3;
-  const Image a = renderer().draw(large, frame_all(large, {0, 0, -9.81}, 4.0 / 3), {});
-  const Image b = renderer().draw(small, frame_all(small, {0, 0, -9.81}, 4.0 / 3), {});
+  const Image a = renderer().draw({large}, frame_all(large, {0, 0, -9.81}, 4.0 / 3), {});
+  const Image b = renderer().draw({small}, frame_all(small, {0, 0, -9.81}, 4.0 / 3), {});
   std::size_t differing = 0;
   for (std::size_t k = 0; k < a.rgb.size(); ++k) differing += std::abs(a.rgb[k] - b.rgb[k]) > 8 ? 1 : 0;
   EXPECT_LT(static_cast<double>(differing), 0.01 * static_cast<double>(a.rgb.size()));
 }
 
 TEST(NullRenderer, DrawsBlackWithoutOpenGl) {
-  const Image image = make_null_renderer(7, 5)->draw(small_pile(), {}, {});
+  const Image image = make_null_renderer(7, 5)->draw({small_pile()}, {}, {});
   EXPECT_EQ(image.width, 7);
   EXPECT_EQ(image.height, 5);
   EXPECT_EQ(image.rgb, std::vector<std::uint8_t>(7 * 5 * 3, 0));

@@ -3,7 +3,11 @@
 flat out uint tag;
 
 void main() {
+#ifdef SHADOW
+  int body = after.z + gl_VertexID / 18;
+#else
   int body = begin.x + gl_VertexID / 18;
+#endif
   int axis = gl_VertexID % 18 / 6;
   // The two triangles of a face: corners 0 1 2 and 2 1 3, of which bit 0 and bit 1 are the signs.
   int corner = int[6](0, 1, 2, 2, 1, 3)[gl_VertexID % 6];

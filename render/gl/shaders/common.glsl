@@ -11,19 +11,23 @@ layout(std140) uniform Frame {
   vec4 focus;        // xyz: what the camera looks at; w: distance from it at which the ground begins to fade (m)
   vec4 zenith;       // rgb: linear; w: reach of the ambient occlusion (m)
   vec4 horizon;      // rgb: linear
-  ivec4 begin;       // first of: boxes, grounds, walls, hidden planes; spheres begin at 0
-  ivec4 extent;      // x: number of bodies; yz: size of the picture in pixels
+  vec4 penumbra;     // x: its radius per unit of map depth between caster and receiver; y: depth of the first caster
+  ivec4 begin;       // first of: boxes, tubes, grounds, walls; spheres begin at 0
+  ivec4 after;       // first of: hidden planes, spheres that cast shadows, boxes that do; w: end of all
+  ivec4 extent;      // yz: size of the picture in pixels
 };
 
 // Four texels per body:
 //   sphere  centre, radius   orientation                      -                          colour
 //   box     centre           orientation                      half extents               colour
+//   tube    centre, radius   orientation                      z: half length             colour
 //   plane   point, level?    axis along the grid, its offset  the other axis, its offset  normal, cell of the grid
 uniform samplerBuffer bodies;
 
 // A tag names what a sample of the picture sees: kind and box face in the high bits, then the body. 0: nothing.
 const uint tag_sphere = 1u << 30, tag_box = 2u << 30, tag_plane = 3u << 30;
-const uint tag_kind = 3u << 30, tag_body = (1u << 28) - 1u;
+const uint tag_kind = 3u << 30, tag_face = 3u << 28, tag_body = (1u << 28) - 1u;
+const uint tag_tube = tag_plane | 1u << 28;
 
 vec4 texel_of(int body, int k) { return texelFetch(bodies, 4 * body + k); }
 

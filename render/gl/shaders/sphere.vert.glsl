@@ -6,7 +6,11 @@ flat out uint tag;
 out vec2 place;  // in the plane of the triangle, from the centre, in radii of the circle
 
 void main() {
+#ifdef SHADOW
+  int body = after.y + gl_VertexID / 3;
+#else
   int body = gl_VertexID / 3;
+#endif
   sphere = texel_of(body, 0);
   tag = tag_sphere | uint(body);
   float corner = float(gl_VertexID % 3) * 2.0943951 + 1.5707963;

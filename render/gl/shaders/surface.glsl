@@ -73,9 +73,26 @@ Surface plane_surface(int plane, vec3 ray) {
   return Surface(depth, position, texel_of(plane, 3).xyz, albedo, 0.0, fade_at(position));
 }
 
+// The inside of the wall. Staves in two shades, one of them marked, show how the tube turns.
+Surface tube_surface(int body, vec3 ray) {
+  const float staves = 24.0;
+  TubeSpan s = tube_span(body, ray);
+  vec2 local = s.eye.xy + s.leave * s.direction.xy;
+  vec3 normal = rotated(texel_of(body, 1), vec3(-normalize(local), 0.0));
+  float stave = atan(local.y, local.x) * staves / 6.2831853;
+  float steep = max(dot(normal, -normalize(ray)), 0.1);
+  float width = pixel_at(s.leave) / (texel_of(body, 0).w * steep) * staves / 6.2831853;
+  float light = 0.5 + clamp((0.25 - abs(fract(stave) - 0.5)) / width, -0.5, 0.5);
+  float marked = clamp((0.25 - abs(stave - 0.5)) / width + 0.5, 0.0, 1.0);
+  vec3 albedo = texel_of(body, 3).rgb * (0.72 + 0.28 * light);
+  albedo = mix(albedo, vec3(0.79, 0.35, 0.0), marked);
+  return Surface(s.leave, s.leave * ray, normal, albedo, 0.1, 0.0);
+}
+
 Surface surface_of(uint tag, vec3 ray) {
   int body = int(tag & tag_body);
   uint kind = tag & tag_kind;
+  if ((tag & (tag_kind | tag_face)) == tag_tube) return tube_surface(body, ray);
   if (kind == tag_sphere) return sphere_surface(body, ray);
   if (kind == tag_box) return box_surface(body, ray);
   if (kind == tag_plane) return plane_surface(body, ray);

@@ -1,0 +1,160 @@
+// Time of a picture, snapshot in to pixels out, of a mound of bodies with a splash above it.
+//
+//   scree_bench_render [--shape sphere,box,mixed] [--n 10000,100000,1000000] [--size 1280x720] [--png FOLDER]
+//
+// One picture to warm up, then the median of five; in wall time, and in processor time of all threads.
+// --png keeps the last picture of each row.
+#include "core/error.hpp"
+#include "core/rng.hpp"
+#include "core/snapshot.hpp"
+#include "render/camera.hpp"
+#include "render/png.hpp"
+#include "render/renderer.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <ctime>
+#include <map>
+#include <sstream>
+#include <string>
+#include <vector>
+
+namespace scree::bench {
+
+namespace {
+
+constexpr int repeats = 5;
+const Vec3 gravity(0, 0, -9.81);
+
+using Options = std::map<std::string, std::string>;
+
+Options parse(int argc, char** argv) {
+  Options options = {{"--shape", "sphere,box,mixed"},
+                     {"--n", "10000,100000,1000000"},
+                     {"--size", "1280x720"},
+                     {"--png", ""}};
+  for (int k = 1; k < argc; k += 2) {
+    const auto option = options.find(argv[k]);
+    if (option == options.end() || k + 1 == argc) {
+      throw InputError(std::string(argv[k]) + ": not an option, or without a value");
+    }
+    option->second = argv[k + 1];
+  }
+  return options;
+}
+
+std::vector<std::string> split(const std::string& list) {
+  std::vector<std::string> items;
+  std::istringstream text(list);
+  for (std::string item; std::getline(text, item, ',');) items.push_back(item);
+  return items;
+}
+
+void append(BodyTable& bodies, Shape shape, const Vec3& position, const Quat& orientation, const Vec3& size) {
+  const bool free = shape != Shape::plane;
+  bodies.id.push_back(static_cast<std::int32_t>(bodies.id.size()));
+  bodies.position.push_back(position);
+  bodies.orientation.push_back(orientation);
+  bodies.velocity.push_back(Vec3(0, 0, -position.z()));
+  bodies.spin.push_back(Vec3::Zero());
+  bodies.size.push_back(size);
+  bodies.inverse_mass.push_back(free ? 1 : 0);
+  bodies.inverse_inertia.push_back(Vec3::Constant(free ? 1 : 0));
+  bodies.shape.push_back(shape);
+  bodies.mobility.push_back(free ? Mobility::free : Mobility::fixed);
+  bodies.material.push_back(static_cast<std::int32_t>(bodies.id.size() % 3));
+}
+
+/// A cone of bodies, jittered on a lattice, over its ground: height half the radius, 1 m. One in a thousand
+/// flies above it.
+Snapshot mound(const std::string& shape, std::int64_t n) {
+  const double pitch = std::cbrt(pi / 6 / static_cast<double>(n));
+  Snapshot snapshot;
+  append(snapshot.bodies, Shape::plane, Vec3::Zero(), Quat::Identity(), Vec3::Zero());
+  const auto steps = static_cast<std::int64_t>(1 / pitch) + 1;
+  std::int64_t item = 0;
+  for (std::int64_t z = 0; z < steps; ++z) {
+    for (std::int64_t y = -steps; y <= steps; ++y) {
+      for (std::int64_t x = -steps; x <= steps; ++x) {
+        const Vec3 place =
+            pitch *
+            (Vec3(static_cast<double>(x), static_cast<double>(y), static_cast<double>(z)) + Vec3(0, 0, 0.5));
+        if (std::hypot(place.x(), place.y()) > 1 - 2 * place.z()) continue;
+        Random random(1, static_cast<std::uint64_t>(item++));
+        Vec3 jitter, axis;
+        for (double& c : jitter) c = random.uniform(-0.15, 0.15);
+        for (double& c : axis) c = random.uniform(-1, 1);
+        const double rise = random.uniform() < 1e-3 ? random.uniform(0, 0.5) : 0;
+        const double radius = pitch * random.uniform(0.4, 0.55);
+        const bool sphere = shape == "sphere" || (shape == "mixed" && item % 2 == 0);
+        append(snapshot.bodies, sphere ? Shape::sphere : Shape::box,
+               place + pitch * jitter + Vec3(0, 0, rise), rotation_of(2 * axis),
+               Vec3::Constant(sphere ? radius : 0.8 * radius));
+      }
+    }
+  }
+  return snapshot;
+}
+
+double seconds(const timespec& t) {
+  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
+}
+
+double now(clockid_t clock) {
+  timespec t{};
+  clock_gettime(clock, &t);
+  return seconds(t);
+}
+
+double median(std::vector<double> values) {
+  std::sort(values.begin(), values.end());
+  return values[values.size() / 2];
+}
+
+void run(const std::string& shape, std::int64_t n, render::Renderer& renderer, double aspect,
+         const std::string& folder) {
+  const render::Frame frame{.snapshot = mound(shape, n)};
+  const render::Camera camera = render::frame_all(frame.snapshot, gravity, aspect);
+  render::Image image = renderer.draw(frame, camera, {});
+  std::vector<double> wall, processor;
+  for (int k = 0; k < repeats; ++k) {
+    const double wall_start = now(CLOCK_MONOTONIC), processor_start = now(CLOCK_PROCESS_CPUTIME_ID);
+    image = renderer.draw(frame, camera, {});
+    wall.push_back(now(CLOCK_MONOTONIC) - wall_start);
+    processor.push_back(now(CLOCK_PROCESS_CPUTIME_ID) - processor_start);
+  }
+  std::printf("%-7s %9lld %10.3f %10.3f\n", shape.c_str(),
+              static_cast<long long>(frame.snapshot.bodies.count()), median(wall), median(processor));
+  std::fflush(stdout);
+  if (!folder.empty()) render::write_png(folder + "/" + shape + "_" + std::to_string(n) + ".png", image);
+}
+
+void run_all(int argc, char** argv) {
+  const Options options = parse(argc, argv);
+  int width = 0, height = 0;
+  if (std::sscanf(options.at("--size").c_str(), "%dx%d", &width, &height) != 2) {
+    throw InputError("--size " + options.at("--size") + ": must be WIDTHxHEIGHT");
+  }
+  const auto renderer = render::make_osmesa_renderer(width, height);
+  std::printf("shape      bodies     wall s      cpu s\n");
+  for (const std::string& shape : split(options.at("--shape"))) {
+    for (const std::string& n : split(options.at("--n"))) {
+      run(shape, std::stoll(n), *renderer, static_cast<double>(width) / height, options.at("--png"));
+    }
+  }
+}
+
+}  // namespace
+
+}  // namespace scree::bench
+
+int main(int argc, char** argv) {
+  try {
+    scree::bench::run_all(argc, argv);
+    return 0;
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "scree_bench_render: %s\n", error.what());
+    return 2;
+  }
+}

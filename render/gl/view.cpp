@@ -1,0 +1,112 @@
+#include "render/gl/view.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace scree::render::gl {
+
+namespace {
+
+/// The angular radius of the light, as a tangent: a large lamp rather than the sun (0.005), so that shadows
+/// say how far a body is from what it shades.
+constexpr double light_radius = 0.035;
+
+/// Radius of the largest ball about the centre inside the body.
+double inner_radius(Shape shape, const Vec3& size) {
+  return shape == Shape::sphere ? size.x() : size.minCoeff();
+}
+
+}  // namespace
+
+View::View(const Camera& camera, double aspect_ratio)
+    : axes(axes_of(camera)),
+      eye(camera.from),
+      up(camera.up.normalized()),
+      focus(camera.to - camera.from),
+      tan_y(std::tan(0.5 * camera.fov * pi / 180)) {
+  aspect = aspect_ratio;
+  tan_x = tan_y * aspect;
+  view = focus.norm() * tan_y;
+  near = 0.01 * focus.norm();
+  // From above, the left, and a little behind the camera: shadows fall to the right and away.
+  const Vec3 ahead = up.cross(axes.col(0));
+  to_light = (up - 0.62 * axes.col(0) - 0.38 * ahead).normalized();
+}
+
+std::optional<Disc> View::disc_of(const BodyTable& bodies, std::size_t body, int height) const {
+  const Vec3 at = bodies.position[body] - eye;
+  const Vec3 p = axes.transpose() * at;
+  const double radius = bounding_radius(bodies.shape[body], bodies.size[body]);
+  if (p.z() + radius < near) return {};
+  Disc disc{.body = static_cast<std::int32_t>(body)};
+  if (p.z() - radius < near) {
+    disc.outer = 4.0f * static_cast<float>(height) * static_cast<float>(std::max(aspect, 1.0));
+    return disc;
+  }
+  const double focal = 0.5 * height / tan_y;
+  disc.x = static_cast<float>(0.5 * height * aspect + focal * p.x() / p.z());
+  disc.y = static_cast<float>(0.5 * height + focal * p.y() / p.z());
+  // A point c + d of the ball, |d| <= r, is seen (d_x c_z - c_x d_z) / (c_z (c_z + d_z)) beside its centre.
+  disc.outer = static_cast<float>(focal * radius * p.norm() / (p.z() * (p.z() - radius)));
+  // The section of the inner ball across the view, at the depth of the centre.
+  disc.inner = static_cast<float>(focal * inner_radius(bodies.shape[body], bodies.size[body]) / p.z());
+  disc.near = static_cast<float>(p.z() - radius);
+  disc.far = static_cast<float>(p.z());
+  return disc;
+}
+
+LightView::LightView(const BodyTable& bodies, const View& v, int map_size)
+    : eye_(v.eye), map_size_(map_size) {
+  const Vec3 x = tangent_of(v.to_light);
+  axes_ << x, v.to_light.cross(x), -v.to_light;
+  // One body far off must not take the resolution from all others.
+  const double reach = 4 * v.view * std::max(1.0, v.aspect);
+  const Vec3 focus = axes_.transpose() * v.focus;
+  Eigen::AlignedBox3d bounds;
+  for (std::size_t k = 0; k < bodies.shape.size(); ++k) {
+    if (!is_solid(bodies.shape[k])) continue;
+    const Vec3 center = axes_.transpose() * (bodies.position[k] - eye_);
+    const Vec3 radius = Vec3::Constant(bounding_radius(bodies.shape[k], bodies.size[k]));
+    const Vec3 low = (center - radius).cwiseMax(focus - Vec3::Constant(reach));
+    const Vec3 high = (center + radius).cwiseMin(focus + Vec3::Constant(reach));
+    if ((low.array() <= high.array()).all()) bounds.extend(Eigen::AlignedBox3d(low, high));
+  }
+  if (bounds.isEmpty()) bounds.extend(focus);
+  // Sizes in steps and corners on multiples of a texel keep the edges of shadows still while bodies move.
+  const double least = 0.01 * v.view;
+  // A fifth more than the bodies take, for penumbras.
+  const double wanted = 1.2 * std::max({bounds.sizes().x(), bounds.sizes().y(), least});
+  size_ = std::exp2(std::ceil(8 * std::log2(wanted)) / 8);
+  corner_ = bounds.center() - Vec3::Constant(0.5 * size_);
+  for (int axis = 0; axis < 2; ++axis) corner_[axis] = texel() * std::floor(corner_[axis] / texel());
+  // Receivers in front of the first caster and behind the last one, on the ground, have depths as well.
+  depth_ = 2 * reach;
+  corner_.z() = focus.z() - reach;
+  nearest_ = (bounds.min().z() - corner_.z()) / depth_;
+}
+
+std::array<Vec4f, 3> LightView::rows() const {
+  const Vec3 scale(1 / size_, 1 / size_, 1 / depth_);
+  std::array<Vec4f, 3> rows;
+  for (int axis = 0; axis < 3; ++axis) {
+    rows[static_cast<std::size_t>(axis)] =
+        packed(Vec3(axes_.col(axis) * scale[axis]), -corner_[axis] * scale[axis]);
+  }
+  return rows;
+}
+
+double LightView::spread() const { return light_radius * depth_ / size_; }
+
+Disc LightView::disc_of(const BodyTable& bodies, std::size_t body) const {
+  const Vec3 p = axes_.transpose() * (bodies.position[body] - eye_) - corner_;
+  const double radius = bounding_radius(bodies.shape[body], bodies.size[body]);
+  return {.x = static_cast<float>(p.x() / texel()),
+          .y = static_cast<float>(p.y() / texel()),
+          .outer = static_cast<float>(radius / texel()),
+          .inner = static_cast<float>(inner_radius(bodies.shape[body], bodies.size[body]) / texel()),
+          .near = static_cast<float>(p.z() - radius),
+          .far = static_cast<float>(p.z()),
+          .body = static_cast<std::int32_t>(body)};
+}
+
+}  // namespace scree::render::gl

@@ -1,0 +1,31 @@
+// How the pictures of a scene look: everything about them that is known before the run.
+#pragma once
+
+#include "render/annotation.hpp"
+#include "render/camera_path.hpp"
+#include "render/renderer.hpp"
+#include "sim/inspection.hpp"
+#include "sim/scene/scene.hpp"
+#include "sim/simulation.hpp"
+
+#include <functional>
+
+namespace scree::cli {
+
+struct FilmLook {
+  std::function<render::Camera(double time)> camera;
+  render::Style style;
+  render::Annotation annotation;
+  /// Contact force (N) that is drawn as a line 10 pixels wide; wider it does not get.
+  double widest_force = 1;
+};
+
+/// Ranges of colours left to scree are guessed from the state at the start: speeds from a fall through the
+/// height of the scene and from moving bodies, energies from these speeds, forces from the weight of a column
+/// of bodies.
+FilmLook look_of(const Scene& scene);
+
+/// The present state as the scene wants it drawn.
+render::Frame frame_of(const Scene& scene, const FilmLook& look, Simulation& simulation);
+
+}  // namespace scree::cli
