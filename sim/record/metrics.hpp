@@ -20,7 +20,7 @@ namespace scree {
 std::vector<std::string> metric_names(const Scene& scene);
 
 /// One row per call: time, step, then the measures, with _ for . in their names. Numbers are the shortest
-/// that read back to the same double.
+/// that read back to the same double; nan for a body that is not there.
 class MetricsFile {
  public:
   MetricsFile(const Scene& scene, const std::filesystem::path& file);

@@ -4,6 +4,7 @@
 
 #include "sim/scene/body.hpp"
 #include "sim/scene/body_file.hpp"
+#include "sim/scene/materials.hpp"
 #include "sim/scene/measure.hpp"
 #include "sim/scene/memory.hpp"
 #include "sim/scene/scatter.hpp"
@@ -45,11 +46,12 @@ double count_of(const BodyEntry& entry, const BodyFile* file) {
 
 class Builder {
  public:
-  Builder(SceneEntry& entry, Reader& reader) : entry_(entry), reader_(reader), grid_(entry.time) {}
+  Builder(SceneEntry& entry, Reader& reader)
+      : entry_(entry), reader_(reader), grid_(entry.time), materials_(entry.materials) {}
 
   void build(Scene& scene) {
-    find_materials(scene);
-    find_laws(scene);
+    scene.materials.assign(entry_.materials.begin(), entry_.materials.end());
+    scene.laws = contact_laws(entry_.materials, materials_, entry_.contacts, reader_);
     reserve(scene);
     for (const Slot& slot : slots_) {
       slot.file ? read_bodies(slot, scene) : make_bodies(slot, scene);
@@ -64,57 +66,6 @@ class Builder {
   }
 
  private:
-  void find_materials(Scene& scene) {
-    for (const MaterialEntry& material : entry_.materials) {
-      material_of_.emplace(material.name, static_cast<std::int32_t>(scene.materials.size()));
-      scene.materials.push_back(material);
-    }
-  }
-
-  /// `where` is the value that names the material.
-  std::int32_t material(const std::string& name, const Node& where) const {
-    const auto found = material_of_.find(name);
-    if (found == material_of_.end()) reader_.fail(where.mark, no_material(name));
-    return found->second;
-  }
-
-  std::string no_material(std::string_view name) const {
-    std::vector<std::string_view> known;
-    for (const MaterialEntry& m : entry_.materials) known.push_back(m.name);
-    return fmt::format("there is no material {}{}", name, suggestion(name, known));
-  }
-
-  void find_laws(Scene& scene) {
-    const std::size_t n = scene.materials.size();
-    scene.laws.resize(n * n);
-    for (std::size_t a = 0; a < n; ++a)
-      for (std::size_t b = 0; b < n; ++b) {
-        const Material& first = scene.materials[a];
-        const Material& second = scene.materials[b];
-        scene.laws[a * n + b] = {std::sqrt(first.restitution) * std::sqrt(second.restitution),
-                                 std::sqrt(first.friction) * std::sqrt(second.friction)};
-      }
-    const Reader::Step step(reader_, "contacts");
-    std::map<std::array<std::int32_t, 2>, SourceMark> listed;
-    for (std::size_t i = 0; i < entry_.contacts.size(); ++i) {
-      const Reader::Step item(reader_, i);
-      ContactEntry& contact = entry_.contacts[i];
-      const Node& between = *contact.node->find("between");
-      const Reader::Step key(reader_, "between");
-      const std::int32_t a = material(contact.between[0], between.items[0]);
-      const std::int32_t b = material(contact.between[1], between.items[1]);
-      const auto [first, fresh] = listed.emplace(std::array{std::min(a, b), std::max(a, b)}, between.mark);
-      if (!fresh)
-        reader_.fail(between.mark, "the pair is listed already, at " + reader_.place(first->second));
-      ContactLaw law = scene.law(a, b);
-      if (!contact.restitution) contact.restitution = law.restitution;
-      if (!contact.friction) contact.friction = law.friction;
-      law = {*contact.restitution, *contact.friction};
-      scene.laws[static_cast<std::size_t>(a) * n + static_cast<std::size_t>(b)] = law;
-      scene.laws[static_cast<std::size_t>(b) * n + static_cast<std::size_t>(a)] = law;
-    }
-  }
-
   /// Counts the bodies and checks their number, and the memory of the whole run, before anything is allocated
   /// for them.
   void reserve(Scene& scene) {
@@ -181,7 +132,7 @@ class Builder {
   std::int32_t find_material(const BodyEntry& body) {
     if (body.material.empty()) return -1;
     const Reader::Step step(reader_, "material");
-    return material(body.material, *body.node->find("material"));
+    return materials_.require(body.material, *body.node->find("material"), reader_);
   }
 
   void claim_name(const BodyEntry& body, std::unordered_map<std::string_view, SourceMark>& names) {
@@ -225,10 +176,9 @@ class Builder {
     if (row.material.empty())
       file.fail(BodyColumn::material, row.material_mark,
                 "the body needs one: fill the column, or give `material` beside `file` in the scene");
-    const auto found = material_of_.find(row.material);
-    if (found == material_of_.end())
-      file.fail(BodyColumn::material, row.material_mark, no_material(row.material));
-    return found->second;
+    const std::optional<std::int32_t> index = materials_.find(row.material);
+    if (!index) file.fail(BodyColumn::material, row.material_mark, materials_.unknown(row.material));
+    return *index;
   }
 
   void name_bodies(const Slot& slot, Scene& scene) const {
@@ -370,8 +320,8 @@ class Builder {
   SceneEntry& entry_;
   Reader& reader_;
   TimeGrid grid_;
+  MaterialNames materials_;
   std::vector<Slot> slots_;
-  std::unordered_map<std::string_view, std::int32_t> material_of_;
 };
 
 /// Writes the defaults that depend on other keys into the entry.

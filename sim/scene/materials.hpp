@@ -1,0 +1,36 @@
+// Materials by their names, and the laws of their pairs.
+#pragma once
+
+#include "sim/scene/keys.hpp"
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <unordered_map>
+#include <vector>
+
+namespace scree {
+
+class MaterialNames {
+ public:
+  /// The entries must outlive it.
+  explicit MaterialNames(const std::vector<MaterialEntry>& materials);
+
+  std::optional<std::int32_t> find(std::string_view name) const;
+  /// The same; throws InputError at `where`, the value that names the material.
+  std::int32_t require(const std::string& name, const Node& where, const Reader& reader) const;
+  /// "there is no material glas (did you mean glass?)"
+  std::string unknown(std::string_view name) const;
+
+ private:
+  const std::vector<MaterialEntry>& materials_;
+  std::unordered_map<std::string_view, std::int32_t> index_;
+};
+
+/// The laws of all pairs, as Scene::laws: geometric means, but for the pairs listed. Writes the values that a
+/// listed pair leaves out into its entry.
+std::vector<ContactLaw> contact_laws(const std::vector<MaterialEntry>& materials, const MaterialNames& names,
+                                     std::vector<ContactEntry>& listed, Reader& reader);
+
+}  // namespace scree
