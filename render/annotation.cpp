@@ -41,7 +41,7 @@ Clipped clipped_by(const std::array<double, 2>& range, const Frame& frame, Color
   Clipped clipped;
   const BodyTable& bodies = frame.snapshot.bodies;
   for (std::size_t k = 0; k < bodies.shape.size(); ++k) {
-    if (bodies.mobility[k] == Mobility::fixed) continue;
+    if (!is_colored(bodies, k)) continue;
     const double value = value_of(frame, color_by, k);
     clipped.below |= value < range[0];
     clipped.above |= value > range[1];

@@ -46,7 +46,7 @@ std::array<double, 2> value_range(const Frame& frame, ColorBy color_by) {
   const BodyTable& bodies = frame.snapshot.bodies;
   std::vector<double> values;
   for (std::size_t k = 0; k < bodies.shape.size() && is_scale(color_by); ++k) {
-    if (bodies.mobility[k] != Mobility::fixed) values.push_back(value_of(frame, color_by, k));
+    if (is_colored(bodies, k)) values.push_back(value_of(frame, color_by, k));
   }
   if (values.empty()) return {0, 1};
   const double low = color_by == ColorBy::size ? quantile(values, 0.02) : 0;
@@ -67,8 +67,7 @@ Painter::Painter(const Frame& frame, ColorBy color_by, const std::array<double, 
 
 Color Painter::operator()(std::size_t body) const {
   static const Color background = linear_of(stone);
-  // Whatever the colours mean, fixed bodies stay in the background.
-  if (frame_.snapshot.bodies.mobility[body] == Mobility::fixed) return background;
+  if (!is_colored(frame_.snapshot.bodies, body)) return background;
   return (1 - muted_) * colored(body) + muted_ * background;
 }
 

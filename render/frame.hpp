@@ -4,11 +4,21 @@
 #include "core/snapshot.hpp"
 #include "render/color.hpp"
 
+#include <cstddef>
 #include <cstdint>
 #include <string>
 #include <vector>
 
 namespace scree::render {
+
+/// Bodies, rather than what bodies are in: only these hide others and cast shadows.
+inline bool is_solid(Shape shape) { return shape == Shape::sphere || shape == Shape::box; }
+
+/// Whether the colour of a body shows its material or its state: what stands still stays in the background,
+/// and so do tubes, turning or not.
+inline bool is_colored(const BodyTable& bodies, std::size_t body) {
+  return bodies.mobility[body] != Mobility::fixed && is_solid(bodies.shape[body]);
+}
 
 /// A straight line over the bodies.
 struct Line {

@@ -36,8 +36,7 @@ PlaneFace face_of(const BodyTable& bodies, std::size_t k, const View& v) {
 double occlusion_reach(const BodyTable& bodies, const View& v) {
   std::vector<double> sizes;
   for (std::size_t k = 0; k < bodies.shape.size(); ++k) {
-    if (bodies.mobility[k] != Mobility::fixed && is_solid(bodies.shape[k]))
-      sizes.push_back(bounding_radius(bodies.shape[k], bodies.size[k]));
+    if (is_colored(bodies, k)) sizes.push_back(bounding_radius(bodies.shape[k], bodies.size[k]));
   }
   if (sizes.empty()) return 0.1 * v.view;
   const auto middle = sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2);

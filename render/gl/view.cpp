@@ -11,9 +11,13 @@ namespace {
 /// say how far a body is from what it shades.
 constexpr double light_radius = 0.035;
 
-/// Radius of the largest ball about the centre inside the body.
-double inner_radius(Shape shape, const Vec3& size) {
-  return shape == Shape::sphere ? size.x() : size.minCoeff();
+/// Radius of the largest disc about the centre that lies inside the body, at right angles to `view` (unit). A
+/// face of a box cuts the plane of the disc at its distance over the sine of its angle with the view.
+double section_radius(const BodyTable& bodies, std::size_t body, const Vec3& view) {
+  const Vec3& size = bodies.size[body];
+  if (bodies.shape[body] == Shape::sphere) return size.x();
+  const Vec3 along = bodies.orientation[body].conjugate() * view;
+  return (size.array() / (1 - along.array().square()).max(1e-12).sqrt()).minCoeff();
 }
 
 }  // namespace
@@ -48,8 +52,8 @@ std::optional<Disc> View::disc_of(const BodyTable& bodies, std::size_t body, int
   disc.y = static_cast<float>(0.5 * height + focal * p.y() / p.z());
   // A point c + d of the ball, |d| <= r, is seen (d_x c_z - c_x d_z) / (c_z (c_z + d_z)) beside its centre.
   disc.outer = static_cast<float>(focal * radius * p.norm() / (p.z() * (p.z() - radius)));
-  // The section of the inner ball across the view, at the depth of the centre.
-  disc.inner = static_cast<float>(focal * inner_radius(bodies.shape[body], bodies.size[body]) / p.z());
+  // Across the axis of the camera, at the depth of the centre: such a disc is seen as a disc.
+  disc.inner = static_cast<float>(focal * section_radius(bodies, body, axes.col(2)) / p.z());
   disc.near = static_cast<float>(p.z() - radius);
   disc.far = static_cast<float>(p.z());
   return disc;
@@ -103,7 +107,7 @@ Disc LightView::disc_of(const BodyTable& bodies, std::size_t body) const {
   return {.x = static_cast<float>(p.x() / texel()),
           .y = static_cast<float>(p.y() / texel()),
           .outer = static_cast<float>(radius / texel()),
-          .inner = static_cast<float>(inner_radius(bodies.shape[body], bodies.size[body]) / texel()),
+          .inner = static_cast<float>(section_radius(bodies, body, axes_.col(2)) / texel()),
           .near = static_cast<float>(p.z() - radius),
           .far = static_cast<float>(p.z()),
           .body = static_cast<std::int32_t>(body)};

@@ -1,17 +1,14 @@
 // What follows from the camera alone: where the eye is, how far it sees, where the light stands.
 #pragma once
 
-#include "core/bodies.hpp"
 #include "render/camera.hpp"
+#include "render/frame.hpp"
 #include "render/gl/visible.hpp"
 
 #include <array>
 #include <optional>
 
 namespace scree::render::gl {
-
-/// Bodies, rather than what bodies are in: only these hide others and cast shadows.
-inline bool is_solid(Shape shape) { return shape == Shape::sphere || shape == Shape::box; }
 
 using Vec4f = std::array<float, 4>;
 

@@ -99,6 +99,21 @@ vec3 behind_tubes(vec3 seen, vec3 ray, float depth) {
   return seen;
 }
 
+// Whether an edge of a tube's glass passes through the pixel.
+bool on_glass_edge(ivec2 pixel) {
+  for (int tube = begin.y; tube < begin.z; ++tube) {
+    int inside = 0, caps = 0;
+    for (int k = 0; k < 4; ++k) {
+      TubeSpan s = tube_span(tube, ray_through(2.0 * vec2(pixel) + vec2(float(k & 1), float(k >> 1)) + 0.5));
+      if (s.entry >= s.leave) continue;
+      ++inside;
+      caps += (s.enters_at_cap ? 1 : 0) + (s.leaves_at_cap ? 8 : 0);
+    }
+    if (inside % 4 != 0 || (caps & 7) % 4 != 0 || (caps >> 3) % 4 != 0) return true;
+  }
+  return false;
+}
+
 vec3 shaded(uint tag, vec3 ray, float open, int samples, float phase) {
   vec3 seen = background(ray);
   Surface s = surface_of(tag, ray);
@@ -130,7 +145,7 @@ void main() {
   ivec2 pixel = ivec2(gl_FragCoord.xy);
   uvec4 tag = uvec4(texelFetch(tags, 2 * pixel, 0).r, texelFetch(tags, 2 * pixel + ivec2(1, 0), 0).r,
                     texelFetch(tags, 2 * pixel + ivec2(0, 1), 0).r, texelFetch(tags, 2 * pixel + ivec2(1, 1), 0).r);
-  int samples = all(equal(tag.xxx, tag.yzw)) ? 1 : 4;
+  int samples = all(equal(tag.xxx, tag.yzw)) && !on_glass_edge(pixel) ? 1 : 4;
   float open = texelFetch(occlusion, pixel, 0).r;
   float noise = pattern(vec2(pixel)), phase = 6.2831853 * noise;
   vec3 sum = vec3(0.0);

@@ -111,6 +111,16 @@ TEST_F(ProgramTest, DrawsFramesAndAMovie) {
   EXPECT_TRUE(std::ranges::none_of(files, [](const std::string& file) { return file.ends_with(".part"); }));
 }
 
+TEST_F(ProgramTest, FramesAreTheSameBytesInEveryRun) {
+  const std::string scene =
+      falling_ball("render: {size: [320, 240], fps: 50, color: force, overlay: [forces, grid]}\n");
+  ASSERT_EQ(run_scene(scene, {"-o", "one"}).status, 0);
+  ASSERT_EQ(run_scene(scene, {"-o", "two"}).status, 0);
+  for (const char* frame : {"frames/00000.png", "frames/00003.png", "frames/00005.png"}) {
+    EXPECT_EQ(text_of(folder_ / "one" / frame), text_of(folder_ / "two" / frame));
+  }
+}
+
 TEST_F(ProgramTest, TroubleWithTheMovieDoesNotCostTheNumbers) {
   const char* path = std::getenv("PATH");
   const std::string saved = path == nullptr ? "" : path;

@@ -63,7 +63,8 @@ broadphase: {method: uniform_grid, levels: 4}
 narrowphase: {box_box: ccd_gjk}
 precision: double
 model: {rotation: on, friction: off}
-render: {size: [640, 480], fps: 60, camera: {from: [1, 2, 3], to: [0, 0, 0.5], fov: 50}, color: speed}
+render: {size: [640, 480], fps: 60, camera: {from: [1, 2, 3], to: [0, 0, 0.5], fov: 50, orbit: {degrees: 90}}, color: speed, range: [0, 3],
+         legend: off, time_stamp: on, overlay: [grid, forces]}
 record: {metrics_every: 0.1, trajectory: false}
 checks:
   - {measure: "bed[23].velocity.norm", at: 3.0, expect: 1.428571, tolerance: 1.0e-9}
@@ -113,6 +114,11 @@ TEST(SceneLanguage, EveryKeyReachesTheScene) {
   ASSERT_TRUE(scene.render.camera);
   EXPECT_EQ(scene.render.camera->from, Vec3(1, 2, 3));
   EXPECT_EQ(scene.render.camera->fov, 50);
+  EXPECT_EQ(scene.render.camera->orbit->degrees, 90);
+  EXPECT_EQ(scene.render.range, (std::array<double, 2>{0, 3}));
+  EXPECT_EQ(scene.render.legend, false);
+  EXPECT_EQ(scene.render.time_stamp, true);
+  EXPECT_EQ(scene.render.overlay, (std::vector<Overlay>{Overlay::grid, Overlay::forces}));
   EXPECT_EQ(scene.render.color, ColorBy::speed);
   EXPECT_EQ(scene.record.metrics_every, 0.1);
   ASSERT_EQ(scene.checks.size(), 3u);
@@ -120,7 +126,7 @@ TEST(SceneLanguage, EveryKeyReachesTheScene) {
   EXPECT_EQ(scene.checks[0].at, 3.0);
   EXPECT_EQ(scene.checks[0].expect, 1.428571);
   EXPECT_EQ(scene.checks[0].tolerance, 1e-9);
-  EXPECT_EQ(scene.checks[0].mark.line, 48);
+  EXPECT_EQ(scene.checks[0].mark.line, 49);
   EXPECT_EQ(scene.checks[1].reduce, Reduce::crossings);
   EXPECT_EQ(scene.checks[1].level, 0.1);
   EXPECT_EQ((*scene.checks[1].over)[1], 6);
