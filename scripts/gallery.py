@@ -1,0 +1,111 @@
+#!/usr/bin/env python3
+"""Writes docs/gallery.md and its pictures from the demos, configs/NN_*.yaml, and what their runs left.
+
+    gallery.py [OUTPUT]   OUTPUT (default: output) holds the run folders, made by ./run of each scene; exit status 1
+                          if some scene has not been run to its end with pictures, which its entry then says
+"""
+import json
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[1]
+PICTURES = ROOT / "docs/pictures"
+WIDTH = 960  # pixels, at most
+
+# When a scene shows best what it is about (s); the others at their end.
+MOMENTS = {
+    "01_bouncing_ball": 2.4,
+    "02_incline": 1.2,
+    "06_hopper": 2.6,
+    "08_wall": 0.4,
+    "09_rockslide": 4.0,
+    "10_billiard": 0.4,
+    "11_dominoes": 5.0,
+}
+
+HEAD = f"""# Gallery
+
+<!-- Written by scripts/gallery.py; run it again rather than edit this page. -->
+
+Each picture is one frame of what `./run configs/NAME.yaml` makes, scaled to {WIDTH} pixels at most. Run times are those of that
+run, pictures drawn beside it included; "simulation" is the time of its stages without them.
+"""
+
+
+def seconds_words(seconds):
+    if seconds < 60:
+        return f"{seconds:.2g} s" if seconds < 10 else f"{seconds:.0f} s"
+    return f"{seconds / 60:.1f} min" if seconds < 600 else f"{seconds / 60:.0f} min"
+
+
+def opening_comment(text):
+    """The lines of the comment that the scene opens with; each paragraph starts with a line of its own."""
+    lines = re.match(r"(?:#.*\n)*", text)[0].splitlines()
+    words = "\n".join(line.removeprefix("#").strip() for line in lines)
+    words = re.sub(r"([\\*_<])", r"\\\1", words)
+    return re.sub(r"\n(Look for|Expected):", r"\n\n**\1:**", re.sub(r"\n(?!Look for|Expected)", " ", words))
+
+
+def run_of(folder):
+    """The manifest of a run to the scene's end, with pictures. None if there is none."""
+    try:
+        manifest = json.loads((folder / "manifest.json").read_text())
+    except FileNotFoundError:
+        return None
+    whole = manifest["status"] == "done" and manifest["steps"] == manifest["steps_total"]
+    return manifest if whole and manifest["frames"] > 0 else None
+
+
+def draw(name, folder, manifest):
+    """Scales the scene's chosen frame into docs/pictures."""
+    moment = MOMENTS.get(name, manifest["time"])
+    number = round(moment / manifest["time"] * (manifest["frames"] - 1))
+    subprocess.run(["ffmpeg", "-v", "error", "-y", "-i", folder / "frames" / f"{number:05}.png", "-vf",
+                    f"scale='min({WIDTH},iw)':-2:flags=lanczos", "-pred", "mixed", PICTURES / f"{name}.png"], check=True)
+
+
+def figures(manifest):
+    bodies = manifest["observation"]["bodies"]
+    simulation = sum(stage["seconds"] for name, stage in manifest["stages"].items() if not name.startswith("render."))
+    passed = sum(check["verdict"] == "passed" for check in manifest["checks"])
+    machine, commit = manifest["machine"], manifest["program"]["commit"]
+    yield f"{bodies:,} bodies, {manifest['steps']:,} steps for {manifest['time']:g} s"
+    yield f"{seconds_words(manifest['wall_s'])} with {manifest['frames']:,} pictures (simulation {seconds_words(simulation)})"
+    yield f"{passed} of {len(manifest['checks'])} checks passed"
+    yield f"{machine['cpu']}, {machine['cores']} cores, {manifest['space']}"
+    yield f"commit {commit[:10]}{'+' * commit.endswith('+')}"
+
+
+def entry(scene, manifest):
+    text = scene.read_text()
+    yield f"## {scene.stem.replace('_', ' ')}"
+    if manifest:
+        yield f"![{scene.stem}](pictures/{scene.stem}.png)"
+    yield opening_comment(text)
+    yield "; ".join(figures(manifest)) + "." if manifest else f"*Not run yet: `./run configs/{scene.name}`.*"
+    yield f"<details><summary>configs/{scene.name}</summary>"
+    yield f"```yaml\n{text.rstrip()}\n```"
+    yield "</details>"
+
+
+def main():
+    if len(sys.argv) > 2:
+        sys.exit(__doc__)
+    output = Path(sys.argv[1]) if len(sys.argv) == 2 else ROOT / "output"
+    parts, missing = [HEAD], []
+    for scene in sorted((ROOT / "configs").glob("[0-9][0-9]_*.yaml")):
+        manifest = run_of(output / scene.stem)
+        if manifest:
+            draw(scene.stem, output / scene.stem, manifest)
+        else:
+            missing.append(scene.stem)
+        parts += entry(scene, manifest)
+    (ROOT / "docs/gallery.md").write_text("\n\n".join(part.strip() for part in parts) + "\n")
+    for name in missing:
+        print(f"{output / name}: no finished run with pictures", file=sys.stderr)
+    sys.exit(bool(missing))
+
+
+main()
