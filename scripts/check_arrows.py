@@ -30,8 +30,8 @@ ARROWS = {
     "sim/simulation.cpp": ["core/", "broadphase/", "narrowphase/", "sim/observation.hpp", "sim/measurement.hpp",
                            "sim/model.hpp", "sim/pair_finder.hpp", "sim/scene/", "sim/dynamics/",
                            "sim/simulation.hpp"],
-    "sim/cli/": ["core/", "broadphase/", "narrowphase/", "render/", "sim/inspection.hpp", "sim/observation.hpp", "sim/model.hpp",
-                 "sim/scene/", "sim/simulation.hpp", "sim/record/", "sim/cli/"],
+    "sim/cli/": ["core/", "broadphase/", "narrowphase/", "render/", "sim/inspection.hpp", "sim/observation.hpp",
+                 "sim/model.hpp", "sim/scene/", "sim/simulation.hpp", "sim/record/", "sim/cli/"],
     "bench/": ["core/", "broadphase/", "narrowphase/", "sim/", "render/", "bench/"],
     "tests/": [""],
 }
@@ -40,6 +40,7 @@ FOLDERS = ["core", "broadphase", "narrowphase", "sim", "render", "bench", "tests
 # Each library has one or two files that know it, so that it can be replaced.
 LIBRARIES = {
     "yaml-cpp": r"yaml-cpp/", "libccd": r"ccd/", "OpenGL and OSMesa": r"(GL|EGL)/", "libpng": r"png\.h",
+    "FreeType": r"ft2build\.h",
     "CLI11": r"CLI/", "nlohmann-json": r"nlohmann/", "xxHash": r"xxhash\.h",
 }
 THRUST_HEADERS = ["core/parallel.hpp", "core/space_policy.hpp"]
