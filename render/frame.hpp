@@ -17,7 +17,8 @@ inline bool is_solid(Shape shape) { return shape == Shape::sphere || shape == Sh
 /// Whether the colour of a body shows its material or its state: what stands still stays in the background,
 /// and so do tubes, turning or not.
 inline bool is_colored(const BodyTable& bodies, std::size_t body) {
-  return bodies.mobility[body] != Mobility::fixed && is_solid(bodies.shape[body]);
+  return bodies.mobility[body] != Mobility::fixed && bodies.mobility[body] != Mobility::absent &&
+         is_solid(bodies.shape[body]);
 }
 
 /// A straight line over the bodies.

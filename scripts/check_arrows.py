@@ -17,21 +17,24 @@ ARROWS = {
     "narrowphase/": ["core/", "broadphase/", "narrowphase/"],
     "render/": ["core/", "render/"],
     "sim/observation.hpp": ["core/"],
+    "sim/inspection.hpp": ["core/"],
     "sim/scene/": ["core/", "broadphase/settings.hpp", "narrowphase/settings.hpp", "sim/observation.hpp",
                    "sim/scene/"],
     "sim/model.": ["core/", "sim/scene/", "sim/model.hpp"],
-    "sim/pair_finder.": ["core/", "broadphase/", "sim/pair_finder.hpp"],
+    "sim/applied_forces.": ["core/", "sim/scene/", "sim/dynamics/", "sim/applied_forces.hpp"],
+    "sim/pair_finder.": ["core/", "broadphase/", "sim/dynamics/", "sim/inspection.hpp", "sim/pair_finder.hpp"],
     "sim/presence.": ["core/", "sim/scene/", "sim/dynamics/motion.hpp", "sim/observation.hpp", "sim/presence.hpp"],
     "sim/measurement.": ["core/", "narrowphase/contact.hpp", "sim/dynamics/", "sim/observation.hpp",
                          "sim/measurement.hpp"],
     "sim/dynamics/": ["core/", "narrowphase/", "sim/observation.hpp", "sim/scene/scene.hpp", "sim/dynamics/"],
     "sim/record/": ["core/", "sim/observation.hpp", "sim/scene/", "sim/simulation.hpp", "sim/record/"],
-    "sim/simulation.hpp": ["core/", "sim/observation.hpp", "sim/scene/"],
-    "sim/simulation.cpp": ["core/", "broadphase/", "narrowphase/", "sim/observation.hpp", "sim/measurement.hpp",
+    "sim/simulation.hpp": ["core/", "sim/inspection.hpp", "sim/observation.hpp", "sim/scene/"],
+    "sim/simulation.cpp": ["core/", "broadphase/", "narrowphase/", "sim/observation.hpp", "sim/applied_forces.hpp",
+                           "sim/measurement.hpp",
                            "sim/model.hpp", "sim/pair_finder.hpp", "sim/presence.hpp", "sim/scene/", "sim/dynamics/",
                            "sim/simulation.hpp"],
-    "sim/cli/": ["core/", "broadphase/", "narrowphase/", "render/", "sim/observation.hpp", "sim/model.hpp",
-                 "sim/scene/", "sim/simulation.hpp", "sim/record/", "sim/cli/"],
+    "sim/cli/": ["core/", "broadphase/", "narrowphase/", "render/", "sim/inspection.hpp", "sim/observation.hpp",
+                 "sim/model.hpp", "sim/scene/", "sim/simulation.hpp", "sim/record/", "sim/cli/"],
     "bench/": ["core/", "broadphase/", "narrowphase/", "sim/", "render/", "bench/"],
     "tests/": [""],
 }
@@ -40,6 +43,7 @@ FOLDERS = ["core", "broadphase", "narrowphase", "sim", "render", "bench", "tests
 # Each library has one or two files that know it, so that it can be replaced.
 LIBRARIES = {
     "yaml-cpp": r"yaml-cpp/", "libccd": r"ccd/", "OpenGL and OSMesa": r"(GL|EGL)/", "libpng": r"png\.h",
+    "FreeType": r"ft2build\.h",
     "CLI11": r"CLI/", "nlohmann-json": r"nlohmann/", "xxHash": r"xxhash\.h",
 }
 THRUST_HEADERS = ["core/parallel.hpp", "core/space_policy.hpp"]

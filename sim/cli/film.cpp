@@ -65,11 +65,16 @@ Film::Film(const Scene& scene, const RunFolder& folder, Console& console)
 void Film::record(Simulation& simulation) {
   const std::int64_t due = frames_due_.due(simulation.steps());
   if (due > 0) say_trouble();
-  if (due == 0 || stopped_) return;
+  if (due == 0 || stopped_ || failed_) return;
   // Where frames come faster than steps one picture stands for several, so that the movie keeps its pace.
   Shot shot{frame_of(scene_, look_, simulation), due};
   const timing::Region region("render.wait");
-  drawer_.push(std::move(shot));
+  try {
+    drawer_.push(std::move(shot));
+  } catch (const RunError&) {
+    failed_ = true;
+    throw;
+  }
 }
 
 void Film::draw(std::shared_ptr<Studio>& studio, const Shot& shot) {
@@ -104,7 +109,7 @@ void Film::say_trouble() {
 }
 
 void Film::finish() {
-  {
+  if (!failed_) {
     const timing::Region region("render.wait");
     drawer_.finish();
     writer_.finish();

@@ -26,7 +26,7 @@ class Film {
   /// two others have not been begun: none is left out. Throws RunError if an earlier one could not be
   /// written.
   void record(Simulation& simulation);
-  /// Makes the movie of the frames, once all are there. Throws like record().
+  /// Makes the movie of the frames, once all are there. Throws like record(), unless that has.
   void finish();
 
   std::int64_t frames() const { return frames_; }
@@ -53,7 +53,8 @@ class Film {
   Console& console_;
   FilmLook look_;
   Cadence frames_due_;
-  bool stopped_ = false;  ///< no more frames: drawing has failed
+  bool stopped_ = false;  ///< no more frames: drawing has failed, and it has been said
+  bool failed_ = false;   ///< nor here: one could not be written, and record() has thrown
   std::atomic<std::int64_t> frames_ = 0;
   std::string movie_;
   // Of the threads. Each time is touched by one of them, and read when both have ended.
