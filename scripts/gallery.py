@@ -16,13 +16,13 @@ WIDTH = 960  # pixels, at most
 
 # When a scene shows best what it is about (s); the others at their end.
 MOMENTS = {
-    "01_bouncing_ball": 2.4,
+    "01_bouncing_ball": 0.8,
     "02_incline": 1.2,
     "06_hopper": 2.6,
-    "08_wall": 0.4,
+    "08_wall": 0.35,
     "09_rockslide": 4.0,
     "10_billiard": 0.4,
-    "11_dominoes": 5.0,
+    "11_dominoes": 4.0,
 }
 
 HEAD = f"""# Gallery
