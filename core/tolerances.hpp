@@ -35,6 +35,9 @@ inline constexpr double restitution_threshold = 2.0;
 
 /// Slowest approach that can count as an impact, relative to the bodies' speeds: under it, it is rounding.
 inline constexpr double closing_speed = 1e-12;
+/// Share of its approach's energy that an impact may gain before its impulses are scaled down: rounding.
+inline constexpr double impact_gain = 1e-12;
+
 /// By how much contacts in flight may close faster than they do before they count as touched, relative.
 inline constexpr double flight_margin = 1e-9;
 /// Change at which the time of an impact is found (of the substep), and at which the impulses of one impact

@@ -5,6 +5,7 @@
 #include "narrowphase/tube.hpp"
 #include "sim/dynamics/colored.hpp"
 #include "sim/dynamics/flight.hpp"
+#include "sim/dynamics/rotation.hpp"
 
 #include <utility>
 
@@ -135,7 +136,7 @@ struct ImpactStage {
   Vec3 surface(std::int32_t body, const Vec3& position, const Vec3& direction, const Vec3& arm,
                double tau) const {
     if (bodies.shape[body] == Shape::sphere) return position + bodies.size[body].x() * direction;
-    return position + arm + tau * solver[body].spin.cross(arm);
+    return position + rotation_of(tau * solver[body].spin) * arm;
   }
 
   /// The common point. Bodies slide along one another between the midpoint and the impact: the more curved
@@ -190,6 +191,7 @@ struct ImpactStage {
       }
       if (change <= tolerance::impact_residual * size) break;
     }
+    keep_from_gaining(rows, before, impact.count, i, j);
     Vec3 total = Vec3::Zero();
     for (int k = 0; k < impact.count; ++k) {
       const SolverBody& driver = i.is_free() ? j : i;
@@ -204,6 +206,25 @@ struct ImpactStage {
     c.impulse += total;
     store(c.i, i, fi, s, tau, pass);
     store(c.j, j, fj, s, tau, pass);
+  }
+
+  /// Newton's law with friction at several points, or at one whose Delassus matrix couples normal and
+  /// tangents, can gain energy. What the impulses p move is a parabola in their common scale, p.u- + p.W p /
+  /// 2; they are scaled down to where it is 0, which keeps momentum and the cone.
+  void keep_from_gaining(ContactRow* rows, const Vec3* before, int count, SolverBody& i,
+                         SolverBody& j) const {
+    double linear = 0;
+    double moved = 0;
+    for (int k = 0; k < count; ++k) {
+      linear += rows[k].impulse.dot(before[k]);
+      moved += 0.5 * rows[k].impulse.dot(before[k] + rows[k].relative_velocity(i, j));
+    }
+    if (moved <= tolerance::impact_gain * fabs(linear)) return;
+    const double scale = linear < 0 ? -linear / (moved - linear) : 0.0;
+    for (int k = 0; k < count; ++k) {
+      rows[k].push((scale - 1) * rows[k].impulse, i, j);
+      rows[k].impulse *= scale;
+    }
   }
 
   void store(std::int32_t body, const SolverBody& after, const Flight& flown, double s, double tau,

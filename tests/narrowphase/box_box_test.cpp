@@ -51,7 +51,7 @@ TEST_P(BoxBoxFamilies, NothingIsMissedOrMadeUp) {
     Manifold m;
     const bool found = box_box(p.a, p.b, margin, m);
     const double slack = 1e-12 * p.length;
-    const double given_away = preference(gap, smallest) * 1.06 + tolerance::same_feature * smallest;
+    const double given_away = oracle::most_given_away(gap, smallest) + tolerance::same_feature * smallest;
     if (gap < margin - given_away - slack) {
       ASSERT_TRUE(found) << "draw " << n << " gap " << gap / smallest;
     }
@@ -243,7 +243,7 @@ TEST(BoxBox, DepthIsContinuousAlongASlide) {
     }
     const double gap = detail::smallest_gap(m);
     if (!std::isnan(before)) {
-      const double jump = 2 * step + preference(gap, 0.3);
+      const double jump = 2 * step + oracle::most_given_away(gap, 0.3);
       EXPECT_NEAR(gap, before, jump) << "step " << n;
     }
     before = gap;

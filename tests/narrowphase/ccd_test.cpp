@@ -35,7 +35,8 @@ TEST_P(CcdMethods, NothingIsMissedAndTheDepthIsRight) {
       }
       const double separation = static_cast<double>(oracle::separation(p.a, p.b));
       if (separation > 0) continue;
-      const double allowed = preference(separation, smallest) * 1.06 + tolerance::same_feature * smallest;
+      const double allowed =
+          oracle::most_given_away(separation, smallest) + tolerance::same_feature * smallest;
       const double slack = 1e-12 * p.length;
       ASSERT_NEAR(detail::smallest_gap(by_ccd), separation, allowed + slack)
           << oracle::name_of(family) << " " << n;

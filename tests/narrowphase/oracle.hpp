@@ -225,4 +225,10 @@ inline PairOfBoxes make_pair(Family family, std::uint64_t n) {
   return {a, b, std::max(a.size.maxCoeff(), b.size.maxCoeff())};
 }
 
+/// By how much a preferred axis may overlap more than the best one, which separates the boxes by
+/// `separation`: the preference is a share of the preferred overlap, not of the best.
+inline double most_given_away(double separation, double smallest) {
+  return preference(separation, smallest) / (1 - tolerance::axis_preference);
+}
+
 }  // namespace scree::oracle

@@ -95,7 +95,7 @@ TEST(ContactRow, TheShortWayOfBallsIsTheLongOne) {
     ASSERT_NEAR(ball.row.tangent_mass, p.row.tangent_mass, 1e-12 * p.row.tangent_mass);
     p.sweep();
     sweep_ball_row(ball.row, ball.normal, ball.friction, ball.i, ball.j);
-    ASSERT_LT(violation(ball), 1e-12 * speed) << "problem " << item;
+    ASSERT_LT(violation(ball), 1e-10 * speed) << "problem " << item;
     ASSERT_LT((ball.row.impulse - p.row.impulse).norm(), 1e-11 * speed * p.row.normal_mass) << item;
     ASSERT_LT((ball.j.spin - p.j.spin).norm(), 1e-10 * speed) << item;
   }
