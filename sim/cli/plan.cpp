@@ -151,6 +151,14 @@ std::string memory_words(const Scene& scene) {
       bytes_words(need.contacts / static_cast<double>(scene.bodies.count())), bytes_words(machine_memory()));
 }
 
+std::string response_words(const ResponseSettings& settings) {
+  const std::string sweeps = settings.iterations
+                                 ? fmt::format("at most {} sweeps", *settings.iterations)
+                                 : std::string("sweeps by the number of contact points, 20 in a heap");
+  return fmt::format("{}, until the impulses change by less than {:g} of their size", sweeps,
+                     settings.tolerance);
+}
+
 struct OutputPlan {
   std::int64_t rows = 0;
   std::int64_t frames = 0;
@@ -193,6 +201,7 @@ int plan(const PlanArguments& arguments) {
   print_model(plan_model(scene));
   print_row("broad phase", broad_phase_words(scene.broadphase));
   print_row("narrow phase", narrow_phase_words(scene));
+  print_row("response", response_words(scene.response));
   print_row("checks",
             fmt::format("{}{}", scene.checks.size(), scene.label.empty() ? "" : ", label " + scene.label));
   print_row("output", output_words(scene, output));
