@@ -67,7 +67,11 @@ Painter::Painter(const Frame& frame, ColorBy color_by, const std::array<double, 
 
 Color Painter::operator()(std::size_t body) const {
   static const Color background = linear_of(stone);
-  if (!is_colored(frame_.snapshot.bodies, body)) return background;
+  const BodyTable& bodies = frame_.snapshot.bodies;
+  if (!is_colored(bodies, body)) {
+    const bool shows_material = color_by_ == ColorBy::material && is_solid(bodies.shape[body]);
+    return shows_material ? Color(0.5f * (colored(body) + background)) : background;
+  }
   return (1 - muted_) * colored(body) + muted_ * background;
 }
 
