@@ -30,7 +30,8 @@ HEAD = f"""# Gallery
 <!-- Written by scripts/gallery.py; run it again rather than edit this page. -->
 
 Each picture is one frame of what `./run configs/NAME.yaml` makes, scaled to {WIDTH} pixels at most. Run times are those of that
-run, pictures drawn beside it included; "simulation" is the time of its stages without them.
+run, with as many pictures as are named drawn beside it (`--set render.fps=2` makes fewer), on a machine that may have had other work;
+"simulation" is the time of its stages without them.
 """
 
 
