@@ -33,6 +33,11 @@ inline constexpr double correction_cap = 0.2;
 /// rest. Must exceed 0.5 (what gravity adds in half a step), or resting contacts would count as impacts.
 inline constexpr double restitution_threshold = 2.0;
 
+/// An approach that would go on for this much (of the pair's smaller smallest_size) by the end of a substep is an
+/// impact at its own time, whatever the pair: the midpoint's normals say nothing of bodies that are through one
+/// another by then. Smaller: impacts where the response would do.
+inline constexpr double deep_approach = 0.25;
+
 /// Slowest approach that can count as an impact, relative to the bodies' speeds: under it, it is rounding.
 inline constexpr double closing_speed = 1e-12;
 /// Share of its approach's energy that an impact may gain before its impulses are scaled down: rounding.

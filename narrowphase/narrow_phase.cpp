@@ -195,6 +195,14 @@ struct Gather {
 
 }  // namespace
 
+int find_pair_contacts(Shape shape_a, const Solid& a, Shape shape_b, const Solid& b, double margin,
+                       Manifold* out) {
+  const PairTest test = tables[static_cast<int>(BoxBoxMethod::sat)].of[static_cast<int>(shape_a)]
+                                                                      [static_cast<int>(shape_b)];
+  NarrowPhaseStats stats;
+  return test != nullptr ? test(a, b, margin, out, stats) : 0;
+}
+
 ConstView<Manifold> NarrowPhase::find(const ConstBodyView& bodies, ConstView<Pair> pairs,
                                       ConstView<double> margin) {
   list_planes(bodies);

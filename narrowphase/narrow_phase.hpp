@@ -6,6 +6,7 @@
 #include "core/bodies.hpp"
 #include "narrowphase/contact.hpp"
 #include "narrowphase/settings.hpp"
+#include "narrowphase/solid.hpp"
 
 #include <cstdint>
 
@@ -24,6 +25,12 @@ struct ManifoldSlot {
   std::int64_t source;  ///< its place among those found; grows in the order of the pair's test
 };
 }  // namespace detail
+
+/// The contacts of one pair by the closed forms and the 15 axes, with gaps of at most `margin` (m): sets
+/// everything of its manifolds but i and j, and returns their number, at most max_pair_manifolds. Boundaries
+/// (planes and tubes) make no contact with each other.
+int find_pair_contacts(Shape shape_a, const Solid& a, Shape shape_b, const Solid& b, double margin,
+                       Manifold* out);
 
 /// Finds the contacts of bodies on the host.
 class NarrowPhase {

@@ -91,8 +91,8 @@ struct Last<Only> {
 ConstView<Pair> KeptPairs::covering(const Bodies<Host>& bodies, const Array<double, Host>& contact_margin,
                                     double reach, const ResponseParameters& parameters) {
   const timing::Region region("broadphase");
-  if (kept_ && boxes_.hold(bodies, contact_margin)) return pairs_;
-  boxes_.put_around(bodies, reach, parameters);
+  if (cover(bodies, contact_margin)) return pairs_;
+  boxes_.put_around(bodies, reach, parameters, contact_margin);
   pairs_ = finder_->find(bodies, boxes_.margin());
   kept_ = true;
   ++times_made_;

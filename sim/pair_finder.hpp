@@ -36,6 +36,14 @@ class KeptPairs {
   /// made anew, they have room for the bodies' travel within `reach` (s). Valid until the next call.
   ConstView<Pair> covering(const Bodies<Host>& bodies, const Array<double, Host>& contact_margin,
                            double reach, const ResponseParameters& parameters);
+  /// Whether they still do, for the bodies where they are now.
+  bool cover(const Bodies<Host>& bodies, const Array<double, Host>& contact_margin) const {
+    return kept_ && boxes_.hold(bodies, contact_margin);
+  }
+  /// Raises the margins (m) by what each body has moved since the pairs were made.
+  void add_travel(const Bodies<Host>& bodies, Array<double, Host>& contact_margin) const {
+    boxes_.add_travel(bodies, contact_margin);
+  }
   /// The bodies are others: the next call makes the pairs anew.
   void forget() { kept_ = false; }
 

@@ -124,6 +124,7 @@ struct Simulation::Parts {
   std::vector<Vec3> contact_impulse;  // on each body that is not free, over the last step
   Array<double, Host> contact_margin;
   Array<SolverBody, Host> solver;
+  std::vector<Impact> struck;  // in the last substep
   ContactSet contacts;
   ImpulseMemory memory;
   Ledger ledger;
@@ -167,10 +168,54 @@ struct Simulation::Parts {
     return all;
   }
 
-  /// `remaining`: of the step, from the start of the substep (s).
-  ConstView<Manifold> find_contacts(double h, double remaining) {
+  /// Impacts of the flight of a substep from `problem.from` on. `reach`: to the end of the step (s).
+  void resolve_impacts(double h, double from, double reach, const ResponseParameters& flight) {
+    constexpr int most_attempts = 8;
+    // The flight is never more than half a substep away from the midpoint.
+    const auto set_margins = [&] {
+      contact_margins(bodies, 0.5 * h, tolerance::contact_slack, parameters, contact_margin);
+    };
+    set_margins();
+    for (int attempt = 1;; ++attempt) {
+      const ConstView<Pair> pairs = kept_pairs.covering(bodies, contact_margin, reach, parameters);
+      const timing::Region region("impacts");
+      const Ledger moved = impacts.resolve(impact_problem(pairs, h, from), flight, view_of(bodies));
+      if (impacts.impacts().empty()) return;
+      // What was struck may have left the boxes: others that it can meet now are not among the pairs.
+      set_margins();
+      if (attempt == most_attempts || kept_pairs.cover(bodies, contact_margin)) {
+        ledger = ledger + moved;
+        break;
+      }
+      kept_pairs.add_travel(bodies, contact_margin);
+      impacts.undo(view_of(bodies));
+    }
+    counters.impacts += static_cast<std::int64_t>(impacts.impacts().size());
+    if (impacts.hit_bound()) ++counters.unfinished_impacts;
+    for (const Impact& impact : impacts.impacts()) {
+      add_impulse_on_driven_bodies(impact.i, impact.j, impact.impulse);
+      struck.push_back(impact);
+    }
+  }
+
+  ImpactProblem impact_problem(ConstView<Pair> pairs, double h, double from) const {
+    return {.pairs = pairs,
+            .laws = contact_laws(),
+            .memory = memory,
+            .step = h,
+            .from = from,
+            .bounces = from == 0};
+  }
+
+  ContactLaws contact_laws() const {
+    return {bodies.shape.view(), bodies.mobility.view(), bodies.material.view(), laws.view(),
+            static_cast<std::int64_t>(scene.materials.size())};
+  }
+
+  /// That may close by the next midpoint. `reach`: to the end of the step (s).
+  ConstView<Manifold> find_contacts(double h, double reach) {
     contact_margins(bodies, h, tolerance::contact_slack, parameters, contact_margin);
-    const ConstView<Pair> pairs = kept_pairs.covering(bodies, contact_margin, remaining + h, parameters);
+    const ConstView<Pair> pairs = kept_pairs.covering(bodies, contact_margin, reach, parameters);
     counters.pcs_made = kept_pairs.times_made();
     const timing::Region region("narrowphase");
     const ConstView<Manifold> manifolds =
@@ -186,30 +231,44 @@ struct Simulation::Parts {
     return kept_pairs.covering(bodies, contact_margin, 0, parameters);
   }
 
-  /// Moreau's midpoint step: free flight to the midpoint, contacts there, impulses, free flight to the end.
-  /// `done`: how much of the step went before (s).
+  /// Moreau's midpoint step: free flight to the midpoint, impacts on the way, contacts there, impulses, free
+  /// flight to the end. `done`: how much of the step went before (s).
   void substep(double h, double done) {
     const double start_time = grid.time(step) + done;
+    const double reach = grid.length(step + 1) - done + h;
+    struck.clear();
     forces.start_substep(bodies);
     timed_fly(start_time + 0.5 * h, 0.5 * h);
-    const ConstView<Manifold> manifolds = find_contacts(h, grid.length(step + 1) - done);
-    const timing::Region region("response");
-    const BodyView views = view_of(bodies);
-    load_solver_bodies(bodies, solver);
-    color_contacts(manifolds, std::as_const(bodies.mobility).view(), contacts.coloring);
-    const ContactLaws contact_laws{std::as_const(bodies.shape).view(), std::as_const(bodies.mobility).view(),
-                                   std::as_const(bodies.material).view(), std::as_const(laws).view(),
-                                   static_cast<std::int64_t>(scene.materials.size())};
-    const double scale = last_substep > 0 ? h / last_substep : 1.0;
-    prepare_contacts(manifolds, contact_laws, memory, scale, parameters, contacts);
-    ledger = ledger + impacts.resolve({manifolds, h, views}, parameters, solver, contacts, counters);
-    ledger = ledger + response.solve(manifolds, h, parameters, views, solver, contacts, counters);
+    resolve_impacts(h, 0, reach, parameters);
+    const ConstView<Manifold> manifolds = find_contacts(h, reach);
+    respond(manifolds, h);
+    // The response has changed the second half of the flight.
+    resolve_impacts(h, 0.5 * h, reach, in_straight_flight(parameters));
+    if (!impacts.impacts().empty()) load_solver_bodies(bodies, solver);
     fly(start_time + h, 0.5 * h);
     ledger.work += forces.work(bodies);
-    ledger = ledger + corrector.correct(h, parameters, views, solver, contacts);
+    ledger = ledger + corrector.correct(h, parameters, view_of(bodies), solver, contacts);
     memory.remember(manifolds, contacts, bodies.count());
-    add_impulses_on_driven_bodies();
+    for (const Contact& c : std::as_const(contacts.contacts).view())
+      add_impulse_on_driven_bodies(c.i, c.j, c.impulse);
     last_substep = h;
+  }
+
+  void respond(ConstView<Manifold> manifolds, double h) {
+    const timing::Region region("response");
+    load_solver_bodies(bodies, solver);
+    color_contacts(manifolds, std::as_const(bodies.mobility).view(), contacts.coloring);
+    const double scale = last_substep > 0 ? h / last_substep : 1.0;
+    prepare_contacts(manifolds, contact_laws(), memory, scale, parameters, contacts);
+    impacts.mark_flying(impact_problem({}, h, 0), parameters, manifolds, view_of(bodies), contacts);
+    ledger = ledger + response.solve(manifolds, h, parameters, view_of(bodies), solver, contacts, counters);
+  }
+
+  /// Without what the response's kick has given already.
+  static ResponseParameters in_straight_flight(ResponseParameters parameters) {
+    parameters.gravity = Vec3::Zero();
+    parameters.acceleration = {};
+    return parameters;
   }
 
   /// Moves every body to the time given, dt later than it is.
@@ -223,11 +282,11 @@ struct Simulation::Parts {
     fly(time, dt);
   }
 
-  void add_impulses_on_driven_bodies() {
-    for (const Contact& c : std::as_const(contacts.contacts).view()) {
-      if (!solver.view()[c.i].is_free()) contact_impulse[static_cast<std::size_t>(c.i)] -= c.impulse;
-      if (!solver.view()[c.j].is_free()) contact_impulse[static_cast<std::size_t>(c.j)] += c.impulse;
-    }
+  /// The impulse of j, and reversed of i.
+  void add_impulse_on_driven_bodies(std::int32_t i, std::int32_t j, const Vec3& impulse) {
+    const ConstView<Mobility> mobility = std::as_const(bodies.mobility).view();
+    if (mobility[i] != Mobility::free) contact_impulse[static_cast<std::size_t>(i)] -= impulse;
+    if (mobility[j] != Mobility::free) contact_impulse[static_cast<std::size_t>(j)] += impulse;
   }
 
   void do_step() {
@@ -345,6 +404,8 @@ std::vector<ContactForce> Simulation::contact_forces() const {
     forces.push_back({contact.i, contact.j, contact.impulse / p.last_substep,
                       views.position[from_j ? contact.j : contact.i] + arm});
   }
+  for (const Impact& impact : p.struck)
+    forces.push_back({impact.i, impact.j, impact.impulse / p.last_substep, impact.point});
   return forces;
 }
 

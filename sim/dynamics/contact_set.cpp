@@ -7,22 +7,30 @@
 
 namespace scree {
 
+ConstView<ImpulseMemory::Entry> ImpulseMemory::entries_of(std::int32_t i, std::int32_t j,
+                                                          std::int32_t part) const {
+  if (begin_.empty()) return {};
+  const auto place = [](const Entry& entry) { return std::pair(entry.j, entry.part); };
+  // A floor may have as many entries as there are bodies.
+  const auto range = std::ranges::equal_range(entries_.data() + begin_.view()[i],
+                                              entries_.data() + begin_.view()[i + 1], std::pair(j, part),
+                                              {}, place);
+  return {range.data(), static_cast<std::int64_t>(range.size())};
+}
+
+bool ImpulseMemory::is_loaded(std::int32_t i, std::int32_t j, std::int32_t part) const {
+  const ConstView<Entry> entries = entries_of(i, j, part);
+  return std::any_of(entries.begin(), entries.end(), [](const Entry& entry) { return entry.is_loaded(); });
+}
+
 bool ImpulseMemory::recall(const Manifold& manifold, Vec3 impulses[Manifold::max_points]) const {
   for (int k = 0; k < manifold.count; ++k) impulses[k].setZero();
-  if (begin_.empty()) return false;
-  const auto place = [](const auto& contact) { return std::pair(contact.j, contact.part); };
-  const auto before = [place](const Entry& entry, const Manifold& wanted) {
-    return place(entry) < place(wanted);
-  };
-  // A floor may have as many entries as there are bodies.
-  const Entry* last = entries_.data() + begin_.view()[manifold.i + 1];
-  const Entry* entry = std::lower_bound(entries_.data() + begin_.view()[manifold.i], last, manifold, before);
   bool loaded = false;
-  for (; entry != last && place(*entry) == place(manifold); ++entry) {
-    for (int old = 0; old < entry->count; ++old) {
-      loaded = loaded || !entry->impulse[old].isZero(0);
+  for (const Entry& entry : entries_of(manifold.i, manifold.j, manifold.part)) {
+    loaded = loaded || entry.is_loaded();
+    for (int old = 0; old < entry.count; ++old) {
       for (int k = 0; k < manifold.count; ++k) {
-        if (entry->feature[old] == manifold.points[k].feature) impulses[k] = entry->impulse[old];
+        if (entry.feature[old] == manifold.points[k].feature) impulses[k] = entry.impulse[old];
       }
     }
   }

@@ -8,6 +8,7 @@
 #include "sim/dynamics/contact_row.hpp"
 #include "sim/dynamics/state.hpp"
 
+#include <algorithm>
 #include <cstdint>
 
 namespace scree {
@@ -26,7 +27,7 @@ struct Contact {
   bool flying;    ///< known not to meet in this substep: its rows only guard what the flight leaves free
   bool balls;     ///< between balls and bodies that are not free: its row needs no coupling
   int free_ends;  ///< how many of its two bodies are free
-  Vec3 impulse;   ///< all that it gave to j in this substep, impacts and rows (N s)
+  Vec3 impulse;   ///< all that its rows gave to j in this substep (N s)
 };
 
 /// Restitution and friction of a pair of materials.
@@ -43,7 +44,6 @@ struct ContactSet {
   Array<Contact, Host> contacts;       ///< in the order of the colours
   Array<ContactRow, Host> rows;        ///< of one contact after the other
   Array<RowCoupling, Host> couplings;  ///< of the rows; not set for those of balls
-  Array<Vec3, Host> shift;             ///< of each body's midpoint position, by impacts of this substep (m)
 };
 
 /// Impulses of the last substep, by pair, part and feature. Ordered by (i, j, part), as manifolds are, with
@@ -53,6 +53,8 @@ class ImpulseMemory {
   /// Finds the last impulses of a manifold's points (N s, world frame). False if none of the pair's points on
   /// that part carried any: where one corner rests, the others do not bounce.
   bool recall(const Manifold& manifold, Vec3 impulses[Manifold::max_points]) const;
+  /// Whether a part of the pair i, j carried an impulse.
+  bool is_loaded(std::int32_t i, std::int32_t j, std::int32_t part) const;
   /// Takes the impulses of the rows; `bodies` is their number.
   void remember(ConstView<Manifold> manifolds, const ContactSet& set, std::int64_t bodies);
 
@@ -62,9 +64,16 @@ class ImpulseMemory {
     std::int32_t count;
     std::uint32_t feature[Manifold::max_points];
     Vec3 impulse[Manifold::max_points];
+
+    bool is_loaded() const {
+      return std::any_of(impulse, impulse + count, [](const Vec3& p) { return !p.isZero(0); });
+    }
   };
 
  private:
+  /// Those of a part of a pair.
+  ConstView<Entry> entries_of(std::int32_t i, std::int32_t j, std::int32_t part) const;
+
   Array<Entry, Host> entries_;
   Array<std::int64_t, Host> begin_;  ///< of the entries of each i; one more than bodies, empty at first
 };

@@ -2,217 +2,186 @@
 
 #include "core/parallel.hpp"
 #include "core/tolerances.hpp"
-#include "narrowphase/tube.hpp"
-#include "sim/dynamics/colored.hpp"
-#include "sim/dynamics/flight.hpp"
 #include "sim/dynamics/rotation.hpp"
 
-#include <utility>
+#include <algorithm>
+#include <queue>
+#include <tuple>
 
 namespace scree {
 
 namespace {
 
-/// The next impact of a contact: when, along which normal, and which of its points take part.
-struct Impact {
-  double time = HUGE_VAL;
-  Vec3 normal;
-  int count = 0;
-  int point[Manifold::max_points] = {};
-};
+/// Impacts of one body in a flight after which it bounces no more, and after which it has no more.
+constexpr std::int32_t most_bounces = 64;
+constexpr std::int32_t most_hits = 256;
 
-/// Everything that the functors below share.
-struct ImpactStage {
-  ConstView<Manifold> manifolds;
-  double step;
-  ResponseParameters parameters;
+/// What may meet, as everything below sees it.
+struct FlightStage {
+  const ImpactProblem& problem;
+  const ResponseParameters& parameters;
   BodyView bodies;
-  View<SolverBody> solver;
-  View<Contact> contacts;
-  View<Vec3> shift;              ///< of the midpoint positions by impacts so far
-  View<double> clock;            ///< time of each body's last impact in this substep
-  View<std::int32_t> last_pass;  ///< in which each body was last hit
-  View<Ledger> ledger;           ///< per contact
+  View<double> clock;
+  View<std::int32_t> hits;
+  View<double> reach;
 
-  Flight flight(std::int32_t body) const {
-    return {bodies.position[body],
-            solver[body].is_free() ? parameters.acceleration_of(body) : Vec3(Vec3::Zero())};
+  bool is_free(std::int32_t body) const { return bodies.mobility[body] == Mobility::free; }
+
+  BodyFlight flight(std::int32_t body) const {
+    return {.shape = bodies.shape[body],
+            .size = bodies.size[body],
+            .inverse_inertia = bodies.inverse_inertia[body],
+            .position = bodies.position[body],
+            .orientation = bodies.orientation[body],
+            .velocity = bodies.velocity[body],
+            .spin = parameters.rotation || !is_free(body) ? bodies.spin[body] : Vec3(Vec3::Zero()),
+            .acceleration = is_free(body) ? parameters.acceleration_of(body) : Vec3(Vec3::Zero()),
+            .midpoint = 0.5 * problem.step};
   }
 
-  /// Geometry of a manifold's point after the shifts: gap, and the arms to the two surfaces.
-  struct Point {
-    double gap;
-    Vec3 arm_i, arm_j;
-  };
-  Point point(const Manifold& m, int k) const {
-    const Vec3 moved = shift[m.j] - shift[m.i];
-    const double gap = m.points[k].gap + m.normal.dot(moved);
-    const Vec3 middle = m.points[k].position + 0.5 * (shift[m.i] + shift[m.j]);
-    return {gap, middle - (0.5 * gap) * m.normal - bodies.position[m.i],
-            middle + (0.5 * gap) * m.normal - bodies.position[m.j]};
+  /// The slowest approach that bounces on a part without load (m/s).
+  double slowest_bounce(std::int32_t i, std::int32_t j) const {
+    if (!parameters.restitution || problem.laws.between(i, j).restitution == 0) return HUGE_VAL;
+    const double rounding =
+        tolerance::closing_speed * (bodies.velocity[i].norm() + bodies.velocity[j].norm());
+    return std::max(parameters.restitution_threshold, rounding);
   }
 
-  bool is_fast(double speed, const Contact& c) const {
-    const double floor =
-        tolerance::closing_speed * (solver[c.i].velocity.norm() + solver[c.j].velocity.norm());
-    return speed < -fmax(parameters.restitution_threshold, floor);
+  /// Two bodies until the end of the substep; no meeting of theirs counts yet.
+  PairFlight pair_of(std::int32_t i, std::int32_t j, double until) const {
+    PairFlight pair{.i = flight(i), .j = flight(j), .until = until, .slowest = {}};
+    std::fill_n(pair.slowest, PairFlight::parts, HUGE_VAL);
+    return pair;
   }
 
-  /// True for a ball and the wall of a tube: its normal goes round with the ball.
-  bool meets_wall(const Contact& c) const {
-    const Shape i = bodies.shape[c.i];
-    const Shape j = bodies.shape[c.j];
-    return (i == Shape::tube || j == Shape::tube) && (i == Shape::sphere || j == Shape::sphere) &&
-           manifolds[c.manifold].part == tube_wall;
+  /// Bound on how far any point of a body's surface gets from where it is at the midpoint (m).
+  double reach_of(std::int32_t body) const {
+    if (bodies.mobility[body] == Mobility::absent) return 0;
+    return fastest_surface(flight(body), problem.step) * (0.5 * problem.step);
   }
 
-  Impact next_wall_impact_of(const Contact& c) const {
-    const bool ball_first = bodies.shape[c.i] == Shape::sphere;
-    const std::int32_t ball = ball_first ? c.i : c.j;
-    const std::int32_t tube = ball_first ? c.j : c.i;
-    const Vec3 axis = bodies.orientation[tube] * Vec3::UnitZ();
-    const auto across = [&axis](const Vec3& v) { return Vec3(v - axis.dot(v) * axis); };
-    const Vec3 offset = bodies.position[ball] - bodies.position[tube];
-    // Spin about the axis leaves the wall where it is; spin across it does not.
-    const Vec3 wall_velocity = solver[tube].velocity_at(axis.dot(offset) * axis);
-    const WallImpact next = next_wall_impact({.flight = {across(offset), across(flight(ball).acceleration)},
-                                              .velocity = across(solver[ball].velocity - wall_velocity),
-                                              .reach = bodies.size[tube].x() - bodies.size[ball].x()},
-                                             step, fmax(clock[c.i], clock[c.j]));
-    if (next.time == HUGE_VAL || !is_fast(-next.speed, c)) return {};
-    return {.time = next.time, .normal = ball_first ? next.outward : Vec3(-next.outward), .count = 1};
+  /// True if two bodies do not come near one another in the substep.
+  bool are_far(std::int32_t i, std::int32_t j) const {
+    const bool boundary_i = is_boundary(bodies.shape[i]);
+    const bool boundary_j = is_boundary(bodies.shape[j]);
+    double near = reach[i] + reach[j];
+    if (!boundary_i) near += bounding_radius(bodies.shape[i], bodies.size[i]);
+    if (!boundary_j) near += bounding_radius(bodies.shape[j], bodies.size[j]);
+    const Vec3 offset = bodies.position[j] - bodies.position[i];
+    if (!boundary_i && !boundary_j) return offset.squaredNorm() > near * near;
+    const std::int32_t boundary = boundary_i ? i : j;
+    if (bodies.shape[boundary] == Shape::tube) return false;
+    const Vec3 up = bodies.orientation[boundary] * Vec3::UnitZ();
+    return (boundary_i ? 1.0 : -1.0) * up.dot(offset) > near;
   }
 
-  bool is_of_balls(const Contact& c) const {
-    return bodies.shape[c.i] == Shape::sphere && bodies.shape[c.j] == Shape::sphere;
-  }
-
-  BallImpact next_meeting(const Contact& c) const {
-    const Flight i = flight(c.i);
-    const Flight j = flight(c.j);
-    return next_ball_impact({.flight = {j.position - i.position, j.acceleration - i.acceleration},
-                             .velocity = solver[c.j].velocity - solver[c.i].velocity,
-                             .touching = bodies.size[c.i].x() + bodies.size[c.j].x()},
-                            step, fmax(clock[c.i], clock[c.j]));
-  }
-
-  Impact next_ball_impact_of(const Contact& c) const {
-    const BallImpact next = next_meeting(c);
-    if (next.time == HUGE_VAL || !is_fast(next.speed, c)) return {};
-    return {.time = next.time, .normal = next.normal, .count = 1};
-  }
-
-  Impact next_impact(const Contact& c) const {
-    if (is_of_balls(c)) return next_ball_impact_of(c);
-    if (meets_wall(c)) return next_wall_impact_of(c);
-    Impact impact;
-    const Manifold& m = manifolds[c.manifold];
-    const SolverBody& bi = solver[c.i];
-    const SolverBody& bj = solver[c.j];
-    const double a = m.normal.dot(flight(c.j).acceleration - flight(c.i).acceleration);
-    const double earliest = fmax(clock[c.i], clock[c.j]);
-    double gap[Manifold::max_points];
-    double u[Manifold::max_points];
-    for (int k = 0; k < m.count; ++k) {
-      const Point p = point(m, k);
-      u[k] = m.normal.dot(bj.velocity_at(p.arm_j) - bi.velocity_at(p.arm_i));
-      gap[k] = p.gap - 0.5 * step * u[k];  // at s = 0
-      const double s = fmax(earliest, time_of_impact(gap[k], u[k], a));
-      if (s < impact.time && is_fast(u[k] + a * s, c)) impact.time = s;
+  /// The next impact of two bodies.
+  Meeting next(std::int32_t i, std::int32_t j) const {
+    if (!is_free(i) && !is_free(j)) return {};
+    if (bodies.mobility[i] == Mobility::absent || bodies.mobility[j] == Mobility::absent) return {};
+    if (are_far(i, j) || std::max(hits[i], hits[j]) >= most_hits) return {};
+    const double earliest = std::max(clock[i], clock[j]);
+    if (!(earliest < problem.step)) return {};
+    PairFlight pair = pair_of(i, j, problem.step);
+    pair.farthest = tolerance::deep_approach * std::min(smallest_size(pair.i.shape, pair.i.size),
+                                                        smallest_size(pair.j.shape, pair.j.size));
+    const double fastest = fastest_approach(pair);
+    const double slowest = problem.bounces ? slowest_bounce(i, j) : HUGE_VAL;
+    const bool may_bounce = fastest > slowest;
+    const bool may_go_deep = fastest * (problem.step - earliest) > pair.farthest;
+    if (!(may_bounce || may_go_deep)) return {};
+    if (may_bounce) {
+      for (int part = 0; part < PairFlight::parts; ++part) {
+        if (!problem.memory.is_loaded(i, j, part)) pair.slowest[part] = slowest;
+      }
     }
-    if (impact.time == HUGE_VAL) return impact;
-    impact.normal = m.normal;
-    const double touching = tolerance::closed_gap * fmin(smallest_size(bodies.shape[c.i], bodies.size[c.i]),
-                                                         smallest_size(bodies.shape[c.j], bodies.size[c.j]));
-    for (int k = 0; k < m.count; ++k) {
-      const double s = impact.time;
-      if (u[k] + a * s < 0 && gap[k] + u[k] * s + 0.5 * a * s * s <= touching)
-        impact.point[impact.count++] = k;
-    }
-    return impact;
+    if (!may_go_deep) pair.farthest = HUGE_VAL;
+    return next_meeting(pair, earliest);
   }
 
-  /// Where a body's surface point is at the time of impact, `direction` pointing out of the body.
-  Vec3 surface(std::int32_t body, const Vec3& position, const Vec3& direction, const Vec3& arm,
-               double tau) const {
-    if (bodies.shape[body] == Shape::sphere) return position + bodies.size[body].x() * direction;
-    return position + rotation_of(tau * solver[body].spin) * arm;
-  }
-
-  /// The common point. Bodies slide along one another between the midpoint and the impact: the more curved
-  /// surface carries the point with it (sphere before box before plane or tube); between equals it lies in
-  /// the middle.
-  Vec3 touching_point(const Contact& c, const Vec3& normal, const Vec3& on_i, const Vec3& on_j) const {
-    const Shape i = bodies.shape[c.i];
-    const Shape j = bodies.shape[c.j];
-    // The point of the wall at the midpoint says nothing of where the wall is at the impact.
-    const double apart = meets_wall(c) ? 0.0 : normal.dot(on_j - on_i);
-    if (i == j) return 0.5 * (on_i + on_j);
-    return i < j ? Vec3(on_i + (0.5 * apart) * normal) : Vec3(on_j - (0.5 * apart) * normal);
-  }
-
-  /// Newton's law u+ = -e u- at all points of the impact at once, with Coulomb friction, at one
-  /// configuration.
-  void resolve(std::int64_t index, const Impact& impact, std::int32_t pass) const {
-    Contact& c = contacts[index];
-    const Manifold& m = manifolds[c.manifold];
-    const double s = impact.time;
-    const double tau = s - 0.5 * step;
-    SolverBody i = solver[c.i];
-    SolverBody j = solver[c.j];
-    const Flight fi = flight(c.i);
-    const Flight fj = flight(c.j);
-    const Vec3 xi = fi.at(i.velocity, step, s);
-    const Vec3 xj = fj.at(j.velocity, step, s);
+  /// Newton's law u+ = -e u- at all points that touch and close, at one configuration, with Coulomb
+  /// friction. False if none does.
+  bool resolve(std::int32_t i, std::int32_t j, const Meeting& meeting, Impact& impact, Ledger& ledger) const {
+    const double s = meeting.time;
+    const BodyFlight flight_i = flight(i);
+    const BodyFlight flight_j = flight(j);
+    const BodyInstant at_i = instant_of(flight_i, s);
+    const BodyInstant at_j = instant_of(flight_j, s);
+    const double touching = tolerance::closed_gap * std::min(smallest_size(flight_i.shape, flight_i.size),
+                                                             smallest_size(flight_j.shape, flight_j.size));
+    Manifold m;
+    if (!contact_at(at_i, flight_i.shape, at_j, flight_j.shape, meeting.part, touching, m)) return false;
+    SolverBody a = solver_body(i, at_i);
+    SolverBody b = solver_body(j, at_j);
     ContactRow rows[Manifold::max_points];
     RowCoupling couplings[Manifold::max_points];
     Vec3 before[Manifold::max_points];
-    for (int k = 0; k < impact.count; ++k) {
-      const Point p = point(m, impact.point[k]);
-      const Vec3 touch = touching_point(c, impact.normal, surface(c.i, xi, impact.normal, p.arm_i, tau),
-                                        surface(c.j, xj, -impact.normal, p.arm_j, tau));
-      rows[k] = make_row(impact.normal, touch - xi, touch - xj, 0.0, i, j, couplings[k]);
+    Vec3 middle = Vec3::Zero();
+    double fastest = 0;
+    int count = 0;
+    for (int k = 0; k < m.count; ++k) {
+      const double closing = closing_speed(m, k, at_i, at_j);
+      if (!(closing > 0)) continue;
+      const Vec3& point = m.points[k].position;
+      rows[count] = make_row(m.normal, point - at_i.solid.position, point - at_j.solid.position, 0.0, a, b,
+                             couplings[count]);
+      before[count] = rows[count].relative_velocity(a, b);
+      fastest = std::max(fastest, closing);
+      middle += point;
+      ++count;
     }
-    i.velocity += s * fi.acceleration;
-    j.velocity += s * fj.acceleration;
-    for (int k = 0; k < impact.count; ++k) {
-      before[k] = rows[k].relative_velocity(i, j);
-      rows[k].target = -c.restitution * before[k].dot(impact.normal);
+    if (count == 0) return false;
+    const PairLaw& law = problem.laws.between(i, j);
+    const bool bounces = fastest > slowest_bounce(i, j) && !problem.memory.is_loaded(i, j, meeting.part) &&
+                         std::max(hits[i], hits[j]) < most_bounces;
+    const double restitution = bounces ? law.restitution : 0.0;
+    for (int k = 0; k < count; ++k) rows[k].target = -restitution * before[k].dot(m.normal);
+    const double friction = parameters.friction ? law.friction : 0.0;
+    solve(rows, couplings, count, m.normal, friction, a, b);
+    keep_from_gaining(rows, before, count, a, b);
+    const bool driven = !(a.is_free() && b.is_free());
+    impact = {.i = i, .j = j, .impulse = Vec3::Zero(), .point = middle / count};
+    for (int k = 0; k < count; ++k) {
+      const Vec3 driver = !driven       ? Vec3(Vec3::Zero())
+                          : a.is_free() ? b.velocity_at(rows[k].arm_j)
+                                        : a.velocity_at(rows[k].arm_i);
+      ledger = ledger + account(rows[k].impulse, m.normal, before[k], rows[k].relative_velocity(a, b), driver,
+                                a.is_free() ? -1.0 : 1.0);
+      impact.impulse += rows[k].impulse;
     }
-    for (int sweep = 0; sweep < impact_sweeps; ++sweep) {
+    fly_on(i, flight_i, at_i, a, s);
+    fly_on(j, flight_j, at_j, b, s);
+    return true;
+  }
+
+ private:
+  SolverBody solver_body(std::int32_t body, const BodyInstant& at) const {
+    return {at.velocity, at.spin, bodies.inverse_mass[body],
+            world_inverse_inertia(at.solid.orientation, bodies.inverse_inertia[body])};
+  }
+
+  static void solve(ContactRow* rows, const RowCoupling* couplings, int count, const Vec3& normal,
+                    double friction, SolverBody& i, SolverBody& j) {
+    constexpr int most_sweeps = 200;
+    for (int sweep = 0; sweep < most_sweeps; ++sweep) {
       double change = 0;
       double size = 0;
       Vec3 last[Manifold::max_points];
-      for (int k = 0; k < impact.count; ++k) last[k] = rows[k].impulse;
-      sweep_rows(rows, couplings, impact.count, impact.normal, c.friction, i, j);
-      for (int k = 0; k < impact.count; ++k) {
+      for (int k = 0; k < count; ++k) last[k] = rows[k].impulse;
+      sweep_rows(rows, couplings, count, normal, friction, i, j);
+      for (int k = 0; k < count; ++k) {
         change += (rows[k].impulse - last[k]).norm();
         size += rows[k].impulse.norm();
       }
       if (change <= tolerance::impact_residual * size) break;
     }
-    keep_from_gaining(rows, before, impact.count, i, j);
-    Vec3 total = Vec3::Zero();
-    for (int k = 0; k < impact.count; ++k) {
-      const SolverBody& driver = i.is_free() ? j : i;
-      const bool driven = !(i.is_free() && j.is_free());
-      const Vec3 arm = i.is_free() ? rows[k].arm_j : rows[k].arm_i;
-      ledger[index] =
-          ledger[index] + account(rows[k].impulse, impact.normal, before[k], rows[k].relative_velocity(i, j),
-                                  driven ? driver.velocity_at(arm) : Vec3(Vec3::Zero()),
-                                  i.is_free() ? -1.0 : 1.0);
-      total += rows[k].impulse;
-    }
-    c.impulse += total;
-    store(c.i, i, fi, s, tau, pass);
-    store(c.j, j, fj, s, tau, pass);
   }
 
   /// Newton's law with friction at several points, or at one whose Delassus matrix couples normal and
   /// tangents, can gain energy. What the impulses p move is a parabola in their common scale, p.u- + p.W p /
   /// 2; they are scaled down to where it is 0, which keeps momentum and the cone.
-  void keep_from_gaining(ContactRow* rows, const Vec3* before, int count, SolverBody& i,
-                         SolverBody& j) const {
+  static void keep_from_gaining(ContactRow* rows, const Vec3* before, int count, SolverBody& i,
+                                SolverBody& j) {
     double linear = 0;
     double moved = 0;
     for (int k = 0; k < count; ++k) {
@@ -227,106 +196,230 @@ struct ImpactStage {
     }
   }
 
-  void store(std::int32_t body, const SolverBody& after, const Flight& flown, double s, double tau,
-             std::int32_t pass) const {
-    SolverBody& state = solver[body];
-    if (!state.is_free()) return;
+  /// Gives a body the flight that leads from the impact on.
+  void fly_on(std::int32_t body, const BodyFlight& flown, const BodyInstant& at, const SolverBody& after,
+              double s) const {
+    if (!after.is_free()) return;
     const Vec3 velocity = after.velocity - s * flown.acceleration;
-    const Vec3 move = -tau * (velocity - state.velocity);
-    state.velocity = velocity;
-    state.spin = after.spin;
-    bodies.position[body] += move;
-    shift[body] += move;
+    bodies.position[body] -= (s - flown.midpoint) * (velocity - bodies.velocity[body]);
+    bodies.velocity[body] = velocity;
     clock[body] = s;
-    last_pass[body] = pass;
+    ++hits[body];
+    if (parameters.rotation) {
+      bodies.orientation[body] = at.solid.orientation;
+      bodies.spin[body] = after.spin;
+      rotate_freely(bodies.orientation[body], bodies.spin[body], flown.inverse_inertia, flown.midpoint - s);
+    }
+    reach[body] = reach_of(body);
   }
-
-  /// False if nothing has changed for a contact since its visit in the pass before.
-  bool is_due(const Contact& c, std::int32_t pass) const {
-    if (c.restitution == 0 || c.loaded) return false;
-    return pass == 0 || last_pass[c.i] >= pass - 1 || last_pass[c.j] >= pass - 1;
-  }
-
-  static constexpr int impact_sweeps = 200;
 };
 
-/// One visit of a contact: resolves its next impact if that falls into the substep.
-struct VisitContact {
-  ImpactStage stage;
-  std::int64_t first;
-  View<std::uint8_t> hit;
-  std::int32_t pass;
+/// The first impact of each pair, then of each plane with each body.
+struct FindFirst {
+  FlightStage stage;
+  const std::int32_t* planes;
+  View<Meeting> first;
 
   void operator()(std::int64_t k) const {
-    const std::int64_t index = first + k;
-    hit[index] = 0;
-    const Contact& c = stage.contacts[index];
-    if (!stage.is_due(c, pass)) return;
-    const Impact impact = stage.next_impact(c);
-    if (impact.count == 0 || impact.time > stage.step) return;
-    stage.resolve(index, impact, pass);
-    hit[index] = 1;
+    const auto [i, j] = candidate(k);
+    first[k] = stage.next(i, j);
+  }
+
+  /// Pairs with planes may be among the others too: they are left to the planes.
+  std::pair<std::int32_t, std::int32_t> candidate(std::int64_t k) const {
+    const ConstView<Pair> pairs = stage.problem.pairs;
+    if (k < pairs.size()) {
+      const Pair& pair = pairs[k];
+      const bool has_plane = stage.bodies.shape[pair.i] == Shape::plane || stage.bodies.shape[pair.j] == Shape::plane;
+      return has_plane ? std::pair(pair.i, pair.i) : std::pair(pair.i, pair.j);
+    }
+    const std::int64_t bodies = stage.bodies.count();
+    const std::int32_t plane = planes[(k - pairs.size()) / bodies];
+    const auto body = static_cast<std::int32_t>((k - pairs.size()) % bodies);
+    return std::minmax(plane, body);
+  }
+};
+
+struct SetReach {
+  FlightStage stage;
+  void operator()(std::int64_t k) const { stage.reach[k] = stage.reach_of(static_cast<std::int32_t>(k)); }
+};
+
+struct LoadReach {
+  View<double> reach;
+  SCREE_HD double operator()(std::int64_t k) const { return reach[k]; }
+};
+
+struct MinusSize {
+  BodyView bodies;
+  SCREE_HD double operator()(std::int64_t k) const {
+    return bodies.mobility[k] == Mobility::absent ? -HUGE_VAL : -smallest_size(bodies.shape[k], bodies.size[k]);
+  }
+};
+
+/// False if no two bodies can go deep into one another.
+bool may_go_deep(const FlightStage& stage) {
+  const std::int64_t n = stage.bodies.count();
+  const double reach = parallel::max<double, Host>("impact.reach", n, LoadReach{stage.reach}, 0.0);
+  const double size = -parallel::max<double, Host>("impact.size", n, MinusSize{stage.bodies}, -HUGE_VAL);
+  // The reach is of half a substep: two bodies, and both halves.
+  return 4 * reach > tolerance::deep_approach * size;
+}
+
+struct Event {
+  Meeting meeting;
+  std::int32_t i, j;
+  std::int32_t hits_i, hits_j;  // of the bodies when it was foreseen
+
+  friend bool operator>(const Event& a, const Event& b) {
+    return std::tuple(a.meeting.time, a.i, a.j, a.meeting.part) >
+           std::tuple(b.meeting.time, b.i, b.j, b.meeting.part);
   }
 };
 
 struct MarkFlying {
-  ImpactStage stage;
+  FlightStage stage;
+  ConstView<Manifold> manifolds;
+  View<Contact> contacts;
+
+  /// Two bodies that the rows would hold apart, though nothing else has touched them, may pass by each other:
+  /// the normal of the midpoint says nothing of it. Or they meet later, in an impact that will bounce.
   void operator()(std::int64_t index) const {
-    Contact& c = stage.contacts[index];
-    if (c.restitution == 0 || c.loaded) return;
-    if (stage.is_of_balls(c)) {
-      // Their flight is exact: what does not meet passes by, whatever the midpoint's normal says.
-      c.flying = stage.next_meeting(c).time > stage.step;
-    } else {
-      const double time = stage.next_impact(c).time;
-      c.flying = time > stage.step && time < HUGE_VAL;
+    Contact& contact = contacts[index];
+    const Manifold& m = manifolds[contact.manifold];
+    if (contact.loaded || !would_push_apart(m)) return;
+    const double step = stage.problem.step;
+    PairFlight pair = stage.pair_of(m.i, m.j, 1.5 * step);
+    pair.slowest[m.part] = 0;
+    const Meeting meeting = next_meeting(pair, std::max(stage.clock[m.i], stage.clock[m.j]));
+    contact.flying = meeting.time == HUGE_VAL ||
+                     (meeting.time > step && fastest_approach(pair) > stage.slowest_bounce(m.i, m.j));
+  }
+
+  bool would_push_apart(const Manifold& m) const {
+    const double step = stage.problem.step;
+    const BodyFlight i = stage.flight(m.i);
+    const BodyFlight j = stage.flight(m.j);
+    const BodyInstant at_i{{i.position, i.orientation, i.size}, i.velocity_at(step), i.spin};
+    const BodyInstant at_j{{j.position, j.orientation, j.size}, j.velocity_at(step), j.spin};
+    bool pushes = false;
+    for (int k = 0; k < m.count; ++k) {
+      if (m.points[k].gap <= 0) return false;  // has touched, and would for what presses it alone
+      pushes = pushes || closing_speed(m, k, at_i, at_j) * step > m.points[k].gap;
     }
+    return pushes;
   }
 };
-
-struct AnyHit {
-  ConstView<std::uint8_t> hit;
-  SCREE_HD std::int64_t operator()(std::int64_t k) const { return hit[k]; }
-};
-
-struct LoadLedger {
-  ConstView<Ledger> ledger;
-  SCREE_HD Ledger operator()(std::int64_t k) const { return ledger[k]; }
-};
-
-constexpr int chain_passes = 64;
 
 }  // namespace
 
 Ledger ImpactSolver::resolve(const ImpactProblem& problem, const ResponseParameters& parameters,
-                             Array<SolverBody, Host>& solver, ContactSet& set, Counters& counters) {
-  const std::int64_t n = set.contacts.size();
-  set.shift.resize(solver.size());
-  parallel::fill("impact.reset", set.shift, Vec3(Vec3::Zero()));
-  if (!parameters.restitution || n == 0) return {};
-  clock_.resize(solver.size());
-  last_pass_.resize(solver.size());
-  ledger_.resize(n);
-  hit_.resize(n);
-  parallel::fill("impact.reset", clock_, 0.0);
-  parallel::fill("impact.reset", last_pass_, std::int32_t{-2});
-  parallel::fill("impact.reset", ledger_, Ledger{});
-  const ImpactStage stage{problem.manifolds, problem.step,        parameters,       problem.bodies,
-                          solver.view(),     set.contacts.view(), set.shift.view(), clock_.view(),
-                          last_pass_.view(), ledger_.view()};
-  bool closing = true;
-  for (std::int32_t pass = 0; pass < chain_passes && closing; ++pass) {
-    for_each_color("impact.visit", set.coloring, [&](std::int64_t first) {
-      return VisitContact{stage, first, hit_.view(), pass};
-    });
-    const auto hits =
-        parallel::sum<std::int64_t, Host>("impact.count", n, AnyHit{std::as_const(hit_).view()});
-    counters.impacts += hits;
-    closing = hits > 0;
+                             BodyView bodies) {
+  const std::int64_t n = bodies.count();
+  clock_.resize(n);
+  hits_.resize(n);
+  parallel::fill("impact.reset", clock_, problem.from);
+  parallel::fill("impact.reset", hits_, std::int32_t{0});
+  impacts_.clear();
+  saved_.clear();
+  hit_bound_ = false;
+  reach_.resize(n);
+  const FlightStage stage{problem, parameters, bodies, clock_.view(), hits_.view(), reach_.view()};
+  parallel::for_each<Host>("impact.reach", n, SetReach{stage});
+  if (!(problem.bounces && parameters.restitution) && !may_go_deep(stage)) return {};
+  planes_.clear();
+  for (std::int64_t k = 0; k < n; ++k) {
+    if (bodies.shape[k] == Shape::plane) planes_.push_back(static_cast<std::int32_t>(k));
   }
-  if (closing) ++counters.unfinished_impacts;
-  parallel::for_each<Host>("impact.flying", n, MarkFlying{stage});
-  return parallel::sum<Ledger, Host>("impact.ledger", n, LoadLedger{std::as_const(ledger_).view()});
+  first_.resize(problem.pairs.size() + static_cast<std::int64_t>(planes_.size()) * n);
+  const FindFirst find{stage, planes_.data(), first_.view()};
+  parallel::for_each<Host>("impact.first", first_.size(), find);
+
+  std::priority_queue<Event, std::vector<Event>, std::greater<>> events;
+  const auto foresee = [&](std::int32_t i, std::int32_t j, const Meeting& meeting) {
+    if (meeting.time <= problem.step) events.push({meeting, i, j, hits_.view()[i], hits_.view()[j]});
+  };
+  for (std::int64_t k = 0; k < first_.size(); ++k) {
+    if (first_.view()[k].time > problem.step) continue;
+    const auto [i, j] = find.candidate(k);
+    foresee(i, j, first_.view()[k]);
+  }
+  if (events.empty()) return {};
+  list_partners(problem.pairs, bodies);
+
+  const auto foresee_all_of = [&](std::int32_t body, std::int32_t but) {
+    if (!stage.is_free(body)) return;
+    const auto look_at = [&](std::int32_t other) {
+      if (other == body || other == but) return;
+      const auto [i, j] = std::minmax(body, other);
+      foresee(i, j, stage.next(i, j));
+    };
+    const auto k = static_cast<std::size_t>(body);
+    for (std::int64_t p = begin_[k]; p < begin_[k + 1]; ++p) look_at(partners_[static_cast<std::size_t>(p)]);
+    for (const std::int32_t plane : planes_) look_at(plane);
+  };
+  const auto save = [&](std::int32_t body) {
+    if (!stage.is_free(body) || hits_.view()[body] > 0) return;
+    saved_.push_back(
+        {body, bodies.position[body], bodies.orientation[body], bodies.velocity[body], bodies.spin[body]});
+  };
+  Ledger ledger;
+  while (!events.empty()) {
+    const Event event = events.top();
+    events.pop();
+    const auto [meeting, i, j, hits_i, hits_j] = event;
+    if (hits_.view()[i] != hits_i || hits_.view()[j] != hits_j) continue;
+    save(i);
+    save(j);
+    Impact impact;
+    if (!stage.resolve(i, j, meeting, impact, ledger)) continue;
+    impacts_.push_back(impact);
+    hit_bound_ = hit_bound_ || std::max(hits_.view()[i], hits_.view()[j]) >= most_bounces;
+    foresee(i, j, stage.next(i, j));
+    foresee_all_of(i, j);
+    foresee_all_of(j, i);
+  }
+  return ledger;
+}
+
+void ImpactSolver::list_partners(ConstView<Pair> pairs, const BodyView& bodies) {
+  begin_.assign(static_cast<std::size_t>(bodies.count()) + 1, 0);
+  const auto count = [&](std::int32_t body) { ++begin_[static_cast<std::size_t>(body) + 1]; };
+  const auto is_listed = [&](const Pair& pair) {
+    return bodies.shape[pair.i] != Shape::plane && bodies.shape[pair.j] != Shape::plane;
+  };
+  for (const Pair& pair : pairs) {
+    if (!is_listed(pair)) continue;
+    count(pair.i);
+    count(pair.j);
+  }
+  for (std::size_t k = 1; k < begin_.size(); ++k) begin_[k] += begin_[k - 1];
+  partners_.resize(static_cast<std::size_t>(begin_.back()));
+  std::vector<std::int64_t>& next = next_;
+  next.assign(begin_.begin(), begin_.end());
+  for (const Pair& pair : pairs) {
+    if (!is_listed(pair)) continue;
+    partners_[static_cast<std::size_t>(next[static_cast<std::size_t>(pair.i)]++)] = pair.j;
+    partners_[static_cast<std::size_t>(next[static_cast<std::size_t>(pair.j)]++)] = pair.i;
+  }
+}
+
+void ImpactSolver::undo(BodyView bodies) {
+  for (const Saved& saved : saved_) {
+    bodies.position[saved.body] = saved.position;
+    bodies.orientation[saved.body] = saved.orientation;
+    bodies.velocity[saved.body] = saved.velocity;
+    bodies.spin[saved.body] = saved.spin;
+  }
+  saved_.clear();
+  impacts_.clear();
+}
+
+void ImpactSolver::mark_flying(const ImpactProblem& problem, const ResponseParameters& parameters,
+                               ConstView<Manifold> manifolds, BodyView bodies, ContactSet& set) {
+  const FlightStage stage{problem, parameters, bodies, clock_.view(), hits_.view(), reach_.view()};
+  parallel::for_each<Host>("impact.flying", set.contacts.size(),
+                           MarkFlying{stage, manifolds, set.contacts.view()});
 }
 
 }  // namespace scree

@@ -1,35 +1,77 @@
-// Impacts that bounce: at their time inside the substep, one contact after the other.
+// Impacts: at their time inside the substep, in order, each one's outcome before the next.
 #pragma once
 
+#include "broadphase/broad_phase.hpp"
 #include "sim/dynamics/contact_set.hpp"
+#include "sim/dynamics/meeting.hpp"
 #include "sim/dynamics/state.hpp"
+
+#include <vector>
 
 namespace scree {
 
 struct ImpactProblem {
-  ConstView<Manifold> manifolds;
-  double step;      ///< length of the substep (s)
-  BodyView bodies;  ///< at the midpoint
+  ConstView<Pair> pairs;  ///< among which are all that may meet, but for planes, which may meet everybody
+  ContactLaws laws;
+  const ImpulseMemory& memory;  ///< contacts that carried a load do not bounce
+  double step;                  ///< length of the substep (s)
+  double from;                  ///< start of the flight, into the substep (s); it ends with the substep
+  bool bounces;  ///< whether approaches faster than the threshold count; else only those that would go deep
+};
+
+/// What an impact gave to body j, and reversed to i.
+struct Impact {
+  std::int32_t i, j;
+  Vec3 impulse;  ///< N s
+  Vec3 point;    ///< m
 };
 
 class ImpactSolver {
  public:
-  /// Finds and resolves every impact of the substep whose contact was not loaded before, bounces, and closes
-  /// faster than the threshold. A body in flight is, at the time s into the substep, at
+  /// Finds and resolves the impacts of the flight. One is the meeting of a pair that was not loaded before,
+  /// bounces, and closes faster than the threshold; or of any pair whose approach would go on for more than
+  /// tolerance::deep_approach by the end of the substep: the response, which sees the midpoint alone, could
+  /// not tell which way to part them. A body in flight is, at the time s into the substep, at
   ///   x(s) = x_mid + (s - step/2) v + g s^2 / 2,
-  /// so an impulse dv at s shifts x_mid by -(s - step/2) dv, and flight, bounce and energy are exact for a
-  /// sphere whatever the step (docs/method.md). Chains run on until nothing closes; if a bound is hit, the
-  /// rest is left to the response with e = 0 and counted. Sets Contact::flying and set.shift, moves the
-  /// positions by the shift. `solver` holds the velocities before gravity's kick. Returns what the impacts
-  /// moved.
-  Ledger resolve(const ImpactProblem& problem, const ResponseParameters& parameters,
-                 Array<SolverBody, Host>& solver, ContactSet& set, Counters& counters);
+  /// and turns freely; after an impact its midpoint is that from which its new velocity leads through the
+  /// impact. So flight, bounce and energy are exact whatever the step (docs/method.md). The bodies are at the
+  /// midpoint, with their velocities before gravity's kick. Chains run on until nothing meets; a body that has
+  /// had its bound of impacts takes e = 0. Returns what the impacts moved.
+  Ledger resolve(const ImpactProblem& problem, const ResponseParameters& parameters, BodyView bodies);
+  /// Puts the bodies back to where they were before the last resolve().
+  void undo(BodyView bodies);
+
+  /// Sets Contact::flying, after resolve().
+  void mark_flying(const ImpactProblem& problem, const ResponseParameters& parameters,
+                   ConstView<Manifold> manifolds, BodyView bodies, ContactSet& set);
+
+  /// Of the last resolve(), in their order.
+  const std::vector<Impact>& impacts() const { return impacts_; }
+  /// Whether a body has had its bound of them.
+  bool hit_bound() const { return hit_bound_; }
+
+  /// A body before its first impact of the flight.
+  struct Saved {
+    std::int32_t body;
+    Vec3 position;
+    Quat orientation;
+    Vec3 velocity, spin;
+  };
 
  private:
-  Array<double, Host> clock_;            // time of each body's last impact in this substep
-  Array<std::int32_t, Host> last_pass_;  // in which each body was last hit
-  Array<Ledger, Host> ledger_;           // per contact
-  Array<std::uint8_t, Host> hit_;        // per contact, in the last pass
+  void list_partners(ConstView<Pair> pairs, const BodyView& bodies);
+
+  Array<double, Host> clock_;        // time of each body's last impact in the flight
+  Array<std::int32_t, Host> hits_;   // of each body in the flight
+  Array<double, Host> reach_;        // of each body's surface from the midpoint, to either end (m)
+  Array<Meeting, Host> first_;       // of each candidate
+  std::vector<std::int32_t> planes_;
+  std::vector<std::int64_t> begin_;  // of the partners of each body
+  std::vector<std::int32_t> partners_;
+  std::vector<std::int64_t> next_;  // scratch of list_partners()
+  std::vector<Impact> impacts_;
+  std::vector<Saved> saved_;
+  bool hit_bound_ = false;
 };
 
 }  // namespace scree

@@ -54,21 +54,47 @@ struct SetMargin {
   }
 };
 
-/// Whether a body may touch something outside its box.
-struct IsOut {
+/// How far a body's surface may have moved from where it was (m).
+struct Travel {
   ConstBodyView bodies;
   ConstView<Vec3> position;
   ConstView<Quat> orientation;
+  SCREE_HD double operator()(std::int64_t k) const {
+    if (bodies.mobility[k] == Mobility::fixed || bodies.mobility[k] == Mobility::absent) return 0;
+    const double moved = (bodies.position[k] - position[k]).norm();
+    if (bodies.shape[k] == Shape::sphere) return moved;
+    return moved + bounding_radius(bodies.shape[k], bodies.size[k]) *
+                       bodies.orientation[k].angularDistance(orientation[k]);
+  }
+};
+
+/// Whether a body may touch something outside its box.
+struct IsOut {
+  Travel travel;
   ConstView<double> box_margin;
   ConstView<double> contact_margin;
   SCREE_HD int operator()(std::int64_t k) const {
-    if (bodies.mobility[k] == Mobility::fixed || bodies.mobility[k] == Mobility::absent) return 0;
-    double moved = (bodies.position[k] - position[k]).norm();
-    if (bodies.shape[k] != Shape::sphere) {
-      moved += bounding_radius(bodies.shape[k], bodies.size[k]) *
-               bodies.orientation[k].angularDistance(orientation[k]);
-    }
-    return moved + contact_margin[k] > box_margin[k] ? 1 : 0;
+    const Mobility mobility = travel.bodies.mobility[k];
+    if (mobility == Mobility::fixed || mobility == Mobility::absent) return 0;
+    return travel(k) + contact_margin[k] > box_margin[k] ? 1 : 0;
+  }
+};
+
+struct AddTravel {
+  Travel travel;
+  View<double> margin;
+  SCREE_HD void operator()(std::int64_t k) const { margin[k] += travel(k); }
+};
+
+/// At least the margin wanted, and the skin.
+struct RaiseMargin {
+  ConstBodyView bodies;
+  ConstView<double> wanted;
+  View<double> margin;
+  SCREE_HD void operator()(std::int64_t k) const {
+    if (bodies.mobility[k] == Mobility::fixed || is_boundary(bodies.shape[k])) return;
+    const double skin = tolerance::pair_skin * smallest_size(bodies.shape[k], bodies.size[k]);
+    margin[k] = fmax(margin[k], wanted[k] + skin);
   }
 };
 
@@ -129,16 +155,25 @@ void contact_margins(const Bodies<Host>& bodies, double dt, double slack,
                            SetMargin{view_of(bodies), margin.view(), dt, slack, parameters});
 }
 
-void FatBoxes::put_around(const Bodies<Host>& bodies, double dt, const ResponseParameters& parameters) {
+void FatBoxes::put_around(const Bodies<Host>& bodies, double dt, const ResponseParameters& parameters,
+                          const Array<double, Host>& contact_margin) {
   contact_margins(bodies, dt, tolerance::contact_slack + tolerance::pair_skin, parameters, margin_);
+  parallel::for_each<Host>("motion.margins", bodies.count(),
+                           RaiseMargin{view_of(bodies), contact_margin.view(), margin_.view()});
   copy(position_, bodies.position);
   copy(orientation_, bodies.orientation);
 }
 
 bool FatBoxes::hold(const Bodies<Host>& bodies, const Array<double, Host>& contact_margin) const {
-  const IsOut is_out{view_of(bodies), position_.view(), orientation_.view(), margin_.view(),
-                     contact_margin.view()};
+  const IsOut is_out{
+      {view_of(bodies), position_.view(), orientation_.view()}, margin_.view(), contact_margin.view()};
   return parallel::max<int, Host>("motion.out", bodies.count(), is_out, 0) == 0;
+}
+
+void FatBoxes::add_travel(const Bodies<Host>& bodies, Array<double, Host>& contact_margin) const {
+  parallel::for_each<Host>(
+      "motion.travel", bodies.count(),
+      AddTravel{{view_of(bodies), position_.view(), orientation_.view()}, contact_margin.view()});
 }
 
 double work_of_forces(const Bodies<Host>& bodies, const Array<Vec3, Host>& start,

@@ -20,11 +20,15 @@ void contact_margins(const Bodies<Host>& bodies, double dt, double slack,
 /// Boxes around the bodies, fat enough that pairs found with them last while nobody moves far.
 class FatBoxes {
  public:
-  /// Around the bodies where they are, with room for their travel within dt (s).
-  void put_around(const Bodies<Host>& bodies, double dt, const ResponseParameters& parameters);
+  /// Around the bodies where they are, with room for their travel within dt (s), and for contacts that reach as
+  /// far as given (m).
+  void put_around(const Bodies<Host>& bodies, double dt, const ResponseParameters& parameters,
+                  const Array<double, Host>& contact_margin);
   /// Whether every body, wherever it is now, and with contacts that reach as far as given (m), is still in
   /// its box.
   bool hold(const Bodies<Host>& bodies, const Array<double, Host>& contact_margin) const;
+  /// Raises the margins (m) by what each body has moved since the boxes were put around it.
+  void add_travel(const Bodies<Host>& bodies, Array<double, Host>& contact_margin) const;
   const Array<double, Host>& margin() const { return margin_; }  ///< (m)
 
  private:

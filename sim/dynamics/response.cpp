@@ -17,7 +17,6 @@ struct SolveStage {
   View<Contact> contacts;
   View<ContactRow> rows;
   View<RowCoupling> couplings;
-  ConstView<Vec3> shift;
   View<SweepChange> change;
   View<BodyAcceleration> acceleration;
   double step;
@@ -46,7 +45,7 @@ struct Kick {
   }
 };
 
-/// Arms, gaps and targets at the midpoint, after what impacts shifted.
+/// Arms, gaps and targets at the midpoint.
 struct PrepareRows {
   SolveStage stage;
   SCREE_HD void operator()(std::int64_t c) const {
@@ -59,18 +58,19 @@ struct PrepareRows {
         contact.count == 1 ? 0.0
                            : tolerance::closed_gap * fmin(smallest_size(bodies.shape[m.i], bodies.size[m.i]),
                                                           smallest_size(bodies.shape[m.j], bodies.size[m.j]));
-    const Vec3 middle_shift = 0.5 * (stage.shift[m.i] + stage.shift[m.j]);
-    const double opened = m.normal.dot(stage.shift[m.j] - stage.shift[m.i]);
     for (int k = 0; k < contact.count; ++k) {
       ContactRow& row = stage.rows_of(c)[k];
       const Vec3 impulse = row.impulse;
-      const Vec3 point = m.points[k].position + middle_shift;
-      const double gap = m.points[k].gap + opened;
+      const Vec3& point = m.points[k].position;
+      const Vec3 arm_i = point - bodies.position[m.i];
+      const Vec3 arm_j = point - bodies.position[m.j];
+      const SolverBody& i = stage.solver[m.i];
+      const SolverBody& j = stage.solver[m.j];
       if (contact.balls) {
-        row = ball_row(contact, gap, point);
+        row = make_ball_row(arm_i, arm_j, m.points[k].gap, i, j);
       } else {
-        row = make_row(m.normal, point - bodies.position[m.i], point - bodies.position[m.j], gap,
-                       stage.solver[m.i], stage.solver[m.j], stage.couplings[contact.first_row + k]);
+        row = make_row(m.normal, arm_i, arm_j, m.points[k].gap, i, j,
+                       stage.couplings[contact.first_row + k]);
       }
       row.impulse = impulse;
       // The next midpoint must not overlap: the gap may close by then, and no more (speculative contact).
@@ -84,28 +84,6 @@ struct PrepareRows {
     const double speed =
         contact.normal.dot(row.relative_velocity(stage.solver[contact.i], stage.solver[contact.j]));
     return speed - tolerance::flight_margin * fabs(speed);
-  }
-
-  /// On the line of the centres, wherever impacts have shifted them: beside it a normal impulse would turn a
-  /// ball.
-  SCREE_HD ContactRow ball_row(Contact& contact, double gap, Vec3 point) const {
-    const BodyView& bodies = stage.bodies;
-    const Vec3& i = bodies.position[contact.i];
-    const Vec3& j = bodies.position[contact.j];
-    const bool ball_i = bodies.shape[contact.i] == Shape::sphere;
-    const bool ball_j = bodies.shape[contact.j] == Shape::sphere;
-    if (ball_i && ball_j) {
-      const Vec3 offset = j - i;
-      const double distance = offset.norm();
-      if (distance > 0) contact.normal = offset / distance;
-      gap = distance - bodies.size[contact.i].x() - bodies.size[contact.j].x();
-    }
-    if (ball_i) {
-      point = i + (bodies.size[contact.i].x() + 0.5 * gap) * contact.normal;
-    } else if (ball_j) {
-      point = j - (bodies.size[contact.j].x() + 0.5 * gap) * contact.normal;
-    }
-    return make_ball_row(point - i, point - j, gap, stage.solver[contact.i], stage.solver[contact.j]);
   }
 };
 
@@ -262,7 +240,6 @@ Ledger ResponseSolver::solve(ConstView<Manifold> manifolds, double step, const R
                          .contacts = set.contacts.view(),
                          .rows = set.rows.view(),
                          .couplings = set.couplings.view(),
-                         .shift = std::as_const(set.shift).view(),
                          .change = change_.view(),
                          .acceleration = body_acceleration_.view(),
                          .step = step};
