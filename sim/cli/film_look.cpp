@@ -90,8 +90,8 @@ double mean_mass(const BodyTable& bodies) {
   return count > 0 ? sum / count : 1;
 }
 
-// The weight of as many of the heaviest bodies as lie along an edge of a cube of all; without gravity, the
-// force that takes such a body's speed in one step (N).
+// The weight of as many bodies of mean mass as lie along an edge of a cube of all; without gravity, the force
+// that takes the speed of one of them in a step (N).
 double expected_force(const Scene& scene, double speed) {
   const double mass = mean_mass(scene.bodies);
   if (scene.gravity.norm() == 0) return mass * speed / scene.time.step;
