@@ -1,37 +1,14 @@
 // The next meeting of two balls, beside stepping and bisection in long double.
 #include "core/rng.hpp"
-#include "sim/dynamics/flight.hpp"
+#include "tests/sim/dynamics/flight_oracle.hpp"
 
 #include <gtest/gtest.h>
-
-#include <cmath>
 
 namespace scree {
 namespace {
 
-using Real = long double;
-using Vec = Eigen::Matrix<Real, 3, 1>;
-
-Vec offset_at(const FlightOfBalls& balls, double step, Real s) {
-  return balls.flight.position.cast<Real>() + (s - 0.5L * step) * balls.velocity.cast<Real>() +
-         0.5L * s * s * balls.flight.acceleration.cast<Real>();
-}
-
-/// The first s at which the balls touch; infinite beyond the horizon.
-Real first_touch(const FlightOfBalls& balls, double step, Real earliest, Real horizon) {
-  const auto apart = [&](Real s) { return offset_at(balls, step, s).norm() > balls.touching; };
-  constexpr int cells = 20000;
-  for (int k = 0; k < cells; ++k) {
-    Real low = earliest + (horizon - earliest) * k / cells;
-    Real high = earliest + (horizon - earliest) * (k + 1) / cells;
-    if (apart(high)) continue;
-    for (int n = 0; n < 80; ++n) {
-      const Real middle = 0.5L * (low + high);
-      (apart(middle) ? low : high) = middle;
-    }
-    return high;
-  }
-  return INFINITY;
+RealVec3 offset_at(const FlightOfBalls& balls, double step, Real s) {
+  return place_at(balls.flight, balls.velocity, step, s);
 }
 
 Vec3 draw(Random& random, double size) {
@@ -53,7 +30,8 @@ TEST(BallImpact, IsTheFirstTouchAndItsNormalAndSpeedAreOfThatInstant) {
     balls.touching = random.uniform(0.1, 0.8);
     const double earliest = random.uniform(0, 0.03);
     if (offset_at(balls, step, earliest).norm() < balls.touching) continue;
-    const Real expected = first_touch(balls, step, earliest, step);
+    const Real expected = first_time(
+        earliest, step, [&](Real s) { return offset_at(balls, step, s).norm() <= balls.touching; });
     const BallImpact impact = next_ball_impact(balls, step, earliest);
     if (expected > step) {
       ++passed_by;

@@ -1,37 +1,14 @@
 // A ball's next impact on a tube's wall, beside stepping and bisection in long double.
 #include "core/rng.hpp"
-#include "sim/dynamics/flight.hpp"
+#include "tests/sim/dynamics/flight_oracle.hpp"
 
 #include <gtest/gtest.h>
-
-#include <cmath>
 
 namespace scree {
 namespace {
 
-using Real = long double;
-using Vec = Eigen::Matrix<Real, 3, 1>;
-
-Vec place(const FlightInTube& ball, double step, Real s) {
-  return ball.flight.position.cast<Real>() + (s - 0.5L * step) * ball.velocity.cast<Real>() +
-         0.5L * s * s * ball.flight.acceleration.cast<Real>();
-}
-
-/// Where the distance from the axis first passes the reach, from `earliest` on; infinite beyond the horizon.
-Real first_exit(const FlightInTube& ball, double step, Real earliest, Real horizon) {
-  const auto inside = [&](Real s) { return place(ball, step, s).norm() < ball.reach; };
-  constexpr int cells = 20000;
-  for (int k = 0; k < cells; ++k) {
-    Real low = earliest + (horizon - earliest) * k / cells;
-    Real high = earliest + (horizon - earliest) * (k + 1) / cells;
-    if (inside(high)) continue;
-    for (int n = 0; n < 80; ++n) {
-      const Real middle = 0.5L * (low + high);
-      (inside(middle) ? low : high) = middle;
-    }
-    return high;
-  }
-  return INFINITY;
+RealVec3 place_of(const FlightInTube& ball, double step, Real s) {
+  return place_at(ball.flight, ball.velocity, step, s);
 }
 
 FlightInTube draw_flight(Random& random) {
@@ -54,12 +31,13 @@ TEST(WallImpact, IsWhereTheCentreLeavesItsCircle) {
     Random random(21, static_cast<std::uint64_t>(n));
     const FlightInTube ball = draw_flight(random);
     const double earliest = random.uniform(0, step);
-    const Real expected = first_exit(ball, step, earliest, 1);
+    const Real expected =
+        first_time(earliest, 1, [&](Real s) { return place_of(ball, step, s).norm() >= ball.reach; });
     const WallImpact impact = next_wall_impact(ball, step, earliest);
     if (expected > 1) continue;
     ++met;
     ASSERT_NEAR(impact.time, static_cast<double>(expected), 1e-12) << n;
-    const Vec at = place(ball, step, expected);
+    const RealVec3 at = place_of(ball, step, expected);
     EXPECT_LT((impact.outward.cast<Real>() - at.normalized()).norm(), 1e-11L);
     EXPECT_GT(impact.speed, 0);
   }
