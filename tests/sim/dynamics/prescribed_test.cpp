@@ -24,6 +24,7 @@ bodies:
     material: a
 )");
   const double w = 2 * pi;
+  // Angles of up to 6283 rad are rounded by 1e-12.
   while (!simulation.finished()) {
     simulation.step();
     const double t = simulation.time();

@@ -25,7 +25,7 @@ bodies:
 )");
   while (simulation.steps() < 50) {
     simulation.step();
-    ASSERT_NEAR(simulation.body(1).position.z(), 1.1, 1e-4);
+    ASSERT_NEAR(simulation.body(1).position.z(), 1.1, 1e-3 * 0.1) << "it rests, to a share of its radius";
   }
   EXPECT_EQ(simulation.observe().bodies, 1);
   EXPECT_EQ(simulation.observe().pairs, 0);
@@ -59,7 +59,7 @@ bodies:
     const double t = simulation.time() - 0.3;
     const BodyState ball = simulation.body(1);
     ASSERT_LT((ball.position - Vec3(3 * t, 0, 1 + 4 * t - 5 * t * t)).norm(), 1e-13);
-    ASSERT_LT(ball.force.norm(), 1e-9);
+    ASSERT_LT(ball.force.norm(), 1e-12);  // rounding of m (dv / h - g)
     ASSERT_NEAR(o.exchange.energy, energy, 1e-12);
     ASSERT_NEAR(o.total(), first + energy, 1e-11);
     ASSERT_LT((o.exchange.momentum - 2 * Vec3(3, 0, 4)).norm(), 1e-14);

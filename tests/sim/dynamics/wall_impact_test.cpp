@@ -11,6 +11,9 @@ RealVec3 place_of(const FlightInTube& ball, double step, Real s) {
   return place_at(ball.flight, ball.velocity, step, s);
 }
 
+// Of flights over some metres and a second.
+constexpr double rounding = 1e-13;
+
 FlightInTube draw_flight(Random& random) {
   const auto across = [&random](double length) {
     const double x = random.uniform(-length, length);
@@ -36,9 +39,9 @@ TEST(WallImpact, IsWhereTheCentreLeavesItsCircle) {
     const WallImpact impact = next_wall_impact(ball, step, earliest);
     if (expected > 1) continue;
     ++met;
-    ASSERT_NEAR(impact.time, static_cast<double>(expected), 1e-12) << n;
+    ASSERT_NEAR(impact.time, static_cast<double>(expected), rounding) << n;
     const RealVec3 at = place_of(ball, step, expected);
-    EXPECT_LT((impact.outward.cast<Real>() - at.normalized()).norm(), 1e-11L);
+    EXPECT_LT((impact.outward.cast<Real>() - at.normalized()).norm(), rounding);
     EXPECT_GT(impact.speed, 0);
   }
   EXPECT_GT(met, 100);
@@ -46,15 +49,14 @@ TEST(WallImpact, IsWhereTheCentreLeavesItsCircle) {
 
 TEST(WallImpact, AfterABounceIsAtTheEndOfTheChord) {
   // At 45 degrees the chord is sqrt(2) radii long; rounding puts the ball a little within or beyond the wall.
-  for (const double rounding : {-1e-16, 0.0, 1e-16}) {
+  for (const double beyond : {-1e-16, 0.0, 1e-16}) {
     const Vec3 velocity(-1, 1, 0);
     // At the wall half a step before the midpoint, that is at the beginning of the step.
-    const FlightInTube ball{.flight = {Vec3(2 + rounding, 0, 0) + 0.5 * velocity, Vec3::Zero()},
-                            .velocity = velocity,
-                            .reach = 2};
+    const FlightInTube ball{
+        .flight = {Vec3(2 + beyond, 0, 0) + 0.5 * velocity, Vec3::Zero()}, .velocity = velocity, .reach = 2};
     const WallImpact impact = next_wall_impact(ball, 1.0, 0.0);
-    EXPECT_NEAR(impact.time, 2.0, 1e-15) << rounding;
-    EXPECT_LT((impact.outward - Vec3::UnitY()).norm(), 1e-15) << rounding;
+    EXPECT_NEAR(impact.time, 2.0, 1e-15) << beyond;
+    EXPECT_LT((impact.outward - Vec3::UnitY()).norm(), 1e-15) << beyond;
   }
 }
 
