@@ -11,14 +11,11 @@
 
 namespace scree::render {
 
-/// Bodies, rather than what bodies are in: only these hide others and cast shadows.
-inline bool is_solid(Shape shape) { return shape == Shape::sphere || shape == Shape::box; }
-
 /// Whether the colour of a body shows its material or its state: what stands still stays in the background,
-/// and so do tubes, turning or not.
+/// and so do boundaries, turning or not.
 inline bool is_colored(const BodyTable& bodies, std::size_t body) {
   return bodies.mobility[body] != Mobility::fixed && bodies.mobility[body] != Mobility::absent &&
-         is_solid(bodies.shape[body]);
+         !is_boundary(bodies.shape[body]);
 }
 
 /// A straight line over the bodies.

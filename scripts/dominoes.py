@@ -1,8 +1,7 @@
 #!/usr/bin/env python3
 """dominoes.py > configs/11_dominoes.csv: dominoes along a curve, each across it, as a body file of scree.
 
-The curve is a spiral of Archimedes that unwinds into a straight run: its arm grows by PITCH a turn. Sizes are those of
-a real domino, in metres.
+The curve is a spiral of Archimedes: its arm grows by PITCH a turn. Sizes are those of a real domino, in metres.
 """
 
 import math

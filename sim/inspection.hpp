@@ -32,7 +32,7 @@ struct OccupiedCell {
 /// The hierarchical grid of the last pairs. Empty for other methods.
 struct GridOccupancy {
   std::vector<double> width;        ///< of each level's cells (m)
-  std::vector<std::int32_t> level;  ///< of each body; 0 for planes, which are in no cell
+  std::vector<std::int32_t> level;  ///< of each body; 0 for those in no cell: planes, and absent ones
   std::vector<OccupiedCell> cells;  ///< each once
 };
 

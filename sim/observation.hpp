@@ -15,7 +15,7 @@ struct Ledger {
   double restitution = 0;                  ///< dissipated by normal impulses
   double friction = 0;                     ///< dissipated by tangential impulses
   double correction = 0;                   ///< dissipated by position correction (negative: it lifted bodies)
-  double work = 0;                         ///< done on the bodies by prescribed ones
+  double work = 0;                         ///< done on the bodies by prescribed ones and by applied forces
   double integration = 0;                  ///< drift of the free rotation
   Vec3 angular_correction = Vec3::Zero();  ///< angular momentum added by position correction (kg m^2/s)
 

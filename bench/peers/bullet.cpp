@@ -1,6 +1,5 @@
 // Bullet, in double precision, behind the interface of the benchmark.
 #include "bench/peers/engine.hpp"
-#include "core/error.hpp"
 
 #include <btBulletDynamicsCommon.h>
 #include <map>
@@ -56,7 +55,7 @@ std::unique_ptr<btCollisionShape> shape_of(const BodyTable& bodies, std::size_t 
     case Shape::plane:
       return std::make_unique<btStaticPlaneShape>(btVector3(0, 0, 1), 0);
     default:
-      throw InputError("Bullet is given spheres, boxes and planes alone");
+      throw refused_by("Bullet");
   }
 }
 
@@ -91,7 +90,7 @@ class BulletEngine : public Engine {
  private:
   void add_body(std::size_t k, bool continuous) {
     const BodyTable& all = scene_.bodies;
-    if (all.mobility[k] == Mobility::prescribed) throw InputError("Bullet is given no prescribed bodies");
+    if (all.mobility[k] == Mobility::prescribed) throw refused_by("Bullet");
     shapes_.push_back(shape_of(all, k));
     const bool free = all.mobility[k] == Mobility::free;
     const double mass = free ? 1 / all.inverse_mass[k] : 0;
@@ -128,9 +127,7 @@ class BulletEngine : public Engine {
 }  // namespace
 
 std::unique_ptr<Engine> make_bullet(const std::string& setting, const Scene& scene, double step) {
-  const auto found = settings.find(setting);
-  if (found == settings.end()) throw InputError("Bullet has no setting " + setting);
-  return std::make_unique<BulletEngine>(found->second, scene, step);
+  return std::make_unique<BulletEngine>(find_setting(settings, setting, "Bullet"), scene, step);
 }
 
 }  // namespace scree::bench

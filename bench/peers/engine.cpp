@@ -1,7 +1,5 @@
 #include "bench/peers/engine.hpp"
 
-#include "core/error.hpp"
-
 #include <map>
 
 namespace scree::bench {

@@ -2,8 +2,10 @@
 #pragma once
 
 #include "core/bodies.hpp"
+#include "core/error.hpp"
 #include "sim/scene/scene.hpp"
 
+#include <map>
 #include <memory>
 #include <string>
 
@@ -23,6 +25,20 @@ class Engine {
 /// unknown to it.
 std::unique_ptr<Engine> make_engine(const std::string& engine, const std::string& setting, const Scene& scene,
                                     double step);
+
+/// Of the settings of an engine, the one with the name. Throws InputError if there is none.
+template <class Setting>
+const Setting& find_setting(const std::map<std::string, Setting>& settings, const std::string& name,
+                            const std::string& engine) {
+  const auto found = settings.find(name);
+  if (found == settings.end()) throw InputError(engine + " has no setting " + name);
+  return found->second;
+}
+
+/// To be thrown for the bodies that the peers have no like of, or move by other rules.
+inline InputError refused_by(const std::string& engine) {
+  return InputError(engine + " is given spheres, boxes and planes alone, free or fixed");
+}
 
 // One file each.
 std::unique_ptr<Engine> make_bullet(const std::string& setting, const Scene& scene, double step);

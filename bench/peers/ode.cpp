@@ -84,7 +84,7 @@ class OdeEngine : public Engine {
         return dCreatePlane(space_.get(), up.x(), up.y(), up.z(), up.dot(scene_.bodies.position[k]));
       }
       default:
-        throw InputError("ODE is given spheres, boxes and planes alone");
+        throw refused_by("ODE");
     }
   }
 
@@ -103,7 +103,7 @@ class OdeEngine : public Engine {
 
   void add_body(std::size_t k) {
     const BodyTable& all = scene_.bodies;
-    if (all.mobility[k] == Mobility::prescribed) throw InputError("ODE is given no prescribed bodies");
+    if (all.mobility[k] == Mobility::prescribed) throw refused_by("ODE");
     const dGeomID geometry = make_geometry(k);
     dGeomSetData(geometry, const_cast<std::int32_t*>(&all.material[k]));
     bodies_.push_back(all.mobility[k] == Mobility::free ? make_body(k) : nullptr);
@@ -145,9 +145,7 @@ class OdeEngine : public Engine {
 }  // namespace
 
 std::unique_ptr<Engine> make_ode(const std::string& setting, const Scene& scene, double step) {
-  const auto found = settings.find(setting);
-  if (found == settings.end()) throw InputError("ODE has no setting " + setting);
-  return std::make_unique<OdeEngine>(found->second, scene, step);
+  return std::make_unique<OdeEngine>(find_setting(settings, setting, "ODE"), scene, step);
 }
 
 }  // namespace scree::bench

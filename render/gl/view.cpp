@@ -68,7 +68,8 @@ LightView::LightView(const BodyTable& bodies, const View& v, int map_size)
   const Vec3 focus = axes_.transpose() * v.focus;
   Eigen::AlignedBox3d bounds;
   for (std::size_t k = 0; k < bodies.shape.size(); ++k) {
-    if (!is_solid(bodies.shape[k]) || bodies.mobility[k] == Mobility::absent) continue;
+    // Boundaries cast no shadows: what is in them would lie in the dark.
+    if (is_boundary(bodies.shape[k]) || bodies.mobility[k] == Mobility::absent) continue;
     const Vec3 center = axes_.transpose() * (bodies.position[k] - eye_);
     const Vec3 radius = Vec3::Constant(bounding_radius(bodies.shape[k], bodies.size[k]));
     const Vec3 low = (center - radius).cwiseMax(focus - Vec3::Constant(reach));

@@ -7,8 +7,6 @@ namespace scree::cli {
 
 namespace {
 
-bool has_size(Shape shape) { return shape == Shape::sphere || shape == Shape::box; }
-
 /// Where things end along gravity, and the planes that stop a fall.
 struct Ground {
   Vec3 up;
@@ -18,7 +16,7 @@ struct Ground {
   Ground(const BodyTable& bodies, const Vec3& gravity) : up(-gravity.normalized()) {
     for (std::size_t k = 0; k < bodies.shape.size(); ++k) {
       if (bodies.shape[k] == Shape::plane) planes.push_back(k);
-      if (has_size(bodies.shape[k]))
+      if (!is_boundary(bodies.shape[k]))
         lowest =
             std::min(lowest, up.dot(bodies.position[k]) - bounding_radius(bodies.shape[k], bodies.size[k]));
     }
@@ -54,7 +52,7 @@ Difficulty difficulty_of(const Scene& scene) {
   double heaviest = 0;
   double lightest = HUGE_VAL;
   for (std::size_t k = 0; k < bodies.shape.size(); ++k) {
-    if (!has_size(bodies.shape[k])) continue;
+    if (is_boundary(bodies.shape[k])) continue;
     const double size = smallest_size(bodies.shape[k], bodies.size[k]);
     const double speed = speed_of(bodies, k);
     d.smallest_size = std::min(d.smallest_size, size);

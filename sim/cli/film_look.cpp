@@ -90,8 +90,8 @@ double mean_mass(const BodyTable& bodies) {
   return count > 0 ? sum / count : 1;
 }
 
-// The weight of as many of the heaviest bodies as lie along an edge of a cube of all; without gravity, the
-// force that takes such a body's speed in one step (N).
+// The weight of as many bodies of mean mass as lie along an edge of a cube of all; without gravity, the force
+// that takes the speed of one of them in a step (N).
 double expected_force(const Scene& scene, double speed) {
   const double mass = mean_mass(scene.bodies);
   if (scene.gravity.norm() == 0) return mass * speed / scene.time.step;
@@ -121,8 +121,8 @@ void append_forces(const Scene& scene, double widest, std::vector<ContactForce> 
   const BodyTable& bodies = frame.snapshot.bodies;
   const auto end_of = [&](std::int32_t body, const Vec3& point) {
     const auto k = static_cast<std::size_t>(body);
-    const bool boundary = bodies.shape[k] == Shape::plane || bodies.shape[k] == Shape::tube;
-    return boundary || scene.bodies.mobility[k] == Mobility::fixed ? point : bodies.position[k];
+    const bool fixed = scene.bodies.mobility[k] == Mobility::fixed;
+    return fixed || is_boundary(bodies.shape[k]) ? point : bodies.position[k];
   };
   for (const ContactForce& c : contacts) {
     const auto width = static_cast<float>(std::min(10 * strength(c) / widest, 10.0));

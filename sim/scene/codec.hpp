@@ -1,5 +1,5 @@
 // Codecs: a type of the scene language together with how it is read into, and written from, a C++ value.
-// Small ones combine into sections, and these into the table of keys.cpp.
+// Small ones combine into sections, and these into the table of keys.
 #pragma once
 
 #include "core/math.hpp"
@@ -8,6 +8,7 @@
 
 #include <array>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <utility>

@@ -166,8 +166,7 @@ const std::vector<MeasureInfo>& measure_table() {
       {K::region_fraction, "fraction", S::region, false, "", "volume of these bodies / volume of the box"},
       {K::region_flux, "flux", S::region, false, "kg/s",
        "mass of these bodies less that one step before / step: negative while the region empties. Its mean "
-       "over "
-       "steps a to b is the mass gained since the step before a / the time since then"},
+       "over steps a to b is the mass gained since the step before a / the time since then"},
   };
   return table;
 }

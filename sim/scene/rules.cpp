@@ -203,4 +203,17 @@ void check_distribution(const Distribution<T>& sizes, const Node& node, Reader& 
 template void check_distribution(const Distribution<double>&, const Node&, Reader&);
 template void check_distribution(const Distribution<Vec3>&, const Node&, Reader&);
 
+TimeSpan time_span(double from, const std::optional<double>& until, const TimeGrid& grid, const Node& node,
+                   Reader& reader) {
+  const TimeSpan span{from, until.value_or(HUGE_VAL)};
+  const double end = grid.time(grid.last());
+  if (from >= end)
+    reader.fail_at("from", node, fmt::format("must be before the end, {} s, not {} s", end, from));
+  const TimeGrid::Steps steps = grid.steps_in(span);
+  if (steps.first >= steps.end)
+    reader.fail_at("until", node,
+                   fmt::format("must be at least a step after from, {} s, not {} s", from, span.until));
+  return span;
+}
+
 }  // namespace scree

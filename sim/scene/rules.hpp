@@ -2,6 +2,9 @@
 #pragma once
 
 #include "sim/scene/keys.hpp"
+#include "sim/scene/time_grid.hpp"
+
+#include <optional>
 
 namespace scree {
 
@@ -20,5 +23,10 @@ void check_camera(const CameraSettings& camera, const Node& node, Reader& reader
 void check_check(const CheckEntry& check, const Node& node, Reader& reader);
 template <class T>
 void check_distribution(const Distribution<T>& sizes, const Node& node, Reader& reader);
+
+/// Of the keys from and until of `node` (s; never, if there is none), once the steps of the run are known:
+/// the span must hold one.
+TimeSpan time_span(double from, const std::optional<double>& until, const TimeGrid& grid, const Node& node,
+                   Reader& reader);
 
 }  // namespace scree

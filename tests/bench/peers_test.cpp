@@ -56,6 +56,7 @@ TEST_P(Peers, FallFreelyWithTheOrderOfTheirStep) {
   EXPECT_NEAR(end.velocity[0].z(), -9.81, 1e-12);
   EXPECT_NEAR(end.spin[0].z(), 2, 1e-12);
   const Vec3 axis = end.orientation[0] * Vec3::UnitX();
+  // Orientations that go along their tangent and are made unit again lag by (w h)^3 / 12 in each step: 1e-5.
   EXPECT_NEAR(std::atan2(axis.y(), axis.x()), 2, 1e-4);
 }
 
@@ -64,6 +65,7 @@ TEST_P(Peers, RestOnAPlaneThatIsNotAtTheOrigin) {
       "  - {plane: {normal: [0, 0, 1], offset: 2}, material: a}\n"
       "  - {sphere: {radius: 0.25}, at: [0, 0, 2.25], material: a}\n",
       512);
+  // Contacts that act like springs give way; half a percent of the radius is rest.
   EXPECT_NEAR(end.position[1].z(), 2.25, 1e-3);
   EXPECT_NEAR(end.velocity[1].norm(), 0, 1e-2);
 }
@@ -73,6 +75,7 @@ TEST_P(Peers, SlideAsTheFrictionOfThePairSays) {
       "  - {plane: {normal: [0, 0, 1], offset: 0}, material: a}\n"
       "  - {sphere: {radius: 0.5}, at: [0, 0, 0.5], velocity: [4, 0, 0], material: a}\n",
       64);
+  // Friction takes 0.0115 m/s in a step: none is missing, and none is one too many.
   EXPECT_NEAR(end.velocity[1].x(), 4 - 0.3 * 9.81 * 0.25, 0.01);
 }
 

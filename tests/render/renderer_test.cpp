@@ -93,6 +93,20 @@ INSTANTIATE_TEST_SUITE_P(Places, Silhouette,
                          ::testing::Values(Vec3(0, 0, 0), Vec3(1.2, 0.5, 0.6), Vec3(-1.5, 0, -0.7),
                                            Vec3(0, -2, 0)));
 
+TEST(Renderer, DrawsAFrameOf4K) {
+  Snapshot snapshot;
+  add_sphere(snapshot, Vec3::Zero(), 0.8);
+  const Camera camera{{0, -4, 0}, Vec3::Zero(), Vec3::UnitZ(), 60};
+  const Image image = make_osmesa_renderer(3840, 2160)->draw({snapshot}, camera, masked());
+  ASSERT_EQ(image.rgb.size(), 3u * 3840 * 2160);
+  const Blob seen = silhouette(image);
+  const double area = std::pow(2160.0 / height, 2) * projected_sphere(camera, Vec3::Zero(), 0.8).area;
+  // A quarter of a pixel of the radius.
+  EXPECT_NEAR(seen.area, area, 0.25 * std::sqrt(4 * pi * area));
+  EXPECT_NEAR(seen.x, 1920, 0.3);
+  EXPECT_NEAR(seen.y, 1080, 0.3);
+}
+
 TEST(Renderer, NearerSurfaceHidesTheOther) {
   // A box with its front face at y = -0.5 and a sphere of radius 0.75 about the same centre: seen from y =
   // -oo the sphere stands out of the face within the circle of radius sqrt(0.75^2 - 0.5^2) around the middle.

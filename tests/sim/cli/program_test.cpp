@@ -135,6 +135,28 @@ TEST_F(ProgramTest, TroubleWithTheMovieDoesNotCostTheNumbers) {
   EXPECT_FALSE(manifest.contains("movie"));
 }
 
+TEST_F(ProgramTest, AFrameThatCannotBeWrittenEndsTheRunAndKeepsTheNumbers) {
+  // The one folder that refuses files to root, too.
+  fs::create_directories(folder_ / "output/fall");
+  fs::create_directory_symlink("/proc", folder_ / "output/fall/frames");
+  const Finished run =
+      run_scene(falling_ball("render: {size: [64, 48], fps: 50}\n" + good_check), {"--overwrite"});
+  const Json manifest = manifest_in(folder_ / "output/fall");
+  if (!manifest["warnings"].empty()) GTEST_SKIP() << "no pictures on this machine: " << manifest["warnings"];
+  EXPECT_EQ(run.status, 3);
+  EXPECT_TRUE(run.error.starts_with("scree: cannot write output/fall/frames/00000.png: ")) << run.error;
+  EXPECT_EQ(std::ranges::count(run.error, '\n'), 1) << "said once: " << run.error;
+  EXPECT_EQ(manifest["status"], "failed");
+  EXPECT_EQ("scree: " + manifest["error"].get<std::string>() + "\n", run.error);
+  EXPECT_EQ(manifest["frames"], 0);
+  EXPECT_FALSE(manifest.contains("movie"));
+  // Up to the step that the run came to.
+  const std::string metrics = text_of(folder_ / "output/fall/metrics.csv");
+  const std::string last = metrics.substr(metrics.rfind('\n', metrics.size() - 2) + 1);
+  EXPECT_TRUE(metrics.ends_with('\n'));
+  EXPECT_TRUE(contains(last, ',' + manifest["steps"].dump() + ',')) << last;
+}
+
 TEST_F(ProgramTest, BadInputExitsWith2AndWritesNothing) {
   for (const auto& [scene, more] : std::vector<std::pair<std::string, std::vector<std::string>>>{
            {falling_ball("gravitty: [0, 0, 1]\n"), {}},

@@ -1,7 +1,7 @@
 // Prescribed motion against its closed form.
 #include "sim/dynamics/prescribed.hpp"
 
-#include "sim/simulation.hpp"
+#include "tests/sim/dynamics/simulations.hpp"
 
 #include <gtest/gtest.h>
 
@@ -11,23 +11,20 @@
 namespace scree {
 namespace {
 
-Scene scene_of(const std::string& text) {
-  return parse_scene("format: 1\nrender: false\nmaterials: {a: {density: 1000, friction: 0.5}}\n" + text,
-                     "test.yaml");
-}
+const std::string materials = "materials: {a: {density: 1000, friction: 0.5}}\n";
 
 // A turn about z: x = p + V t + r (cos, sin), 1000 turns in 7000 steps that divide no turn.
 TEST(Prescribed, ABodyTurnsAboutAPointForThousandsOfStepsWithoutDrift) {
-  Simulation simulation(scene_of(R"(
+  Simulation simulation = simulation_of(materials + R"(
 time: {end: 1000, step: 0.143, substeps: 3}
 bodies:
   - box: {size: [0.4, 0.2, 0.1]}
     at: [3, 1, 5]
     motion: {velocity: [0.01, -0.02, 0.005], spin: [0, 0, 6.283185307179586], about: [1, 1, 0]}
     material: a
-)"),
-                        {SpaceChoice::host, 1});
+)");
   const double w = 2 * pi;
+  // Angles of up to 6283 rad are rounded by 1e-12.
   while (!simulation.finished()) {
     simulation.step();
     const double t = simulation.time();
@@ -44,7 +41,7 @@ bodies:
 }
 
 TEST(Prescribed, TheSceneSaysTheVelocityAtTheStart) {
-  const Scene scene = scene_of(R"(
+  const Scene scene = scene_of(materials + R"(
 time: {end: 1, step: 0.1}
 bodies:
   - {sphere: {radius: 0.1}, at: [2, 0, 0], motion: {velocity: [0, 0, 1], spin: [0, 0, 3], about: [0, 0, 0]}, material: a}
@@ -55,7 +52,7 @@ bodies:
   EXPECT_EQ(scene.bodies.velocity[1], Vec3(0, 0, 1));
   EXPECT_EQ(scene.bodies.velocity[2], Vec3(0, 6, 0));
   EXPECT_EQ(scene.bodies.velocity[3], Vec3(0, 9, 0));
-  Simulation simulation(scene, {SpaceChoice::host, 1});
+  Simulation simulation(scene, one_thread);
   simulation.step();
   EXPECT_NEAR(simulation.body(0).velocity.x(), -6 * std::sin(0.3), 1e-14);
 }
@@ -63,14 +60,13 @@ bodies:
 // A smooth wall on a long arm strikes a ball that rests in its way, at the top speed of its turn: the contact
 // is solved at the midpoint with the wall's velocity there, and the work it does is booked to rounding.
 TEST(Prescribed, APaddleOnAnArmDrivesABallAtItsOwnSpeed) {
-  Simulation simulation(scene_of(R"(
+  Simulation simulation = simulation_of(materials + R"(
 time: {end: 0.3, step: 0.002}
 model: {friction: off}
 bodies:
   - {box: {size: [0.2, 0.02, 0.4]}, at: [1, -0.2, 0], motion: {spin: [0, 0, 2], about: [0, -0.2, 0]}, material: a}
   - {sphere: {radius: 0.05}, at: [1, 0, 0], material: a}
-)"),
-                        {SpaceChoice::host, 1});
+)");
   double fastest = 0;
   while (!simulation.finished()) {
     simulation.step();

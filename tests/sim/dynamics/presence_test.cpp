@@ -1,5 +1,5 @@
 // Bodies that come and go, against closed forms and the books.
-#include "sim/simulation.hpp"
+#include "tests/sim/dynamics/simulations.hpp"
 
 #include <gtest/gtest.h>
 
@@ -9,15 +9,12 @@
 namespace scree {
 namespace {
 
-Scene scene_of(const std::string& text) {
-  return parse_scene(
-      "format: 1\nrender: false\ngravity: [0, 0, -10]\n"
-      "materials: {a: {density: 1000, restitution: 0.3, friction: 0.5}}\n" +
-          text,
-      "test.yaml");
-}
+const std::string head = R"(
+gravity: [0, 0, -10]
+materials: {a: {density: 1000, restitution: 0.3, friction: 0.5}}
+)";
 
-Simulation run(const std::string& text) { return Simulation(scene_of(text), {SpaceChoice::host, 1}); }
+Simulation run(const std::string& text) { return simulation_of(head + text); }
 
 TEST(Presence, ABallFallsFreelyOnceItsGateIsGone) {
   Simulation simulation = run(R"(
@@ -28,13 +25,13 @@ bodies:
 )");
   while (simulation.steps() < 50) {
     simulation.step();
-    ASSERT_NEAR(simulation.body(1).position.z(), 1.1, 1e-4);
+    ASSERT_NEAR(simulation.body(1).position.z(), 1.1, 1e-3 * 0.1) << "it rests, to a share of its radius";
   }
   EXPECT_EQ(simulation.observe().bodies, 1);
   EXPECT_EQ(simulation.observe().pairs, 0);
   EXPECT_EQ(simulation.observe().exchange.energy, 0) << "a fixed body has no energy";
   const double height = simulation.body(1).position.z();
-  while (!simulation.finished()) simulation.step();
+  run_to_end(simulation);
   EXPECT_NEAR(simulation.body(1).position.z(), height - 5 * 0.5 * 0.5, 1e-12);
 }
 
@@ -62,7 +59,7 @@ bodies:
     const double t = simulation.time() - 0.3;
     const BodyState ball = simulation.body(1);
     ASSERT_LT((ball.position - Vec3(3 * t, 0, 1 + 4 * t - 5 * t * t)).norm(), 1e-13);
-    ASSERT_LT(ball.force.norm(), 1e-9);
+    ASSERT_LT(ball.force.norm(), 1e-12);  // rounding of m (dv / h - g)
     ASSERT_NEAR(o.exchange.energy, energy, 1e-12);
     ASSERT_NEAR(o.total(), first + energy, 1e-11);
     ASSERT_LT((o.exchange.momentum - 2 * Vec3(3, 0, 4)).norm(), 1e-14);
@@ -116,7 +113,7 @@ TEST(Presence, BooksBalanceInAHeapThatComesAndGoes) {
 TEST(Presence, SameBitsForAnyBroadPhase) {
   const auto hash = [](const std::string& more) {
     Simulation simulation = run(coming_and_going + more);
-    while (!simulation.finished()) simulation.step();
+    run_to_end(simulation);
     return simulation.state_hash();
   };
   const std::uint64_t grid = hash("");
@@ -132,14 +129,14 @@ bodies:
 )");
   while (simulation.steps() < 40) simulation.step();
   EXPECT_EQ(simulation.body(0).position, Vec3(2, 0, 0));
-  while (!simulation.finished()) simulation.step();
+  run_to_end(simulation);
   const double t = 0.6;
   EXPECT_LT((simulation.body(0).position - Vec3(1 + std::cos(3 * t), std::sin(3 * t), t)).norm(), 1e-14);
 }
 
 TEST(Presence, LayersThatComeOneAfterTheOtherMayShareTheirPlace) {
   // Each layer fills its region so far that a second one beside it would not fit.
-  const Scene scene = scene_of(R"(
+  const Scene scene = scene_of(head + R"(
 time: {end: 1, step: 0.01}
 bodies:
   - {sphere: {radius: 0.1}, scatter: {count: 40, from: [0, 0, 0], to: [0.8, 0.8, 0.8]}, material: a}

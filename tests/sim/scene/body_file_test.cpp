@@ -64,7 +64,7 @@ TEST_F(BodyFileTest, EachColumnIsRead) {
   EXPECT_NEAR(1 / bodies.inverse_mass[2], 12, 1e-14);
 }
 
-TEST_F(BodyFileTest, TheFirstBodyHasNoMaterial) {
+TEST_F(BodyFileTest, EveryBodyNeedsAMaterialOfTheScene) {
   EXPECT_EQ(message_of("shape,radius,x,y,z,material\nsphere,1,0,0,0,\n", "name: b"),
             "bed.csv:2:16: material: the body needs one: fill the column, or give `material` beside `file` "
             "in the scene");

@@ -1,0 +1,194 @@
+// The keys of bodies: their shapes, their places, and how many there are.
+#include "sim/scene/key_sections.hpp"
+#include "sim/scene/rules.hpp"
+
+namespace scree {
+namespace {
+
+template <class T>
+Codec<Distribution<T>> distribution(std::string name, const Codec<T>& value) {
+  using D = Distribution<T>;
+  const Codec<D> fixed{
+      value.type,
+      [value](D& sizes, const Node& node, Reader& reader) {
+        value.read(sizes.value.emplace(), node, reader);
+      },
+      [value](const D& sizes) { return sizes.value ? value.write(*sizes.value) : std::nullopt; }};
+  return any_of<D>(
+      {fixed,
+       section<D>(
+           std::move(name), "A size to be drawn for each body. Exactly one key.",
+           {
+               key<D>("uniform", &D::uniform, optional(array_of<2>(value)), optionally,
+                      "[low, high]: any size between the two is as likely; each edge of a box by itself"),
+               key<D>("powerlaw", &D::powerlaw, optional(array_of<3>(number())), optionally,
+                      "[min, max, exponent]: sizes x from min to max, their number falling as "
+                      "x^-exponent; boxes are cubes"),
+               key<D>("choose", &D::choose, list_of(value, 1), optionally,
+                      "[size, ...]: each as likely as the others"),
+           },
+           check_distribution<T>)});
+}
+
+/// Edge lengths, or one number for a cube.
+Codec<Vec3> edges() {
+  const Codec<double> edge = number(above_zero, "m");
+  const Codec<Vec3> cube{edge.type,
+                         [edge](Vec3& size, const Node& node, Reader& reader) {
+                           double length = 0;
+                           edge.read(length, node, reader);
+                           size.setConstant(length);
+                         },
+                         [](const Vec3&) { return std::optional<Node>(); }};
+  return any_of<Vec3>({cube, vector("m", above_zero)});
+}
+
+Codec<PlaneEntry> plane_section() {
+  using T = PlaneEntry;
+  return section<T>("bodies[].plane", "A fixed half space; the free side is where normal . x >= offset.",
+                    {
+                        key<T>("normal", &T::normal, vector(""), required,
+                               "points to the free side; of any length but 0, made a unit vector"),
+                        key<T>("offset", &T::offset, number(any_value, "m"), optionally,
+                               "distance of the plane from the origin, along the unit normal"),
+                    },
+                    check_plane);
+}
+
+Codec<SphereEntry> sphere_section() {
+  using T = SphereEntry;
+  return section<T>(
+      "bodies[].sphere", "A ball.",
+      {
+          key<T>("radius", &T::radius, distribution("bodies[].sphere.radius", number(above_zero, "m")),
+                 required, "one radius, or a distribution"),
+      });
+}
+
+Codec<BoxEntry> box_section() {
+  using T = BoxEntry;
+  return section<T>("bodies[].box", "A cuboid, its edges along the axes of the body.",
+                    {
+                        key<T>("size", &T::size, distribution("bodies[].box.size", edges()), required,
+                               "full edge lengths [x, y, z], one number for a cube, or a distribution"),
+                    });
+}
+
+Codec<TubeEntry> tube_section() {
+  using T = TubeEntry;
+  return section<T>(
+      "bodies[].tube",
+      "The inside of a cylinder along the body's z axis, closed by a cap at each end. It has one side: it "
+      "holds what is in it, and bodies whose centre is outside pass it by. It never moves freely.",
+      {
+          key<T>("radius", &T::radius, number(above_zero, "m"), required, "of the inside"),
+          key<T>("length", &T::length, number(above_zero, "m"), required, "from cap to cap"),
+      });
+}
+
+Codec<RotationEntry> rotate_section() {
+  using T = RotationEntry;
+  return section<T>(
+      "bodies[].rotate", "Orientation by a turn about an axis through the body's centre.",
+      {
+          key<T>("axis", &T::axis, vector(""), required, "of any length but 0"),
+          key<T>("degrees", &T::degrees, optional(number()), optionally, "angle in degrees; or give radians"),
+          key<T>("radians", &T::radians, optional(number()), optionally, "angle in radians; or give degrees"),
+      },
+      check_rotation);
+}
+
+Codec<MotionEntry> motion_section() {
+  using T = MotionEntry;
+  return section<T>("bodies[].motion", "Prescribed motion: the body moves like this whatever hits it.",
+                    {
+                        key<T>("velocity", &T::velocity, vector("m/s"), optionally, "constant velocity"),
+                        key<T>("spin", &T::spin, vector("rad/s"), optionally, "constant angular velocity"),
+                        key<T>("about", &T::about, optional(vector("m")), optionally,
+                               "the point to turn about, which moves along with `velocity`; the body's own "
+                               "centre if not given"),
+                    },
+                    check_motion);
+}
+
+Codec<RepeatEntry> repeat_section() {
+  using T = RepeatEntry;
+  return section<T>(
+      "bodies[].repeat",
+      "The body again and again on a lattice, the first at `at`. Bodies are called `name[0]`, "
+      "`name[1]`, ..., x fastest.",
+      {
+          key<T>("count", &T::count, array_of<3>(large_integer(at_least(1))), required,
+                 "bodies along x, y and z"),
+          key<T>("spacing", &T::spacing, vector("m"), required, "between centres, along x, y and z"),
+          key<T>("jitter", &T::jitter, number(not_negative, "m"), optionally,
+                 "each centre is moved at random by up to this much along each axis"),
+      });
+}
+
+Codec<ScatterEntry> scatter_section() {
+  using T = ScatterEntry;
+  return section<T>(
+      "bodies[].scatter",
+      "The body again and again at random places, in random orientations unless one is given. "
+      "Centres lie between the two corners, and no body overlaps another one that appears at the "
+      "same time, or a fixed one. "
+      "Bodies are called `name[0]`, `name[1]`, ...",
+      {
+          key<T>("count", &T::count, large_integer(at_least(1)), required, "how many"),
+          key<T>("from", &T::from, vector("m"), required, "lower corner"),
+          key<T>("to", &T::to, vector("m"), required, "upper corner"),
+      },
+      check_scatter);
+}
+
+}  // namespace
+
+Codec<BodyEntry> body_section() {
+  using T = BodyEntry;
+  return section<T>(
+      "bodies[]", "One body, or many alike. Each has exactly one shape: plane, sphere, box or tube.",
+      {
+          key<T>("plane", &T::plane, optional(plane_section()), optionally, "the shape: a fixed half space"),
+          key<T>("sphere", &T::sphere, optional(sphere_section()), optionally, "the shape: a ball"),
+          key<T>("box", &T::box, optional(box_section()), optionally, "the shape: a cuboid"),
+          key<T>("tube", &T::tube, optional(tube_section()), optionally,
+                 "the shape: the inside of a cylinder, with end caps; needs `fixed: true` or `motion`"),
+          key<T>("file", &T::file, text(), optionally,
+                 "instead of a shape: bodies from a CSV file, or those that another run left, by its folder; "
+                 "see Body files"),
+          key<T>("name", &T::name, identifier(), optionally, "to refer to it in measures"),
+          key<T>("material", &T::material, identifier(), optionally,
+                 "one of `materials`; required but for a file that has a column of them"),
+          key<T>("mass", &T::mass, optional(number(above_zero, "kg")), optionally,
+                 "instead of the material's density"),
+          with_default(key<T>("at", &T::at, optional(vector("m")), optionally,
+                              "place of the centre; of the first one if repeated"),
+                       "[0, 0, 0]"),
+          with_default(key<T>("orientation", &T::orientation, optional(array_of<4>(number())), optionally,
+                              "quaternion [w, x, y, z] of any length but 0, made a unit one"),
+                       "[1, 0, 0, 0]"),
+          key<T>("rotate", &T::rotate, optional(rotate_section()), optionally, "instead of `orientation`"),
+          with_default(key<T>("velocity", &T::velocity, optional(vector("m/s")), optionally, "at the start"),
+                       "[0, 0, 0]"),
+          with_default(key<T>("spin", &T::spin, optional(vector("rad/s")), optionally,
+                              "angular velocity at the start"),
+                       "[0, 0, 0]"),
+          with_default(key<T>("fixed", &T::fixed, optional(boolean()), optionally, "the body never moves"),
+                       "false"),
+          key<T>("motion", &T::motion, optional(motion_section()), optionally,
+                 "the body moves as prescribed"),
+          key<T>("repeat", &T::repeat, optional(repeat_section()), optionally, "many on a lattice"),
+          key<T>("scatter", &T::scatter, optional(scatter_section()), optionally, "many at random places"),
+          with_default(
+              key<T>("from", &T::from, optional(number(not_negative, "s")), optionally,
+                     "when the body appears, in the state given here; its motion starts then. Taken at "
+                     "the nearest step, as is `until`"),
+              "0"),
+          key<T>("until", &T::until, optional(number(above_zero, "s")), optionally,
+                 "when the body is gone; never if not given"),
+      },
+      check_body);
+}
+
+}  // namespace scree

@@ -1,0 +1,111 @@
+#include "sim/scene/body_slots.hpp"
+
+#include "sim/scene/measure.hpp"
+#include "sim/scene/memory.hpp"
+#include "sim/scene/rules.hpp"
+
+#include <fmt/format.h>
+
+#include <limits>
+#include <string_view>
+#include <unordered_map>
+#include <utility>
+
+namespace scree {
+namespace {
+
+/// A product of counts may exceed every integer, but not the doubles.
+double count_of(const BodyEntry& entry, const BodyFile* file) {
+  if (file) return static_cast<double>(file->count());
+  if (entry.scatter) return static_cast<double>(entry.scatter->count);
+  if (!entry.repeat) return 1;
+  const auto& n = entry.repeat->count;
+  return static_cast<double>(n[0]) * static_cast<double>(n[1]) * static_cast<double>(n[2]);
+}
+
+void add_load(const BodyEntry& body, double count, MemoryLoad& load) {
+  load.bodies += count;
+  if (!body.plane && !body.motion && !body.fixed.value_or(false)) load.free_bodies += count;
+  if (body.name.empty()) return;
+  load.names += count;
+  load.name_bytes += count * static_cast<double>(body.name.size());
+}
+
+void require_room(const BodyEntry& body, const MemoryLoad& load, Reader& reader) {
+  const char* cause = body.repeat ? "repeat" : body.scatter ? "scatter" : body.file.empty() ? "name" : "file";
+  constexpr auto most = std::numeric_limits<std::int32_t>::max();
+  if (load.bodies > most)
+    reader.fail_at(cause, *body.node,
+                   fmt::format("the scene would have {} bodies; at most {} are possible", load.bodies, most));
+  const double need = memory_need(load).total();
+  if (need > machine_memory())
+    reader.fail_at(
+        cause, *body.node,
+        fmt::format("a run of the scene's {:.0f} bodies needs {} of memory, but this machine has {}",
+                    load.bodies, bytes_words(need), bytes_words(machine_memory())));
+}
+
+/// The entry keeps where the file is found, for the resolved scene, which may be run from anywhere.
+std::unique_ptr<BodyFile> open_file(BodyEntry& body, const std::filesystem::path& scene, Reader& reader) {
+  if (body.file.empty()) return nullptr;
+  std::filesystem::path found;
+  try {
+    found = find_body_file(std::filesystem::absolute(scene.parent_path() / body.file).lexically_normal());
+  } catch (const InputError& error) {
+    reader.fail_at("file", *body.node, error.what());
+  }
+  body.file = found.string();
+  return std::make_unique<BodyFile>(found);
+}
+
+void claim_name(const BodyEntry& body, std::unordered_map<std::string_view, SourceMark>& names,
+                Reader& reader) {
+  if (body.name.empty()) return;
+  const SourceMark mark = body.node->find("name")->mark;
+  const auto [first, fresh] = names.emplace(body.name, mark);
+  if (!fresh)
+    reader.fail_at(
+        "name", *body.node,
+        fmt::format("{} is the name of a body already, at {}", body.name, reader.place(first->second)));
+  if (is_measure_word(body.name))
+    reader.fail_at("name", *body.node, fmt::format("{} is a word of measures; choose another", body.name));
+}
+
+std::int32_t find_material(const BodyEntry& body, const MaterialNames& materials, Reader& reader) {
+  if (body.material.empty()) return -1;
+  const Reader::Step step(reader, "material");
+  return materials.require(body.material, *body.node->find("material"), reader);
+}
+
+}  // namespace
+
+std::vector<BodySlot> body_slots(std::vector<BodyEntry>& entries, const std::filesystem::path& scene,
+                                 bool pictures, const TimeGrid& grid, const MaterialNames& materials,
+                                 Reader& reader) {
+  const Reader::Step step(reader, "bodies");
+  std::unordered_map<std::string_view, SourceMark> names;
+  MemoryLoad load{.pictures = pictures};
+  std::vector<BodySlot> slots;
+  slots.reserve(entries.size());
+  for (std::size_t i = 0; i < entries.size(); ++i) {
+    const Reader::Step item(reader, i);
+    BodyEntry& body = entries[i];
+    std::unique_ptr<BodyFile> file = open_file(body, scene, reader);
+    const double count = count_of(body, file.get());
+    const double first = load.bodies;
+    add_load(body, count, load);
+    require_room(body, load, reader);
+    claim_name(body, names, reader);
+    const std::int32_t material = find_material(body, materials, reader);
+    const TimeSpan span = time_span(body.from.value_or(0), body.until, grid, *body.node, reader);
+    slots.push_back({&body,
+                     i,
+                     {static_cast<std::int32_t>(first), static_cast<std::int32_t>(count)},
+                     material,
+                     grid.steps_in(span),
+                     std::move(file)});
+  }
+  return slots;
+}
+
+}  // namespace scree

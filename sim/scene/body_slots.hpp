@@ -1,0 +1,32 @@
+// The items of `bodies`, each with the bodies that it stands for, counted before any is made.
+#pragma once
+
+#include "sim/scene/body_file.hpp"
+#include "sim/scene/keys.hpp"
+#include "sim/scene/materials.hpp"
+#include "sim/scene/time_grid.hpp"
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+namespace scree {
+
+struct BodySlot {
+  const BodyEntry* entry;
+  std::size_t index;  ///< of the entry in `bodies`
+  BodyRange bodies;
+  std::int32_t material;             ///< -1: each row of the file says its own
+  TimeGrid::Steps steps;             ///< in whose states the bodies are there
+  std::unique_ptr<BodyFile> file{};  ///< where they come from, if from one
+};
+
+/// One slot for each entry, in order. Writes where a file was found into its entry. Throws InputError if the
+/// bodies are too many, or need more memory for the whole run than this machine has, and where a file, a
+/// material, a name or a lifetime is wrong. `pictures`: whether the run draws.
+std::vector<BodySlot> body_slots(std::vector<BodyEntry>& entries, const std::filesystem::path& scene,
+                                 bool pictures, const TimeGrid& grid, const MaterialNames& materials,
+                                 Reader& reader);
+
+}  // namespace scree

@@ -1,0 +1,89 @@
+// The keys of how things are computed: contacts found and answered, features modelled.
+#include "sim/scene/key_sections.hpp"
+
+namespace scree {
+namespace {
+
+/// A number of levels, where 0 stands for auto.
+Codec<int> levels() {
+  const Codec<int> count = integer(between(1, 32));
+  return any_of<int>({word<int>({{"auto", 0}}), count});
+}
+
+Codec<BroadPhaseMethod> broadphase_word() {
+  using enum BroadPhaseMethod;
+  return word<BroadPhaseMethod>({{"hierarchical_grid", hierarchical_grid},
+                                 {"uniform_grid", uniform_grid},
+                                 {"brute_force", brute_force}},
+                                {"sweep_and_prune", "lbvh"});
+}
+
+Codec<BoxBoxMethod> box_box_word() {
+  using enum BoxBoxMethod;
+  return word<BoxBoxMethod>({{"auto", automatic}, {"sat", sat}, {"ccd_gjk", ccd_gjk}, {"ccd_mpr", ccd_mpr}});
+}
+
+}  // namespace
+
+Codec<ResponseSettings> response_section() {
+  using T = ResponseSettings;
+  return section<T>(
+      "response", "How contacts answer.",
+      {
+          key<T>("mode", &T::mode, word<ResponseMode>({{"default", ResponseMode::standard}}, {"accurate"}),
+                 optionally, "how impulses are found"),
+          key<T>(
+              "iterations", &T::iterations, or_auto(integer(between(1, 1e6))), optionally,
+              "most sweeps over the contacts per substep; auto: 20 for heaps, more the fewer contacts there "
+              "are, until they converge"),
+          key<T>("block_sweeps", &T::block_sweeps, or_auto(integer(between(1, 100))), optionally,
+                 "sweeps over the points that two bodies share, at each visit; auto: 4, with which stacks "
+                 "stand still, but 1 for heaps"),
+          key<T>("tolerance", &T::tolerance, number(inside(0, 1)), optionally,
+                 "sweeps stop when they change the impulses by less than this share"),
+          key<T>("warm_start", &T::warm_start, boolean(), optionally, "start from the last step's impulses"),
+          key<T>("restitution_threshold", &T::restitution_threshold, or_auto(number(not_negative, "m/s")),
+                 optionally, "slower approaches do not bounce; auto: from gravity and step"),
+      });
+}
+
+Codec<BroadPhaseSettings> broadphase_section() {
+  using T = BroadPhaseSettings;
+  return section<T>(
+      "broadphase", "How the potentially colliding pairs are found. Never changes which they are.",
+      {
+          key<T>("method", &T::method, broadphase_word(), optionally, "the method"),
+          key<T>("levels", &T::levels, levels(), optionally, "grid levels; auto: from the bodies' sizes"),
+      });
+}
+
+Codec<NarrowPhaseSettings> narrowphase_section() {
+  using T = NarrowPhaseSettings;
+  return section<T>("narrowphase", "How contact points are found.",
+                    {
+                        key<T>("box_box", &T::box_box, box_box_word(), optionally,
+                               "for pairs of boxes; auto: the measured best"),
+                        future<T>("crosscheck", "every pair by two methods, compared"),
+                    });
+}
+
+Codec<ModelSettings> model_section() {
+  using T = ModelSettings;
+  const auto feature = or_auto(word<bool>({{"on", true}, {"off", false}, {"true", true}, {"false", false}}));
+  const Codec<T> automatic{word_type({"auto"}, {}), [](T& model, const Node&, Reader&) { model = {}; },
+                           [](const T& model) -> std::optional<Node> {
+                             const bool given = model.rotation || model.friction || model.restitution;
+                             return given ? std::nullopt : std::optional(Node::scalar("auto"));
+                           }};
+  return any_of<T>(
+      {automatic,
+       section<T>("model", "Features to compute; auto: only if the scene needs them.",
+                  {
+                      key<T>("rotation", &T::rotation, feature, optionally, "bodies turn"),
+                      key<T>("friction", &T::friction, feature, optionally, "contacts rub"),
+                      key<T>("restitution", &T::restitution, feature, optionally, "impacts bounce"),
+                      future<T>("continuous", "impacts inside a step"),
+                  })});
+}
+
+}  // namespace scree
