@@ -25,6 +25,13 @@ struct SolveStage {
   View<Vec3> free_spin;
   double step;
 
+  /// A body with its velocities before the kick; those of bodies that are not free do not change.
+  SCREE_HD SolverBody before_kick(std::int32_t body) const {
+    SolverBody state = solver[body];
+    state.velocity = bodies.velocity[body];
+    state.spin = bodies.spin[body];
+    return state;
+  }
   SCREE_HD ContactRow* rows_of(std::int64_t c) const { return &rows[contacts[c].first_row]; }
   SCREE_HD void store(std::int32_t body, const SolverBody& state) const {
     if (!state.is_free()) return;
@@ -90,8 +97,16 @@ struct PrepareRows {
       row.impulse = impulse;
       // The next midpoint must not overlap: the gap may close by then, and no more (speculative contact).
       row.target = row.gap > shell ? -(row.gap - shell) / stage.step : 0.0;
+      // Held, a contact that was parting before the kick would gain energy, p.(u- + u+)/2: it may close as fast.
+      row.target = fmin(row.target, -speed_before(contact, row));
       if (contact.flying) row.target = fmin(row.target, flight_speed(contact, row));
     }
+  }
+
+  /// At which the contact parts before the kick.
+  SCREE_HD double speed_before(const Contact& contact, const ContactRow& row) const {
+    return contact.normal.dot(
+        row.relative_velocity(stage.before_kick(contact.i), stage.before_kick(contact.j)));
   }
 
   /// A little faster than the flight closes along the normal, so that rounding pushes nobody.
@@ -252,13 +267,8 @@ struct Account {
     Contact& contact = stage.contacts[c];
     const SolverBody& i = stage.solver[contact.i];
     const SolverBody& j = stage.solver[contact.j];
-    // The velocities before the kick; those of bodies that are not free do not change.
-    SolverBody i0 = i;
-    SolverBody j0 = j;
-    i0.velocity = stage.bodies.velocity[contact.i];
-    i0.spin = stage.bodies.spin[contact.i];
-    j0.velocity = stage.bodies.velocity[contact.j];
-    j0.spin = stage.bodies.spin[contact.j];
+    const SolverBody i0 = stage.before_kick(contact.i);
+    const SolverBody j0 = stage.before_kick(contact.j);
     Ledger ledger;
     for (int k = 0; k < contact.count; ++k) {
       const ContactRow& row = stage.rows_of(c)[k];
