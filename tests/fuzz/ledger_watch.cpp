@@ -67,8 +67,7 @@ class Watch {
     hold("unexplained energy", now_.unexplained, explained);
     hold("gain in restitution, of one step", (before_.ledger.restitution - now_.ledger.restitution) / scale,
          loss_rounding);
-    hold("gain in friction, of one step", (before_.ledger.friction - now_.ledger.friction) / scale,
-         loss_rounding);
+    // Friction alone may give back what gravity's kick takes in the step in which it turns a slip.
     hold("gain in impulses, of one step",
          (before_.ledger.friction + before_.ledger.restitution - now_.ledger.friction -
           now_.ledger.restitution) /
