@@ -77,6 +77,7 @@ struct Release {
 /// Arms, gaps and targets at the midpoint.
 struct PrepareRows {
   SolveStage stage;
+  double noise;  ///< parting speeds that count as none (m/s)
   SCREE_HD void operator()(std::int64_t c) const {
     Contact& contact = stage.contacts[c];
     const Manifold& m = stage.manifolds[contact.manifold];
@@ -103,8 +104,9 @@ struct PrepareRows {
       row.impulse = impulse;
       // The next midpoint must not overlap: the gap may close by then, and no more (speculative contact).
       row.target = row.gap > shell ? -(row.gap - shell) / stage.step : 0.0;
-      // Held, a contact that was parting before the kick would gain energy, p.(u- + u+)/2: it may close as fast.
-      row.target = fmin(row.target, -speed_before(contact, row));
+      // Held, a contact that was parting before the kick would gain energy, p.(u- + u+)/2: it may close as
+      // fast.
+      row.target = fmin(row.target, noise - speed_before(contact, row));
       if (contact.flying) row.target = fmin(row.target, flight_speed(contact, row));
     }
   }
@@ -423,7 +425,8 @@ Ledger ResponseSolver::solve(ConstView<Manifold> manifolds, double step, const R
   parallel::for_each<Host>("response.kick", solver.size(), Kick{stage, parameters});
   Ledger ledger;
   if (n > 0) {
-    parallel::for_each<Host>("response.rows", n, PrepareRows{stage});
+    parallel::for_each<Host>("response.rows", n,
+                             PrepareRows{stage, tolerance::parting_speed * step * parameters.gravity.norm()});
     SweepPlan plan = automatic_sweeps(set.rows.size());
     if (parameters.iterations > 0) plan.sweeps = parameters.iterations;
     if (parameters.block_sweeps > 0) plan.block_sweeps = parameters.block_sweeps;
@@ -446,7 +449,8 @@ Ledger ResponseSolver::solve(ConstView<Manifold> manifolds, double step, const R
     sweeps.set_velocities();
     if (parallel::max<int, Host>("response.gain", n, IsGaining{{stage}}, 0) > 0) {
       islands_.find(set.contacts.view(), solver.view());
-      const int scaled = parallel::sum<int, Host>("response.scale", islands_.count(), KeepFromGaining{stage, &islands_});
+      const int scaled =
+          parallel::sum<int, Host>("response.scale", islands_.count(), KeepFromGaining{stage, &islands_});
       counters.scaled += scaled;
       if (scaled > 0) sweeps.set_velocities();
     }
