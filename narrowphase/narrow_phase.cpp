@@ -90,6 +90,7 @@ struct FindContacts {
   ConstView<double> margin;
   ConstView<std::int32_t> planes;
   const PairTable* table;
+  const LateBodies* late;
   View<Manifold> room;
   Tally* tally;
 
@@ -133,7 +134,7 @@ struct FindContacts {
     const Vec3 up = bodies.orientation[plane] * Vec3::UnitZ();
     const double reach =
         bounding_radius(bodies.shape[body], bodies.size[body]) + margin[plane] + margin[body];
-    if (up.dot(bodies.position[body] - bodies.position[plane]) > reach) return 0;
+    if (!is_late(plane, body) && up.dot(bodies.position[body] - bodies.position[plane]) > reach) return 0;
     return test(std::min(plane, body), std::max(plane, body), out, stats);
   }
 
@@ -142,12 +143,19 @@ struct FindContacts {
     ++stats.tested;
     const PairTest pair_test =
         table->of[static_cast<int>(bodies.shape[i])][static_cast<int>(bodies.shape[j])];
-    const int count = pair_test(solid(i), solid(j), margin[i] + margin[j], out, stats);
+    const bool later = is_late(i, j);
+    const double time = later ? late->time_of(i, j) : 0.0;
+    const int count = pair_test(later ? late->solid_at(i, time) : solid(i),
+                                later ? late->solid_at(j, time) : solid(j), margin[i] + margin[j], out, stats);
     for (int m = 0; m < count; ++m) {
       out[m].i = i;
       out[m].j = j;
     }
     return count;
+  }
+
+  bool is_late(std::int32_t i, std::int32_t j) const {
+    return late != nullptr && late->time_of(i, j) > late->now();
   }
 
   Solid solid(std::int32_t i) const { return {bodies.position[i], bodies.orientation[i], bodies.size[i]}; }
@@ -204,11 +212,16 @@ int find_pair_contacts(Shape shape_a, const Solid& a, Shape shape_b, const Solid
 }
 
 ConstView<Manifold> NarrowPhase::find(const ConstBodyView& bodies, ConstView<Pair> pairs,
-                                      ConstView<double> margin) {
+                                      ConstView<double> margin, const LateBodies* late) {
   list_planes(bodies);
-  FindContacts search{
-      bodies,        pairs,  margin, planes_.view(), &tables[static_cast<int>(settings_.box_box)],
-      found_.view(), nullptr};
+  FindContacts search{bodies,
+                      pairs,
+                      margin,
+                      planes_.view(),
+                      &tables[static_cast<int>(settings_.box_box)],
+                      late,
+                      found_.view(),
+                      nullptr};
   std::int64_t count = 0;
   for (bool complete = false; !complete;) {
     Tally tally;

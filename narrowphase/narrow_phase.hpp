@@ -32,6 +32,16 @@ struct ManifoldSlot {
 int find_pair_contacts(Shape shape_a, const Solid& a, Shape shape_b, const Solid& b, double margin,
                        Manifold* out);
 
+/// Bodies that are seen later than the others: where they are before, they have never been.
+class LateBodies {
+ public:
+  virtual ~LateBodies() = default;
+  /// When a pair is to be seen (s); at most `now()` for a pair that is to be seen as it is.
+  virtual double time_of(std::int32_t i, std::int32_t j) const = 0;
+  virtual double now() const = 0;
+  virtual Solid solid_at(std::int32_t body, double time) const = 0;
+};
+
 /// Finds the contacts of bodies on the host.
 class NarrowPhase {
  public:
@@ -40,7 +50,8 @@ class NarrowPhase {
   /// All manifolds with a gap of at most margin[i] + margin[j] (m), for the pairs given and for every
   /// plane with every body that is not fixed; ordered by (i, j, part), each pair tested once. Bodies that are
   /// not free make no contact with each other. The view is valid until the next call.
-  ConstView<Manifold> find(const ConstBodyView& bodies, ConstView<Pair> pairs, ConstView<double> margin);
+  ConstView<Manifold> find(const ConstBodyView& bodies, ConstView<Pair> pairs, ConstView<double> margin,
+                           const LateBodies* late = nullptr);
 
   const NarrowPhaseStats& stats() const { return stats_; }
 

@@ -219,7 +219,8 @@ struct Simulation::Parts {
     counters.pcs_made = kept_pairs.times_made();
     const timing::Region region("narrowphase");
     const ConstView<Manifold> manifolds =
-        narrow_phase.find(view_of(std::as_const(bodies)), pairs, contact_margin.view());
+        narrow_phase.find(view_of(std::as_const(bodies)), pairs, contact_margin.view(),
+                          impacts.late_bodies(impact_problem(pairs, h, 0), parameters, view_of(bodies)));
     counters.ccd_calls += narrow_phase.stats().ccd_calls;
     counters.ccd_rejected += narrow_phase.stats().ccd_rejected;
     return manifolds;
@@ -260,7 +261,7 @@ struct Simulation::Parts {
     color_contacts(manifolds, std::as_const(bodies.mobility).view(), contacts.coloring);
     const double scale = last_substep > 0 ? h / last_substep : 1.0;
     prepare_contacts(manifolds, contact_laws(), memory, scale, parameters, contacts);
-    impacts.mark_flying(impact_problem({}, h, 0), parameters, manifolds, view_of(bodies), contacts);
+    impacts.mark_flights(impact_problem({}, h, 0), parameters, manifolds, view_of(bodies), contacts);
     ledger = ledger + response.solve(manifolds, h, parameters, view_of(bodies), solver, contacts, counters);
   }
 

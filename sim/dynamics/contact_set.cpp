@@ -76,6 +76,7 @@ struct PrepareContact {
         .flying = false,
         .balls = laws.acts_as_ball(manifold.i) && laws.acts_as_ball(manifold.j),
         .free_ends = static_cast<int>(laws.is_free(manifold.i)) + static_cast<int>(laws.is_free(manifold.j)),
+        .lead = 0,
         .impulse = Vec3::Zero()};
     for (int k = 0; k < manifold.count; ++k) {
       rows[first_row[c] + k].impulse = parameters.warm_start

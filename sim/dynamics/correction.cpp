@@ -40,8 +40,13 @@ struct PositionCorrector::Fly {
     double deepest = 0;
     for (std::int64_t r = c.first_row; r < c.first_row + c.count; ++r) {
       const ContactRow& row = stage.rows[r];
+      // What flies past is nearer to the other's tangent plane than to the other.
+      if (c.flying && row.impulse.isZero(0)) {
+        stage.flown_gap[r] = HUGE_VAL;
+        continue;
+      }
       const Vec3 u = row.relative_velocity(stage.solver[c.i], stage.solver[c.j]);
-      stage.flown_gap[r] = row.gap + 0.5 * stage.step * c.normal.dot(u);
+      stage.flown_gap[r] = row.gap + (0.5 * stage.step - c.lead) * c.normal.dot(u);
       deepest = fmax(deepest, -stage.flown_gap[r]);
     }
     return deepest;

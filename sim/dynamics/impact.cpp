@@ -18,8 +18,11 @@ constexpr std::int32_t most_hits = 256;
 
 /// What may meet, as everything below sees it.
 struct FlightStage {
-  const ImpactProblem& problem;
-  const ResponseParameters& parameters;
+  FlightStage(const ImpactProblem& p, const ResponseParameters& r, const BodyView& b, FlightLog& log)
+      : problem(p), parameters(r), bodies(b), clock(log.clock.view()), hits(log.hits.view()), reach(log.reach.view()) {}
+
+  ImpactProblem problem;
+  ResponseParameters parameters;
   BodyView bodies;
   View<double> clock;
   View<std::int32_t> hits;
@@ -240,6 +243,13 @@ struct FindFirst {
   }
 };
 
+/// Who has had an impact later than the flight begins has been where it was before that.
+struct StartClock {
+  View<double> clock;
+  double from;
+  SCREE_HD void operator()(std::int64_t k) const { clock[k] = from > 0 ? fmax(clock[k], from) : 0.0; }
+};
+
 struct SetReach {
   FlightStage stage;
   void operator()(std::int64_t k) const { stage.reach[k] = stage.reach_of(static_cast<std::int32_t>(k)); }
@@ -277,7 +287,30 @@ struct Event {
   }
 };
 
-struct MarkFlying {
+/// Pairs of bodies after their impacts. What the response will do comes after: their flight is straight, with all
+/// of the substep's kick.
+class StruckBodies final : public LateBodies {
+ public:
+  explicit StruckBodies(const FlightStage& stage) : stage_(stage) {}
+
+  double time_of(std::int32_t i, std::int32_t j) const override {
+    return std::max(stage_.clock[i], stage_.clock[j]);
+  }
+  double now() const override { return 0.5 * stage_.problem.step; }
+  Solid solid_at(std::int32_t body, double time) const override { return at(body, time).solid; }
+
+  BodyInstant at(std::int32_t body, double time) const {
+    BodyFlight flight = stage_.flight(body);
+    flight.velocity = flight.velocity_at(stage_.problem.step);
+    flight.acceleration.setZero();
+    return instant_of(flight, time);
+  }
+
+ private:
+  FlightStage stage_;
+};
+
+struct MarkFlights {
   FlightStage stage;
   ConstView<Manifold> manifolds;
   View<Contact> contacts;
@@ -287,8 +320,10 @@ struct MarkFlying {
   void operator()(std::int64_t index) const {
     Contact& contact = contacts[index];
     const Manifold& m = manifolds[contact.manifold];
-    if (contact.loaded || !would_push_apart(m)) return;
     const double step = stage.problem.step;
+    const double seen = std::max(0.5 * step, StruckBodies(stage).time_of(m.i, m.j));
+    contact.lead = seen - 0.5 * step;
+    if (contact.loaded || !would_push_apart(m, seen)) return;
     PairFlight pair = stage.pair_of(m.i, m.j, 1.5 * step);
     pair.slowest[m.part] = 0;
     const Meeting meeting = next_meeting(pair, std::max(stage.clock[m.i], stage.clock[m.j]));
@@ -296,16 +331,16 @@ struct MarkFlying {
                      (meeting.time > step && fastest_approach(pair) > stage.slowest_bounce(m.i, m.j));
   }
 
-  bool would_push_apart(const Manifold& m) const {
-    const double step = stage.problem.step;
-    const BodyFlight i = stage.flight(m.i);
-    const BodyFlight j = stage.flight(m.j);
-    const BodyInstant at_i{{i.position, i.orientation, i.size}, i.velocity_at(step), i.spin};
-    const BodyInstant at_j{{j.position, j.orientation, j.size}, j.velocity_at(step), j.spin};
+  bool would_push_apart(const Manifold& m, double seen) const {
+    const StruckBodies struck(stage);
+    const BodyInstant i = struck.at(m.i, seen);
+    const BodyInstant j = struck.at(m.j, seen);
     bool pushes = false;
     for (int k = 0; k < m.count; ++k) {
-      if (m.points[k].gap <= 0) return false;  // has touched, and would for what presses it alone
-      pushes = pushes || closing_speed(m, k, at_i, at_j) * step > m.points[k].gap;
+      const double closing = closing_speed(m, k, i, j);
+      if (closing <= 0 || closing * (1.5 * stage.problem.step - seen) <= m.points[k].gap) continue;
+      if (m.points[k].gap <= 0) return false;  // touches: no impact is to come
+      pushes = true;
     }
     return pushes;
   }
@@ -316,15 +351,15 @@ struct MarkFlying {
 Ledger ImpactSolver::resolve(const ImpactProblem& problem, const ResponseParameters& parameters,
                              BodyView bodies) {
   const std::int64_t n = bodies.count();
-  clock_.resize(n);
-  hits_.resize(n);
-  parallel::fill("impact.reset", clock_, problem.from);
-  parallel::fill("impact.reset", hits_, std::int32_t{0});
+  log_.clock.resize(n);
+  log_.hits.resize(n);
+  parallel::for_each<Host>("impact.reset", n, StartClock{log_.clock.view(), problem.from});
+  parallel::fill("impact.reset", log_.hits, std::int32_t{0});
   impacts_.clear();
   saved_.clear();
   hit_bound_ = false;
-  reach_.resize(n);
-  const FlightStage stage{problem, parameters, bodies, clock_.view(), hits_.view(), reach_.view()};
+  log_.reach.resize(n);
+  const FlightStage stage(problem, parameters, bodies, log_);
   parallel::for_each<Host>("impact.reach", n, SetReach{stage});
   if (!(problem.bounces && parameters.restitution) && !may_go_deep(stage)) return {};
   planes_.clear();
@@ -337,7 +372,7 @@ Ledger ImpactSolver::resolve(const ImpactProblem& problem, const ResponseParamet
 
   std::priority_queue<Event, std::vector<Event>, std::greater<>> events;
   const auto foresee = [&](std::int32_t i, std::int32_t j, const Meeting& meeting) {
-    if (meeting.time <= problem.step) events.push({meeting, i, j, hits_.view()[i], hits_.view()[j]});
+    if (meeting.time <= problem.step) events.push({meeting, i, j, stage.hits[i], stage.hits[j]});
   };
   for (std::int64_t k = 0; k < first_.size(); ++k) {
     if (first_.view()[k].time > problem.step) continue;
@@ -359,7 +394,7 @@ Ledger ImpactSolver::resolve(const ImpactProblem& problem, const ResponseParamet
     for (const std::int32_t plane : planes_) look_at(plane);
   };
   const auto save = [&](std::int32_t body) {
-    if (!stage.is_free(body) || hits_.view()[body] > 0) return;
+    if (!stage.is_free(body) || stage.hits[body] > 0) return;
     saved_.push_back(
         {body, bodies.position[body], bodies.orientation[body], bodies.velocity[body], bodies.spin[body]});
   };
@@ -368,13 +403,13 @@ Ledger ImpactSolver::resolve(const ImpactProblem& problem, const ResponseParamet
     const Event event = events.top();
     events.pop();
     const auto [meeting, i, j, hits_i, hits_j] = event;
-    if (hits_.view()[i] != hits_i || hits_.view()[j] != hits_j) continue;
+    if (stage.hits[i] != hits_i || stage.hits[j] != hits_j) continue;
     save(i);
     save(j);
     Impact impact;
     if (!stage.resolve(i, j, meeting, impact, ledger)) continue;
     impacts_.push_back(impact);
-    hit_bound_ = hit_bound_ || std::max(hits_.view()[i], hits_.view()[j]) >= most_bounces;
+    hit_bound_ = hit_bound_ || std::max(stage.hits[i], stage.hits[j]) >= most_bounces;
     foresee(i, j, stage.next(i, j));
     foresee_all_of(i, j);
     foresee_all_of(j, i);
@@ -415,11 +450,19 @@ void ImpactSolver::undo(BodyView bodies) {
   impacts_.clear();
 }
 
-void ImpactSolver::mark_flying(const ImpactProblem& problem, const ResponseParameters& parameters,
-                               ConstView<Manifold> manifolds, BodyView bodies, ContactSet& set) {
-  const FlightStage stage{problem, parameters, bodies, clock_.view(), hits_.view(), reach_.view()};
-  parallel::for_each<Host>("impact.flying", set.contacts.size(),
-                           MarkFlying{stage, manifolds, set.contacts.view()});
+const LateBodies* ImpactSolver::late_bodies(const ImpactProblem& problem, const ResponseParameters& parameters,
+                                            BodyView bodies) {
+  const auto is_late = [&](const Saved& saved) { return log_.clock.view()[saved.body] > 0.5 * problem.step; };
+  if (std::none_of(saved_.begin(), saved_.end(), is_late)) return nullptr;
+  late_ = std::make_unique<StruckBodies>(FlightStage(problem, parameters, bodies, log_));
+  return late_.get();
+}
+
+void ImpactSolver::mark_flights(const ImpactProblem& problem, const ResponseParameters& parameters,
+                                ConstView<Manifold> manifolds, BodyView bodies, ContactSet& set) {
+  parallel::for_each<Host>(
+      "impact.flights", set.contacts.size(),
+      MarkFlights{FlightStage(problem, parameters, bodies, log_), manifolds, set.contacts.view()});
 }
 
 }  // namespace scree

@@ -2,10 +2,12 @@
 #pragma once
 
 #include "broadphase/broad_phase.hpp"
+#include "narrowphase/narrow_phase.hpp"
 #include "sim/dynamics/contact_set.hpp"
 #include "sim/dynamics/meeting.hpp"
 #include "sim/dynamics/state.hpp"
 
+#include <memory>
 #include <vector>
 
 namespace scree {
@@ -15,7 +17,8 @@ struct ImpactProblem {
   ContactLaws laws;
   const ImpulseMemory& memory;  ///< contacts that carried a load do not bounce
   double step;                  ///< length of the substep (s)
-  double from;                  ///< start of the flight, into the substep (s); it ends with the substep
+  double from;                  ///< start of the flight, into the substep (s); it ends with the substep. If it is not 0, the
+                ///< last flight began at 0: who was struck later in it starts then
   bool bounces;  ///< whether approaches faster than the threshold count; else only those that would go deep
 };
 
@@ -24,6 +27,13 @@ struct Impact {
   std::int32_t i, j;
   Vec3 impulse;  ///< N s
   Vec3 point;    ///< m
+};
+
+/// Of each body in a flight.
+struct FlightLog {
+  Array<double, Host> clock;       ///< time of its last impact (s); the start if it had none
+  Array<std::int32_t, Host> hits;  ///< its impacts so far
+  Array<double, Host> reach;       ///< of its surface from the midpoint, to either end of the substep (m)
 };
 
 class ImpactSolver {
@@ -41,9 +51,14 @@ class ImpactSolver {
   /// Puts the bodies back to where they were before the last resolve().
   void undo(BodyView bodies);
 
-  /// Sets Contact::flying, after resolve().
-  void mark_flying(const ImpactProblem& problem, const ResponseParameters& parameters,
-                   ConstView<Manifold> manifolds, BodyView bodies, ContactSet& set);
+  /// Which pairs have had an impact after the midpoint, after resolve(); null if none has. The contacts of such
+  /// a pair are those of the impact's time, from which a straight flight leads to the end of the substep. Valid
+  /// until the next call.
+  const LateBodies* late_bodies(const ImpactProblem& problem, const ResponseParameters& parameters,
+                                BodyView bodies);
+  /// Sets Contact::flying and Contact::lead, after resolve().
+  void mark_flights(const ImpactProblem& problem, const ResponseParameters& parameters,
+                    ConstView<Manifold> manifolds, BodyView bodies, ContactSet& set);
 
   /// Of the last resolve(), in their order.
   const std::vector<Impact>& impacts() const { return impacts_; }
@@ -61,9 +76,7 @@ class ImpactSolver {
  private:
   void list_partners(ConstView<Pair> pairs, const BodyView& bodies);
 
-  Array<double, Host> clock_;        // time of each body's last impact in the flight
-  Array<std::int32_t, Host> hits_;   // of each body in the flight
-  Array<double, Host> reach_;        // of each body's surface from the midpoint, to either end (m)
+  FlightLog log_;
   Array<Meeting, Host> first_;       // of each candidate
   std::vector<std::int32_t> planes_;
   std::vector<std::int64_t> begin_;  // of the partners of each body
@@ -72,6 +85,7 @@ class ImpactSolver {
   std::vector<Impact> impacts_;
   std::vector<Saved> saved_;
   bool hit_bound_ = false;
+  std::unique_ptr<LateBodies> late_;
 };
 
 }  // namespace scree

@@ -224,13 +224,20 @@ double fastest_surface(const BodyFlight& flight, double time) {
 }
 
 double fastest_approach(const PairFlight& pair) {
-  const double linear = (pair.j.velocity - pair.i.velocity).norm() +
-                        (pair.j.acceleration - pair.i.acceleration).norm() * pair.until;
+  // To a plane that keeps its normal, only what is along it.
+  Vec3 normal = Vec3::Zero();
+  for (const BodyFlight* body : {&pair.i, &pair.j}) {
+    if (body->shape == Shape::plane && tilting_spin(*body).isZero(0)) normal = axis_of(*body);
+  }
+  const auto speed = [&normal](const Vec3& v) { return normal.isZero(0) ? v.norm() : fabs(normal.dot(v)); };
+  const double linear = speed(pair.j.velocity - pair.i.velocity) +
+                        speed(pair.j.acceleration - pair.i.acceleration) * pair.until;
   const auto far = [&](const BodyFlight& partner) {
     return is_boundary(partner.shape) ? 0.0
                                       : (pair.j.position - pair.i.position).norm() + linear * pair.until +
                                             bounding_radius(partner.shape, partner.size);
   };
+  // (A plane that keeps its normal turns nothing, so that the bound on distances does not matter there.)
   return linear + fastest_turn(pair.i, far(pair.j)) + fastest_turn(pair.j, far(pair.i));
 }
 
