@@ -1,6 +1,7 @@
 // What a scene needs to have modelled, and what cannot matter in it.
 #pragma once
 
+#include "sim/dynamics/restitution.hpp"
 #include "sim/scene/scene.hpp"
 
 #include <string>
@@ -19,7 +20,7 @@ struct ModelPlan {
   Feature restitution;               ///< impacts that bounce
   Feature rotation;                  ///< orientations
   Feature gyroscopic;                ///< free rotation of bodies with unequal moments of inertia
-  double restitution_threshold = 0;  ///< m/s; slower approaches do not bounce
+  RestitutionThreshold restitution_threshold;
 };
 
 ModelPlan plan_model(const Scene& scene);

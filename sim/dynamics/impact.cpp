@@ -44,10 +44,11 @@ struct FlightStage {
 
   /// The slowest approach that bounces on a part without load (m/s).
   double slowest_bounce(std::int32_t i, std::int32_t j) const {
-    if (!parameters.restitution || problem.laws.between(i, j).restitution == 0) return HUGE_VAL;
+    const double restitution = problem.laws.between(i, j).restitution;
+    if (!parameters.restitution || restitution == 0) return HUGE_VAL;
     const double rounding =
         tolerance::closing_speed * (bodies.velocity[i].norm() + bodies.velocity[j].norm());
-    return std::max(parameters.restitution_threshold, rounding);
+    return std::max(parameters.restitution_threshold.of(restitution), rounding);
   }
 
   /// Two bodies until the end of the substep; no meeting of theirs counts yet.

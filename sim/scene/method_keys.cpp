@@ -43,7 +43,7 @@ Codec<ResponseSettings> response_section() {
                  "sweeps stop when they change the impulses by less than this share"),
           key<T>("warm_start", &T::warm_start, boolean(), optionally, "start from the last step's impulses"),
           key<T>("restitution_threshold", &T::restitution_threshold, or_auto(number(not_negative, "m/s")),
-                 optionally, "slower approaches do not bounce; auto: from gravity and step"),
+                 optionally, "slower approaches do not bounce; auto: 2 gravity step (1 - e)"),
       });
 }
 
