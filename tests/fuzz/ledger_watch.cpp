@@ -1,0 +1,197 @@
+#include "tests/fuzz/ledger_watch.hpp"
+
+#include "core/error.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+namespace scree {
+
+namespace {
+
+// Energies are shares of the energy scale, momenta of what the bodies carry.
+constexpr double explained = 1e-9;
+constexpr double energy_gain = 1e-9;
+constexpr double loss_rounding = 1e-12;      // in one step
+constexpr double momentum_rounding = 1e-12;  // in one step
+constexpr double angular_rounding = 1e-10;   // in the whole run
+constexpr double overlap = 1e-3;             // of the smaller body
+
+class Watch {
+ public:
+  Watch(const Scene& scene, const RandomScene& origin)
+      : scene_(scene), origin_(origin), simulation_(scene, {SpaceChoice::host, 1}) {
+    before_ = first_ = simulation_.observe();
+    simulation_.snapshot(state_);
+    start_ = state_;
+    first_overlap_ = first_.penetration.relative_max;
+  }
+
+  Breaches run() {
+    while (!simulation_.finished()) {
+      const double momentum_before = carried_momentum();
+      try {
+        simulation_.step();
+      } catch (const RunError&) {
+        hold("runs", 1, 0);
+        return breaches_;
+      }
+      now_ = simulation_.observe();
+      simulation_.snapshot(state_);
+      check_energy();
+      check_momentum(std::max(momentum_before, carried_momentum()));
+      check_bodies();
+      check_overlaps();
+      before_ = now_;
+    }
+    return breaches_;
+  }
+
+ private:
+  /// Fails, too, for what is not a number.
+  void hold(const char* law, double value, double bound) {
+    if (value <= bound) return;
+    const auto [place, is_first] = breaches_.try_emplace(law);
+    Breach& breach = place->second;
+    if (is_first) breach = {simulation_.steps(), simulation_.steps(), value, bound};
+    if (value > breach.worst) {
+      breach.worst = value;
+      breach.worst_step = simulation_.steps();
+    }
+  }
+
+  void check_energy() {
+    const double scale = now_.energy_scale;
+    if (scale == 0) return;
+    hold("unexplained energy", now_.unexplained, explained);
+    hold("gain in restitution, of one step", (before_.ledger.restitution - now_.ledger.restitution) / scale,
+         loss_rounding);
+    hold("gain in friction, of one step", (before_.ledger.friction - now_.ledger.friction) / scale,
+         loss_rounding);
+    hold("gain in impulses, of one step",
+         (before_.ledger.friction + before_.ledger.restitution - now_.ledger.friction -
+          now_.ledger.restitution) /
+             scale,
+         loss_rounding);
+    // Of bodies that started apart, correction must not need to lift any.
+    const double lifted = origin_.overlaps ? std::max(-now_.ledger.correction, 0.0) : 0.0;
+    hold("energy beyond the start's and what was done",
+         (now_.total() - first_.total() - now_.ledger.work - lifted) / scale, energy_gain);
+    if (!origin_.overlaps) hold("gain by correction", -now_.ledger.correction / scale, energy_gain);
+    hold("drift of free rotation", std::abs(now_.ledger.integration) / scale, energy_gain);
+  }
+
+  double carried_momentum() const {
+    double sum = 0;
+    for (std::size_t k = 0; k < state_.bodies.position.size(); ++k) {
+      if (state_.bodies.mobility[k] != Mobility::free) continue;
+      sum += state_.bodies.velocity[k].norm() / state_.bodies.inverse_mass[k];
+    }
+    return sum;
+  }
+
+  /// What free bodies gain, gravity and the bodies that are not free have given.
+  void check_momentum(double carried) {
+    const double dt = now_.time - before_.time;
+    Vec3 expected = before_.momentum;
+    double given = carried;
+    for (std::size_t k = 0; k < state_.bodies.position.size(); ++k) {
+      if (state_.bodies.mobility[k] == Mobility::free) {
+        const Vec3 kick = dt / state_.bodies.inverse_mass[k] * scene_.gravity;
+        expected += kick;
+        given += kick.norm();
+      } else {
+        const Vec3 impulse = dt * simulation_.body(static_cast<std::int32_t>(k)).force;
+        expected -= impulse;
+        given += impulse.norm();
+      }
+    }
+    hold("momentum, of one step", (now_.momentum - expected).norm(), momentum_rounding * given);
+    if (!origin_.closed) return;
+    const Vec3 change = now_.angular_momentum - first_.angular_momentum - now_.ledger.angular_correction;
+    // About the origin; the bodies stay within some metres of it, or fly from one another and carry more.
+    hold("angular momentum", change.norm(),
+         angular_rounding * (largest_distance() * given + spin_momentum()));
+  }
+
+  double largest_distance() const {
+    double distance = 0;
+    for (const Vec3& x : state_.bodies.position) distance = std::max(distance, x.norm());
+    return distance;
+  }
+
+  double spin_momentum() const {
+    double sum = 0;
+    for (std::size_t k = 0; k < state_.bodies.position.size(); ++k) {
+      if (state_.bodies.mobility[k] != Mobility::free) continue;
+      sum += state_.bodies.spin[k].norm() / state_.bodies.inverse_inertia[k].minCoeff();
+    }
+    return sum;
+  }
+
+  void check_bodies() {
+    hold("bodies lost", static_cast<double>(std::abs(now_.bodies - first_.bodies)), 0);
+    double fastest = 0;  // energy of one body's motion over all that there can be
+    const double there = energy_there();
+    for (std::size_t k = 0; k < state_.bodies.position.size(); ++k) {
+      const bool finite = state_.bodies.position[k].allFinite() && state_.bodies.velocity[k].allFinite() &&
+                          state_.bodies.spin[k].allFinite() &&
+                          state_.bodies.orientation[k].coeffs().allFinite();
+      hold("finite", finite ? 0 : 1, 0);
+      if (state_.bodies.mobility[k] != Mobility::free) continue;
+      fastest =
+          std::max(fastest, 0.5 * state_.bodies.velocity[k].squaredNorm() / state_.bodies.inverse_mass[k]);
+    }
+    hold("energy of one body", fastest, 1.001 * there + 1e-12);
+  }
+
+  /// Kinetic energy that the bodies can have: what they began with, what gravity and drivers have given
+  /// since.
+  double energy_there() const {
+    double fallen = 0;
+    for (std::size_t k = 0; k < state_.bodies.position.size(); ++k) {
+      if (state_.bodies.mobility[k] != Mobility::free) continue;
+      const double fall = (state_.bodies.position[k] - start_.bodies.position[k]).dot(scene_.gravity);
+      fallen += fall / state_.bodies.inverse_mass[k];
+    }
+    return first_.kinetic() + fallen + std::max(now_.ledger.work, 0.0) + std::abs(now_.ledger.correction);
+  }
+
+  /// Beyond what bodies turn within a substep, which contacts do not see, overlaps only get less.
+  void check_overlaps() {
+    double turn = 0;
+    for (std::size_t k = 0; k < state_.bodies.position.size(); ++k) {
+      if (state_.bodies.shape[k] == Shape::box) turn = std::max(turn, state_.bodies.spin[k].norm());
+    }
+    turn *= scene_.time.step / scene_.time.substeps;
+    hold("overlap", now_.penetration.relative_max,
+         std::max(first_overlap_, overlap + 0.5 * turn * turn * largest_ratio()));
+  }
+
+  /// Of the sizes of two bodies: overlaps are relative to the smaller one.
+  double largest_ratio() const {
+    double smallest = HUGE_VAL;
+    double largest = 0;
+    for (std::size_t k = 0; k < state_.bodies.position.size(); ++k) {
+      if (state_.bodies.mobility[k] != Mobility::free) continue;
+      smallest = std::min(smallest, smallest_size(state_.bodies.shape[k], state_.bodies.size[k]));
+      largest = std::max(largest, bounding_radius(state_.bodies.shape[k], state_.bodies.size[k]));
+    }
+    return largest / smallest;
+  }
+
+  const Scene& scene_;
+  RandomScene origin_;
+  Simulation simulation_;
+  Observation first_, before_, now_;
+  Snapshot start_, state_;
+  double first_overlap_ = 0;
+  Breaches breaches_;
+};
+
+}  // namespace
+
+Breaches watch(const Scene& scene, const RandomScene& origin) { return Watch(scene, origin).run(); }
+
+}  // namespace scree
