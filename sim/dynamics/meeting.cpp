@@ -106,6 +106,7 @@ struct Look {
   double closing = 0;     // approach there (m/s)
   bool hit = false;       // at some point that touches the approach counts
   int part = 0;           // of that point
+  bool rests[PairFlight::parts] = {};  // parts where a point touches whose approach does not count
 };
 
 class Search {
@@ -115,21 +116,24 @@ class Search {
         fastest_(fastest),
         size_(std::min(smallest_size(pair.i.shape, pair.i.size), smallest_size(pair.j.shape, pair.j.size))) {}
 
-  Meeting run(double earliest) const {
+  Meeting run(double earliest) {
     double s = earliest;
     Look now = look(s);
     for (int iteration = 0; now.near && iteration < most_iterations; ++iteration) {
       if (now.hit) return {.time = s, .part = now.part};
+      settle(now);
       if (s >= pair_.until) return {};
       const double next = std::min(s + step_from(now), pair_.until);
       const Look then = look(next);
       const double level = std::min(now.gap, 0.0);
-      if (then.gap < level - touching()) {
-        std::tie(s, now) = bisect(s, now, next, then, level);
-      } else {
-        s = next;
-        now = then;
+      if (then.hit) {
+        if (then.gap >= level - touching()) return {.time = next, .part = then.part};
+        // Where it reaches that gap, unless it is not fast enough there yet.
+        const auto [touch, at] = bisect(s, now, next, then, level);
+        return at.hit ? Meeting{.time = touch, .part = at.part} : Meeting{.time = next, .part = then.part};
       }
+      s = next;
+      now = then;
     }
     return {};
   }
@@ -138,9 +142,16 @@ class Search {
   static constexpr int most_iterations = 1000;
   static constexpr int most_bisections = 60;
   static constexpr double touching_share = 1e-12;  // of the smaller size: at this gap bodies touch
-  static constexpr double least_share = 0.02;      // likewise: steps that advance by less may be Newton's
+  static constexpr double least_share = 0.1;      // likewise: steps that advance by less may be Newton's
 
   double touching() const { return touching_share * size_; }
+
+  /// A part that has touched slowly bears load from then on, and does not bounce.
+  void settle(const Look& now) {
+    for (int part = 0; part < PairFlight::parts; ++part) {
+      if (now.rests[part]) pair_.slowest[part] = HUGE_VAL;
+    }
+  }
 
   Look look(double s) const {
     const BodyInstant i = instant_of(pair_.i, s);
@@ -160,10 +171,12 @@ class Search {
           look.gap = gap;
           look.closing = closing;
         }
-        if (gap <= touching() && !look.hit && pair_.counts(part, closing, s)) {
+        if (gap > touching()) continue;
+        if (!look.hit && pair_.counts(part, closing, s)) {
           look.hit = true;
           look.part = part;
         }
+        look.rests[part] = look.rests[part] || (closing > 0 && !pair_.counts(part, closing, s));
       }
     }
     return look;
@@ -198,7 +211,7 @@ class Search {
     return {to, after};
   }
 
-  const PairFlight& pair_;
+  PairFlight pair_;
   double fastest_;
   double size_;
 };
