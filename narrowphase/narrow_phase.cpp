@@ -4,6 +4,7 @@
 
 #include "core/parallel.hpp"
 #include "narrowphase/box_box_ccd.hpp"
+#include "narrowphase/box_box_crosscheck.hpp"
 #include "narrowphase/box_plane.hpp"
 #include "narrowphase/box_tube.hpp"
 #include "narrowphase/sphere_box.hpp"
@@ -13,6 +14,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <mutex>
 #include <type_traits>
 
 namespace scree {
@@ -79,7 +81,21 @@ constexpr PairTable tables[] = {
 
 /// What the blocks share while they append.
 struct Tally {
-  std::atomic<std::int64_t> found{0}, tested{0}, ccd_calls{0}, ccd_rejected{0};
+  std::atomic<std::int64_t> found{0}, tested{0};
+  std::mutex mutex;
+  NarrowPhaseStats of_ccd;  // but for `tested`, which every block adds to: a lock would hold them up
+
+  void add(const NarrowPhaseStats& stats) {
+    tested += stats.tested;
+    if (stats.ccd_calls + stats.crosscheck.asked == 0) return;
+    const std::lock_guard lock(mutex);
+    of_ccd += stats;
+  }
+  NarrowPhaseStats total() const {
+    NarrowPhaseStats stats = of_ccd;
+    stats.tested = tested;
+    return stats;
+  }
 };
 
 /// Tests one block of candidates, and appends the manifolds found as far as there is room. The candidates are
@@ -90,6 +106,8 @@ struct FindContacts {
   ConstView<double> margin;
   ConstView<std::int32_t> planes;
   const PairTable* table;
+  double crosscheck_share;
+  std::uint64_t search;
   View<Manifold> room;
   Tally* tally;
 
@@ -108,9 +126,7 @@ struct FindContacts {
       count = 0;
     }
     append(found, count);
-    tally->tested += stats.tested;
-    tally->ccd_calls += stats.ccd_calls;
-    tally->ccd_rejected += stats.ccd_rejected;
+    tally->add(stats);
   }
 
  private:
@@ -143,6 +159,10 @@ struct FindContacts {
     const PairTest pair_test =
         table->of[static_cast<int>(bodies.shape[i])][static_cast<int>(bodies.shape[j])];
     const int count = pair_test(solid(i), solid(j), margin[i] + margin[j], out, stats);
+    const bool boxes = bodies.shape[i] == Shape::box && bodies.shape[j] == Shape::box;
+    if (boxes && is_crosschecked(crosscheck_share, search, i, j)) {
+      crosscheck(solid(i), solid(j), stats.crosscheck);
+    }
     for (int m = 0; m < count; ++m) {
       out[m].i = i;
       out[m].j = j;
@@ -198,9 +218,15 @@ struct Gather {
 ConstView<Manifold> NarrowPhase::find(const ConstBodyView& bodies, ConstView<Pair> pairs,
                                       ConstView<double> margin) {
   list_planes(bodies);
-  FindContacts search{
-      bodies,        pairs,  margin, planes_.view(), &tables[static_cast<int>(settings_.box_box)],
-      found_.view(), nullptr};
+  FindContacts search{bodies,
+                      pairs,
+                      margin,
+                      planes_.view(),
+                      &tables[static_cast<int>(settings_.box_box)],
+                      settings_.crosscheck,
+                      searches_++,
+                      found_.view(),
+                      nullptr};
   std::int64_t count = 0;
   for (bool complete = false; !complete;) {
     Tally tally;
@@ -208,7 +234,7 @@ ConstView<Manifold> NarrowPhase::find(const ConstBodyView& bodies, ConstView<Pai
     search.room = found_.view();
     parallel::for_each<Host>("find contacts", (search.candidates() + block - 1) / block, search);
     count = tally.found;
-    stats_ = {tally.tested, tally.ccd_calls, tally.ccd_rejected};
+    stats_ = tally.total();
     complete = count <= found_.size();
     if (!complete) found_.resize(count + count / 4);  // room for the steps that follow
   }

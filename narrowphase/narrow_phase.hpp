@@ -6,16 +6,11 @@
 #include "core/bodies.hpp"
 #include "narrowphase/contact.hpp"
 #include "narrowphase/settings.hpp"
+#include "narrowphase/stats.hpp"
 
 #include <cstdint>
 
 namespace scree {
-
-struct NarrowPhaseStats {
-  std::int64_t tested = 0;        ///< pairs tested, planes included
-  std::int64_t ccd_calls = 0;     ///< box-box pairs given to libccd
-  std::int64_t ccd_rejected = 0;  ///< of these, answers that the certificate refused (SAT then decided)
-};
 
 namespace detail {
 /// Stands for a manifold while they are put in order.
@@ -35,6 +30,7 @@ class NarrowPhase {
   /// not free make no contact with each other. The view is valid until the next call.
   ConstView<Manifold> find(const ConstBodyView& bodies, ConstView<Pair> pairs, ConstView<double> margin);
 
+  /// Of the last search.
   const NarrowPhaseStats& stats() const { return stats_; }
 
  private:
@@ -44,6 +40,7 @@ class NarrowPhase {
 
   NarrowPhaseSettings settings_;
   NarrowPhaseStats stats_;
+  std::uint64_t searches_ = 0;
   // Buffers that keep their capacity from step to step.
   Array<std::int32_t, Host> planes_;
   Array<Manifold, Host> found_;        ///< in the order of finding; grows to the most found so far

@@ -148,7 +148,7 @@ struct Simulation::Parts {
         forces(s, grid),
         kept_pairs(s.broadphase, runs_on_device(options.space), origin),
         narrow_phase(s.narrowphase),
-        end_narrow_phase(s.narrowphase) {
+        end_narrow_phase({.box_box = s.narrowphase.box_box}) {
     copy_bodies(bodies, scene.bodies);
     presence.begin(bodies);
     copy(laws, table_of(scene));
@@ -175,8 +175,7 @@ struct Simulation::Parts {
     const timing::Region region("narrowphase");
     const ConstView<Manifold> manifolds =
         narrow_phase.find(view_of(std::as_const(bodies)), pairs, contact_margin.view());
-    counters.ccd_calls += narrow_phase.stats().ccd_calls;
-    counters.ccd_rejected += narrow_phase.stats().ccd_rejected;
+    counters.narrowphase += narrow_phase.stats();
     return manifolds;
   }
 

@@ -331,7 +331,9 @@ Codec<NarrowPhaseSettings> narrowphase_section() {
                                         {"ccd_gjk", M::ccd_gjk},
                                         {"ccd_mpr", M::ccd_mpr}}),
                                optionally, "for pairs of boxes; auto: the measured best"),
-                        future<T>("crosscheck", "every pair by two methods, compared"),
+                        key<T>("crosscheck", &T::crosscheck, number(between(0, 1)), optionally,
+                               "share of the pairs of boxes, chosen anew each substep, that libccd is asked "
+                               "about too; where it differs is counted in the manifest"),
                     });
 }
 
