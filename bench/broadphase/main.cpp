@@ -7,15 +7,14 @@
 // Two calls to warm up, then the median of nine. --check compares count and checksum of the pairs with those
 // of another method; exit status 1 if they differ.
 #include "bench/broadphase/data_sets.hpp"
+#include "bench/options.hpp"
 #include "broadphase/broad_phase.hpp"
-#include "core/error.hpp"
 #include "core/parallel.hpp"
 
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <map>
-#include <sstream>
 #include <string>
 #include <vector>
 
@@ -30,28 +29,6 @@ const std::map<std::string, BroadPhaseMethod> methods = {
     {"hierarchical_grid", BroadPhaseMethod::hierarchical_grid},
     {"uniform_grid", BroadPhaseMethod::uniform_grid},
     {"brute_force", BroadPhaseMethod::brute_force}};
-
-using Options = std::map<std::string, std::string>;
-
-Options parse(int argc, char** argv) {
-  Options options = {{"--set", "A,B,C"},      {"--n", "1000000"}, {"--method", "hierarchical_grid"},
-                     {"--space", Host::name}, {"--levels", "0"},  {"--check", ""}};
-  for (int k = 1; k < argc; k += 2) {
-    const auto option = options.find(argv[k]);
-    if (option == options.end() || k + 1 == argc) {
-      throw InputError(std::string(argv[k]) + ": not an option, or without a value");
-    }
-    option->second = argv[k + 1];
-  }
-  return options;
-}
-
-std::vector<std::string> split(const std::string& list) {
-  std::vector<std::string> items;
-  std::istringstream text(list);
-  for (std::string item; std::getline(text, item, ',');) items.push_back(item);
-  return items;
-}
 
 BroadPhaseMethod method_of(const std::string& name) {
   const auto found = methods.find(name);
@@ -138,7 +115,13 @@ bool run_in_space(const std::string& set, std::int64_t n, const Options& options
 }
 
 int run_all(int argc, char** argv) {
-  const Options options = parse(argc, argv);
+  const Options options = parse(argc, argv,
+                                {{"--set", "A,B,C"},
+                                 {"--n", "1000000"},
+                                 {"--method", "hierarchical_grid"},
+                                 {"--space", Host::name},
+                                 {"--levels", "0"},
+                                 {"--check", ""}});
   std::printf(
       "set           n method             space levels        pairs tests/n  median ms     min ms     max ms "
       " ns/object\n");

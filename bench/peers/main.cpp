@@ -4,6 +4,7 @@
 //
 // Times are CPU times of the process, which works with one thread. bench/peers/run calls this for a whole
 // table.
+#include "bench/clock.hpp"
 #include "bench/peers/cases.hpp"
 #include "bench/peers/engine.hpp"
 #include "core/error.hpp"
@@ -14,7 +15,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <ctime>
 
 namespace scree::bench {
 
@@ -27,12 +27,6 @@ struct Arguments {
   std::string setting = "default";
   double step = 1.0 / 240;  // s
 };
-
-double cpu_seconds() {
-  timespec now;
-  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
-  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
-}
 
 struct Cost {
   double median = 0;  ///< of a step, over the samples that count (s)
@@ -50,9 +44,9 @@ Cost run_case(const Case& wanted, const Scene& scene, double step, Engine& engin
   Cost cost;
   for (long done = 0; done < steps;) {
     const long stop = std::min(done + per_sample, steps);
-    const double start = cpu_seconds();
+    const double start = now(CLOCK_PROCESS_CPUTIME_ID);
     for (long k = done; k < stop; ++k) engine.step();
-    const double elapsed = cpu_seconds() - start;
+    const double elapsed = now(CLOCK_PROCESS_CPUTIME_ID) - start;
     cost.total += elapsed;
     const double half = 0.5 * step;  // times are sums of steps
     if (static_cast<double>(done) * step > wanted.timed_from - half)

@@ -1,11 +1,10 @@
 // scree behind the interface of the benchmark.
+#include "bench/options.hpp"
 #include "bench/peers/engine.hpp"
 #include "core/error.hpp"
 #include "sim/simulation.hpp"
 
 #include <fmt/format.h>
-
-#include <sstream>
 
 namespace scree::bench {
 
@@ -33,8 +32,7 @@ class ScreeEngine : public Engine {
 /// read again with it, so that it is checked like any other.
 std::unique_ptr<Engine> make_scree(const std::string& setting, const Scene& scene, double step) {
   std::vector<Override> overrides = {{"time.step", fmt::format("{}", step)}};
-  std::istringstream list(setting == "default" ? "" : setting);
-  for (std::string item; std::getline(list, item, ',');) {
+  for (const std::string& item : split(setting == "default" ? "" : setting)) {
     const std::size_t equals = item.find('=');
     if (equals == std::string::npos) throw InputError("setting " + item + ": scree's are key=value");
     overrides.push_back({item.substr(0, equals), item.substr(equals + 1)});

@@ -4,7 +4,8 @@
 //
 // One picture to warm up, then the median of five; in wall time, and in processor time of all threads.
 // --png keeps the last picture of each row.
-#include "core/error.hpp"
+#include "bench/clock.hpp"
+#include "bench/options.hpp"
 #include "core/rng.hpp"
 #include "core/snapshot.hpp"
 #include "render/camera.hpp"
@@ -12,11 +13,7 @@
 #include "render/renderer.hpp"
 
 #include <algorithm>
-#include <chrono>
 #include <cstdio>
-#include <ctime>
-#include <map>
-#include <sstream>
 #include <string>
 #include <vector>
 
@@ -26,30 +23,6 @@ namespace {
 
 constexpr int repeats = 5;
 const Vec3 gravity(0, 0, -9.81);
-
-using Options = std::map<std::string, std::string>;
-
-Options parse(int argc, char** argv) {
-  Options options = {{"--shape", "sphere,box,mixed"},
-                     {"--n", "10000,100000,1000000"},
-                     {"--size", "1280x720"},
-                     {"--png", ""}};
-  for (int k = 1; k < argc; k += 2) {
-    const auto option = options.find(argv[k]);
-    if (option == options.end() || k + 1 == argc) {
-      throw InputError(std::string(argv[k]) + ": not an option, or without a value");
-    }
-    option->second = argv[k + 1];
-  }
-  return options;
-}
-
-std::vector<std::string> split(const std::string& list) {
-  std::vector<std::string> items;
-  std::istringstream text(list);
-  for (std::string item; std::getline(text, item, ',');) items.push_back(item);
-  return items;
-}
 
 void append(BodyTable& bodies, Shape shape, const Vec3& position, const Quat& orientation, const Vec3& size) {
   const bool free = shape != Shape::plane;
@@ -97,16 +70,6 @@ Snapshot mound(const std::string& shape, std::int64_t n) {
   return snapshot;
 }
 
-double seconds(const timespec& t) {
-  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
-}
-
-double now(clockid_t clock) {
-  timespec t{};
-  clock_gettime(clock, &t);
-  return seconds(t);
-}
-
 double median(std::vector<double> values) {
   std::sort(values.begin(), values.end());
   return values[values.size() / 2];
@@ -131,7 +94,11 @@ void run(const std::string& shape, std::int64_t n, render::Renderer& renderer, d
 }
 
 void run_all(int argc, char** argv) {
-  const Options options = parse(argc, argv);
+  const Options options = parse(argc, argv,
+                                {{"--shape", "sphere,box,mixed"},
+                                 {"--n", "10000,100000,1000000"},
+                                 {"--size", "1280x720"},
+                                 {"--png", ""}});
   int width = 0, height = 0;
   if (std::sscanf(options.at("--size").c_str(), "%dx%d", &width, &height) != 2) {
     throw InputError("--size " + options.at("--size") + ": must be WIDTHxHEIGHT");
