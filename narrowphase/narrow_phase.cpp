@@ -68,10 +68,10 @@ constexpr PairTable table_with(PairTest box_box_test) {
            {swapped<sphere_tube>, swapped<box_tube>, nullptr, nullptr}}};
 }
 
-/// Rows in the order of BoxBoxMethod. `automatic` is the 15 axes: scree_bench_narrowphase has them at 0.35 us
-/// for a pair in contact, against 2.3 to 3.3 us by MPR and 5 to 9 us by EPA (43 us where EPA does not
-/// converge). They are exact to rounding, while the certificate refuses 7 % of MPR's answers at a depth of a
-/// tenth of the size, and 62 % of EPA's for resting faces with a tilt of 1e-9.
+/// Rows in the order of BoxBoxMethod. `automatic` is the 15 axes: scree_bench_narrowphase has them at 0.2 to
+/// 0.6 us for a pair, against 0.5 to 1.2 us by MPR and 1.1 to 2.4 us by EPA (12 us where centres coincide).
+/// They are exact to rounding, while the certificate refuses some 10 % of libccd's answers and more in every
+/// family but that of shallow contacts: bench/results/xeon-2-cores/narrowphase.md.
 constexpr PairTable tables[] = {
     table_with(straight<box_box>),  // automatic
     table_with(straight<box_box>),
