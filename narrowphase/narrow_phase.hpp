@@ -7,16 +7,11 @@
 #include "narrowphase/contact.hpp"
 #include "narrowphase/settings.hpp"
 #include "narrowphase/solid.hpp"
+#include "narrowphase/stats.hpp"
 
 #include <cstdint>
 
 namespace scree {
-
-struct NarrowPhaseStats {
-  std::int64_t tested = 0;        ///< pairs tested, planes included
-  std::int64_t ccd_calls = 0;     ///< box-box pairs given to libccd
-  std::int64_t ccd_rejected = 0;  ///< of these, answers that the certificate refused (SAT then decided)
-};
 
 namespace detail {
 /// Stands for a manifold while they are put in order.
@@ -53,6 +48,7 @@ class NarrowPhase {
   ConstView<Manifold> find(const ConstBodyView& bodies, ConstView<Pair> pairs, ConstView<double> margin,
                            const LateBodies* late = nullptr);
 
+  /// Of the last search.
   const NarrowPhaseStats& stats() const { return stats_; }
 
  private:
@@ -62,6 +58,7 @@ class NarrowPhase {
 
   NarrowPhaseSettings settings_;
   NarrowPhaseStats stats_;
+  std::uint64_t searches_ = 0;
   // Buffers that keep their capacity from step to step.
   Array<std::int32_t, Host> planes_;
   Array<Manifold, Host> found_;        ///< in the order of finding; grows to the most found so far

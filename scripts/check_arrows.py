@@ -16,7 +16,7 @@ ARROWS = {
     "broadphase/": ["core/", "broadphase/"],
     "narrowphase/": ["core/", "broadphase/", "narrowphase/"],
     "render/": ["core/", "render/"],
-    "sim/observation.hpp": ["core/"],
+    "sim/observation.hpp": ["core/", "narrowphase/stats.hpp"],
     "sim/inspection.hpp": ["core/"],
     "sim/scene/": ["core/", "broadphase/settings.hpp", "narrowphase/settings.hpp", "sim/observation.hpp",
                    "sim/scene/"],

@@ -20,6 +20,7 @@ struct ModelPlan {
   Feature restitution;               ///< impacts that bounce
   Feature rotation;                  ///< orientations
   Feature gyroscopic;                ///< free rotation of bodies with unequal moments of inertia
+  Feature continuous;                ///< impacts at their own time between bodies that would go deep in a substep
   RestitutionThreshold restitution_threshold;
 };
 

@@ -37,6 +37,7 @@ ResponseParameters parameters_of(const Scene& scene) {
           .restitution = plan.restitution.on,
           .rotation = plan.rotation.on,
           .gyroscopic = plan.gyroscopic.on,
+          .continuous = plan.continuous.on,
           .warm_start = scene.response.warm_start,
           .iterations = scene.response.iterations.value_or(0),
           .block_sweeps = scene.response.block_sweeps.value_or(0),
@@ -149,7 +150,7 @@ struct Simulation::Parts {
         forces(s, grid),
         kept_pairs(s.broadphase, runs_on_device(options.space), origin),
         narrow_phase(s.narrowphase),
-        end_narrow_phase(s.narrowphase) {
+        end_narrow_phase({.box_box = s.narrowphase.box_box}) {
     copy_bodies(bodies, scene.bodies);
     presence.begin(bodies);
     copy(laws, table_of(scene));
@@ -221,8 +222,7 @@ struct Simulation::Parts {
     const ConstView<Manifold> manifolds =
         narrow_phase.find(view_of(std::as_const(bodies)), pairs, contact_margin.view(),
                           impacts.late_bodies(impact_problem(pairs, h, 0), parameters, view_of(bodies)));
-    counters.ccd_calls += narrow_phase.stats().ccd_calls;
-    counters.ccd_rejected += narrow_phase.stats().ccd_rejected;
+    counters.narrowphase += narrow_phase.stats();
     return manifolds;
   }
 

@@ -98,6 +98,7 @@ void print_model(const ModelPlan& plan) {
   feature("gyroscopic", plan.gyroscopic);
   feature("friction", plan.friction);
   feature("restitution", plan.restitution);
+  feature("continuous", plan.continuous);
   if (plan.restitution.on) {
     const RestitutionThreshold& threshold = plan.restitution_threshold;
     print_row("", threshold.any > 0

@@ -92,7 +92,8 @@ struct FlightStage {
     const double fastest = fastest_approach(pair);
     const double slowest = problem.bounces ? slowest_bounce(i, j) : HUGE_VAL;
     const bool may_bounce = fastest > slowest;
-    const bool may_go_deep = fastest * (problem.step - earliest) > pair.farthest;
+    const bool may_go_deep =
+        parameters.continuous && fastest * (problem.step - earliest) > pair.farthest;
     if (!(may_bounce || may_go_deep)) return {};
     if (may_bounce) {
       for (int part = 0; part < PairFlight::parts; ++part) {
@@ -274,7 +275,7 @@ bool may_go_deep(const FlightStage& stage) {
   const double reach = parallel::max<double, Host>("impact.reach", n, LoadReach{stage.reach}, 0.0);
   const double size = -parallel::max<double, Host>("impact.size", n, MinusSize{stage.bodies}, -HUGE_VAL);
   // The reach is of half a substep: two bodies, and both halves.
-  return 4 * reach > tolerance::deep_approach * size;
+  return stage.parameters.continuous && 4 * reach > tolerance::deep_approach * size;
 }
 
 struct Event {

@@ -22,6 +22,7 @@ struct ResponseParameters {
   bool restitution = true;
   bool rotation = true;
   bool gyroscopic = true;
+  bool continuous = true;
   bool warm_start = true;
   int iterations = 0;                ///< most sweeps; 0: automatic_sweeps()
   int block_sweeps = 0;              ///< over the points of a contact at each visit; 0: likewise

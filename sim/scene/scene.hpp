@@ -94,6 +94,7 @@ struct ModelSettings {
   std::optional<bool> rotation;
   std::optional<bool> friction;
   std::optional<bool> restitution;
+  std::optional<bool> continuous;
 };
 
 enum class ColorBy { material, speed, size, kinetic_energy, force, level, id };
