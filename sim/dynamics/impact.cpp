@@ -467,4 +467,32 @@ void ImpactSolver::mark_flights(const ImpactProblem& problem, const ResponsePara
       MarkFlights{FlightStage(problem, parameters, bodies, log_), manifolds, set.contacts.view()});
 }
 
+Ledger ImpactSolver::shift_late(const ResponseParameters& parameters, BodyView bodies, const ContactSet& set) {
+  const ConstView<Contact> contacts = set.contacts.view();
+  const auto is_late = [](const Contact& c) { return c.lead > 0 && !c.impulse.isZero(0); };
+  if (std::none_of(contacts.begin(), contacts.end(), is_late)) return {};
+  const auto for_each_end = [&bodies](const Contact& c, auto&& act) {
+    if (bodies.mobility[c.i] == Mobility::free) act(c.i, Vec3(-c.impulse));
+    if (bodies.mobility[c.j] == Mobility::free) act(c.j, c.impulse);
+  };
+  impulse_.assign(static_cast<std::size_t>(bodies.count()), Vec3::Zero());
+  for (const Contact& c : contacts) {
+    for_each_end(c, [this](std::int32_t body, const Vec3& impulse) {
+      impulse_[static_cast<std::size_t>(body)] += impulse;
+    });
+  }
+  Ledger ledger;
+  for (const Contact& c : contacts) {
+    if (!is_late(c)) continue;
+    for_each_end(c, [&](std::int32_t body, const Vec3& impulse) {
+      bodies.position[body] -= (c.lead * bodies.inverse_mass[body]) * impulse;
+      ledger.correction -= c.lead * impulse.dot(parameters.acceleration_of(body));
+      // Where a body has several, each was given at the place that its flight without the others led to.
+      ledger.angular_correction +=
+          (c.lead * bodies.inverse_mass[body]) * impulse_[static_cast<std::size_t>(body)].cross(impulse);
+    });
+  }
+  return ledger;
+}
+
 }  // namespace scree

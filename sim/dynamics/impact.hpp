@@ -60,6 +60,10 @@ class ImpactSolver {
   void mark_flights(const ImpactProblem& problem, const ResponseParameters& parameters,
                     ConstView<Manifold> manifolds, BodyView bodies, ContactSet& set);
 
+  /// After the response: the impulses of contacts that are of an impact's time act then, so the midpoints of their
+  /// bodies move to those from which their new flights lead through it. Returns what that moved.
+  Ledger shift_late(const ResponseParameters& parameters, BodyView bodies, const ContactSet& set);
+
   /// Of the last resolve(), in their order.
   const std::vector<Impact>& impacts() const { return impacts_; }
   /// Whether a body has had its bound of them.
@@ -84,6 +88,7 @@ class ImpactSolver {
   std::vector<std::int64_t> next_;  // scratch of list_partners()
   std::vector<Impact> impacts_;
   std::vector<Saved> saved_;
+  std::vector<Vec3> impulse_;  // on each body, by the contacts
   bool hit_bound_ = false;
   std::unique_ptr<LateBodies> late_;
 };
