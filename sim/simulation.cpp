@@ -263,7 +263,7 @@ struct Simulation::Parts {
     prepare_contacts(manifolds, contact_laws(), memory, scale, parameters, contacts);
     impacts.mark_flights(impact_problem({}, h, 0), parameters, manifolds, view_of(bodies), contacts);
     ledger = ledger + response.solve(manifolds, h, parameters, view_of(bodies), solver, contacts, counters);
-    ledger = ledger + impacts.shift_late(parameters, view_of(bodies), contacts);
+    ledger = ledger + impacts.shift_late(impact_problem({}, h, 0), parameters, view_of(bodies), contacts);
   }
 
   /// Without what the response's kick has given already.

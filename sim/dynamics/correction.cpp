@@ -24,6 +24,17 @@ struct PositionCorrector::Stage {
                                          i.angular.cross(rows[row].arm_i));
   }
 
+  /// How far a gap has opened since the contact was seen. From the places that bodies struck late have come to;
+  /// for the others from their velocities, which know of no origin.
+  SCREE_HD double flown(const Contact& c, const ContactRow& row) const {
+    const SolverBody& i = solver[c.i];
+    const SolverBody& j = solver[c.j];
+    if (c.lead == 0) return 0.5 * step * c.normal.dot(row.relative_velocity(i, j));
+    const Vec3 moved = bodies.position[c.j] - bodies.position[c.i] + row.arm_j - row.arm_i;
+    const Vec3 turned = j.spin.cross(row.arm_j) - i.spin.cross(row.arm_i);
+    return c.normal.dot(moved + (0.5 * step - c.lead) * turned);
+  }
+
   SCREE_HD void move(std::int32_t body, const Vec3& arm, const Vec3& impulse) const {
     const SolverBody& b = solver[body];
     if (!b.is_free()) return;
@@ -45,8 +56,7 @@ struct PositionCorrector::Fly {
         stage.flown_gap[r] = HUGE_VAL;
         continue;
       }
-      const Vec3 u = row.relative_velocity(stage.solver[c.i], stage.solver[c.j]);
-      stage.flown_gap[r] = row.gap + (0.5 * stage.step - c.lead) * c.normal.dot(u);
+      stage.flown_gap[r] = row.gap + stage.flown(c, row);
       deepest = fmax(deepest, -stage.flown_gap[r]);
     }
     return deepest;

@@ -467,30 +467,39 @@ void ImpactSolver::mark_flights(const ImpactProblem& problem, const ResponsePara
       MarkFlights{FlightStage(problem, parameters, bodies, log_), manifolds, set.contacts.view()});
 }
 
-Ledger ImpactSolver::shift_late(const ResponseParameters& parameters, BodyView bodies, const ContactSet& set) {
-  const ConstView<Contact> contacts = set.contacts.view();
-  const auto is_late = [](const Contact& c) { return c.lead > 0 && !c.impulse.isZero(0); };
-  if (std::none_of(contacts.begin(), contacts.end(), is_late)) return {};
+Ledger ImpactSolver::shift_late(const ImpactProblem& problem, const ResponseParameters& parameters, BodyView bodies,
+                                const ContactSet& set) {
+  const double midpoint = 0.5 * problem.step;
+  const auto is_late = [&](const Saved& saved) { return log_.clock.view()[saved.body] > midpoint; };
+  if (std::none_of(saved_.begin(), saved_.end(), is_late)) return {};
   const auto for_each_end = [&bodies](const Contact& c, auto&& act) {
     if (bodies.mobility[c.i] == Mobility::free) act(c.i, Vec3(-c.impulse));
     if (bodies.mobility[c.j] == Mobility::free) act(c.j, c.impulse);
   };
   impulse_.assign(static_cast<std::size_t>(bodies.count()), Vec3::Zero());
-  for (const Contact& c : contacts) {
+  for (const Contact& c : set.contacts.view()) {
     for_each_end(c, [this](std::int32_t body, const Vec3& impulse) {
       impulse_[static_cast<std::size_t>(body)] += impulse;
     });
   }
   Ledger ledger;
-  for (const Contact& c : contacts) {
-    if (!is_late(c)) continue;
+  // An impulse at a contact's time acts beside the midpoint by as much as the body flies until then.
+  for (const Contact& c : set.contacts.view()) {
+    if (c.lead == 0 || c.impulse.isZero(0)) continue;
     for_each_end(c, [&](std::int32_t body, const Vec3& impulse) {
-      bodies.position[body] -= (c.lead * bodies.inverse_mass[body]) * impulse;
-      ledger.correction -= c.lead * impulse.dot(parameters.acceleration_of(body));
-      // Where a body has several, each was given at the place that its flight without the others led to.
-      ledger.angular_correction +=
-          (c.lead * bodies.inverse_mass[body]) * impulse_[static_cast<std::size_t>(body)].cross(impulse);
+      const Vec3 before =
+          bodies.velocity[body] - bodies.inverse_mass[body] * impulse_[static_cast<std::size_t>(body)];
+      ledger.angular_correction -= c.lead * before.cross(impulse);
     });
+  }
+  for (const Saved& saved : saved_) {
+    const std::int32_t body = saved.body;
+    const double lead = log_.clock.view()[body] - midpoint;
+    const Vec3 moment = lead * impulse_[static_cast<std::size_t>(body)];
+    if (!is_late(saved)) continue;
+    bodies.position[body] -= bodies.inverse_mass[body] * moment;
+    ledger.correction -= moment.dot(parameters.acceleration_of(body));
+    ledger.angular_correction -= moment.cross(bodies.velocity[body]);
   }
   return ledger;
 }

@@ -60,9 +60,10 @@ class ImpactSolver {
   void mark_flights(const ImpactProblem& problem, const ResponseParameters& parameters,
                     ConstView<Manifold> manifolds, BodyView bodies, ContactSet& set);
 
-  /// After the response: the impulses of contacts that are of an impact's time act then, so the midpoints of their
-  /// bodies move to those from which their new flights lead through it. Returns what that moved.
-  Ledger shift_late(const ResponseParameters& parameters, BodyView bodies, const ContactSet& set);
+  /// After the response: a body that was struck late has been where it was until then, so its midpoint moves to
+  /// that from which its new flight leads on from its last impact. Returns what that moved.
+  Ledger shift_late(const ImpactProblem& problem, const ResponseParameters& parameters, BodyView bodies,
+                    const ContactSet& set);
 
   /// Of the last resolve(), in their order.
   const std::vector<Impact>& impacts() const { return impacts_; }
