@@ -76,7 +76,21 @@ struct PrepareRows {
       // The next midpoint must not overlap: the gap may close by then, and no more (speculative contact).
       row.target = row.gap > shell ? -(row.gap - shell) / (stage.step - contact.lead) : 0.0;
       if (contact.flying) row.target = fmin(row.target, flight_speed(contact, row));
+      // What opened before the kick closes again at that speed at least, or its impulse would do work: so a box
+      // that turns on its corner, whose arm the midpoint sees turned, keeps its energy.
+      row.target = fmin(row.target, -opening_speed(contact, row));
     }
+  }
+
+  /// Before the kick; 0 if it closed.
+  SCREE_HD double opening_speed(const Contact& contact, const ContactRow& row) const {
+    SolverBody i = stage.solver[contact.i];
+    SolverBody j = stage.solver[contact.j];
+    i.velocity = stage.bodies.velocity[contact.i];
+    i.spin = stage.bodies.spin[contact.i];
+    j.velocity = stage.bodies.velocity[contact.j];
+    j.spin = stage.bodies.spin[contact.j];
+    return fmax(0.0, contact.normal.dot(row.relative_velocity(i, j)));
   }
 
   /// A little faster than the flight closes along the normal, so that rounding pushes nobody.
