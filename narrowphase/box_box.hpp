@@ -27,7 +27,8 @@ SCREE_HD inline double smallest_gap(const Manifold& manifold) {
 /// normal would stop boxes that pass beside each other.
 SCREE_HD inline bool contact_along(const BoxPair& pair, const BoxAxes& axes, const BoxAxis& face,
                                    double margin, Manifold& out) {
-  // Nearly parallel edges are no choice beside a face, but they can show that no other edges are close either.
+  // Nearly parallel edges are no choice beside a face, but they can show that no other edges are close
+  // either.
   if (clearly_better(axes.edges.separation, face.separation, pair.smallest) &&
       !clearly_better(axes.separation, axes.edges.separation, pair.smallest) &&
       edge_contact(pair, axes.edges, out))

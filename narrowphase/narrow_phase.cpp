@@ -224,8 +224,8 @@ struct Gather {
 
 int find_pair_contacts(Shape shape_a, const Solid& a, Shape shape_b, const Solid& b, double margin,
                        Manifold* out) {
-  const PairTest test = tables[static_cast<int>(BoxBoxMethod::sat)].of[static_cast<int>(shape_a)]
-                                                                      [static_cast<int>(shape_b)];
+  const PairTest test =
+      tables[static_cast<int>(BoxBoxMethod::sat)].of[static_cast<int>(shape_a)][static_cast<int>(shape_b)];
   NarrowPhaseStats stats;
   return test != nullptr ? test(a, b, margin, out, stats) : 0;
 }

@@ -46,7 +46,8 @@ ModelPlan plan_model(const Scene& scene) {
       any_free_body(bodies, [&](std::size_t k) { return !has_equal_moments(bodies.inverse_inertia[k]); });
   plan.gyroscopic = {plan.rotation.on && any_unequal,
                      any_unequal ? "some box is no cube" : "only spheres and cubes move freely"};
-  plan.continuous = choose(scene.model.continuous, true, "in substeps where some body is fast for the sizes", "");
+  plan.continuous =
+      choose(scene.model.continuous, true, "in substeps where some body is fast for the sizes", "");
   const double step = scene.time.step / scene.time.substeps;
   plan.restitution_threshold =
       scene.response.restitution_threshold

@@ -16,11 +16,11 @@ struct Feature {
 
 /// Leaving a feature out where its reason holds changes no result.
 struct ModelPlan {
-  Feature friction;                  ///< tangential impulses
-  Feature restitution;               ///< impacts that bounce
-  Feature rotation;                  ///< orientations
-  Feature gyroscopic;                ///< free rotation of bodies with unequal moments of inertia
-  Feature continuous;                ///< impacts at their own time between bodies that would go deep in a substep
+  Feature friction;     ///< tangential impulses
+  Feature restitution;  ///< impacts that bounce
+  Feature rotation;     ///< orientations
+  Feature gyroscopic;   ///< free rotation of bodies with unequal moments of inertia
+  Feature continuous;   ///< impacts at their own time between bodies that would go deep in a substep
   RestitutionThreshold restitution_threshold;
 };
 

@@ -101,9 +101,10 @@ void print_model(const ModelPlan& plan) {
   feature("continuous", plan.continuous);
   if (plan.restitution.on) {
     const RestitutionThreshold& threshold = plan.restitution_threshold;
-    print_row("", threshold.any > 0
-                      ? fmt::format("contacts bounce that close faster than {:.4g} m/s", threshold.any)
-                      : fmt::format("contacts bounce that close faster than (1 - e) {:.4g} m/s", threshold.lossy));
+    print_row(
+        "", threshold.any > 0
+                ? fmt::format("contacts bounce that close faster than {:.4g} m/s", threshold.any)
+                : fmt::format("contacts bounce that close faster than (1 - e) {:.4g} m/s", threshold.lossy));
   }
 }
 

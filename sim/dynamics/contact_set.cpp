@@ -12,9 +12,9 @@ ConstView<ImpulseMemory::Entry> ImpulseMemory::entries_of(std::int32_t i, std::i
   if (begin_.empty()) return {};
   const auto place = [](const Entry& entry) { return std::pair(entry.j, entry.part); };
   // A floor may have as many entries as there are bodies.
-  const auto range = std::ranges::equal_range(entries_.data() + begin_.view()[i],
-                                              entries_.data() + begin_.view()[i + 1], std::pair(j, part),
-                                              {}, place);
+  const auto range =
+      std::ranges::equal_range(entries_.data() + begin_.view()[i], entries_.data() + begin_.view()[i + 1],
+                               std::pair(j, part), {}, place);
   return {range.data(), static_cast<std::int64_t>(range.size())};
 }
 

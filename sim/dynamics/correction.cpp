@@ -24,8 +24,8 @@ struct PositionCorrector::Stage {
                                          i.angular.cross(rows[row].arm_i));
   }
 
-  /// How far a gap has opened since the contact was seen. From the places that bodies struck late have come to;
-  /// for the others from their velocities, which know of no origin.
+  /// How far a gap has opened since the contact was seen. From the places that bodies struck late have come
+  /// to; for the others from their velocities, which know of no origin.
   SCREE_HD double flown(const Contact& c, const ContactRow& row) const {
     const SolverBody& i = solver[c.i];
     const SolverBody& j = solver[c.j];

@@ -19,7 +19,12 @@ constexpr std::int32_t most_hits = 256;
 /// What may meet, as everything below sees it.
 struct FlightStage {
   FlightStage(const ImpactProblem& p, const ResponseParameters& r, const BodyView& b, FlightLog& log)
-      : problem(p), parameters(r), bodies(b), clock(log.clock.view()), hits(log.hits.view()), reach(log.reach.view()) {}
+      : problem(p),
+        parameters(r),
+        bodies(b),
+        clock(log.clock.view()),
+        hits(log.hits.view()),
+        reach(log.reach.view()) {}
 
   ImpactProblem problem;
   ResponseParameters parameters;
@@ -92,8 +97,7 @@ struct FlightStage {
     const double fastest = fastest_approach(pair);
     const double slowest = problem.bounces ? slowest_bounce(i, j) : HUGE_VAL;
     const bool may_bounce = fastest > slowest;
-    const bool may_go_deep =
-        parameters.continuous && fastest * (problem.step - earliest) > pair.farthest;
+    const bool may_go_deep = parameters.continuous && fastest * (problem.step - earliest) > pair.farthest;
     if (!(may_bounce || may_go_deep)) return {};
     if (may_bounce) {
       for (int part = 0; part < PairFlight::parts; ++part) {
@@ -235,7 +239,8 @@ struct FindFirst {
     const ConstView<Pair> pairs = stage.problem.pairs;
     if (k < pairs.size()) {
       const Pair& pair = pairs[k];
-      const bool has_plane = stage.bodies.shape[pair.i] == Shape::plane || stage.bodies.shape[pair.j] == Shape::plane;
+      const bool has_plane =
+          stage.bodies.shape[pair.i] == Shape::plane || stage.bodies.shape[pair.j] == Shape::plane;
       return has_plane ? std::pair(pair.i, pair.i) : std::pair(pair.i, pair.j);
     }
     const std::int64_t bodies = stage.bodies.count();
@@ -265,7 +270,8 @@ struct LoadReach {
 struct MinusSize {
   BodyView bodies;
   SCREE_HD double operator()(std::int64_t k) const {
-    return bodies.mobility[k] == Mobility::absent ? -HUGE_VAL : -smallest_size(bodies.shape[k], bodies.size[k]);
+    return bodies.mobility[k] == Mobility::absent ? -HUGE_VAL
+                                                  : -smallest_size(bodies.shape[k], bodies.size[k]);
   }
 };
 
@@ -289,8 +295,8 @@ struct Event {
   }
 };
 
-/// Pairs of bodies after their impacts. What the response will do comes after: their flight is straight, with all
-/// of the substep's kick.
+/// Pairs of bodies after their impacts. What the response will do comes after: their flight is straight, with
+/// all of the substep's kick.
 class StruckBodies final : public LateBodies {
  public:
   explicit StruckBodies(const FlightStage& stage) : stage_(stage) {}
@@ -452,8 +458,8 @@ void ImpactSolver::undo(BodyView bodies) {
   impacts_.clear();
 }
 
-const LateBodies* ImpactSolver::late_bodies(const ImpactProblem& problem, const ResponseParameters& parameters,
-                                            BodyView bodies) {
+const LateBodies* ImpactSolver::late_bodies(const ImpactProblem& problem,
+                                            const ResponseParameters& parameters, BodyView bodies) {
   const auto is_late = [&](const Saved& saved) { return log_.clock.view()[saved.body] > 0.5 * problem.step; };
   if (std::none_of(saved_.begin(), saved_.end(), is_late)) return nullptr;
   late_ = std::make_unique<StruckBodies>(FlightStage(problem, parameters, bodies, log_));
@@ -467,8 +473,8 @@ void ImpactSolver::mark_flights(const ImpactProblem& problem, const ResponsePara
       MarkFlights{FlightStage(problem, parameters, bodies, log_), manifolds, set.contacts.view()});
 }
 
-Ledger ImpactSolver::shift_late(const ImpactProblem& problem, const ResponseParameters& parameters, BodyView bodies,
-                                const ContactSet& set) {
+Ledger ImpactSolver::shift_late(const ImpactProblem& problem, const ResponseParameters& parameters,
+                                BodyView bodies, const ContactSet& set) {
   const double midpoint = 0.5 * problem.step;
   const auto is_late = [&](const Saved& saved) { return log_.clock.view()[saved.body] > midpoint; };
   if (std::none_of(saved_.begin(), saved_.end(), is_late)) return {};

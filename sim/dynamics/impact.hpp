@@ -17,8 +17,8 @@ struct ImpactProblem {
   ContactLaws laws;
   const ImpulseMemory& memory;  ///< contacts that carried a load do not bounce
   double step;                  ///< length of the substep (s)
-  double from;                  ///< start of the flight, into the substep (s); it ends with the substep. If it is not 0, the
-                ///< last flight began at 0: who was struck later in it starts then
+  double from;   ///< start of the flight, into the substep (s); it ends with the substep. If it is not 0, the
+                 ///< last flight began at 0: who was struck later in it starts then
   bool bounces;  ///< whether approaches faster than the threshold count; else only those that would go deep
 };
 
@@ -45,23 +45,23 @@ class ImpactSolver {
   ///   x(s) = x_mid + (s - step/2) v + g s^2 / 2,
   /// and turns freely; after an impact its midpoint is that from which its new velocity leads through the
   /// impact. So flight, bounce and energy are exact whatever the step (docs/method.md). The bodies are at the
-  /// midpoint, with their velocities before gravity's kick. Chains run on until nothing meets; a body that has
-  /// had its bound of impacts takes e = 0. Returns what the impacts moved.
+  /// midpoint, with their velocities before gravity's kick. Chains run on until nothing meets; a body that
+  /// has had its bound of impacts takes e = 0. Returns what the impacts moved.
   Ledger resolve(const ImpactProblem& problem, const ResponseParameters& parameters, BodyView bodies);
   /// Puts the bodies back to where they were before the last resolve().
   void undo(BodyView bodies);
 
-  /// Which pairs have had an impact after the midpoint, after resolve(); null if none has. The contacts of such
-  /// a pair are those of the impact's time, from which a straight flight leads to the end of the substep. Valid
-  /// until the next call.
+  /// Which pairs have had an impact after the midpoint, after resolve(); null if none has. The contacts of
+  /// such a pair are those of the impact's time, from which a straight flight leads to the end of the
+  /// substep. Valid until the next call.
   const LateBodies* late_bodies(const ImpactProblem& problem, const ResponseParameters& parameters,
                                 BodyView bodies);
   /// Sets Contact::flying and Contact::lead, after resolve().
   void mark_flights(const ImpactProblem& problem, const ResponseParameters& parameters,
                     ConstView<Manifold> manifolds, BodyView bodies, ContactSet& set);
 
-  /// After the response: a body that was struck late has been where it was until then, so its midpoint moves to
-  /// that from which its new flight leads on from its last impact. Returns what that moved.
+  /// After the response: a body that was struck late has been where it was until then, so its midpoint moves
+  /// to that from which its new flight leads on from its last impact. Returns what that moved.
   Ledger shift_late(const ImpactProblem& problem, const ResponseParameters& parameters, BodyView bodies,
                     const ContactSet& set);
 
@@ -82,7 +82,7 @@ class ImpactSolver {
   void list_partners(ConstView<Pair> pairs, const BodyView& bodies);
 
   FlightLog log_;
-  Array<Meeting, Host> first_;       // of each candidate
+  Array<Meeting, Host> first_;  // of each candidate
   std::vector<std::int32_t> planes_;
   std::vector<std::int64_t> begin_;  // of the partners of each body
   std::vector<std::int32_t> partners_;

@@ -82,7 +82,8 @@ Meeting next_of_ball_in_tube(const PairFlight& pair, const BodyFlight& ball, con
   const double step = 2 * ball.midpoint;
   const Vec3 start = flight.at(velocity, step, earliest);
   const double slack = tolerance::contact_slack * ball.size.x();
-  if (across(start).norm() > tube.size.x() + slack || fabs(axis.dot(start)) > tube.size.z() + slack) return {};
+  if (across(start).norm() > tube.size.x() + slack || fabs(axis.dot(start)) > tube.size.z() + slack)
+    return {};
   Meeting first;
   const WallImpact wall = next_wall_impact({.flight = {across(flight.position), across(flight.acceleration)},
                                             .velocity = across(velocity),
@@ -101,11 +102,11 @@ Meeting next_of_ball_in_tube(const PairFlight& pair, const BodyFlight& ball, con
 
 /// A pair at one instant of the search.
 struct Look {
-  bool near = false;      // within reach
-  double gap = HUGE_VAL;  // smallest of the points whose part may count (m)
-  double closing = 0;     // approach there (m/s)
-  bool hit = false;       // at some point that touches the approach counts
-  int part = 0;           // of that point
+  bool near = false;                   // within reach
+  double gap = HUGE_VAL;               // smallest of the points whose part may count (m)
+  double closing = 0;                  // approach there (m/s)
+  bool hit = false;                    // at some point that touches the approach counts
+  int part = 0;                        // of that point
   bool rests[PairFlight::parts] = {};  // parts where a point touches whose approach does not count
 };
 
@@ -142,7 +143,7 @@ class Search {
   static constexpr int most_iterations = 1000;
   static constexpr int most_bisections = 60;
   static constexpr double touching_share = 1e-12;  // of the smaller size: at this gap bodies touch
-  static constexpr double least_share = 0.1;      // likewise: steps that advance by less may be Newton's
+  static constexpr double least_share = 0.1;       // likewise: steps that advance by less may be Newton's
 
   double touching() const { return touching_share * size_; }
 
@@ -219,7 +220,8 @@ class Search {
 }  // namespace
 
 BodyInstant instant_of(const BodyFlight& flight, double s) {
-  BodyInstant now{{flight.position_at(s), flight.orientation, flight.size}, flight.velocity_at(s), flight.spin};
+  BodyInstant now{
+      {flight.position_at(s), flight.orientation, flight.size}, flight.velocity_at(s), flight.spin};
   if (!flight.spin.isZero(0)) {
     rotate_freely(now.solid.orientation, now.spin, flight.inverse_inertia, s - flight.midpoint);
   }

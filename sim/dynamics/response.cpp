@@ -69,15 +69,14 @@ struct PrepareRows {
       if (contact.balls) {
         row = make_ball_row(arm_i, arm_j, m.points[k].gap, i, j);
       } else {
-        row = make_row(m.normal, arm_i, arm_j, m.points[k].gap, i, j,
-                       stage.couplings[contact.first_row + k]);
+        row = make_row(m.normal, arm_i, arm_j, m.points[k].gap, i, j, stage.couplings[contact.first_row + k]);
       }
       row.impulse = impulse;
       // The next midpoint must not overlap: the gap may close by then, and no more (speculative contact).
       row.target = row.gap > shell ? -(row.gap - shell) / (stage.step - contact.lead) : 0.0;
       if (contact.flying) row.target = fmin(row.target, flight_speed(contact, row));
-      // What opened before the kick closes again at that speed at least, or its impulse would do work: so a box
-      // that turns on its corner, whose arm the midpoint sees turned, keeps its energy.
+      // What opened before the kick closes again at that speed at least, or its impulse would do work: so a
+      // box that turns on its corner, whose arm the midpoint sees turned, keeps its energy.
       row.target = fmin(row.target, -opening_speed(contact, row));
     }
   }

@@ -58,8 +58,9 @@ SCREE_HD inline Vec3 spin_of(const Quat& orientation, const Vec3& inverse_inerti
 SCREE_HD inline void restore_energy(Quat& orientation, Vec3& spin, const Vec3& inverse_inertia, const Vec3& l,
                                     double energy) {
   constexpr int most_iterations = 4;
-  constexpr double rounding = 4e-16;   // of the energy
-  constexpr double least_slope = 1e-8;  // of the energy, per radian: about a principal axis nothing is to restore
+  constexpr double rounding = 4e-16;  // of the energy
+  constexpr double least_slope =
+      1e-8;  // of the energy, per radian: about a principal axis nothing is to restore
   constexpr double largest_turn = 0.1;  // rad
   for (int iteration = 0; iteration < most_iterations; ++iteration) {
     const double excess = 0.5 * spin.dot(l) - energy;
@@ -77,10 +78,9 @@ SCREE_HD inline void restore_energy(Quat& orientation, Vec3& spin, const Vec3& i
 
 /// Turns a free body for the time dt (s). Equal moments: exact. Otherwise the symmetric three-axis splitting
 /// of the body-frame equations (Touma and Wisdom 1994; Dullweber, Leimkuhler, McLachlan 1997, sec. 3): second
-/// order, world angular momentum kept to rounding; then a small turn restores the energy, also to rounding. What
-/// turns far goes in several such steps.
-/// The axes are taken by ascending moment, whatever their names: about a middle axis (accuracy of a tumbling
-/// box after 12 s) the other orders are up to 20 times worse.
+/// order, world angular momentum kept to rounding; then a small turn restores the energy, also to rounding.
+/// What turns far goes in several such steps. The axes are taken by ascending moment, whatever their names:
+/// about a middle axis (accuracy of a tumbling box after 12 s) the other orders are up to 20 times worse.
 SCREE_HD inline void rotate_freely(Quat& orientation, Vec3& spin, const Vec3& inverse_inertia, double dt) {
   if (has_equal_moments(inverse_inertia)) {
     orientation = (rotation_of(spin * dt) * orientation).normalized();

@@ -74,7 +74,8 @@ Codec<ModelSettings> model_section() {
   const auto feature = or_auto(word<bool>({{"on", true}, {"off", false}, {"true", true}, {"false", false}}));
   const Codec<T> automatic{word_type({"auto"}, {}), [](T& model, const Node&, Reader&) { model = {}; },
                            [](const T& model) -> std::optional<Node> {
-                             const bool given = model.rotation || model.friction || model.restitution || model.continuous;
+                             const bool given =
+                                 model.rotation || model.friction || model.restitution || model.continuous;
                              return given ? std::nullopt : std::optional(Node::scalar("auto"));
                            }};
   return any_of<T>(

@@ -158,8 +158,9 @@ class Watch {
     return first_.kinetic() + fallen + std::max(now_.ledger.work, 0.0) + std::abs(now_.ledger.correction);
   }
 
-  /// Contacts are of one instant of a substep. They do not see how boxes turn in it, and how balls roll over one
-  /// another: an angle a lets surfaces come closer by a^2 / 2 of their arm. Beyond that overlaps only get less.
+  /// Contacts are of one instant of a substep. They do not see how boxes turn in it, and how balls roll over
+  /// one another: an angle a lets surfaces come closer by a^2 / 2 of their arm. Beyond that overlaps only get
+  /// less.
   void check_overlaps() {
     double turn = 0;
     double roll = 0;

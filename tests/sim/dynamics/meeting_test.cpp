@@ -1,8 +1,9 @@
 // When bodies in flight meet, beside sampling: at the time found they touch and close, and before it they are
 // apart at every sample. The samples share the narrow phase with the search, but none of its steps.
+#include "sim/dynamics/meeting.hpp"
+
 #include "core/rng.hpp"
 #include "narrowphase/narrow_phase.hpp"
-#include "sim/dynamics/meeting.hpp"
 #include "sim/dynamics/rotation.hpp"
 
 #include <gtest/gtest.h>
@@ -36,11 +37,10 @@ BodyFlight flight_of(Shape shape, Random& random, double speed) {
                .acceleration = Vec3(0, 0, -9.81),
                .midpoint = 0.5 * step};
   if (shape == Shape::sphere) f.size = Vec3::Constant(f.size.x());
-  f.inverse_inertia = shape == Shape::sphere
-                          ? Vec3(Vec3::Constant(2.5 / (f.size.x() * f.size.x())))
-                          : Vec3(3 / (f.size.y() * f.size.y() + f.size.z() * f.size.z()),
-                                 3 / (f.size.z() * f.size.z() + f.size.x() * f.size.x()),
-                                 3 / (f.size.x() * f.size.x() + f.size.y() * f.size.y()));
+  f.inverse_inertia = shape == Shape::sphere ? Vec3(Vec3::Constant(2.5 / (f.size.x() * f.size.x())))
+                                             : Vec3(3 / (f.size.y() * f.size.y() + f.size.z() * f.size.z()),
+                                                    3 / (f.size.z() * f.size.z() + f.size.x() * f.size.x()),
+                                                    3 / (f.size.x() * f.size.x() + f.size.y() * f.size.y()));
   f.position = vector_of(random, 0.3);
   return f;
 }
@@ -101,7 +101,8 @@ TEST_P(Meetings, AreTheFirst) {
     }
     // A graze may be shorter than a step of the search near the surface, and is then this shallow.
     const double end = std::min(meeting.time, step);
-    for (int k = 0; k < samples; ++k) ASSERT_GT(gap_at(p, end * k / samples), -0.05 * size) << item << " " << k;
+    for (int k = 0; k < samples; ++k)
+      ASSERT_GT(gap_at(p, end * k / samples), -0.05 * size) << item << " " << k;
   }
   EXPECT_GT(met, 10);
 }
@@ -114,9 +115,9 @@ TEST_P(Meetings, NothingPassesThroughAtAnySpeed) {
     BodyFlight& target = &flyer == &p.i ? p.j : p.i;
     if (target.shape == Shape::tube) continue;  // it has one side, and bodies start inside
     Random random(23, item);
-    const Vec3 from = target.position + (target.shape == Shape::plane
-                                             ? Vec3(target.orientation * Vec3(0, 0, 4.0))
-                                             : Vec3(turn_of(random) * Vec3(0, 0, 4.0)));
+    const Vec3 from =
+        target.position + (target.shape == Shape::plane ? Vec3(target.orientation * Vec3(0, 0, 4.0))
+                                                        : Vec3(turn_of(random) * Vec3(0, 0, 4.0)));
     target.velocity.setZero();
     target.acceleration.setZero();
     flyer.acceleration.setZero();
@@ -136,11 +137,11 @@ TEST_P(Meetings, SlowOnesDoNotCount) {
   }
 }
 
-constexpr std::pair<Shape, Shape> kinds[] = {
-    {Shape::sphere, Shape::sphere}, {Shape::sphere, Shape::box},  {Shape::box, Shape::box},
-    {Shape::sphere, Shape::plane},  {Shape::box, Shape::plane},   {Shape::sphere, Shape::tube},
-    {Shape::box, Shape::tube},      {Shape::box, Shape::sphere},  {Shape::plane, Shape::box},
-    {Shape::tube, Shape::sphere}};
+constexpr std::pair<Shape, Shape> kinds[] = {{Shape::sphere, Shape::sphere}, {Shape::sphere, Shape::box},
+                                             {Shape::box, Shape::box},       {Shape::sphere, Shape::plane},
+                                             {Shape::box, Shape::plane},     {Shape::sphere, Shape::tube},
+                                             {Shape::box, Shape::tube},      {Shape::box, Shape::sphere},
+                                             {Shape::plane, Shape::box},     {Shape::tube, Shape::sphere}};
 INSTANTIATE_TEST_SUITE_P(Shapes, Meetings, testing::ValuesIn(kinds));
 
 /// A rod that turns fast about its middle sweeps a ball that it would miss at every end of a step.
