@@ -20,7 +20,7 @@ ARROWS = {
     "sim/inspection.hpp": ["core/"],
     "sim/scene/": ["core/", "broadphase/settings.hpp", "narrowphase/settings.hpp", "sim/observation.hpp",
                    "sim/scene/"],
-    "sim/model.": ["core/", "sim/scene/", "sim/model.hpp"],
+    "sim/model.": ["core/", "sim/scene/", "sim/dynamics/restitution.hpp", "sim/model.hpp"],
     "sim/applied_forces.": ["core/", "sim/scene/", "sim/dynamics/", "sim/applied_forces.hpp"],
     "sim/pair_finder.": ["core/", "broadphase/", "sim/dynamics/", "sim/inspection.hpp", "sim/pair_finder.hpp"],
     "sim/presence.": ["core/", "sim/scene/", "sim/dynamics/motion.hpp", "sim/observation.hpp", "sim/presence.hpp"],

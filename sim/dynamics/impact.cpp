@@ -403,8 +403,8 @@ Ledger ImpactSolver::resolve(const ImpactProblem& problem, const ResponseParamet
   };
   const auto save = [&](std::int32_t body) {
     if (!stage.is_free(body) || stage.hits[body] > 0) return;
-    saved_.push_back(
-        {body, bodies.position[body], bodies.orientation[body], bodies.velocity[body], bodies.spin[body]});
+    saved_.push_back({body, bodies.position[body], bodies.orientation[body], bodies.velocity[body],
+                      bodies.spin[body], stage.clock[body]});
   };
   Ledger ledger;
   while (!events.empty()) {
@@ -412,10 +412,14 @@ Ledger ImpactSolver::resolve(const ImpactProblem& problem, const ResponseParamet
     events.pop();
     const auto [meeting, i, j, hits_i, hits_j] = event;
     if (stage.hits[i] != hits_i || stage.hits[j] != hits_j) continue;
+    const std::size_t saved = saved_.size();
     save(i);
     save(j);
     Impact impact;
-    if (!stage.resolve(i, j, meeting, impact, ledger)) continue;
+    if (!stage.resolve(i, j, meeting, impact, ledger)) {
+      saved_.resize(saved);
+      continue;
+    }
     impacts_.push_back(impact);
     hit_bound_ = hit_bound_ || std::max(stage.hits[i], stage.hits[j]) >= most_bounces;
     foresee(i, j, stage.next(i, j));
@@ -453,6 +457,7 @@ void ImpactSolver::undo(BodyView bodies) {
     bodies.orientation[saved.body] = saved.orientation;
     bodies.velocity[saved.body] = saved.velocity;
     bodies.spin[saved.body] = saved.spin;
+    log_.clock.view()[saved.body] = saved.clock;
   }
   saved_.clear();
   impacts_.clear();

@@ -1,7 +1,6 @@
 // Impacts: at their time inside the substep, in order, each one's outcome before the next.
 #pragma once
 
-#include "broadphase/broad_phase.hpp"
 #include "narrowphase/narrow_phase.hpp"
 #include "sim/dynamics/contact_set.hpp"
 #include "sim/dynamics/meeting.hpp"
@@ -76,6 +75,7 @@ class ImpactSolver {
     Vec3 position;
     Quat orientation;
     Vec3 velocity, spin;
+    double clock;
   };
 
  private:
