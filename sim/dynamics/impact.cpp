@@ -158,8 +158,7 @@ struct FlightStage {
                                 a.is_free() ? -1.0 : 1.0);
       impact.impulse += rows[k].impulse;
     }
-    fly_on(i, flight_i, at_i, a, s);
-    fly_on(j, flight_j, at_j, b, s);
+    ledger.integration += fly_on(i, flight_i, at_i, a, s) + fly_on(j, flight_j, at_j, b, s);
     return true;
   }
 
@@ -205,21 +204,30 @@ struct FlightStage {
     }
   }
 
-  /// Gives a body the flight that leads from the impact on.
-  void fly_on(std::int32_t body, const BodyFlight& flown, const BodyInstant& at, const SolverBody& after,
-              double s) const {
-    if (!after.is_free()) return;
+  /// Gives a body the flight that leads from the impact on. Returns the drift of its energy on the way there
+  /// and back (J).
+  double fly_on(std::int32_t body, const BodyFlight& flown, const BodyInstant& at, const SolverBody& after,
+                double s) const {
+    if (!after.is_free()) return 0;
     const Vec3 velocity = after.velocity - s * flown.acceleration;
     bodies.position[body] -= (s - flown.midpoint) * (velocity - bodies.velocity[body]);
     bodies.velocity[body] = velocity;
     clock[body] = s;
     ++hits[body];
+    double drift = 0;
     if (parameters.rotation) {
+      const auto energy = [&](const Quat& orientation, const Vec3& spin) {
+        return rotational_energy(orientation, spin, flown.inverse_inertia);
+      };
+      drift = energy(at.solid.orientation, at.spin) - energy(flown.orientation, flown.spin) -
+              energy(at.solid.orientation, after.spin);
       bodies.orientation[body] = at.solid.orientation;
       bodies.spin[body] = after.spin;
       rotate_freely(bodies.orientation[body], bodies.spin[body], flown.inverse_inertia, flown.midpoint - s);
+      drift += energy(bodies.orientation[body], bodies.spin[body]);
     }
     reach[body] = reach_of(body);
+    return drift;
   }
 };
 

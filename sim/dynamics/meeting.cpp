@@ -23,23 +23,13 @@ Vec3 tilting_spin(const BodyFlight& boundary) {
 
 bool is_ball(const BodyFlight& body) { return body.shape == Shape::sphere; }
 
-/// Bound on the spin of a body in free rotation, at any time (rad/s).
-double fastest_spin(const BodyFlight& body) {
-  if (has_equal_moments(body.inverse_inertia)) return body.spin.norm();
-  const double largest = body.inverse_inertia.maxCoeff();
-  const double by_momentum =
-      largest * spin_momentum(body.orientation, body.spin, body.inverse_inertia).norm();
-  const double by_energy =
-      sqrt(2 * largest * rotational_energy(body.orientation, body.spin, body.inverse_inertia));
-  return std::min(by_momentum, by_energy);
-}
-
 /// Bound on how fast turning moves a body's surface where it is nearest to a partner whose every point is
 /// within `far` of the body's centre (m/s).
 double fastest_turn(const BodyFlight& body, double far) {
   if (is_ball(body)) return 0;
   if (is_boundary(body.shape)) return tilting_spin(body).norm() * far;
-  return fastest_spin(body) * bounding_radius(body.shape, body.size);
+  return fastest_spin(body.orientation, body.spin, body.inverse_inertia) *
+         bounding_radius(body.shape, body.size);
 }
 
 /// Position, velocity and acceleration of j relative to i.

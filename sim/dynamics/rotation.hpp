@@ -20,6 +20,15 @@ SCREE_HD inline Vec3 spin_momentum(const Quat& orientation, const Vec3& spin, co
   return orientation * (orientation.conjugate() * spin).cwiseQuotient(inverse_inertia);
 }
 
+/// Bound on the spin of a body in free rotation, at any time (rad/s).
+SCREE_HD inline double fastest_spin(const Quat& orientation, const Vec3& spin, const Vec3& inverse_inertia) {
+  if (has_equal_moments(inverse_inertia)) return spin.norm();
+  const double largest = inverse_inertia.maxCoeff();
+  const double by_momentum = largest * spin_momentum(orientation, spin, inverse_inertia).norm();
+  const double by_energy = sqrt(2 * largest * rotational_energy(orientation, spin, inverse_inertia));
+  return fmin(by_momentum, by_energy);
+}
+
 namespace detail {
 
 /// Exact flow of the kinetic energy of one principal axis, L_k^2 / (2 I_k), for the time dt: a turn about
@@ -95,7 +104,9 @@ SCREE_HD inline void rotate_freely(Quat& orientation, Vec3& spin, const Vec3& in
   const int middle = 3 - smallest - largest;
   constexpr double largest_turn = 0.5;  // rad
   constexpr double most_turns = 1000;
-  const double turns = fmin(most_turns, fmax(1.0, ceil(spin.norm() * fabs(dt) / largest_turn)));
+  const double turns =
+      fmin(most_turns,
+           fmax(1.0, ceil(fastest_spin(orientation, spin, inverse_inertia) * fabs(dt) / largest_turn)));
   const Vec3 world_momentum = spin_momentum(orientation, spin, inverse_inertia);
   const double energy = 0.5 * spin.dot(world_momentum);
   const double h = dt / turns;
