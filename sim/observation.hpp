@@ -53,8 +53,10 @@ struct Penetration {
 /// What the loops of the run did, since t = 0; those that hit their bound are counted, never silent.
 struct Counters {
   std::int64_t sweeps = 0;       ///< over the contacts
-  std::int64_t impacts = 0;      ///< that bounced
-  std::int64_t unconverged = 0;  ///< substeps that used all sweeps; raise response.iterations
+  std::int64_t direct = 0;         ///< islands solved by Newton's method
+  std::int64_t direct_failed = 0;  ///< islands that were not, and were left to the sweeps
+  std::int64_t impacts = 0;        ///< that bounced
+  std::int64_t unconverged = 0;    ///< substeps that used all sweeps; raise response.iterations
   std::int64_t unfinished_impacts =
       0;                      ///< substeps whose chains of impacts hit the bound; the rest took e = 0
   std::int64_t pcs_made = 0;  ///< broad phases: once, and whenever a body had left its box

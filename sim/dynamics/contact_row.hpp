@@ -56,6 +56,22 @@ struct RowCoupling {
   Vec3 normal;  ///< W n: change of relative velocity by a unit normal impulse (1/kg)
 };
 
+/// How much something changes impulses, and their size: sums of squares over rows, each by the mass that it
+/// meets (J), so that heavy and light contacts weigh alike.
+struct ImpulseChange {
+  double step = 0;
+  double size = 0;
+
+  SCREE_HD bool within(double tolerance) const { return step <= tolerance * tolerance * size; }
+  SCREE_HD void add(const ContactRow& row, const Vec3& change) {
+    step += change.squaredNorm() / row.normal_mass;
+    size += row.impulse.squaredNorm() / row.normal_mass;
+  }
+  SCREE_HD friend ImpulseChange operator+(const ImpulseChange& a, const ImpulseChange& b) {
+    return {a.step + b.step, a.size + b.size};
+  }
+};
+
 /// Delassus matrix of one body at an arm: its share of the change of relative velocity by an impulse (1/kg).
 SCREE_HD inline Mat3 delassus_share(const SolverBody& body, const Vec3& arm) {
   Mat3 cross;
@@ -141,11 +157,12 @@ SCREE_HD inline Vec3 coulomb_update(const ContactRow& row, const RowCoupling& co
   return on_disc(pn, row.impulse - pn_old * normal - row.tangent_mass * vt, normal, friction);
 }
 
-/// The same for a contact of balls, where it is the exact local solution.
-SCREE_HD inline Vec3 coulomb_update_of_balls(const ContactRow& row, const Vec3& normal, double friction,
-                                             const Vec3& u) {
-  const double un = u.dot(normal);
+/// Where a projected step of the local masses' length takes row.impulse, given the relative velocity u that
+/// holds now. Impulses solve the contact problem where this natural map leaves all of them as they are. For a
+/// contact of balls it is the exact local solution.
+SCREE_HD inline Vec3 natural_map(const ContactRow& row, const Vec3& normal, double friction, const Vec3& u) {
   const double pn_old = row.impulse.dot(normal);
+  const double un = u.dot(normal);
   const double pn = fmax(0.0, pn_old - (un - row.target) * row.normal_mass);
   if (friction == 0 || pn == 0) return pn * normal;
   return on_disc(pn, row.impulse - pn_old * normal - row.tangent_mass * (u - un * normal), normal, friction);
@@ -165,7 +182,7 @@ SCREE_HD inline void sweep_rows(ContactRow* rows, const RowCoupling* couplings, 
 /// The same for the one row of a contact of balls.
 SCREE_HD inline void sweep_ball_row(ContactRow& row, const Vec3& normal, double friction, SolverBody& i,
                                     SolverBody& j) {
-  const Vec3 impulse = coulomb_update_of_balls(row, normal, friction, row.relative_velocity(i, j));
+  const Vec3 impulse = natural_map(row, normal, friction, row.relative_velocity(i, j));
   const Vec3 change = impulse - row.impulse;
   i.push_ball(row.arm_i, -change);
   j.push_ball(row.arm_j, change);

@@ -3,7 +3,9 @@
 #include "core/parallel.hpp"
 #include "core/tolerances.hpp"
 #include "sim/dynamics/colored.hpp"
+#include "sim/dynamics/direct.hpp"
 
+#include <algorithm>
 #include <utility>
 
 namespace scree {
@@ -17,10 +19,19 @@ struct SolveStage {
   View<Contact> contacts;
   View<ContactRow> rows;
   View<RowCoupling> couplings;
-  View<SweepChange> change;
+  View<ImpulseChange> change;
   View<BodyAcceleration> acceleration;
+  View<Vec3> free_velocity;  ///< of each body without contacts
+  View<Vec3> free_spin;
   double step;
 
+  /// A body with its velocities before the kick; those of bodies that are not free do not change.
+  SCREE_HD SolverBody before_kick(std::int32_t body) const {
+    SolverBody state = solver[body];
+    state.velocity = bodies.velocity[body];
+    state.spin = bodies.spin[body];
+    return state;
+  }
   SCREE_HD ContactRow* rows_of(std::int64_t c) const { return &rows[contacts[c].first_row]; }
   SCREE_HD void store(std::int32_t body, const SolverBody& state) const {
     if (!state.is_free()) return;
@@ -35,6 +46,8 @@ struct Kick {
   ResponseParameters parameters;
   SCREE_HD void operator()(std::int64_t k) const {
     SolverBody& body = stage.solver[k];
+    stage.free_velocity[k] = body.velocity;
+    stage.free_spin[k] = body.spin;
     if (!body.is_free()) return;
     stage.bodies.velocity[k] = body.velocity;
     stage.bodies.spin[k] = body.spin;
@@ -42,6 +55,16 @@ struct Kick {
     if (parameters.torque.size() > 0) {
       body.spin += stage.step * (body.inverse_inertia * parameters.torque[k]).eval();
     }
+    stage.free_velocity[k] = body.velocity;
+    stage.free_spin[k] = body.spin;
+  }
+};
+
+struct Release {
+  SolveStage stage;
+  SCREE_HD void operator()(std::int64_t k) const {
+    stage.solver[k].velocity = stage.free_velocity[k];
+    stage.solver[k].spin = stage.free_spin[k];
   }
 };
 
@@ -74,22 +97,16 @@ struct PrepareRows {
       row.impulse = impulse;
       // The next midpoint must not overlap: the gap may close by then, and no more (speculative contact).
       row.target = row.gap > shell ? -(row.gap - shell) / (stage.step - contact.lead) : 0.0;
+      // Held, a contact that was parting before the kick would gain energy, p.(u- + u+)/2: it may close as fast.
+      row.target = fmin(row.target, -speed_before(contact, row));
       if (contact.flying) row.target = fmin(row.target, flight_speed(contact, row));
-      // What opened before the kick closes again at that speed at least, or its impulse would do work: so a
-      // box that turns on its corner, whose arm the midpoint sees turned, keeps its energy.
-      row.target = fmin(row.target, -opening_speed(contact, row));
     }
   }
 
-  /// Before the kick; 0 if it closed.
-  SCREE_HD double opening_speed(const Contact& contact, const ContactRow& row) const {
-    SolverBody i = stage.solver[contact.i];
-    SolverBody j = stage.solver[contact.j];
-    i.velocity = stage.bodies.velocity[contact.i];
-    i.spin = stage.bodies.spin[contact.i];
-    j.velocity = stage.bodies.velocity[contact.j];
-    j.spin = stage.bodies.spin[contact.j];
-    return fmax(0.0, contact.normal.dot(row.relative_velocity(i, j)));
+  /// At which the contact parts before the kick.
+  SCREE_HD double speed_before(const Contact& contact, const ContactRow& row) const {
+    return contact.normal.dot(
+        row.relative_velocity(stage.before_kick(contact.i), stage.before_kick(contact.j)));
   }
 
   /// A little faster than the flight closes along the normal, so that rounding pushes nobody.
@@ -100,7 +117,8 @@ struct PrepareRows {
   }
 };
 
-struct WarmStart {
+/// Gives the bodies what the impulses are.
+struct Push {
   SolveStage stage;
   std::int64_t first;
   SCREE_HD void operator()(std::int64_t k) const {
@@ -108,8 +126,9 @@ struct WarmStart {
     SolverBody i = stage.solver[contact.i];
     SolverBody j = stage.solver[contact.j];
     for (int p = 0; p < contact.count; ++p) {
-      const ContactRow& row = stage.rows_of(first + k)[p];
+      ContactRow& row = stage.rows_of(first + k)[p];
       row.push(row.impulse, i, j);
+      row.change.setZero();
     }
     stage.store(contact.i, i);
     stage.store(contact.j, j);
@@ -148,20 +167,19 @@ struct Sweep {
     }
     stage.store(contact.i, i);
     stage.store(contact.j, j);
-    SweepChange change;
+    ImpulseChange change;
     for (int p = 0; p < contact.count; ++p) {
       ContactRow& row = rows[p];
       row.change = row.impulse - last[p];
-      change.step += row.change.squaredNorm() / row.normal_mass;
-      change.size += row.impulse.squaredNorm() / row.normal_mass;
+      change.add(row, row.change);
     }
     stage.change[c] = change;
   }
 };
 
 struct LoadChange {
-  ConstView<SweepChange> change;
-  SCREE_HD SweepChange operator()(std::int64_t c) const { return change[c]; }
+  ConstView<ImpulseChange> change;
+  SCREE_HD ImpulseChange operator()(std::int64_t c) const { return change[c]; }
 };
 
 /// Velocities are linear in the impulses: what beta does to these it does to them.
@@ -190,19 +208,67 @@ struct StartBodies {
   }
 };
 
+/// Sweeps of one substep.
+class Sweeps {
+ public:
+  Sweeps(const SolveStage& stage, const Coloring& coloring, int block_sweeps, double tolerance,
+         std::int64_t& count)
+      : stage_(stage),
+        coloring_(coloring),
+        block_sweeps_(block_sweeps),
+        tolerance_(tolerance),
+        count_(count) {}
+
+  /// Sets the velocities to what the impulses give, and starts the directions anew.
+  void start() {
+    set_velocities();
+    parallel::for_each<Host>("response.start", stage_.solver.size(), StartBodies{stage_});
+  }
+
+  void set_velocities() {
+    parallel::for_each<Host>("response.release", stage_.solver.size(), Release{stage_});
+    for_each_color("response.push", coloring_, [this](std::int64_t first) { return Push{stage_, first}; });
+  }
+
+  /// From a start on, until they converge, but at most so often. The last sweep stands as it is, so that
+  /// every impulse ends inside its cone.
+  bool run(int most) {
+    double last_step = 0;
+    double beta = 0;
+    for (int sweep = 1; sweep <= most; ++sweep) {
+      if (sweep > 1) {
+        parallel::for_each<Host>("response.accelerate", stage_.solver.size(), AccelerateBodies{stage_, beta});
+      }
+      for_each_color("response.sweep", coloring_, [&](std::int64_t first) {
+        return Sweep{stage_, first, beta, block_sweeps_};
+      });
+      ++count_;
+      const auto total = parallel::sum<ImpulseChange, Host>("response.change", stage_.change.size(),
+                                                            LoadChange{stage_.change});
+      if (total.within(tolerance_)) return true;
+      const double ratio = sweep > 1 ? total.step / last_step : 0.0;
+      beta = ratio < 1.0 ? ratio : 0.0;
+      last_step = total.step;
+    }
+    return false;
+  }
+
+ private:
+  const SolveStage& stage_;
+  const Coloring& coloring_;
+  int block_sweeps_;
+  double tolerance_;
+  std::int64_t& count_;
+};
+
 struct Account {
   SolveStage stage;
   SCREE_HD Ledger operator()(std::int64_t c) const {
     Contact& contact = stage.contacts[c];
     const SolverBody& i = stage.solver[contact.i];
     const SolverBody& j = stage.solver[contact.j];
-    // The velocities before the kick; those of bodies that are not free do not change.
-    SolverBody i0 = i;
-    SolverBody j0 = j;
-    i0.velocity = stage.bodies.velocity[contact.i];
-    i0.spin = stage.bodies.spin[contact.i];
-    j0.velocity = stage.bodies.velocity[contact.j];
-    j0.spin = stage.bodies.spin[contact.j];
+    const SolverBody i0 = stage.before_kick(contact.i);
+    const SolverBody j0 = stage.before_kick(contact.j);
     Ledger ledger;
     for (int k = 0; k < contact.count; ++k) {
       const ContactRow& row = stage.rows_of(c)[k];
@@ -239,7 +305,41 @@ struct StoreVelocities {
   }
 };
 
+/// The direct solver for the islands that the last sweep has changed.
+struct SolveIsland {
+  SolveStage stage;
+  const Islands* islands;
+  double tolerance;
+  View<DirectOutcome> outcome;
+  void operator()(std::int64_t island) const {
+    ImpulseChange change;
+    for (const std::int32_t c : islands->contacts(island)) change = change + stage.change[c];
+    outcome[island] = change.within(tolerance) ? DirectOutcome::not_needed
+                                               : solve_directly({.contacts = stage.contacts,
+                                                                 .rows = stage.rows,
+                                                                 .solver = stage.solver,
+                                                                 .velocity = stage.free_velocity,
+                                                                 .spin = stage.free_spin,
+                                                                 .islands = *islands,
+                                                                 .island = island},
+                                                                tolerance);
+  }
+};
+
+/// Sweeps after which what has not converged creeps. Warm-started contacts take one or two.
+constexpr int sweeps_before_direct = 10;
+
 }  // namespace
+
+bool ResponseSolver::count_outcomes(Counters& counters) const {
+  bool all_solved = true;
+  for (const DirectOutcome outcome : outcome_.view()) {
+    counters.direct += outcome == DirectOutcome::solved;
+    counters.direct_failed += outcome == DirectOutcome::failed;
+    all_solved = all_solved && (outcome == DirectOutcome::solved || outcome == DirectOutcome::not_needed);
+  }
+  return all_solved;
+}
 
 Ledger ResponseSolver::solve(ConstView<Manifold> manifolds, double step, const ResponseParameters& parameters,
                              BodyView bodies, Array<SolverBody, Host>& solver, ContactSet& set,
@@ -247,6 +347,8 @@ Ledger ResponseSolver::solve(ConstView<Manifold> manifolds, double step, const R
   const std::int64_t n = set.contacts.size();
   change_.resize(n);
   body_acceleration_.resize(solver.size());
+  free_velocity_.resize(solver.size());
+  free_spin_.resize(solver.size());
   const SolveStage stage{.manifolds = manifolds,
                          .bodies = bodies,
                          .solver = solver.view(),
@@ -255,37 +357,33 @@ Ledger ResponseSolver::solve(ConstView<Manifold> manifolds, double step, const R
                          .couplings = set.couplings.view(),
                          .change = change_.view(),
                          .acceleration = body_acceleration_.view(),
+                         .free_velocity = free_velocity_.view(),
+                         .free_spin = free_spin_.view(),
                          .step = step};
   parallel::for_each<Host>("response.kick", solver.size(), Kick{stage, parameters});
   Ledger ledger;
   if (n > 0) {
     parallel::for_each<Host>("response.rows", n, PrepareRows{stage});
-    for_each_color("response.warm_start", set.coloring, [&stage](std::int64_t first) {
-      return WarmStart{stage, first};
-    });
-    parallel::for_each<Host>("response.start", solver.size(), StartBodies{stage});
     SweepPlan plan = automatic_sweeps(set.rows.size());
     if (parameters.iterations > 0) plan.sweeps = parameters.iterations;
     if (parameters.block_sweeps > 0) plan.block_sweeps = parameters.block_sweeps;
-    bool converged = false;
-    double last_step = 0;
-    double beta = 0;
-    for (int sweep = 1; !converged; ++sweep) {
-      for_each_color("response.sweep", set.coloring, [&](std::int64_t first) {
-        return Sweep{stage, first, beta, plan.block_sweeps};
-      });
-      ++counters.sweeps;
-      const auto total =
-          parallel::sum<SweepChange, Host>("response.change", n, LoadChange{std::as_const(change_).view()});
-      converged = total.step <= parameters.tolerance * parameters.tolerance * total.size;
-      if (converged || sweep == plan.sweeps) break;
-      // The last sweep stands as it is, so that every impulse ends inside its cone.
-      const double ratio = sweep > 1 ? total.step / last_step : 0.0;
-      beta = ratio < 1.0 ? ratio : 0.0;
-      last_step = total.step;
-      parallel::for_each<Host>("response.accelerate", solver.size(), AccelerateBodies{stage, beta});
+    Sweeps sweeps(stage, set.coloring, plan.block_sweeps, parameters.tolerance, counters.sweeps);
+    sweeps.start();
+    const int first = plan.direct ? std::min(plan.sweeps, sweeps_before_direct) : plan.sweeps;
+    bool converged = sweeps.run(first);
+    if (!converged && first < plan.sweeps) {
+      islands_.find(set.contacts.view(), solver.view());
+      outcome_.resize(islands_.count());
+      parallel::for_each<Host>("response.islands", islands_.count(),
+                               SolveIsland{stage, &islands_, parameters.tolerance, outcome_.view()});
+      converged = count_outcomes(counters);
+      if (!converged) {
+        sweeps.start();
+        converged = sweeps.run(plan.sweeps - first);
+      }
     }
     if (!converged) ++counters.unconverged;
+    sweeps.set_velocities();
     ledger = parallel::sum<Ledger, Host>("response.ledger", n, Account{stage});
   }
   if (parameters.torque.size() > 0) {

@@ -2,26 +2,16 @@
 // the colours of the contact graph.
 #pragma once
 
-#include "sim/dynamics/contact_set.hpp"
+#include "sim/dynamics/direct.hpp"
 #include "sim/dynamics/state.hpp"
 
 namespace scree {
-
-/// How much a sweep changed the impulses, and their size: sums of squares over the rows, each by the mass
-/// that it meets (J), so that heavy and light contacts weigh alike.
-struct SweepChange {
-  double step = 0;
-  double size = 0;
-
-  SCREE_HD friend SweepChange operator+(const SweepChange& a, const SweepChange& b) {
-    return {a.step + b.step, a.size + b.size};
-  }
-};
 
 /// How often contacts are swept at most.
 struct SweepPlan {
   int sweeps;
   int block_sweeps;  ///< over the points of a contact at each visit
+  bool direct;       ///< islands on which sweeps creep are for the direct solver
 };
 
 /// For so many contact points: few are solved to the tolerance whatever it takes, since they cost nothing; of
@@ -31,10 +21,10 @@ SCREE_HD inline SweepPlan automatic_sweeps(std::int64_t points) {
   constexpr std::int64_t heap = 2500;      // points
   constexpr std::int64_t visits = 400000;  // of points in a substep
   constexpr int fewest = 20, most = 10000;
-  if (points >= heap) return {fewest, 1};
+  if (points >= heap) return {fewest, 1, false};
   constexpr int block = 4;
   const std::int64_t sweeps = visits / (block * (points > 0 ? points : 1));
-  return {static_cast<int>(sweeps < most ? sweeps : most), block};
+  return {static_cast<int>(sweeps < most ? sweeps : most), block, true};
 }
 
 /// What the conjugate direction needs of a body.
@@ -59,8 +49,14 @@ class ResponseSolver {
                BodyView bodies, Array<SolverBody, Host>& solver, ContactSet& set, Counters& counters);
 
  private:
-  Array<SweepChange, Host> change_;  // per contact, of the last sweep
+  /// True if no island is left to the sweeps.
+  bool count_outcomes(Counters& counters) const;
+
+  Array<ImpulseChange, Host> change_;  // per contact, of the last sweep
   Array<BodyAcceleration, Host> body_acceleration_;
+  Array<Vec3, Host> free_velocity_, free_spin_;  // of each body without contacts
+  Islands islands_;
+  Array<DirectOutcome, Host> outcome_;  // of each island
 };
 
 }  // namespace scree

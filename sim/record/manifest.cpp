@@ -66,6 +66,8 @@ Json json_of(const CrosscheckStats& c) {
 
 Json json_of(const Counters& c) {
   return {{"sweeps", c.sweeps},
+          {"direct", c.direct},
+          {"direct_failed", c.direct_failed},
           {"impacts", c.impacts},
           {"unconverged", c.unconverged},
           {"unfinished_impacts", c.unfinished_impacts},

@@ -1,0 +1,42 @@
+// The direct solver: the contact problem of one island by Newton's method, where sweeps creep.
+#pragma once
+
+#include "sim/dynamics/islands.hpp"
+
+namespace scree {
+
+/// One island of the contact problem of a substep.
+struct IslandProblem {
+  ConstView<Contact> contacts;
+  View<ContactRow> rows;     ///< with their arms, masses, targets, and impulses to start from
+  View<SolverBody> solver;   ///< velocities with these impulses
+  ConstView<Vec3> velocity;  ///< of each body without any impulse (m/s)
+  ConstView<Vec3> spin;
+  const Islands& islands;
+  std::int64_t island;
+};
+
+/// What the natural map changes in the impulses of the island's rows, as they are.
+ImpulseChange natural_residual(const IslandProblem& problem);
+
+enum class DirectOutcome {
+  not_needed,
+  solved,     ///< to the tolerance, in the natural residual
+  too_large,  ///< nothing was tried: sweeps are cheaper
+  failed,     ///< what was found is kept if it is nearer to a solution than what was there
+};
+
+/// Solves an island: the impulses of its rows, and the velocities of its bodies with them.
+///
+/// Coulomb's law is the associated law of the friction cone K for the velocity u + mu |u_t| n (De Saxce and
+/// Feng 1998, "The bipotential method"), so that at given slips s = mu |u_t| the velocities v minimise a
+/// convex function, and the slips follow by fixed-point iteration (Acary, Cadoux, Lemarechal and Malick 2011,
+/// "A formulation of the linear discrete Coulomb friction problem via convex optimization"). With multipliers
+/// p of the rows (augmented Lagrangian) that function is
+///   |v - v*|^2_M / 2 + sum |P_K(p - r (u - (target - s) n))|^2 / (2 r),
+/// v* the velocities without impulses. Newton's method takes it to its minimum, with a sparse Cholesky
+/// factorization over the bodies; then p <- P_K(...). The masses make it definite however redundant the
+/// points of a face are.
+DirectOutcome solve_directly(const IslandProblem& problem, double tolerance);
+
+}  // namespace scree

@@ -1,0 +1,41 @@
+// Islands: sets of free bodies that contacts connect. Each is a contact problem of its own.
+#pragma once
+
+#include "sim/dynamics/contact_set.hpp"
+
+#include <cstdint>
+#include <vector>
+
+namespace scree {
+
+/// Ordered by their first free body, and so are the bodies and the contacts of each.
+class Islands {
+ public:
+  /// `bodies`: how many there are. Bodies that are not free connect nothing.
+  void find(ConstView<Contact> contacts, ConstView<SolverBody> bodies);
+
+  std::int64_t count() const { return static_cast<std::int64_t>(contact_begin_.size()) - 1; }
+  ConstView<std::int32_t> contacts(std::int64_t island) const {
+    return range(contacts_, contact_begin_, island);
+  }
+  /// The free ones that have contacts.
+  ConstView<std::int32_t> bodies(std::int64_t island) const { return range(bodies_, body_begin_, island); }
+  /// Of a free body with contacts: its place among those of its island.
+  std::int32_t place(std::int32_t body) const { return place_[static_cast<std::size_t>(body)]; }
+
+ private:
+  using List = std::vector<std::int32_t>;
+  static ConstView<std::int32_t> range(const List& list, const List& begin, std::int64_t island) {
+    const std::int32_t* from = &begin[static_cast<std::size_t>(island)];
+    return {list.data() + from[0], from[1] - from[0]};
+  }
+  std::int32_t root(std::int32_t body);
+
+  List parent_;  // of each body; its own at a root, which is the first body of its island
+  List island_;  // of each body
+  List place_;
+  List contact_begin_, contacts_;
+  List body_begin_, bodies_;
+};
+
+}  // namespace scree
