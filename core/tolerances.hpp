@@ -29,13 +29,17 @@ inline constexpr int correction_sweeps = 4;
 /// Largest correction of one body in one step (of smallest_size): deep overlaps part gently.
 inline constexpr double correction_cap = 0.2;
 
-/// Restitution threshold in units of |gravity| * step: slower approaches do not bounce, so bodies come to
-/// rest. Must exceed 0.5 (what gravity adds in half a step), or resting contacts would count as impacts.
+/// Restitution threshold in units of |gravity| * step * (1 - e): slower approaches do not bounce, so that
+/// bodies come to rest. The bounces left out would be over within twice as many substeps. Larger: rest comes
+/// sooner.
 inline constexpr double restitution_threshold = 2.0;
+/// Least 1 - e in it for e < 1: it bounds the bounces of a body in one substep, to half its inverse over the
+/// threshold above.
+inline constexpr double least_loss = 0.02;
 
-/// An approach that would go on for this much (of the pair's smaller smallest_size) by the end of a substep is an
-/// impact at its own time, whatever the pair: the midpoint's normals say nothing of bodies that are through one
-/// another by then. Smaller: impacts where the response would do.
+/// An approach that would go on for this much (of the pair's smaller smallest_size) by the end of a substep
+/// is an impact at its own time, whatever the pair: the midpoint's normals say nothing of bodies that are
+/// through one another by then. Smaller: impacts where the response would do.
 inline constexpr double deep_approach = 0.25;
 
 /// Slowest approach that can count as an impact, relative to the bodies' speeds: under it, it is rounding.
@@ -67,7 +71,6 @@ inline constexpr double unit_length = 1e-14;
 inline constexpr double step_count = 1e-9;
 
 static_assert(closed_gap < contact_slack);
-static_assert(restitution_threshold > 0.5);
 
 // Narrow phase. Lengths are of the smaller smallest_size of the pair.
 

@@ -27,7 +27,10 @@ SCREE_HD inline double smallest_gap(const Manifold& manifold) {
 /// normal would stop boxes that pass beside each other.
 SCREE_HD inline bool contact_along(const BoxPair& pair, const BoxAxes& axes, const BoxAxis& face,
                                    double margin, Manifold& out) {
+  // Nearly parallel edges are no choice beside a face, but they can show that no other edges are close
+  // either.
   if (clearly_better(axes.edges.separation, face.separation, pair.smallest) &&
+      !clearly_better(axes.separation, axes.edges.separation, pair.smallest) &&
       edge_contact(pair, axes.edges, out))
     return true;
   const double close = axes.separation + preference(axes.separation, pair.smallest);
@@ -37,7 +40,7 @@ SCREE_HD inline bool contact_along(const BoxPair& pair, const BoxAxes& axes, con
     if (face_contact(pair, *reference, margin, out) && detail::smallest_gap(out) <= close) return true;
   }
   if (axes.separation > 0.0) return closest_edges(pair, axes, margin, out);
-  if (axes.edges.separation > -HUGE_VAL) return edge_contact(pair, axes.edges, out);
+  if (axes.any_edges.separation > -HUGE_VAL) return edge_contact(pair, axes.any_edges, out);
   return face_contact(pair, face, margin, out);
 }
 

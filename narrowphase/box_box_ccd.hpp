@@ -4,7 +4,7 @@
 
 #include "narrowphase/box_box.hpp"
 #include "narrowphase/ccd.hpp"
-#include "narrowphase/narrow_phase.hpp"
+#include "narrowphase/stats.hpp"
 
 #include <optional>
 
@@ -12,18 +12,27 @@ namespace scree {
 
 namespace detail {
 
-/// The direction of libccd (world), certified: no direction has less overlap than the best of the 15 axes, so
-/// one that has no more than it is right. None if libccd has none or it fails.
-inline std::optional<Vec3> certified_direction(const BoxPair& pair, const BoxAxes& axes, ccd::Method method) {
+/// The answer of libccd, its direction in the world.
+inline ccd::Answer ask_ccd(const BoxPair& pair, ccd::Method method) {
   const double unit = fmin(pair.half[0].maxCoeff(), pair.half[1].maxCoeff());
-  const std::optional<Vec3> local = ccd::parting_direction(
+  ccd::Answer answer = ccd::parting_direction(
       {{pair.half[0] / unit, pair.half[1] / unit}, pair.axes[0].transpose() * pair.offset / unit, pair.turn},
       method);
-  if (!local) return std::nullopt;
-  const Vec3 direction = pair.axes[0] * *local;
-  const double excess = axes.separation - pair.separation_along(direction);
-  if (!(excess <= tolerance::ccd_excess * pair.smallest)) return std::nullopt;
-  return direction;
+  if (answer.direction) answer.direction = pair.axes[0] * *answer.direction;
+  return answer;
+}
+
+/// The direction of libccd (world), certified: no direction has less overlap than the best of the 15 axes, so
+/// one that has no more than it is right. None if libccd has none or it fails.
+inline std::optional<Vec3> certified_direction(const BoxPair& pair, const BoxAxes& axes, ccd::Method method,
+                                               NarrowPhaseStats& stats) {
+  const ccd::Answer answer = ask_ccd(pair, method);
+  const bool certified = answer.direction && axes.separation - pair.separation_along(*answer.direction) <=
+                                                 tolerance::ccd_excess * pair.smallest;
+  ++stats.ccd_calls;
+  stats.ccd_stopped += answer.supports > ccd::support_budget;
+  stats.ccd_rejected += !certified;
+  return certified ? answer.direction : std::nullopt;
 }
 
 /// The face whose normal is nearest to a direction, the first body's if several are.
@@ -52,14 +61,10 @@ inline bool box_box_ccd(const Solid& a, const Solid& b, double margin, ccd::Meth
   if (axes.separation > margin) return false;
   BoxAxis face = preferred_face(pair, axes);
   if (axes.separation < 0.0) {
-    ++stats.ccd_calls;
-    const std::optional<Vec3> direction = detail::certified_direction(pair, axes, method);
-    if (direction) {
+    if (const std::optional<Vec3> direction = detail::certified_direction(pair, axes, method, stats)) {
       // Where a vertex touches, many directions are right, and the nearest face may not be among them.
       const BoxAxis named = detail::face_along(pair, *direction);
       if (!clearly_better(face.separation, named.separation, pair.smallest)) face = named;
-    } else {
-      ++stats.ccd_rejected;
     }
   }
   return contact_along(pair, axes, face, margin, out);

@@ -41,6 +41,7 @@ struct BoxAxis {
 struct BoxAxes {
   BoxAxis face[2];    ///< of the faces of the first and the second box
   BoxAxis edges;      ///< of the pairs of edges that are not nearly parallel
+  BoxAxis any_edges;  ///< of all that are not parallel
   double separation;  ///< largest of all 15; negative: minus the penetration depth
 };
 
@@ -72,9 +73,9 @@ SCREE_HD inline void edge_axis(const BoxPair& pair, const Vec3& offset, int i, i
                          pair.half[1][j2] * fabs(n1 * C(i1, j2) + n2 * C(i2, j2));
   const double separation = (fabs(n1 * offset[i1] + n2 * offset[i2]) - (reach_a + reach_b)) / sine;
   best.separation = fmax(best.separation, separation);
-  if (sine >= tolerance::parallel_edges && separation > best.edges.separation) {
-    best.edges = {-1, {i, j}, separation};
-  }
+  const BoxAxis axis = {-1, {i, j}, separation};
+  if (separation > best.any_edges.separation) best.any_edges = axis;
+  if (sine >= tolerance::parallel_edges && separation > best.edges.separation) best.edges = axis;
 }
 
 }  // namespace detail
@@ -86,7 +87,7 @@ SCREE_HD inline BoxAxes separating_axes(const BoxPair& pair, double margin) {
   detail::face_axis(pair, 0, best.face[0]);
   detail::face_axis(pair, 1, best.face[1]);
   best.separation = fmax(best.face[0].separation, best.face[1].separation);
-  best.edges = {-1, {0, 0}, -HUGE_VAL};
+  best.edges = best.any_edges = {-1, {0, 0}, -HUGE_VAL};
   const Vec3 offset = pair.axes[0].transpose() * pair.offset;
   for (int ij = 0; ij < 9 && best.separation <= margin; ++ij) {
     detail::edge_axis(pair, offset, ij / 3, ij % 3, best);

@@ -10,18 +10,19 @@ namespace scree {
 /// of these has a normal of its own.
 SCREE_HD inline int box_tube(const Solid& box, const Solid& tube, double margin, Manifold* out) {
   const Mat3 tube_axes = tube.orientation.toRotationMatrix();
-  if (!detail::is_in_tube(tube, tube_axes, box.position, margin)) return 0;
+  const Solid body = detail::relative_to(tube, box);
+  if (!detail::is_in_tube(tube, tube_axes, body.position, margin)) return 0;
   const Mat3 axes = box.orientation.toRotationMatrix();
   int count = 0;
   for (int c = 0; c < 8; ++c) {
-    const BoxCorner corner = box_corner(box, axes, c);
+    const BoxCorner corner = box_corner(body, axes, c);
     count += detail::wall_contact(tube, tube_axes, corner.position, 0.0, corner.feature, margin, out[count]);
   }
   for (const TubePart cap : {tube_cap_below, tube_cap_above}) {
-    if (!box_plane(box, detail::tube_cap(tube, tube_axes, cap), margin, out[count])) continue;
+    if (!box_plane(body, detail::tube_cap(tube, tube_axes, cap), margin, out[count])) continue;
     out[count++].part = cap;
   }
-  return count;
+  return detail::place_at(tube, count, out);
 }
 
 }  // namespace scree

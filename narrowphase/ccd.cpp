@@ -40,7 +40,7 @@ void support(const void* object, const ccd_vec3_t* direction, ccd_vec3_t* out) {
 
 }  // namespace
 
-std::optional<Vec3> parting_direction(const Boxes& boxes, Method method, int budget) {
+Answer parting_direction(const Boxes& boxes, Method method, int budget) {
   int supports_left = 2 * budget;  // each is asked of both boxes
   const Box a{Vec3::Zero(), Mat3::Identity(), boxes.half[0], &supports_left};
   const Box b{boxes.offset, boxes.turn, boxes.half[1], &supports_left};
@@ -55,11 +55,12 @@ std::optional<Vec3> parting_direction(const Boxes& boxes, Method method, int bud
   ccd_real_t depth;
   ccd_vec3_t direction{}, position;  // EPA leaves the direction as it is if it has none, and says success
   const auto penetration = method == Method::gjk ? ccdGJKPenetration : ccdMPRPenetration;
-  if (penetration(&a, &b, &ccd, &depth, &direction, &position) != 0) return std::nullopt;
+  const bool overlap = penetration(&a, &b, &ccd, &depth, &direction, &position) == 0;
+  Answer answer{{}, (2 * budget - supports_left) / 2};
   // Touching boxes make libccd normalise a zero vector: NaN, with the return code of success.
   const double length = vector_of(direction).norm();
-  if (!(length > 0.5 && length < 2.0)) return std::nullopt;
-  return vector_of(direction) / length;
+  if (overlap && length > 0.5 && length < 2.0) answer.direction = vector_of(direction) / length;
+  return answer;
 }
 
 }  // namespace scree::ccd

@@ -25,9 +25,14 @@ struct Boxes {
 /// vertices, and an honest search meets a part of them.
 inline constexpr int support_budget = 64;
 
-/// A unit direction along which moving the second box parts them soonest, as libccd sees it; none if it
-/// sees no overlap or has no usable answer. Bounded in time, never NaN; whether the answer is right is for
-/// the caller to check, for it often is not.
-std::optional<Vec3> parting_direction(const Boxes& boxes, Method method, int budget = support_budget);
+struct Answer {
+  /// Unit; moving the second box along it parts them soonest, as libccd sees it. None if it sees no overlap
+  /// or has no usable answer.
+  std::optional<Vec3> direction;
+  int supports = 0;  ///< points of the Minkowski difference that it asked for: over the budget if stopped
+};
+
+/// Bounded in time, never NaN; whether the answer is right is for the caller to check, for it often is not.
+Answer parting_direction(const Boxes& boxes, Method method, int budget = support_budget);
 
 }  // namespace scree::ccd

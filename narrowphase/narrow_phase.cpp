@@ -4,6 +4,7 @@
 
 #include "core/parallel.hpp"
 #include "narrowphase/box_box_ccd.hpp"
+#include "narrowphase/box_box_crosscheck.hpp"
 #include "narrowphase/box_plane.hpp"
 #include "narrowphase/box_tube.hpp"
 #include "narrowphase/sphere_box.hpp"
@@ -13,6 +14,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <mutex>
 #include <type_traits>
 
 namespace scree {
@@ -66,10 +68,10 @@ constexpr PairTable table_with(PairTest box_box_test) {
            {swapped<sphere_tube>, swapped<box_tube>, nullptr, nullptr}}};
 }
 
-/// Rows in the order of BoxBoxMethod. `automatic` is the 15 axes: scree_bench_narrowphase has them at 0.35 us
-/// for a pair in contact, against 2.3 to 3.3 us by MPR and 5 to 9 us by EPA (43 us where EPA does not
-/// converge). They are exact to rounding, while the certificate refuses 7 % of MPR's answers at a depth of a
-/// tenth of the size, and 62 % of EPA's for resting faces with a tilt of 1e-9.
+/// Rows in the order of BoxBoxMethod. `automatic` is the 15 axes: scree_bench_narrowphase has them at 0.2 to
+/// 0.6 us for a pair, against 0.5 to 1.2 us by MPR and 1.1 to 2.4 us by EPA (12 us where centres coincide).
+/// They are exact to rounding, while the certificate refuses some 10 % of libccd's answers and more in every
+/// family but that of shallow contacts: bench/results/xeon-2-cores/narrowphase.md.
 constexpr PairTable tables[] = {
     table_with(straight<box_box>),  // automatic
     table_with(straight<box_box>),
@@ -79,7 +81,21 @@ constexpr PairTable tables[] = {
 
 /// What the blocks share while they append.
 struct Tally {
-  std::atomic<std::int64_t> found{0}, tested{0}, ccd_calls{0}, ccd_rejected{0};
+  std::atomic<std::int64_t> found{0}, tested{0};
+  std::mutex mutex;
+  NarrowPhaseStats of_ccd;  // but for `tested`, which every block adds to: a lock would hold them up
+
+  void add(const NarrowPhaseStats& stats) {
+    tested += stats.tested;
+    if (stats.ccd_calls + stats.crosscheck.asked == 0) return;
+    const std::lock_guard lock(mutex);
+    of_ccd += stats;
+  }
+  NarrowPhaseStats total() const {
+    NarrowPhaseStats stats = of_ccd;
+    stats.tested = tested;
+    return stats;
+  }
 };
 
 /// Tests one block of candidates, and appends the manifolds found as far as there is room. The candidates are
@@ -90,6 +106,9 @@ struct FindContacts {
   ConstView<double> margin;
   ConstView<std::int32_t> planes;
   const PairTable* table;
+  double crosscheck_share;
+  std::uint64_t search;
+  const LateBodies* late;
   View<Manifold> room;
   Tally* tally;
 
@@ -108,9 +127,7 @@ struct FindContacts {
       count = 0;
     }
     append(found, count);
-    tally->tested += stats.tested;
-    tally->ccd_calls += stats.ccd_calls;
-    tally->ccd_rejected += stats.ccd_rejected;
+    tally->add(stats);
   }
 
  private:
@@ -133,7 +150,7 @@ struct FindContacts {
     const Vec3 up = bodies.orientation[plane] * Vec3::UnitZ();
     const double reach =
         bounding_radius(bodies.shape[body], bodies.size[body]) + margin[plane] + margin[body];
-    if (up.dot(bodies.position[body] - bodies.position[plane]) > reach) return 0;
+    if (!is_late(plane, body) && up.dot(bodies.position[body] - bodies.position[plane]) > reach) return 0;
     return test(std::min(plane, body), std::max(plane, body), out, stats);
   }
 
@@ -142,12 +159,22 @@ struct FindContacts {
     ++stats.tested;
     const PairTest pair_test =
         table->of[static_cast<int>(bodies.shape[i])][static_cast<int>(bodies.shape[j])];
-    const int count = pair_test(solid(i), solid(j), margin[i] + margin[j], out, stats);
+    const bool later = is_late(i, j);
+    const double time = later ? late->time_of(i, j) : 0.0;
+    const Solid a = later ? late->solid_at(i, time) : solid(i);
+    const Solid b = later ? late->solid_at(j, time) : solid(j);
+    const int count = pair_test(a, b, margin[i] + margin[j], out, stats);
+    const bool boxes = bodies.shape[i] == Shape::box && bodies.shape[j] == Shape::box;
+    if (boxes && is_crosschecked(crosscheck_share, search, i, j)) crosscheck(a, b, stats.crosscheck);
     for (int m = 0; m < count; ++m) {
       out[m].i = i;
       out[m].j = j;
     }
     return count;
+  }
+
+  bool is_late(std::int32_t i, std::int32_t j) const {
+    return late != nullptr && late->time_of(i, j) > late->now();
   }
 
   Solid solid(std::int32_t i) const { return {bodies.position[i], bodies.orientation[i], bodies.size[i]}; }
@@ -197,18 +224,25 @@ struct Gather {
 
 int find_pair_contacts(Shape shape_a, const Solid& a, Shape shape_b, const Solid& b, double margin,
                        Manifold* out) {
-  const PairTest test = tables[static_cast<int>(BoxBoxMethod::sat)].of[static_cast<int>(shape_a)]
-                                                                      [static_cast<int>(shape_b)];
+  const PairTest test =
+      tables[static_cast<int>(BoxBoxMethod::sat)].of[static_cast<int>(shape_a)][static_cast<int>(shape_b)];
   NarrowPhaseStats stats;
   return test != nullptr ? test(a, b, margin, out, stats) : 0;
 }
 
 ConstView<Manifold> NarrowPhase::find(const ConstBodyView& bodies, ConstView<Pair> pairs,
-                                      ConstView<double> margin) {
+                                      ConstView<double> margin, const LateBodies* late) {
   list_planes(bodies);
-  FindContacts search{
-      bodies,        pairs,  margin, planes_.view(), &tables[static_cast<int>(settings_.box_box)],
-      found_.view(), nullptr};
+  FindContacts search{bodies,
+                      pairs,
+                      margin,
+                      planes_.view(),
+                      &tables[static_cast<int>(settings_.box_box)],
+                      settings_.crosscheck,
+                      searches_++,
+                      late,
+                      found_.view(),
+                      nullptr};
   std::int64_t count = 0;
   for (bool complete = false; !complete;) {
     Tally tally;
@@ -216,7 +250,7 @@ ConstView<Manifold> NarrowPhase::find(const ConstBodyView& bodies, ConstView<Pai
     search.room = found_.view();
     parallel::for_each<Host>("find contacts", (search.candidates() + block - 1) / block, search);
     count = tally.found;
-    stats_ = {tally.tested, tally.ccd_calls, tally.ccd_rejected};
+    stats_ = tally.total();
     complete = count <= found_.size();
     if (!complete) found_.resize(count + count / 4);  // room for the steps that follow
   }

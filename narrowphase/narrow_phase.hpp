@@ -7,16 +7,11 @@
 #include "narrowphase/contact.hpp"
 #include "narrowphase/settings.hpp"
 #include "narrowphase/solid.hpp"
+#include "narrowphase/stats.hpp"
 
 #include <cstdint>
 
 namespace scree {
-
-struct NarrowPhaseStats {
-  std::int64_t tested = 0;        ///< pairs tested, planes included
-  std::int64_t ccd_calls = 0;     ///< box-box pairs given to libccd
-  std::int64_t ccd_rejected = 0;  ///< of these, answers that the certificate refused (SAT then decided)
-};
 
 namespace detail {
 /// Stands for a manifold while they are put in order.
@@ -32,6 +27,16 @@ struct ManifoldSlot {
 int find_pair_contacts(Shape shape_a, const Solid& a, Shape shape_b, const Solid& b, double margin,
                        Manifold* out);
 
+/// Bodies that are seen later than the others: where they are before, they have never been.
+class LateBodies {
+ public:
+  virtual ~LateBodies() = default;
+  /// When a pair is to be seen (s); at most `now()` for a pair that is to be seen as it is.
+  virtual double time_of(std::int32_t i, std::int32_t j) const = 0;
+  virtual double now() const = 0;
+  virtual Solid solid_at(std::int32_t body, double time) const = 0;
+};
+
 /// Finds the contacts of bodies on the host.
 class NarrowPhase {
  public:
@@ -40,8 +45,10 @@ class NarrowPhase {
   /// All manifolds with a gap of at most margin[i] + margin[j] (m), for the pairs given and for every
   /// plane with every body that is not fixed; ordered by (i, j, part), each pair tested once. Bodies that are
   /// not free make no contact with each other. The view is valid until the next call.
-  ConstView<Manifold> find(const ConstBodyView& bodies, ConstView<Pair> pairs, ConstView<double> margin);
+  ConstView<Manifold> find(const ConstBodyView& bodies, ConstView<Pair> pairs, ConstView<double> margin,
+                           const LateBodies* late = nullptr);
 
+  /// Of the last search.
   const NarrowPhaseStats& stats() const { return stats_; }
 
  private:
@@ -51,6 +58,7 @@ class NarrowPhase {
 
   NarrowPhaseSettings settings_;
   NarrowPhaseStats stats_;
+  std::uint64_t searches_ = 0;
   // Buffers that keep their capacity from step to step.
   Array<std::int32_t, Host> planes_;
   Array<Manifold, Host> found_;        ///< in the order of finding; grows to the most found so far

@@ -12,6 +12,7 @@ enum class BoxBoxMethod {
 
 struct NarrowPhaseSettings {
   BoxBoxMethod box_box = BoxBoxMethod::automatic;
+  double crosscheck = 0;  ///< share of the pairs of boxes that libccd is asked about too
 };
 
 }  // namespace scree

@@ -8,14 +8,15 @@ namespace scree {
 
 SCREE_HD inline int sphere_tube(const Solid& sphere, const Solid& tube, double margin, Manifold* out) {
   const Mat3 axes = tube.orientation.toRotationMatrix();
-  if (!detail::is_in_tube(tube, axes, sphere.position, margin)) return 0;
+  const Solid ball = detail::relative_to(tube, sphere);
+  if (!detail::is_in_tube(tube, axes, ball.position, margin)) return 0;
   int count = 0;
-  count += detail::wall_contact(tube, axes, sphere.position, sphere.size.x(), only_feature, margin, out[0]);
+  count += detail::wall_contact(tube, axes, ball.position, ball.size.x(), only_feature, margin, out[0]);
   for (const TubePart cap : {tube_cap_below, tube_cap_above}) {
-    if (!sphere_plane(sphere, detail::tube_cap(tube, axes, cap), margin, out[count])) continue;
+    if (!sphere_plane(ball, detail::tube_cap(tube, axes, cap), margin, out[count])) continue;
     out[count++].part = cap;
   }
-  return count;
+  return detail::place_at(tube, count, out);
 }
 
 }  // namespace scree

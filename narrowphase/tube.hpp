@@ -12,10 +12,24 @@ enum TubePart : std::int32_t { tube_wall, tube_cap_below, tube_cap_above };
 
 namespace detail {
 
+// All positions here are relative to the tube's centre.
+
+SCREE_HD inline Solid relative_to(const Solid& tube, const Solid& body) {
+  return {body.position - tube.position, body.orientation, body.size};
+}
+
+/// Moves the contact points of so many manifolds back to where the tube is; returns their number.
+SCREE_HD inline int place_at(const Solid& tube, int count, Manifold* out) {
+  for (int m = 0; m < count; ++m) {
+    for (int k = 0; k < out[m].count; ++k) out[m].points[k].position += tube.position;
+  }
+  return count;
+}
+
 /// Tells whether a body with this centre is in the tube with the given axes. One that is beyond the wall or a
 /// cap by no more than the margin has come from inside since the step began, and is held.
 SCREE_HD inline bool is_in_tube(const Solid& tube, const Mat3& axes, const Vec3& centre, double margin) {
-  const Vec3 at = axes.transpose() * (centre - tube.position);
+  const Vec3 at = axes.transpose() * centre;
   return hypot(at.x(), at.y()) <= tube.size.x() + margin && fabs(at.z()) <= tube.size.z() + margin;
 }
 
@@ -23,7 +37,7 @@ SCREE_HD inline bool is_in_tube(const Solid& tube, const Mat3& axes, const Vec3&
 /// overlaps it wherever it is.
 SCREE_HD inline bool wall_contact(const Solid& tube, const Mat3& axes, const Vec3& centre, double radius,
                                   BoxFeature feature, double margin, Manifold& out) {
-  const Vec3 at = axes.transpose() * (centre - tube.position);
+  const Vec3 at = axes.transpose() * centre;
   const double from_axis = hypot(at.x(), at.y());
   const double to_wall = tube.size.x() - from_axis;
   const double gap = to_wall - radius;
@@ -41,7 +55,7 @@ SCREE_HD inline bool wall_contact(const Solid& tube, const Mat3& axes, const Vec
 SCREE_HD inline Solid tube_cap(const Solid& tube, const Mat3& axes, TubePart part) {
   const Quat half_turn(0, 1, 0, 0);
   const bool below = part == tube_cap_below;
-  return {tube.position + (below ? -tube.size.z() : tube.size.z()) * axes.col(2),
+  return {(below ? -tube.size.z() : tube.size.z()) * axes.col(2),
           below ? tube.orientation : tube.orientation * half_turn, Vec3::Zero()};
 }
 

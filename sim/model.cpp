@@ -46,8 +46,13 @@ ModelPlan plan_model(const Scene& scene) {
       any_free_body(bodies, [&](std::size_t k) { return !has_equal_moments(bodies.inverse_inertia[k]); });
   plan.gyroscopic = {plan.rotation.on && any_unequal,
                      any_unequal ? "some box is no cube" : "only spheres and cubes move freely"};
-  plan.restitution_threshold = scene.response.restitution_threshold.value_or(
-      tolerance::restitution_threshold * scene.gravity.norm() * scene.time.step / scene.time.substeps);
+  plan.continuous =
+      choose(scene.model.continuous, true, "in substeps where some body is fast for the sizes", "");
+  const double step = scene.time.step / scene.time.substeps;
+  plan.restitution_threshold =
+      scene.response.restitution_threshold
+          ? RestitutionThreshold{.any = *scene.response.restitution_threshold}
+          : RestitutionThreshold{.lossy = tolerance::restitution_threshold * scene.gravity.norm() * step};
   return plan;
 }
 

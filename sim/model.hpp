@@ -1,6 +1,7 @@
 // What a scene needs to have modelled, and what cannot matter in it.
 #pragma once
 
+#include "sim/dynamics/restitution.hpp"
 #include "sim/scene/scene.hpp"
 
 #include <string>
@@ -15,11 +16,12 @@ struct Feature {
 
 /// Leaving a feature out where its reason holds changes no result.
 struct ModelPlan {
-  Feature friction;                  ///< tangential impulses
-  Feature restitution;               ///< impacts that bounce
-  Feature rotation;                  ///< orientations
-  Feature gyroscopic;                ///< free rotation of bodies with unequal moments of inertia
-  double restitution_threshold = 0;  ///< m/s; slower approaches do not bounce
+  Feature friction;     ///< tangential impulses
+  Feature restitution;  ///< impacts that bounce
+  Feature rotation;     ///< orientations
+  Feature gyroscopic;   ///< free rotation of bodies with unequal moments of inertia
+  Feature continuous;   ///< impacts at their own time between bodies that would go deep in a substep
+  RestitutionThreshold restitution_threshold;
 };
 
 ModelPlan plan_model(const Scene& scene);

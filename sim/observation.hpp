@@ -2,6 +2,7 @@
 #pragma once
 
 #include "core/math.hpp"
+#include "narrowphase/stats.hpp"
 
 #include <cstdint>
 #include <limits>
@@ -58,10 +59,9 @@ struct Counters {
   std::int64_t impacts = 0;        ///< that bounced
   std::int64_t unconverged = 0;    ///< substeps that used all sweeps; raise response.iterations
   std::int64_t unfinished_impacts =
-      0;                          ///< substeps whose chains of impacts hit the bound; the rest took e = 0
-  std::int64_t pcs_made = 0;      ///< broad phases: once, and whenever a body had left its box
-  std::int64_t ccd_calls = 0;     ///< box-box pairs given to libccd
-  std::int64_t ccd_rejected = 0;  ///< of these, answers that the certificate refused
+      0;                      ///< substeps whose chains of impacts hit the bound; the rest took e = 0
+  std::int64_t pcs_made = 0;  ///< broad phases: once, and whenever a body had left its box
+  NarrowPhaseStats narrowphase;
 };
 
 /// A region of the scene at one instant; its bodies are the free ones whose centre lies in it.

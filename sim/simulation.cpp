@@ -37,6 +37,7 @@ ResponseParameters parameters_of(const Scene& scene) {
           .restitution = plan.restitution.on,
           .rotation = plan.rotation.on,
           .gyroscopic = plan.gyroscopic.on,
+          .continuous = plan.continuous.on,
           .warm_start = scene.response.warm_start,
           .iterations = scene.response.iterations.value_or(0),
           .block_sweeps = scene.response.block_sweeps.value_or(0),
@@ -149,7 +150,7 @@ struct Simulation::Parts {
         forces(s, grid),
         kept_pairs(s.broadphase, runs_on_device(options.space), origin),
         narrow_phase(s.narrowphase),
-        end_narrow_phase(s.narrowphase) {
+        end_narrow_phase({.box_box = s.narrowphase.box_box}) {
     copy_bodies(bodies, scene.bodies);
     presence.begin(bodies);
     copy(laws, table_of(scene));
@@ -219,9 +220,9 @@ struct Simulation::Parts {
     counters.pcs_made = kept_pairs.times_made();
     const timing::Region region("narrowphase");
     const ConstView<Manifold> manifolds =
-        narrow_phase.find(view_of(std::as_const(bodies)), pairs, contact_margin.view());
-    counters.ccd_calls += narrow_phase.stats().ccd_calls;
-    counters.ccd_rejected += narrow_phase.stats().ccd_rejected;
+        narrow_phase.find(view_of(std::as_const(bodies)), pairs, contact_margin.view(),
+                          impacts.late_bodies(impact_problem(pairs, h, 0), parameters, view_of(bodies)));
+    counters.narrowphase += narrow_phase.stats();
     return manifolds;
   }
 
@@ -260,8 +261,9 @@ struct Simulation::Parts {
     color_contacts(manifolds, std::as_const(bodies.mobility).view(), contacts.coloring);
     const double scale = last_substep > 0 ? h / last_substep : 1.0;
     prepare_contacts(manifolds, contact_laws(), memory, scale, parameters, contacts);
-    impacts.mark_flying(impact_problem({}, h, 0), parameters, manifolds, view_of(bodies), contacts);
+    impacts.mark_flights(impact_problem({}, h, 0), parameters, manifolds, view_of(bodies), contacts);
     ledger = ledger + response.solve(manifolds, h, parameters, view_of(bodies), solver, contacts, counters);
+    ledger = ledger + impacts.shift_late(impact_problem({}, h, 0), parameters, view_of(bodies), contacts);
   }
 
   /// Without what the response's kick has given already.

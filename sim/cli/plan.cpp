@@ -98,9 +98,13 @@ void print_model(const ModelPlan& plan) {
   feature("gyroscopic", plan.gyroscopic);
   feature("friction", plan.friction);
   feature("restitution", plan.restitution);
+  feature("continuous", plan.continuous);
   if (plan.restitution.on) {
-    print_row("",
-              fmt::format("contacts bounce that close faster than {:.4g} m/s", plan.restitution_threshold));
+    const RestitutionThreshold& threshold = plan.restitution_threshold;
+    print_row(
+        "", threshold.any > 0
+                ? fmt::format("contacts bounce that close faster than {:.4g} m/s", threshold.any)
+                : fmt::format("contacts bounce that close faster than (1 - e) {:.4g} m/s", threshold.lossy));
   }
 }
 

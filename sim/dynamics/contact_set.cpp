@@ -12,9 +12,9 @@ ConstView<ImpulseMemory::Entry> ImpulseMemory::entries_of(std::int32_t i, std::i
   if (begin_.empty()) return {};
   const auto place = [](const Entry& entry) { return std::pair(entry.j, entry.part); };
   // A floor may have as many entries as there are bodies.
-  const auto range = std::ranges::equal_range(entries_.data() + begin_.view()[i],
-                                              entries_.data() + begin_.view()[i + 1], std::pair(j, part),
-                                              {}, place);
+  const auto range =
+      std::ranges::equal_range(entries_.data() + begin_.view()[i], entries_.data() + begin_.view()[i + 1],
+                               std::pair(j, part), {}, place);
   return {range.data(), static_cast<std::int64_t>(range.size())};
 }
 
@@ -76,6 +76,7 @@ struct PrepareContact {
         .flying = false,
         .balls = laws.acts_as_ball(manifold.i) && laws.acts_as_ball(manifold.j),
         .free_ends = static_cast<int>(laws.is_free(manifold.i)) + static_cast<int>(laws.is_free(manifold.j)),
+        .lead = 0,
         .impulse = Vec3::Zero()};
     for (int k = 0; k < manifold.count; ++k) {
       rows[first_row[c] + k].impulse = parameters.warm_start

@@ -27,6 +27,7 @@ struct Contact {
   bool flying;    ///< known not to meet in this substep: its rows only guard what the flight leaves free
   bool balls;     ///< between balls and bodies that are not free: its row needs no coupling
   int free_ends;  ///< how many of its two bodies are free
+  double lead;    ///< how long after the midpoint its geometry is of (s)
   Vec3 impulse;   ///< all that its rows gave to j in this substep (N s)
 };
 

@@ -24,6 +24,17 @@ struct PositionCorrector::Stage {
                                          i.angular.cross(rows[row].arm_i));
   }
 
+  /// How far a gap has opened since the contact was seen. From the places that bodies struck late have come
+  /// to; for the others from their velocities, which know of no origin.
+  SCREE_HD double flown(const Contact& c, const ContactRow& row) const {
+    const SolverBody& i = solver[c.i];
+    const SolverBody& j = solver[c.j];
+    if (c.lead == 0) return 0.5 * step * c.normal.dot(row.relative_velocity(i, j));
+    const Vec3 moved = bodies.position[c.j] - bodies.position[c.i] + row.arm_j - row.arm_i;
+    const Vec3 turned = j.spin.cross(row.arm_j) - i.spin.cross(row.arm_i);
+    return c.normal.dot(moved + (0.5 * step - c.lead) * turned);
+  }
+
   SCREE_HD void move(std::int32_t body, const Vec3& arm, const Vec3& impulse) const {
     const SolverBody& b = solver[body];
     if (!b.is_free()) return;
@@ -40,8 +51,12 @@ struct PositionCorrector::Fly {
     double deepest = 0;
     for (std::int64_t r = c.first_row; r < c.first_row + c.count; ++r) {
       const ContactRow& row = stage.rows[r];
-      const Vec3 u = row.relative_velocity(stage.solver[c.i], stage.solver[c.j]);
-      stage.flown_gap[r] = row.gap + 0.5 * stage.step * c.normal.dot(u);
+      // What flies past is nearer to the other's tangent plane than to the other.
+      if (c.flying && row.impulse.isZero(0)) {
+        stage.flown_gap[r] = HUGE_VAL;
+        continue;
+      }
+      stage.flown_gap[r] = row.gap + stage.flown(c, row);
       deepest = fmax(deepest, -stage.flown_gap[r]);
     }
     return deepest;

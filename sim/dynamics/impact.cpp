@@ -18,8 +18,16 @@ constexpr std::int32_t most_hits = 256;
 
 /// What may meet, as everything below sees it.
 struct FlightStage {
-  const ImpactProblem& problem;
-  const ResponseParameters& parameters;
+  FlightStage(const ImpactProblem& p, const ResponseParameters& r, const BodyView& b, FlightLog& log)
+      : problem(p),
+        parameters(r),
+        bodies(b),
+        clock(log.clock.view()),
+        hits(log.hits.view()),
+        reach(log.reach.view()) {}
+
+  ImpactProblem problem;
+  ResponseParameters parameters;
   BodyView bodies;
   View<double> clock;
   View<std::int32_t> hits;
@@ -41,10 +49,11 @@ struct FlightStage {
 
   /// The slowest approach that bounces on a part without load (m/s).
   double slowest_bounce(std::int32_t i, std::int32_t j) const {
-    if (!parameters.restitution || problem.laws.between(i, j).restitution == 0) return HUGE_VAL;
+    const double restitution = problem.laws.between(i, j).restitution;
+    if (!parameters.restitution || restitution == 0) return HUGE_VAL;
     const double rounding =
         tolerance::closing_speed * (bodies.velocity[i].norm() + bodies.velocity[j].norm());
-    return std::max(parameters.restitution_threshold, rounding);
+    return std::max(parameters.restitution_threshold.of(restitution), rounding);
   }
 
   /// Two bodies until the end of the substep; no meeting of theirs counts yet.
@@ -88,7 +97,7 @@ struct FlightStage {
     const double fastest = fastest_approach(pair);
     const double slowest = problem.bounces ? slowest_bounce(i, j) : HUGE_VAL;
     const bool may_bounce = fastest > slowest;
-    const bool may_go_deep = fastest * (problem.step - earliest) > pair.farthest;
+    const bool may_go_deep = parameters.continuous && fastest * (problem.step - earliest) > pair.farthest;
     if (!(may_bounce || may_go_deep)) return {};
     if (may_bounce) {
       for (int part = 0; part < PairFlight::parts; ++part) {
@@ -149,8 +158,7 @@ struct FlightStage {
                                 a.is_free() ? -1.0 : 1.0);
       impact.impulse += rows[k].impulse;
     }
-    fly_on(i, flight_i, at_i, a, s);
-    fly_on(j, flight_j, at_j, b, s);
+    ledger.integration += fly_on(i, flight_i, at_i, a, s) + fly_on(j, flight_j, at_j, b, s);
     return true;
   }
 
@@ -196,21 +204,30 @@ struct FlightStage {
     }
   }
 
-  /// Gives a body the flight that leads from the impact on.
-  void fly_on(std::int32_t body, const BodyFlight& flown, const BodyInstant& at, const SolverBody& after,
-              double s) const {
-    if (!after.is_free()) return;
+  /// Gives a body the flight that leads from the impact on. Returns the drift of its energy on the way there
+  /// and back (J).
+  double fly_on(std::int32_t body, const BodyFlight& flown, const BodyInstant& at, const SolverBody& after,
+                double s) const {
+    if (!after.is_free()) return 0;
     const Vec3 velocity = after.velocity - s * flown.acceleration;
     bodies.position[body] -= (s - flown.midpoint) * (velocity - bodies.velocity[body]);
     bodies.velocity[body] = velocity;
     clock[body] = s;
     ++hits[body];
+    double drift = 0;
     if (parameters.rotation) {
+      const auto energy = [&](const Quat& orientation, const Vec3& spin) {
+        return rotational_energy(orientation, spin, flown.inverse_inertia);
+      };
+      drift = energy(at.solid.orientation, at.spin) - energy(flown.orientation, flown.spin) -
+              energy(at.solid.orientation, after.spin);
       bodies.orientation[body] = at.solid.orientation;
       bodies.spin[body] = after.spin;
       rotate_freely(bodies.orientation[body], bodies.spin[body], flown.inverse_inertia, flown.midpoint - s);
+      drift += energy(bodies.orientation[body], bodies.spin[body]);
     }
     reach[body] = reach_of(body);
+    return drift;
   }
 };
 
@@ -230,7 +247,8 @@ struct FindFirst {
     const ConstView<Pair> pairs = stage.problem.pairs;
     if (k < pairs.size()) {
       const Pair& pair = pairs[k];
-      const bool has_plane = stage.bodies.shape[pair.i] == Shape::plane || stage.bodies.shape[pair.j] == Shape::plane;
+      const bool has_plane =
+          stage.bodies.shape[pair.i] == Shape::plane || stage.bodies.shape[pair.j] == Shape::plane;
       return has_plane ? std::pair(pair.i, pair.i) : std::pair(pair.i, pair.j);
     }
     const std::int64_t bodies = stage.bodies.count();
@@ -238,6 +256,13 @@ struct FindFirst {
     const auto body = static_cast<std::int32_t>((k - pairs.size()) % bodies);
     return std::minmax(plane, body);
   }
+};
+
+/// Who has had an impact later than the flight begins has been where it was before that.
+struct StartClock {
+  View<double> clock;
+  double from;
+  SCREE_HD void operator()(std::int64_t k) const { clock[k] = from > 0 ? fmax(clock[k], from) : 0.0; }
 };
 
 struct SetReach {
@@ -253,7 +278,8 @@ struct LoadReach {
 struct MinusSize {
   BodyView bodies;
   SCREE_HD double operator()(std::int64_t k) const {
-    return bodies.mobility[k] == Mobility::absent ? -HUGE_VAL : -smallest_size(bodies.shape[k], bodies.size[k]);
+    return bodies.mobility[k] == Mobility::absent ? -HUGE_VAL
+                                                  : -smallest_size(bodies.shape[k], bodies.size[k]);
   }
 };
 
@@ -263,7 +289,7 @@ bool may_go_deep(const FlightStage& stage) {
   const double reach = parallel::max<double, Host>("impact.reach", n, LoadReach{stage.reach}, 0.0);
   const double size = -parallel::max<double, Host>("impact.size", n, MinusSize{stage.bodies}, -HUGE_VAL);
   // The reach is of half a substep: two bodies, and both halves.
-  return 4 * reach > tolerance::deep_approach * size;
+  return stage.parameters.continuous && 4 * reach > tolerance::deep_approach * size;
 }
 
 struct Event {
@@ -277,7 +303,30 @@ struct Event {
   }
 };
 
-struct MarkFlying {
+/// Pairs of bodies after their impacts. What the response will do comes after: their flight is straight, with
+/// all of the substep's kick.
+class StruckBodies final : public LateBodies {
+ public:
+  explicit StruckBodies(const FlightStage& stage) : stage_(stage) {}
+
+  double time_of(std::int32_t i, std::int32_t j) const override {
+    return std::max(stage_.clock[i], stage_.clock[j]);
+  }
+  double now() const override { return 0.5 * stage_.problem.step; }
+  Solid solid_at(std::int32_t body, double time) const override { return at(body, time).solid; }
+
+  BodyInstant at(std::int32_t body, double time) const {
+    BodyFlight flight = stage_.flight(body);
+    flight.velocity = flight.velocity_at(stage_.problem.step);
+    flight.acceleration.setZero();
+    return instant_of(flight, time);
+  }
+
+ private:
+  FlightStage stage_;
+};
+
+struct MarkFlights {
   FlightStage stage;
   ConstView<Manifold> manifolds;
   View<Contact> contacts;
@@ -287,8 +336,10 @@ struct MarkFlying {
   void operator()(std::int64_t index) const {
     Contact& contact = contacts[index];
     const Manifold& m = manifolds[contact.manifold];
-    if (contact.loaded || !would_push_apart(m)) return;
     const double step = stage.problem.step;
+    const double seen = std::max(0.5 * step, StruckBodies(stage).time_of(m.i, m.j));
+    contact.lead = seen - 0.5 * step;
+    if (contact.loaded || !would_push_apart(m, seen)) return;
     PairFlight pair = stage.pair_of(m.i, m.j, 1.5 * step);
     pair.slowest[m.part] = 0;
     const Meeting meeting = next_meeting(pair, std::max(stage.clock[m.i], stage.clock[m.j]));
@@ -296,16 +347,16 @@ struct MarkFlying {
                      (meeting.time > step && fastest_approach(pair) > stage.slowest_bounce(m.i, m.j));
   }
 
-  bool would_push_apart(const Manifold& m) const {
-    const double step = stage.problem.step;
-    const BodyFlight i = stage.flight(m.i);
-    const BodyFlight j = stage.flight(m.j);
-    const BodyInstant at_i{{i.position, i.orientation, i.size}, i.velocity_at(step), i.spin};
-    const BodyInstant at_j{{j.position, j.orientation, j.size}, j.velocity_at(step), j.spin};
+  bool would_push_apart(const Manifold& m, double seen) const {
+    const StruckBodies struck(stage);
+    const BodyInstant i = struck.at(m.i, seen);
+    const BodyInstant j = struck.at(m.j, seen);
     bool pushes = false;
     for (int k = 0; k < m.count; ++k) {
-      if (m.points[k].gap <= 0) return false;  // has touched, and would for what presses it alone
-      pushes = pushes || closing_speed(m, k, at_i, at_j) * step > m.points[k].gap;
+      const double closing = closing_speed(m, k, i, j);
+      if (closing <= 0 || closing * (1.5 * stage.problem.step - seen) <= m.points[k].gap) continue;
+      if (m.points[k].gap <= 0) return false;  // touches: no impact is to come
+      pushes = true;
     }
     return pushes;
   }
@@ -316,15 +367,15 @@ struct MarkFlying {
 Ledger ImpactSolver::resolve(const ImpactProblem& problem, const ResponseParameters& parameters,
                              BodyView bodies) {
   const std::int64_t n = bodies.count();
-  clock_.resize(n);
-  hits_.resize(n);
-  parallel::fill("impact.reset", clock_, problem.from);
-  parallel::fill("impact.reset", hits_, std::int32_t{0});
+  log_.clock.resize(n);
+  log_.hits.resize(n);
+  parallel::for_each<Host>("impact.reset", n, StartClock{log_.clock.view(), problem.from});
+  parallel::fill("impact.reset", log_.hits, std::int32_t{0});
   impacts_.clear();
   saved_.clear();
   hit_bound_ = false;
-  reach_.resize(n);
-  const FlightStage stage{problem, parameters, bodies, clock_.view(), hits_.view(), reach_.view()};
+  log_.reach.resize(n);
+  const FlightStage stage(problem, parameters, bodies, log_);
   parallel::for_each<Host>("impact.reach", n, SetReach{stage});
   if (!(problem.bounces && parameters.restitution) && !may_go_deep(stage)) return {};
   planes_.clear();
@@ -337,7 +388,7 @@ Ledger ImpactSolver::resolve(const ImpactProblem& problem, const ResponseParamet
 
   std::priority_queue<Event, std::vector<Event>, std::greater<>> events;
   const auto foresee = [&](std::int32_t i, std::int32_t j, const Meeting& meeting) {
-    if (meeting.time <= problem.step) events.push({meeting, i, j, hits_.view()[i], hits_.view()[j]});
+    if (meeting.time <= problem.step) events.push({meeting, i, j, stage.hits[i], stage.hits[j]});
   };
   for (std::int64_t k = 0; k < first_.size(); ++k) {
     if (first_.view()[k].time > problem.step) continue;
@@ -359,22 +410,26 @@ Ledger ImpactSolver::resolve(const ImpactProblem& problem, const ResponseParamet
     for (const std::int32_t plane : planes_) look_at(plane);
   };
   const auto save = [&](std::int32_t body) {
-    if (!stage.is_free(body) || hits_.view()[body] > 0) return;
-    saved_.push_back(
-        {body, bodies.position[body], bodies.orientation[body], bodies.velocity[body], bodies.spin[body]});
+    if (!stage.is_free(body) || stage.hits[body] > 0) return;
+    saved_.push_back({body, bodies.position[body], bodies.orientation[body], bodies.velocity[body],
+                      bodies.spin[body], stage.clock[body]});
   };
   Ledger ledger;
   while (!events.empty()) {
     const Event event = events.top();
     events.pop();
     const auto [meeting, i, j, hits_i, hits_j] = event;
-    if (hits_.view()[i] != hits_i || hits_.view()[j] != hits_j) continue;
+    if (stage.hits[i] != hits_i || stage.hits[j] != hits_j) continue;
+    const std::size_t saved = saved_.size();
     save(i);
     save(j);
     Impact impact;
-    if (!stage.resolve(i, j, meeting, impact, ledger)) continue;
+    if (!stage.resolve(i, j, meeting, impact, ledger)) {
+      saved_.resize(saved);
+      continue;
+    }
     impacts_.push_back(impact);
-    hit_bound_ = hit_bound_ || std::max(hits_.view()[i], hits_.view()[j]) >= most_bounces;
+    hit_bound_ = hit_bound_ || std::max(stage.hits[i], stage.hits[j]) >= most_bounces;
     foresee(i, j, stage.next(i, j));
     foresee_all_of(i, j);
     foresee_all_of(j, i);
@@ -410,16 +465,62 @@ void ImpactSolver::undo(BodyView bodies) {
     bodies.orientation[saved.body] = saved.orientation;
     bodies.velocity[saved.body] = saved.velocity;
     bodies.spin[saved.body] = saved.spin;
+    log_.clock.view()[saved.body] = saved.clock;
   }
   saved_.clear();
   impacts_.clear();
 }
 
-void ImpactSolver::mark_flying(const ImpactProblem& problem, const ResponseParameters& parameters,
-                               ConstView<Manifold> manifolds, BodyView bodies, ContactSet& set) {
-  const FlightStage stage{problem, parameters, bodies, clock_.view(), hits_.view(), reach_.view()};
-  parallel::for_each<Host>("impact.flying", set.contacts.size(),
-                           MarkFlying{stage, manifolds, set.contacts.view()});
+const LateBodies* ImpactSolver::late_bodies(const ImpactProblem& problem,
+                                            const ResponseParameters& parameters, BodyView bodies) {
+  const auto is_late = [&](const Saved& saved) { return log_.clock.view()[saved.body] > 0.5 * problem.step; };
+  if (std::none_of(saved_.begin(), saved_.end(), is_late)) return nullptr;
+  late_ = std::make_unique<StruckBodies>(FlightStage(problem, parameters, bodies, log_));
+  return late_.get();
+}
+
+void ImpactSolver::mark_flights(const ImpactProblem& problem, const ResponseParameters& parameters,
+                                ConstView<Manifold> manifolds, BodyView bodies, ContactSet& set) {
+  parallel::for_each<Host>(
+      "impact.flights", set.contacts.size(),
+      MarkFlights{FlightStage(problem, parameters, bodies, log_), manifolds, set.contacts.view()});
+}
+
+Ledger ImpactSolver::shift_late(const ImpactProblem& problem, const ResponseParameters& parameters,
+                                BodyView bodies, const ContactSet& set) {
+  const double midpoint = 0.5 * problem.step;
+  const auto is_late = [&](const Saved& saved) { return log_.clock.view()[saved.body] > midpoint; };
+  if (std::none_of(saved_.begin(), saved_.end(), is_late)) return {};
+  const auto for_each_end = [&bodies](const Contact& c, auto&& act) {
+    if (bodies.mobility[c.i] == Mobility::free) act(c.i, Vec3(-c.impulse));
+    if (bodies.mobility[c.j] == Mobility::free) act(c.j, c.impulse);
+  };
+  impulse_.assign(static_cast<std::size_t>(bodies.count()), Vec3::Zero());
+  for (const Contact& c : set.contacts.view()) {
+    for_each_end(c, [this](std::int32_t body, const Vec3& impulse) {
+      impulse_[static_cast<std::size_t>(body)] += impulse;
+    });
+  }
+  Ledger ledger;
+  // An impulse at a contact's time acts beside the midpoint by as much as the body flies until then.
+  for (const Contact& c : set.contacts.view()) {
+    if (c.lead == 0 || c.impulse.isZero(0)) continue;
+    for_each_end(c, [&](std::int32_t body, const Vec3& impulse) {
+      const Vec3 before =
+          bodies.velocity[body] - bodies.inverse_mass[body] * impulse_[static_cast<std::size_t>(body)];
+      ledger.angular_correction -= c.lead * before.cross(impulse);
+    });
+  }
+  for (const Saved& saved : saved_) {
+    const std::int32_t body = saved.body;
+    const double lead = log_.clock.view()[body] - midpoint;
+    const Vec3 moment = lead * impulse_[static_cast<std::size_t>(body)];
+    if (!is_late(saved)) continue;
+    bodies.position[body] -= bodies.inverse_mass[body] * moment;
+    ledger.correction -= moment.dot(parameters.acceleration_of(body));
+    ledger.angular_correction -= moment.cross(bodies.velocity[body]);
+  }
+  return ledger;
 }
 
 }  // namespace scree

@@ -23,23 +23,13 @@ Vec3 tilting_spin(const BodyFlight& boundary) {
 
 bool is_ball(const BodyFlight& body) { return body.shape == Shape::sphere; }
 
-/// Bound on the spin of a body in free rotation, at any time (rad/s).
-double fastest_spin(const BodyFlight& body) {
-  if (has_equal_moments(body.inverse_inertia)) return body.spin.norm();
-  const double largest = body.inverse_inertia.maxCoeff();
-  const double by_momentum =
-      largest * spin_momentum(body.orientation, body.spin, body.inverse_inertia).norm();
-  const double by_energy =
-      sqrt(2 * largest * rotational_energy(body.orientation, body.spin, body.inverse_inertia));
-  return std::min(by_momentum, by_energy);
-}
-
 /// Bound on how fast turning moves a body's surface where it is nearest to a partner whose every point is
 /// within `far` of the body's centre (m/s).
 double fastest_turn(const BodyFlight& body, double far) {
   if (is_ball(body)) return 0;
   if (is_boundary(body.shape)) return tilting_spin(body).norm() * far;
-  return fastest_spin(body) * bounding_radius(body.shape, body.size);
+  return fastest_spin(body.orientation, body.spin, body.inverse_inertia) *
+         bounding_radius(body.shape, body.size);
 }
 
 /// Position, velocity and acceleration of j relative to i.
@@ -82,7 +72,8 @@ Meeting next_of_ball_in_tube(const PairFlight& pair, const BodyFlight& ball, con
   const double step = 2 * ball.midpoint;
   const Vec3 start = flight.at(velocity, step, earliest);
   const double slack = tolerance::contact_slack * ball.size.x();
-  if (across(start).norm() > tube.size.x() + slack || fabs(axis.dot(start)) > tube.size.z() + slack) return {};
+  if (across(start).norm() > tube.size.x() + slack || fabs(axis.dot(start)) > tube.size.z() + slack)
+    return {};
   Meeting first;
   const WallImpact wall = next_wall_impact({.flight = {across(flight.position), across(flight.acceleration)},
                                             .velocity = across(velocity),
@@ -101,11 +92,12 @@ Meeting next_of_ball_in_tube(const PairFlight& pair, const BodyFlight& ball, con
 
 /// A pair at one instant of the search.
 struct Look {
-  bool near = false;      // within reach
-  double gap = HUGE_VAL;  // smallest of the points whose part may count (m)
-  double closing = 0;     // approach there (m/s)
-  bool hit = false;       // at some point that touches the approach counts
-  int part = 0;           // of that point
+  bool near = false;                   // within reach
+  double gap = HUGE_VAL;               // smallest of the points whose part may count (m)
+  double closing = 0;                  // approach there (m/s)
+  bool hit = false;                    // at some point that touches the approach counts
+  int part = 0;                        // of that point
+  bool rests[PairFlight::parts] = {};  // parts where a point touches whose approach does not count
 };
 
 class Search {
@@ -115,21 +107,24 @@ class Search {
         fastest_(fastest),
         size_(std::min(smallest_size(pair.i.shape, pair.i.size), smallest_size(pair.j.shape, pair.j.size))) {}
 
-  Meeting run(double earliest) const {
+  Meeting run(double earliest) {
     double s = earliest;
     Look now = look(s);
     for (int iteration = 0; now.near && iteration < most_iterations; ++iteration) {
       if (now.hit) return {.time = s, .part = now.part};
+      settle(now);
       if (s >= pair_.until) return {};
       const double next = std::min(s + step_from(now), pair_.until);
       const Look then = look(next);
       const double level = std::min(now.gap, 0.0);
-      if (then.gap < level - touching()) {
-        std::tie(s, now) = bisect(s, now, next, then, level);
-      } else {
-        s = next;
-        now = then;
+      if (then.hit) {
+        if (then.gap >= level - touching()) return {.time = next, .part = then.part};
+        // Where it reaches that gap, unless it is not fast enough there yet.
+        const auto [touch, at] = bisect(s, now, next, then, level);
+        return at.hit ? Meeting{.time = touch, .part = at.part} : Meeting{.time = next, .part = then.part};
       }
+      s = next;
+      now = then;
     }
     return {};
   }
@@ -138,9 +133,16 @@ class Search {
   static constexpr int most_iterations = 1000;
   static constexpr int most_bisections = 60;
   static constexpr double touching_share = 1e-12;  // of the smaller size: at this gap bodies touch
-  static constexpr double least_share = 0.02;      // likewise: steps that advance by less may be Newton's
+  static constexpr double least_share = 0.1;       // likewise: steps that advance by less may be Newton's
 
   double touching() const { return touching_share * size_; }
+
+  /// A part that has touched slowly bears load from then on, and does not bounce.
+  void settle(const Look& now) {
+    for (int part = 0; part < PairFlight::parts; ++part) {
+      if (now.rests[part]) pair_.slowest[part] = HUGE_VAL;
+    }
+  }
 
   Look look(double s) const {
     const BodyInstant i = instant_of(pair_.i, s);
@@ -160,10 +162,12 @@ class Search {
           look.gap = gap;
           look.closing = closing;
         }
-        if (gap <= touching() && !look.hit && pair_.counts(part, closing, s)) {
+        if (gap > touching()) continue;
+        if (!look.hit && pair_.counts(part, closing, s)) {
           look.hit = true;
           look.part = part;
         }
+        look.rests[part] = look.rests[part] || (closing > 0 && !pair_.counts(part, closing, s));
       }
     }
     return look;
@@ -198,7 +202,7 @@ class Search {
     return {to, after};
   }
 
-  const PairFlight& pair_;
+  PairFlight pair_;
   double fastest_;
   double size_;
 };
@@ -206,7 +210,8 @@ class Search {
 }  // namespace
 
 BodyInstant instant_of(const BodyFlight& flight, double s) {
-  BodyInstant now{{flight.position_at(s), flight.orientation, flight.size}, flight.velocity_at(s), flight.spin};
+  BodyInstant now{
+      {flight.position_at(s), flight.orientation, flight.size}, flight.velocity_at(s), flight.spin};
   if (!flight.spin.isZero(0)) {
     rotate_freely(now.solid.orientation, now.spin, flight.inverse_inertia, s - flight.midpoint);
   }
@@ -224,13 +229,20 @@ double fastest_surface(const BodyFlight& flight, double time) {
 }
 
 double fastest_approach(const PairFlight& pair) {
-  const double linear = (pair.j.velocity - pair.i.velocity).norm() +
-                        (pair.j.acceleration - pair.i.acceleration).norm() * pair.until;
+  // To a plane that keeps its normal, only what is along it.
+  Vec3 normal = Vec3::Zero();
+  for (const BodyFlight* body : {&pair.i, &pair.j}) {
+    if (body->shape == Shape::plane && tilting_spin(*body).isZero(0)) normal = axis_of(*body);
+  }
+  const auto speed = [&normal](const Vec3& v) { return normal.isZero(0) ? v.norm() : fabs(normal.dot(v)); };
+  const double linear = speed(pair.j.velocity - pair.i.velocity) +
+                        speed(pair.j.acceleration - pair.i.acceleration) * pair.until;
   const auto far = [&](const BodyFlight& partner) {
     return is_boundary(partner.shape) ? 0.0
                                       : (pair.j.position - pair.i.position).norm() + linear * pair.until +
                                             bounding_radius(partner.shape, partner.size);
   };
+  // (A plane that keeps its normal turns nothing, so that the bound on distances does not matter there.)
   return linear + fastest_turn(pair.i, far(pair.j)) + fastest_turn(pair.j, far(pair.i));
 }
 

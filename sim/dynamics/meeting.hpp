@@ -43,9 +43,10 @@ struct PairFlight {
   static constexpr int parts = 3;  ///< most surfaces of a pair, Manifold::part
 
   BodyFlight i, j;
-  double until;               ///< end of the search, into the substep (s)
-  double slowest[parts];      ///< approach that counts at each part (m/s); infinite: none does
-  double farthest = HUGE_VAL;  ///< an approach that would go on for more than this until the end counts too (m)
+  double until;           ///< end of the search, into the substep (s)
+  double slowest[parts];  ///< approach that counts at each part (m/s); infinite: none does
+  double farthest =
+      HUGE_VAL;  ///< an approach that would go on for more than this until the end counts too (m)
 
   bool counts(int part, double approach, double s) const {
     return approach > slowest[part] || approach * (until - s) > farthest;
@@ -60,8 +61,8 @@ struct Meeting {
 /// Bound on how fast any two points of the bodies near one another approach, until the search ends (m/s).
 double fastest_approach(const PairFlight& pair);
 
-/// Bound on the speed of any point of a body's surface within the time given (m/s); infinite for a boundary that
-/// turns over.
+/// Bound on the speed of any point of a body's surface within the time given (m/s); infinite for a boundary
+/// that turns over.
 double fastest_surface(const BodyFlight& flight, double time);
 
 /// The first meeting that counts, at `earliest` (s) or later. Balls, and balls with planes and tubes that do

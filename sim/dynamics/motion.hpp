@@ -20,8 +20,8 @@ void contact_margins(const Bodies<Host>& bodies, double dt, double slack,
 /// Boxes around the bodies, fat enough that pairs found with them last while nobody moves far.
 class FatBoxes {
  public:
-  /// Around the bodies where they are, with room for their travel within dt (s), and for contacts that reach as
-  /// far as given (m).
+  /// Around the bodies where they are, with room for their travel within dt (s), and for contacts that reach
+  /// as far as given (m).
   void put_around(const Bodies<Host>& bodies, double dt, const ResponseParameters& parameters,
                   const Array<double, Host>& contact_margin);
   /// Whether every body, wherever it is now, and with contacts that reach as far as given (m), is still in

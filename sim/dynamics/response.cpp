@@ -92,10 +92,10 @@ struct PrepareRows {
       ContactRow& row = stage.rows_of(c)[k];
       const Vec3 impulse = row.impulse;
       const Vec3& point = m.points[k].position;
-      const Vec3 arm_i = point - bodies.position[m.i];
-      const Vec3 arm_j = point - bodies.position[m.j];
       const SolverBody& i = stage.solver[m.i];
       const SolverBody& j = stage.solver[m.j];
+      const Vec3 arm_i = point - (bodies.position[m.i] + contact.lead * i.velocity);
+      const Vec3 arm_j = point - (bodies.position[m.j] + contact.lead * j.velocity);
       if (contact.balls) {
         row = make_ball_row(arm_i, arm_j, m.points[k].gap, i, j);
       } else {
@@ -103,7 +103,7 @@ struct PrepareRows {
       }
       row.impulse = impulse;
       // The next midpoint must not overlap: the gap may close by then, and no more (speculative contact).
-      row.target = row.gap > shell ? -(row.gap - shell) / stage.step : 0.0;
+      row.target = row.gap > shell ? -(row.gap - shell) / (stage.step - contact.lead) : 0.0;
       // Held, a contact that was parting before the kick would gain energy, p.(u- + u+)/2: it may close as
       // fast.
       row.target = fmin(row.target, noise - speed_before(contact, row));

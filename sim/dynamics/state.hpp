@@ -4,6 +4,7 @@
 #include "core/array.hpp"
 #include "core/bodies.hpp"
 #include "sim/dynamics/contact_row.hpp"
+#include "sim/dynamics/restitution.hpp"
 #include "sim/observation.hpp"
 
 #include <cstdint>
@@ -21,11 +22,12 @@ struct ResponseParameters {
   bool restitution = true;
   bool rotation = true;
   bool gyroscopic = true;
+  bool continuous = true;
   bool warm_start = true;
-  int iterations = 0;                ///< most sweeps; 0: automatic_sweeps()
-  int block_sweeps = 0;              ///< over the points of a contact at each visit; 0: likewise
-  double tolerance = 1e-10;          ///< of the impulses' change in one sweep, relative
-  double restitution_threshold = 0;  ///< m/s
+  int iterations = 0;        ///< most sweeps; 0: automatic_sweeps()
+  int block_sweeps = 0;      ///< over the points of a contact at each visit; 0: likewise
+  double tolerance = 1e-10;  ///< of the impulses' change in one sweep, relative
+  RestitutionThreshold restitution_threshold;
 
   /// Of a free body in flight (m/s^2).
   SCREE_HD Vec3 acceleration_of(std::int64_t body) const {

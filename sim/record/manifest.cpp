@@ -46,6 +46,24 @@ Json json_of(const Observation& o) {
           {"coordination_mean", o.coordination_mean}};
 }
 
+/// By decade, named by its lower end; those without any are left out.
+Json json_of(const Disagreements& d) {
+  Json json = Json::object();
+  double from = Disagreements::least;
+  for (const std::int64_t count : d.count) {
+    if (count > 0) json[fmt::format("{:.0e}", from)] = count;
+    from *= 10;
+  }
+  return json;
+}
+
+Json json_of(const CrosscheckStats& c) {
+  return {{"asked", c.asked},
+          {"touching", json_of(c.touching)},
+          {"ccd_deeper", json_of(c.ccd_deeper)},
+          {"ccd_shallower", json_of(c.ccd_shallower)}};
+}
+
 Json json_of(const Counters& c) {
   return {{"sweeps", c.sweeps},
           {"direct", c.direct},
@@ -55,8 +73,11 @@ Json json_of(const Counters& c) {
           {"unconverged", c.unconverged},
           {"unfinished_impacts", c.unfinished_impacts},
           {"pcs_made", c.pcs_made},
-          {"ccd_calls", c.ccd_calls},
-          {"ccd_rejected", c.ccd_rejected}};
+          {"pairs_tested", c.narrowphase.tested},
+          {"ccd_calls", c.narrowphase.ccd_calls},
+          {"ccd_rejected", c.narrowphase.ccd_rejected},
+          {"ccd_stopped", c.narrowphase.ccd_stopped},
+          {"crosscheck", json_of(c.narrowphase.crosscheck)}};
 }
 
 Json machine() {

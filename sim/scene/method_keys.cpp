@@ -43,7 +43,7 @@ Codec<ResponseSettings> response_section() {
                  "sweeps stop when they change the impulses by less than this share"),
           key<T>("warm_start", &T::warm_start, boolean(), optionally, "start from the last step's impulses"),
           key<T>("restitution_threshold", &T::restitution_threshold, or_auto(number(not_negative, "m/s")),
-                 optionally, "slower approaches do not bounce; auto: from gravity and step"),
+                 optionally, "slower approaches do not bounce; auto: 2 gravity step (1 - e)"),
       });
 }
 
@@ -63,7 +63,9 @@ Codec<NarrowPhaseSettings> narrowphase_section() {
                     {
                         key<T>("box_box", &T::box_box, box_box_word(), optionally,
                                "for pairs of boxes; auto: the measured best"),
-                        future<T>("crosscheck", "every pair by two methods, compared"),
+                        key<T>("crosscheck", &T::crosscheck, number(between(0, 1)), optionally,
+                               "share of the pairs of boxes, chosen anew each substep, that libccd is asked "
+                               "about too; where it differs is counted in the manifest"),
                     });
 }
 
@@ -72,7 +74,8 @@ Codec<ModelSettings> model_section() {
   const auto feature = or_auto(word<bool>({{"on", true}, {"off", false}, {"true", true}, {"false", false}}));
   const Codec<T> automatic{word_type({"auto"}, {}), [](T& model, const Node&, Reader&) { model = {}; },
                            [](const T& model) -> std::optional<Node> {
-                             const bool given = model.rotation || model.friction || model.restitution;
+                             const bool given =
+                                 model.rotation || model.friction || model.restitution || model.continuous;
                              return given ? std::nullopt : std::optional(Node::scalar("auto"));
                            }};
   return any_of<T>(
@@ -82,7 +85,9 @@ Codec<ModelSettings> model_section() {
                       key<T>("rotation", &T::rotation, feature, optionally, "bodies turn"),
                       key<T>("friction", &T::friction, feature, optionally, "contacts rub"),
                       key<T>("restitution", &T::restitution, feature, optionally, "impacts bounce"),
-                      future<T>("continuous", "impacts inside a step"),
+                      key<T>("continuous", &T::continuous, feature, optionally,
+                             "fast bodies meet at their own time inside a step; auto: where they could pass "
+                             "through one another, or nearly"),
                   })});
 }
 

@@ -86,7 +86,7 @@ struct ResponseSettings {
   std::optional<int> block_sweeps;  ///< sweeps over the points of a contact at each visit; absent: likewise
   double tolerance = 1e-10;         ///< sweeps stop when they change the impulses by less than this share
   bool warm_start = true;           ///< start from the last step's impulses
-  std::optional<double> restitution_threshold;  ///< m/s; absent: from gravity and step
+  std::optional<double> restitution_threshold;  ///< m/s; absent: from gravity, step and e
 };
 
 /// Features to compute; absent: only if the scene needs them.
@@ -94,6 +94,7 @@ struct ModelSettings {
   std::optional<bool> rotation;
   std::optional<bool> friction;
   std::optional<bool> restitution;
+  std::optional<bool> continuous;
 };
 
 enum class ColorBy { material, speed, size, kinetic_energy, force, level, id };

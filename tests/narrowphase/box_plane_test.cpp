@@ -1,6 +1,7 @@
 #include "narrowphase/box_plane.hpp"
 
-#include "tests/narrowphase/oracle.hpp"
+#include "bench/narrowphase/families.hpp"
+#include "bench/narrowphase/oracle.hpp"
 
 #include <gtest/gtest.h>
 
@@ -19,7 +20,7 @@ TEST(BoxPlane, PointsAreTheCornersWithinTheMargin) {
                     Vec3(random.uniform(0.1, 1), random.uniform(0.1, 1), random.uniform(0.1, 1))};
     const double margin = 0.05;
     std::vector<double> heights;
-    const auto vertices = oracle::Box(box).vertices();
+    const auto vertices = oracle::Box(box).vertices;
     for (const oracle::Vec& v : vertices) {
       heights.push_back(static_cast<double>((plane.orientation.cast<oracle::Real>() * oracle::Vec::UnitZ())
                                                 .dot(v - plane.position.cast<oracle::Real>())));

@@ -217,6 +217,64 @@ TEST(NarrowPhase, EveryMethodFindsTheSamePairs) {
   }
 }
 
+TEST(NarrowPhase, ACrosscheckAsksTheSameShareWhateverTheThreadsAndChangesNothing) {
+  const Scene scene = crowd(1500);
+  const std::vector<Pair> pairs = all_pairs(scene.bodies.count());
+  const ConstView<Pair> pair_view(pairs.data(), static_cast<std::int64_t>(pairs.size()));
+  NarrowPhase unchecked({});
+  const auto expected = unchecked.find(view_of(scene.bodies), pair_view, scene.margin.view());
+  EXPECT_EQ(unchecked.stats().crosscheck.asked, 0);
+
+  const auto box_pairs = std::count_if(pairs.begin(), pairs.end(), [&](const Pair& pair) {
+    const ConstBodyView b = view_of(scene.bodies);
+    return b.shape[pair.i] == Shape::box && b.shape[pair.j] == Shape::box &&
+           (b.mobility[pair.i] == Mobility::free || b.mobility[pair.j] == Mobility::free);
+  });
+  std::vector<std::int64_t> first;
+  for (const int threads : {1, 2, 7}) {
+    const tbb::global_control limit(tbb::global_control::max_allowed_parallelism,
+                                    static_cast<std::size_t>(threads));
+    NarrowPhase narrow({.crosscheck = 0.01});
+    std::vector<std::int64_t> counts;
+    for (int search = 0; search < 3; ++search) {
+      const auto found = narrow.find(view_of(scene.bodies), pair_view, scene.margin.view());
+      ASSERT_EQ(found.size(), expected.size());
+      for (std::int64_t k = 0; k < found.size(); ++k) expect_same(found[k], expected[k]);
+      const CrosscheckStats& check = narrow.stats().crosscheck;
+      EXPECT_NEAR(static_cast<double>(check.asked), 0.01 * static_cast<double>(box_pairs),
+                  5 * std::sqrt(0.01 * static_cast<double>(box_pairs)));
+      counts.push_back(check.asked);
+      counts.insert(counts.end(), check.ccd_deeper.count.begin(), check.ccd_deeper.count.end());
+    }
+    EXPECT_NE(counts[0], counts[counts.size() / 3]);  // another choice in the next search
+    if (first.empty()) first = counts;
+    EXPECT_EQ(counts, first);
+  }
+}
+
+TEST(NarrowPhase, ACrosscheckOfEveryPairFindsLibccdAtFaultAlone) {
+  const Scene scene = crowd(1500);
+  const std::vector<Pair> pairs = all_pairs(scene.bodies.count());
+  NarrowPhase narrow({.crosscheck = 1});
+  narrow.find(view_of(scene.bodies), {pairs.data(), static_cast<std::int64_t>(pairs.size())},
+              scene.margin.view());
+  const CrosscheckStats& check = narrow.stats().crosscheck;
+  EXPECT_GT(check.ccd_deeper.total(), 100);  // MPR's portal is not the shortest way out of a deep overlap
+  EXPECT_EQ(check.ccd_shallower.total(), 0);
+  EXPECT_EQ(check.touching.total(), 0);
+}
+
+TEST(Disagreements, CountByDecadeFromTheLeastThatCounts) {
+  Disagreements d;
+  for (const double size : {-1.0, 0.0, 9.9e-7, 1.1e-6, 9.9e-6, 1.1e-5, 0.99, 1.1, 1e9, HUGE_VAL})
+    d.note(size);
+  EXPECT_EQ(d.count, (std::array<std::int64_t, Disagreements::decades>{2, 1, 0, 0, 0, 1, 3}));
+  EXPECT_EQ(d.total(), 7);
+  Disagreements sum = d;
+  sum += d;
+  EXPECT_EQ(sum.total(), 14);
+}
+
 TEST(NarrowPhase, NothingInNothingOut) {
   Scene scene;
   NarrowPhase narrow({});

@@ -1,8 +1,9 @@
 // Spheres against spheres, planes and boxes, in long double by definition.
+#include "bench/narrowphase/families.hpp"
+#include "bench/narrowphase/oracle.hpp"
 #include "narrowphase/sphere_box.hpp"
 #include "narrowphase/sphere_plane.hpp"
 #include "narrowphase/sphere_sphere.hpp"
-#include "tests/narrowphase/oracle.hpp"
 
 #include <gtest/gtest.h>
 
@@ -79,24 +80,6 @@ TEST(SpherePlane, GapNormalAndPointAreExact) {
   }
 }
 
-/// Signed distance of a point to a box's surface, and where on it, by trying each of the 6 faces as a
-/// rectangle.
-oracle::Real to_surface(const oracle::Box& box, const oracle::Vec& p, oracle::Vec& nearest) {
-  const oracle::Vec local = box.axes.transpose() * (p - box.centre);
-  oracle::Real best = INFINITY;
-  for (int k = 0; k < 3; ++k) {
-    for (const oracle::Real side : {-1, 1}) {
-      oracle::Vec on = local.cwiseMax(-box.half).cwiseMin(box.half);
-      on[k] = side * box.half[k];
-      if ((local - on).norm() >= best) continue;
-      best = (local - on).norm();
-      nearest = box.centre + box.axes * on;
-    }
-  }
-  const bool inside = (local.cwiseAbs() - box.half).maxCoeff() < 0;
-  return inside ? -best : best;
-}
-
 TEST(SphereBox, FacesEdgesVerticesAndInsideAreExact) {
   Random random(3, 0);
   for (int n = 0; n < 5 * draws; ++n) {
@@ -107,7 +90,8 @@ TEST(SphereBox, FacesEdgesVerticesAndInsideAreExact) {
     for (int k = 0; k < 3; ++k) at[k] = random.uniform(-1.5, 1.5) * box.size[k];
     const Solid ball = sphere(box.position + box.orientation * at, scale * random.uniform(0.01, 1));
     oracle::Vec nearest = oracle::Vec::Zero();
-    const oracle::Real distance = to_surface(oracle::Box(box), ball.position.cast<oracle::Real>(), nearest);
+    const oracle::Real distance =
+        oracle::to_surface(oracle::Box(box), ball.position.cast<oracle::Real>(), nearest);
     const double gap = static_cast<double>(distance) - ball.size.x();
     const double margin = 0.1 * scale;
 

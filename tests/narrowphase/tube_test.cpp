@@ -1,8 +1,9 @@
 // Spheres and boxes in tubes, against distances in long double by another formula, and against samples of the
 // whole box.
+#include "bench/narrowphase/families.hpp"
+#include "bench/narrowphase/oracle.hpp"
 #include "narrowphase/box_tube.hpp"
 #include "narrowphase/sphere_tube.hpp"
-#include "tests/narrowphase/oracle.hpp"
 
 #include <gtest/gtest.h>
 
@@ -12,38 +13,10 @@ namespace scree {
 namespace {
 
 using oracle::Real;
+using oracle::Tube;
 using oracle::Vec;
 
 constexpr int draws = 20000;
-
-/// The surfaces of a tube by their definitions.
-struct Tube {
-  Vec centre, axis;
-  Real radius, half;
-
-  explicit Tube(const Solid& s)
-      : centre(s.position.cast<Real>()),
-        axis(s.orientation.cast<Real>().toRotationMatrix().col(2)),
-        radius(s.size.x()),
-        half(s.size.z()) {}
-
-  /// From a point inside to the surface; negative beyond it.
-  Real distance(int part, const Vec& p) const {
-    const Vec offset = p - centre;
-    if (part == tube_wall) return radius - offset.cross(axis).norm();
-    return half + (part == tube_cap_below ? 1 : -1) * axis.dot(offset);
-  }
-  /// The direction in which the surface is nearest.
-  Vec outward(int part, const Vec& p) const {
-    if (part == tube_wall) return (p - centre - axis * axis.dot(p - centre)).normalized();
-    return part == tube_cap_below ? Vec(-axis) : axis;
-  }
-  /// Depth in the tube grown by the margin: at least 0 if it holds a body with this centre.
-  Real depth(const Vec& p, double margin) const {
-    return margin +
-           std::min({distance(tube_wall, p), distance(tube_cap_below, p), distance(tube_cap_above, p)});
-  }
-};
 
 struct Case {
   Solid tube, body;
@@ -187,7 +160,7 @@ TEST(BoxTube, EveryCornerWithinTheMarginIsAContactOfItsOwnWithTheWall) {
     Manifold m[max_pair_manifolds];
     const int count = box_tube(c.body, c.tube, 0.1 * c.scale, m);
     int next = 0;
-    for (const Vec& corner : oracle::Box(c.body).vertices()) {
+    for (const Vec& corner : oracle::Box(c.body).vertices) {
       const Real gap = tube.distance(tube_wall, corner);
       if (std::abs(gap - 0.1L * c.scale) < 1e-12L * c.scale) {
         next += next < count && m[next].part == tube_wall &&

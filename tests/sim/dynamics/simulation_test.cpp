@@ -266,7 +266,8 @@ bodies:
   Snapshot now;
   while (!simulation.finished()) {
     simulation.step();
-    ASSERT_LT(simulation.observe().unexplained, 1e-12);
+    // The rounding of what the drum puts in and friction takes out, many times what the bodies have.
+    ASSERT_LT(simulation.observe().unexplained, 1e-11);
     simulation.snapshot(now);
     for (std::size_t k = 1; k < now.bodies.position.size(); ++k) {
       const Vec3 at = now.bodies.orientation[0].conjugate() * now.bodies.position[k];

@@ -79,6 +79,10 @@ TEST(Manifest, SaysWhatRanAndHowItCameOut) {
   scene.resolved = "format: 1\n";
   RunSummary run{.status = "failed", .error = "boom", .space = "host", .steps = 12, .state_hash = 0xabc};
   run.last.kinetic_linear = 0.1;
+  run.last.counters.narrowphase.ccd_stopped = 3;
+  run.last.counters.narrowphase.crosscheck.asked = 20;
+  for (const double size : {2e-7, 2e-6, 0.5, 0.25, 12.0})
+    run.last.counters.narrowphase.crosscheck.ccd_deeper.note(size);
   run.checks = sample().checks;
   run.warnings = {"no movie"};
   const auto json = nlohmann::json::parse(manifest_of(scene, run));
@@ -88,6 +92,10 @@ TEST(Manifest, SaysWhatRanAndHowItCameOut) {
   EXPECT_EQ(json["scene"]["seed"], 7);
   EXPECT_EQ(json["steps"], 12);
   EXPECT_EQ(json["observation"]["energy"]["total"], 0.1);
+  EXPECT_EQ(json["counters"]["ccd_stopped"], 3);
+  EXPECT_EQ(json["counters"]["crosscheck"],
+            nlohmann::json::parse(R"({"asked": 20, "touching": {}, "ccd_shallower": {},
+                                      "ccd_deeper": {"1e-06": 1, "1e-01": 2, "1e+00": 1}})"));
   EXPECT_EQ(json["checks"][0]["measured"], 1.0 / 3);
   EXPECT_EQ(json["warnings"][0], "no movie");
   EXPECT_FALSE(json["program"]["commit"].get<std::string>().empty());

@@ -1,0 +1,48 @@
+// Holds the answers of the narrow phase against long double (oracle.hpp).
+#pragma once
+
+#include "bench/narrowphase/families.hpp"
+#include "narrowphase/ccd.hpp"
+#include "narrowphase/contact.hpp"
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+namespace scree::bench {
+
+inline constexpr int most_parts = 3;
+
+/// A pair, its margin, and the gap of each of its surfaces (Manifold::part).
+struct Item {
+  oracle::SolidPair pair;
+  double margin;
+  std::array<double, most_parts> gap;    ///< infinite if there can be no contact
+  std::array<bool, most_parts> certain;  ///< false if rounding decides whether there can be one
+};
+
+struct Answer {
+  int count = 0;
+  std::array<Manifold, max_pair_manifolds> manifolds;
+};
+
+/// What one method did in one family.
+struct Row {
+  std::int64_t pairs = 0, touching = 0, missed = 0, made_up = 0, not_finite = 0;
+  std::int64_t ccd_calls = 0, ccd_refused = 0, ccd_stopped = 0, ccd_hung = 0;
+  double error = 0, given_away = 0;
+  std::vector<double> nanoseconds;
+  std::int64_t broken = 0;           ///< pairs that broke a bound
+  std::vector<std::uint64_t> which;  ///< the first of them
+};
+
+/// Sets the gaps from the pair and the margin.
+void find_truth(oracle::Family family, Item& item);
+void find_truth(oracle::ClosedForm form, Item& item);
+
+/// Adds the answer to pair `n` to the row. `of_boxes`: two boxes, by libccd's method or by the 15 axes alone.
+void judge(const Item& item, const Answer& answer, std::uint64_t n, bool of_boxes,
+           std::optional<ccd::Method> method, Row& row);
+
+}  // namespace scree::bench
