@@ -6,6 +6,7 @@
 #include "sim/dynamics/direct.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 namespace scree {
@@ -367,24 +368,44 @@ struct StoreVelocities {
   }
 };
 
-/// The direct solver for the islands that the last sweep has changed.
+/// The direct solver for the islands that the last sweep has changed; in the accurate mode, for those whose
+/// natural residual is beyond the tolerance.
 struct SolveIsland {
   SolveStage stage;
   const Islands* islands;
   double tolerance;
+  bool accurate;
   View<DirectOutcome> outcome;
   void operator()(std::int64_t island) const {
+    const IslandProblem problem{.contacts = stage.contacts,
+                                .rows = stage.rows,
+                                .solver = stage.solver,
+                                .velocity = stage.free_velocity,
+                                .spin = stage.free_spin,
+                                .islands = *islands,
+                                .island = island};
+    outcome[island] = (accurate ? natural_residual(problem) : change_of(island)).within(tolerance)
+                          ? DirectOutcome::not_needed
+                          : solve_directly(problem, tolerance, accurate ? thorough_limits : quick_limits);
+  }
+  ImpulseChange change_of(std::int64_t island) const {
     ImpulseChange change;
     for (const std::int32_t c : islands->contacts(island)) change = change + stage.change[c];
-    outcome[island] = change.within(tolerance) ? DirectOutcome::not_needed
-                                               : solve_directly({.contacts = stage.contacts,
-                                                                 .rows = stage.rows,
-                                                                 .solver = stage.solver,
-                                                                 .velocity = stage.free_velocity,
-                                                                 .spin = stage.free_spin,
-                                                                 .islands = *islands,
-                                                                 .island = island},
-                                                                tolerance);
+    return change;
+  }
+};
+
+struct LoadResidual {
+  SolveStage stage;
+  SCREE_HD ImpulseChange operator()(std::int64_t c) const {
+    const Contact& contact = stage.contacts[c];
+    ImpulseChange residual;
+    for (int k = 0; k < contact.count; ++k) {
+      const ContactRow& row = stage.rows_of(c)[k];
+      const Vec3 u = row.relative_velocity(stage.solver[contact.i], stage.solver[contact.j]);
+      residual.add(row, natural_map(row, contact.normal, contact.friction, u) - row.impulse);
+    }
+    return residual;
   }
 };
 
@@ -434,19 +455,24 @@ Ledger ResponseSolver::solve(ConstView<Manifold> manifolds, double step, const R
     sweeps.start();
     const int first = plan.direct ? std::min(plan.sweeps, sweeps_before_direct) : plan.sweeps;
     bool converged = sweeps.run(first);
-    if (!converged && first < plan.sweeps) {
+    if (parameters.accurate || (!converged && first < plan.sweeps)) {
       islands_.find(set.contacts.view(), solver.view());
       outcome_.resize(islands_.count());
-      parallel::for_each<Host>("response.islands", islands_.count(),
-                               SolveIsland{stage, &islands_, parameters.tolerance, outcome_.view()});
+      parallel::for_each<Host>(
+          "response.islands", islands_.count(),
+          SolveIsland{stage, &islands_, parameters.tolerance, parameters.accurate, outcome_.view()});
       converged = count_outcomes(counters);
       if (!converged) {
         sweeps.start();
-        converged = sweeps.run(plan.sweeps - first);
+        converged = sweeps.run(std::max(plan.sweeps - first, sweeps_before_direct));
       }
     }
     if (!converged) ++counters.unconverged;
     sweeps.set_velocities();
+    if (parameters.accurate) {
+      const auto left = parallel::sum<ImpulseChange, Host>("response.residual", n, LoadResidual{stage});
+      if (left.size > 0) counters.residual = std::max(counters.residual, std::sqrt(left.step / left.size));
+    }
     if (parallel::max<int, Host>("response.gain", n, IsGaining{{stage}}, 0) > 0) {
       islands_.find(set.contacts.view(), solver.view());
       const int scaled =
