@@ -2,6 +2,7 @@
 
 #include "core/parallel.hpp"
 #include "core/tolerances.hpp"
+#include "narrowphase/tube.hpp"
 #include "sim/dynamics/colored.hpp"
 #include "sim/dynamics/direct.hpp"
 
@@ -105,11 +106,31 @@ struct PrepareRows {
       row.impulse = impulse;
       // The next midpoint must not overlap: the gap may close by then, and no more (speculative contact).
       row.target = row.gap > shell ? -(row.gap - shell) / (stage.step - contact.lead) : 0.0;
+      if (contact.balls) {
+        row.bend = bend_of(m);
+        row.target -= 0.5 * stage.step * row.bend;
+      }
       // Held, a contact that was parting before the kick would gain energy, p.(u- + u+)/2: it may close as
       // fast.
       row.target = fmin(row.target, noise - speed_before(contact, row));
       if (contact.flying) row.target = fmin(row.target, flight_speed(contact, row));
     }
+  }
+
+  /// Of balls on one another, and of a ball along the wall of a tube: the normal turns with the centres.
+  SCREE_HD double bend_of(const Manifold& m) const {
+    const BodyView& bodies = stage.bodies;
+    const Vec3 w = stage.solver[m.j].velocity - stage.solver[m.i].velocity;
+    Vec3 across = w - w.dot(m.normal) * m.normal;
+    const bool ball_i = bodies.shape[m.i] == Shape::sphere;
+    const bool ball_j = bodies.shape[m.j] == Shape::sphere;
+    if (ball_i && ball_j) return across.squaredNorm() / (bodies.size[m.i].x() + bodies.size[m.j].x());
+    const std::int32_t other = ball_i ? m.j : m.i;
+    if (bodies.shape[other] != Shape::tube || m.part != tube_wall) return 0;
+    const Vec3 axis = bodies.orientation[other] * Vec3::UnitZ();
+    across -= across.dot(axis) * axis;
+    const double reach = bodies.size[other].x() - bodies.size[ball_i ? m.i : m.j].x();
+    return reach > 0 ? -across.squaredNorm() / reach : 0.0;
   }
 
   /// At which the contact parts before the kick.
