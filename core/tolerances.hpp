@@ -47,6 +47,15 @@ inline constexpr double closing_speed = 1e-12;
 /// Share of its approach's energy that an impact may gain before its impulses are scaled down: rounding.
 inline constexpr double impact_gain = 1e-12;
 
+/// Speed at which a contact may part before gravity's kick and still be held at 0 by it, in units of
+/// |gravity| * step. Smaller: the noise of resting faces becomes targets that no rigid body can meet at all
+/// points, and solving them takes long. Larger: held contacts gain more, before their island is scaled down.
+inline constexpr double parting_speed = 1e-5;
+
+/// Energy that the impulses of an island may gain before they are scaled down, as a share of half p.W p: what
+/// the tolerance of the response leaves.
+inline constexpr double response_gain = 1e-10;
+
 /// By how much contacts in flight may close faster than they do before they count as touched, relative.
 inline constexpr double flight_margin = 1e-9;
 /// Change at which the time of an impact is found (of the substep), and at which the impulses of one impact

@@ -96,9 +96,12 @@ struct PositionCorrector::Apply {
     const Vec3& inverse_inertia = stage.bodies.inverse_inertia[k];
     Quat& q = stage.bodies.orientation[k];
     Ledger ledger;
-    stage.bodies.position[k] += d.linear;
-    ledger.correction = mass * gravity.dot(d.linear);
-    ledger.angular_correction = mass * d.linear.cross(stage.bodies.velocity[k]);
+    Vec3& position = stage.bodies.position[k];
+    const Vec3 before = position;
+    position += d.linear;
+    const Vec3 moved = position - before;  // far from the origin rounding drops some
+    ledger.correction = mass * gravity.dot(moved);
+    ledger.angular_correction = mass * moved.cross(stage.bodies.velocity[k]);
     if (rotation && !d.angular.isZero(0)) {
       const double energy = rotational_energy(q, spin, inverse_inertia);
       const Vec3 momentum = spin_momentum(q, spin, inverse_inertia);

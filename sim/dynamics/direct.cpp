@@ -294,8 +294,7 @@ class IslandSolver {
       const double share = residual.step * last.size / (last.step * residual.size);  // squared
       // Slips that overshoot to and fro are taken half the way.
       start_pass(share > 0.25 ? 0.5 : 1.0);
-      stiffness_ = share < 1 ? std::min(stiffness_ * stiffening, stiffest)
-                             : std::max(stiffness_ / stiffening, softest);
+      if (share < 1) stiffness_ = std::min(stiffness_ * stiffening, stiffest);
     }
     return residual;
   }

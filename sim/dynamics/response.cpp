@@ -32,6 +32,12 @@ struct SolveStage {
     state.spin = bodies.spin[body];
     return state;
   }
+  SCREE_HD SolverBody without_contacts(std::int32_t body) const {
+    SolverBody state = solver[body];
+    state.velocity = free_velocity[body];
+    state.spin = free_spin[body];
+    return state;
+  }
   SCREE_HD ContactRow* rows_of(std::int64_t c) const { return &rows[contacts[c].first_row]; }
   SCREE_HD void store(std::int32_t body, const SolverBody& state) const {
     if (!state.is_free()) return;
@@ -71,6 +77,7 @@ struct Release {
 /// Arms, gaps and targets at the midpoint.
 struct PrepareRows {
   SolveStage stage;
+  double noise;  ///< parting speeds that count as none (m/s)
   SCREE_HD void operator()(std::int64_t c) const {
     Contact& contact = stage.contacts[c];
     const Manifold& m = stage.manifolds[contact.manifold];
@@ -97,8 +104,9 @@ struct PrepareRows {
       row.impulse = impulse;
       // The next midpoint must not overlap: the gap may close by then, and no more (speculative contact).
       row.target = row.gap > shell ? -(row.gap - shell) / (stage.step - contact.lead) : 0.0;
-      // Held, a contact that was parting before the kick would gain energy, p.(u- + u+)/2: it may close as fast.
-      row.target = fmin(row.target, -speed_before(contact, row));
+      // Held, a contact that was parting before the kick would gain energy, p.(u- + u+)/2: it may close as
+      // fast.
+      row.target = fmin(row.target, noise - speed_before(contact, row));
       if (contact.flying) row.target = fmin(row.target, flight_speed(contact, row));
     }
   }
@@ -286,6 +294,60 @@ struct Account {
   }
 };
 
+/// What the impulses move, as a parabola in their common scale s: linear s + square s^2 (J).
+struct Moved {
+  double linear = 0;
+  double square = 0;
+
+  SCREE_HD bool gains() const { return linear + square > tolerance::response_gain * square; }
+  SCREE_HD friend Moved operator+(const Moved& a, const Moved& b) {
+    return {a.linear + b.linear, a.square + b.square};
+  }
+};
+
+struct MoveByImpulses {
+  SolveStage stage;
+  SCREE_HD Moved operator()(std::int64_t c) const {
+    const Contact& contact = stage.contacts[c];
+    const SolverBody& i = stage.solver[contact.i];
+    const SolverBody& j = stage.solver[contact.j];
+    const SolverBody i0 = stage.before_kick(contact.i);
+    const SolverBody j0 = stage.before_kick(contact.j);
+    const SolverBody i1 = stage.without_contacts(contact.i);
+    const SolverBody j1 = stage.without_contacts(contact.j);
+    Moved moved;
+    for (int k = 0; k < contact.count; ++k) {
+      const ContactRow& row = stage.rows_of(c)[k];
+      const Vec3 kicked = row.relative_velocity(i1, j1);
+      moved.linear += 0.5 * row.impulse.dot(row.relative_velocity(i0, j0) + kicked);
+      moved.square += 0.5 * row.impulse.dot(row.relative_velocity(i, j) - kicked);
+    }
+    return moved;
+  }
+};
+
+/// Scales down the impulses of an island that gains energy, to where it gains none.
+struct KeepFromGaining {
+  SolveStage stage;
+  const Islands* islands;
+  SCREE_HD int operator()(std::int64_t island) const {
+    const MoveByImpulses move{stage};
+    Moved moved;
+    for (const std::int32_t c : islands->contacts(island)) moved = moved + move(c);
+    if (!moved.gains()) return 0;
+    const double scale = moved.linear < 0 ? -moved.linear / moved.square : 0.0;
+    for (const std::int32_t c : islands->contacts(island)) {
+      for (int k = 0; k < stage.contacts[c].count; ++k) stage.rows_of(c)[k].impulse *= scale;
+    }
+    return 1;
+  }
+};
+
+struct IsGaining {
+  MoveByImpulses move;
+  SCREE_HD int operator()(std::int64_t c) const { return move(c).gains() ? 1 : 0; }
+};
+
 /// Work of the torques: by the mean of the spins before and after, as that of impulses.
 struct WorkOfTorque {
   SolveStage stage;
@@ -363,7 +425,8 @@ Ledger ResponseSolver::solve(ConstView<Manifold> manifolds, double step, const R
   parallel::for_each<Host>("response.kick", solver.size(), Kick{stage, parameters});
   Ledger ledger;
   if (n > 0) {
-    parallel::for_each<Host>("response.rows", n, PrepareRows{stage});
+    parallel::for_each<Host>("response.rows", n,
+                             PrepareRows{stage, tolerance::parting_speed * step * parameters.gravity.norm()});
     SweepPlan plan = automatic_sweeps(set.rows.size());
     if (parameters.iterations > 0) plan.sweeps = parameters.iterations;
     if (parameters.block_sweeps > 0) plan.block_sweeps = parameters.block_sweeps;
@@ -384,6 +447,13 @@ Ledger ResponseSolver::solve(ConstView<Manifold> manifolds, double step, const R
     }
     if (!converged) ++counters.unconverged;
     sweeps.set_velocities();
+    if (parallel::max<int, Host>("response.gain", n, IsGaining{{stage}}, 0) > 0) {
+      islands_.find(set.contacts.view(), solver.view());
+      const int scaled =
+          parallel::sum<int, Host>("response.scale", islands_.count(), KeepFromGaining{stage, &islands_});
+      counters.scaled += scaled;
+      if (scaled > 0) sweeps.set_velocities();
+    }
     ledger = parallel::sum<Ledger, Host>("response.ledger", n, Account{stage});
   }
   if (parameters.torque.size() > 0) {
