@@ -23,7 +23,7 @@ constexpr double correction_gain = 0.25;
 // Of the smaller body, beyond what bodies turn and roll within a substep, and what they overlapped at the
 // start; where that is more than the whole body, the way out is not the way in, and it may grow at first.
 constexpr double overlap = 0.03;
-constexpr double overlap_60 = 0.1;  // at 1/60 s, of second order
+constexpr double overlap_60 = 0.12;  // at 1/60 s, of second order
 constexpr double overlap_growth = 1.7;
 
 class Watch {
