@@ -33,6 +33,8 @@ inline constexpr double correction_cap = 0.2;
 /// bodies come to rest. The bounces left out would be over within twice as many substeps. Larger: rest comes
 /// sooner.
 inline constexpr double restitution_threshold = 2.0;
+/// The same in the accurate mode, where contacts at rest are solved well enough to stay under it.
+inline constexpr double accurate_restitution_threshold = 0.5;
 /// Least 1 - e in it for e < 1: it bounds the bounces of a body in one substep, to half its inverse over the
 /// threshold above.
 inline constexpr double least_loss = 0.02;

@@ -49,10 +49,12 @@ ModelPlan plan_model(const Scene& scene) {
   plan.continuous =
       choose(scene.model.continuous, true, "in substeps where some body is fast for the sizes", "");
   const double step = scene.time.step / scene.time.substeps;
-  plan.restitution_threshold =
-      scene.response.restitution_threshold
-          ? RestitutionThreshold{.any = *scene.response.restitution_threshold}
-          : RestitutionThreshold{.lossy = tolerance::restitution_threshold * scene.gravity.norm() * step};
+  const double threshold = scene.response.mode == ResponseMode::accurate
+                               ? tolerance::accurate_restitution_threshold
+                               : tolerance::restitution_threshold;
+  plan.restitution_threshold = scene.response.restitution_threshold
+                                   ? RestitutionThreshold{.any = *scene.response.restitution_threshold}
+                                   : RestitutionThreshold{.lossy = threshold * scene.gravity.norm() * step};
   return plan;
 }
 

@@ -55,6 +55,7 @@ struct Counters {
   std::int64_t sweeps = 0;       ///< over the contacts
   std::int64_t direct = 0;         ///< islands solved by Newton's method
   std::int64_t direct_failed = 0;  ///< islands that were not, and were left to the sweeps
+  double residual = 0;             ///< natural residual left by the response at worst, in the accurate mode
   std::int64_t scaled = 0;         ///< islands whose impulses were scaled down, since they would have gained energy
   std::int64_t impacts = 0;        ///< that bounced
   std::int64_t unconverged = 0;    ///< substeps that used all sweeps; raise response.iterations

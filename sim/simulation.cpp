@@ -39,6 +39,7 @@ ResponseParameters parameters_of(const Scene& scene) {
           .gyroscopic = plan.gyroscopic.on,
           .continuous = plan.continuous.on,
           .warm_start = scene.response.warm_start,
+          .accurate = scene.response.mode == ResponseMode::accurate,
           .iterations = scene.response.iterations.value_or(0),
           .block_sweeps = scene.response.block_sweeps.value_or(0),
           .tolerance = scene.response.tolerance,

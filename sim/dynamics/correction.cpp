@@ -29,7 +29,9 @@ struct PositionCorrector::Stage {
   SCREE_HD double flown(const Contact& c, const ContactRow& row) const {
     const SolverBody& i = solver[c.i];
     const SolverBody& j = solver[c.j];
-    if (c.lead == 0) return 0.5 * step * c.normal.dot(row.relative_velocity(i, j));
+    if (c.lead == 0) {
+      return 0.5 * step * (c.normal.dot(row.relative_velocity(i, j)) + 0.25 * step * row.bend);
+    }
     const Vec3 moved = bodies.position[c.j] - bodies.position[c.i] + row.arm_j - row.arm_i;
     const Vec3 turned = j.spin.cross(row.arm_j) - i.spin.cross(row.arm_i);
     return c.normal.dot(moved + (0.5 * step - c.lead) * turned);

@@ -17,15 +17,11 @@ constexpr double softest = 1e2;
 constexpr double stiffest = 1e8;
 constexpr double stiffening = 10;  // from pass to pass
 
-constexpr int most_passes = 16;
 constexpr int most_newton_steps = 20;      // in a pass
 constexpr int most_shortenings = 12;       // of a step
 constexpr double kept_slope = 0.1;         // that may be left, turned, at the end of a step
 constexpr double least_decrement = 1e-12;  // relative
 
-/// Products that a factorization, and all of them, may take. Beyond, sweeps are cheaper.
-constexpr double most_products = 4e5;
-constexpr double most_products_in_all = 2e7;
 /// It goes on to this share of the tolerance, so that the next substep starts from a solution.
 constexpr double finer = 0.01;
 
@@ -88,7 +84,8 @@ struct PassRow {
 
 class IslandSolver {
  public:
-  explicit IslandSolver(const IslandProblem& problem) : problem_(problem) {
+  IslandSolver(const IslandProblem& problem, const DirectLimits& limits)
+      : problem_(problem), limits_(limits) {
     load_bodies();
     load_rows();
     lay_out_matrix();
@@ -96,7 +93,7 @@ class IslandSolver {
 
   bool is_cheap() {
     factor_.analyzePattern(matrix_);
-    return factor_.cost() <= most_products;
+    return factor_.cost() <= limits_.products;
   }
 
   DirectOutcome solve(double tolerance) {
@@ -280,7 +277,7 @@ class IslandSolver {
   ImpulseChange approach(ImpulseChange residual, double tolerance) {
     const double accuracy = residual.step > 0 ? std::sqrt(residual.size / residual.step) : stiffest;
     stiffness_ = std::clamp(accuracy, softest, stiffest);
-    for (int pass = 0; pass < most_passes && can_go_on(); ++pass) {
+    for (int pass = 0; pass < limits_.passes && can_go_on(); ++pass) {
       if (!minimise()) {
         stiffness_ /= stiffening;
         change_.setZero();
@@ -299,7 +296,7 @@ class IslandSolver {
     return residual;
   }
 
-  bool can_go_on() const { return factorizations_ * factor_.cost() <= most_products_in_all; }
+  bool can_go_on() const { return factorizations_ * factor_.cost() <= limits_.products_in_all; }
 
   /// Newton's method. The function is convex: a step is long enough where its slope has turned, and shortened
   /// until little of it is left. False if it does not get there.
@@ -350,6 +347,7 @@ class IslandSolver {
   }
 
   const IslandProblem& problem_;
+  const DirectLimits& limits_;
   std::vector<PassRow> rows_;
   std::vector<Mat3> inertia_;                     // of each body
   Vector change_;                                 // of the velocities, in a pass
@@ -375,8 +373,8 @@ ImpulseChange natural_residual(const IslandProblem& problem) {
   return residual;
 }
 
-DirectOutcome solve_directly(const IslandProblem& problem, double tolerance) {
-  IslandSolver solver(problem);
+DirectOutcome solve_directly(const IslandProblem& problem, double tolerance, const DirectLimits& limits) {
+  IslandSolver solver(problem, limits);
   return solver.is_cheap() ? solver.solve(tolerance) : DirectOutcome::too_large;
 }
 

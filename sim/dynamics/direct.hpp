@@ -5,6 +5,17 @@
 
 namespace scree {
 
+/// What a solution may take.
+struct DirectLimits {
+  int passes;
+  double products;         ///< of one factorization
+  double products_in_all;  ///< of all of them
+};
+/// Beyond these, sweeps are cheaper.
+inline constexpr DirectLimits quick_limits{.passes = 16, .products = 4e5, .products_in_all = 2e7};
+/// Where a solution is worth its time.
+inline constexpr DirectLimits thorough_limits{.passes = 300, .products = 1e8, .products_in_all = 1e11};
+
 /// One island of the contact problem of a substep.
 struct IslandProblem {
   ConstView<Contact> contacts;
@@ -37,6 +48,7 @@ enum class DirectOutcome {
 /// v* the velocities without impulses. Newton's method takes it to its minimum, with a sparse Cholesky
 /// factorization over the bodies; then p <- P_K(...). The masses make it definite however redundant the
 /// points of a face are.
-DirectOutcome solve_directly(const IslandProblem& problem, double tolerance);
+DirectOutcome solve_directly(const IslandProblem& problem, double tolerance,
+                             const DirectLimits& limits = quick_limits);
 
 }  // namespace scree

@@ -19,9 +19,10 @@ struct Translate {
 struct Rotate {
   BodyView bodies;
   double dt;
+  RotationOrder order;
   SCREE_HD void operator()(std::int64_t k) const {
     if (bodies.mobility[k] != Mobility::free) return;
-    rotate_freely(bodies.orientation[k], bodies.spin[k], bodies.inverse_inertia[k], dt);
+    rotate_freely(bodies.orientation[k], bodies.spin[k], bodies.inverse_inertia[k], dt, order);
   }
 };
 
@@ -138,13 +139,14 @@ double advance(Bodies<Host>& bodies, double dt, const ResponseParameters& parame
   const BodyView views = view_of(bodies);
   parallel::for_each<Host>("motion.translate", n, Translate{views, dt});
   if (!parameters.rotation) return 0;
+  const Rotate rotate{views, dt, parameters.accurate ? RotationOrder::fourth : RotationOrder::second};
   if (!parameters.gyroscopic) {
-    parallel::for_each<Host>("motion.rotate", n, Rotate{views, dt});
+    parallel::for_each<Host>("motion.rotate", n, rotate);
     return 0;
   }
   const RotationalEnergy energy{view_of(std::as_const(bodies))};
   const double before = parallel::sum<double, Host>("motion.energy", n, energy);
-  parallel::for_each<Host>("motion.rotate", n, Rotate{views, dt});
+  parallel::for_each<Host>("motion.rotate", n, rotate);
   return parallel::sum<double, Host>("motion.energy", n, energy) - before;
 }
 

@@ -2,10 +2,12 @@
 
 #include "core/parallel.hpp"
 #include "core/tolerances.hpp"
+#include "narrowphase/tube.hpp"
 #include "sim/dynamics/colored.hpp"
 #include "sim/dynamics/direct.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 namespace scree {
@@ -104,11 +106,31 @@ struct PrepareRows {
       row.impulse = impulse;
       // The next midpoint must not overlap: the gap may close by then, and no more (speculative contact).
       row.target = row.gap > shell ? -(row.gap - shell) / (stage.step - contact.lead) : 0.0;
+      if (contact.balls) {
+        row.bend = bend_of(m);
+        row.target -= 0.5 * stage.step * row.bend;
+      }
       // Held, a contact that was parting before the kick would gain energy, p.(u- + u+)/2: it may close as
       // fast.
       row.target = fmin(row.target, noise - speed_before(contact, row));
       if (contact.flying) row.target = fmin(row.target, flight_speed(contact, row));
     }
+  }
+
+  /// Of balls on one another, and of a ball along the wall of a tube: the normal turns with the centres.
+  SCREE_HD double bend_of(const Manifold& m) const {
+    const BodyView& bodies = stage.bodies;
+    const Vec3 w = stage.solver[m.j].velocity - stage.solver[m.i].velocity;
+    Vec3 across = w - w.dot(m.normal) * m.normal;
+    const bool ball_i = bodies.shape[m.i] == Shape::sphere;
+    const bool ball_j = bodies.shape[m.j] == Shape::sphere;
+    if (ball_i && ball_j) return across.squaredNorm() / (bodies.size[m.i].x() + bodies.size[m.j].x());
+    const std::int32_t other = ball_i ? m.j : m.i;
+    if (bodies.shape[other] != Shape::tube || m.part != tube_wall) return 0;
+    const Vec3 axis = bodies.orientation[other] * Vec3::UnitZ();
+    across -= across.dot(axis) * axis;
+    const double reach = bodies.size[other].x() - bodies.size[ball_i ? m.i : m.j].x();
+    return reach > 0 ? -across.squaredNorm() / reach : 0.0;
   }
 
   /// At which the contact parts before the kick.
@@ -367,24 +389,44 @@ struct StoreVelocities {
   }
 };
 
-/// The direct solver for the islands that the last sweep has changed.
+/// The direct solver for the islands that the last sweep has changed; in the accurate mode, for those whose
+/// natural residual is beyond the tolerance.
 struct SolveIsland {
   SolveStage stage;
   const Islands* islands;
   double tolerance;
+  bool accurate;
   View<DirectOutcome> outcome;
   void operator()(std::int64_t island) const {
+    const IslandProblem problem{.contacts = stage.contacts,
+                                .rows = stage.rows,
+                                .solver = stage.solver,
+                                .velocity = stage.free_velocity,
+                                .spin = stage.free_spin,
+                                .islands = *islands,
+                                .island = island};
+    outcome[island] = (accurate ? natural_residual(problem) : change_of(island)).within(tolerance)
+                          ? DirectOutcome::not_needed
+                          : solve_directly(problem, tolerance, accurate ? thorough_limits : quick_limits);
+  }
+  ImpulseChange change_of(std::int64_t island) const {
     ImpulseChange change;
     for (const std::int32_t c : islands->contacts(island)) change = change + stage.change[c];
-    outcome[island] = change.within(tolerance) ? DirectOutcome::not_needed
-                                               : solve_directly({.contacts = stage.contacts,
-                                                                 .rows = stage.rows,
-                                                                 .solver = stage.solver,
-                                                                 .velocity = stage.free_velocity,
-                                                                 .spin = stage.free_spin,
-                                                                 .islands = *islands,
-                                                                 .island = island},
-                                                                tolerance);
+    return change;
+  }
+};
+
+struct LoadResidual {
+  SolveStage stage;
+  SCREE_HD ImpulseChange operator()(std::int64_t c) const {
+    const Contact& contact = stage.contacts[c];
+    ImpulseChange residual;
+    for (int k = 0; k < contact.count; ++k) {
+      const ContactRow& row = stage.rows_of(c)[k];
+      const Vec3 u = row.relative_velocity(stage.solver[contact.i], stage.solver[contact.j]);
+      residual.add(row, natural_map(row, contact.normal, contact.friction, u) - row.impulse);
+    }
+    return residual;
   }
 };
 
@@ -434,19 +476,24 @@ Ledger ResponseSolver::solve(ConstView<Manifold> manifolds, double step, const R
     sweeps.start();
     const int first = plan.direct ? std::min(plan.sweeps, sweeps_before_direct) : plan.sweeps;
     bool converged = sweeps.run(first);
-    if (!converged && first < plan.sweeps) {
+    if (parameters.accurate || (!converged && first < plan.sweeps)) {
       islands_.find(set.contacts.view(), solver.view());
       outcome_.resize(islands_.count());
-      parallel::for_each<Host>("response.islands", islands_.count(),
-                               SolveIsland{stage, &islands_, parameters.tolerance, outcome_.view()});
+      parallel::for_each<Host>(
+          "response.islands", islands_.count(),
+          SolveIsland{stage, &islands_, parameters.tolerance, parameters.accurate, outcome_.view()});
       converged = count_outcomes(counters);
       if (!converged) {
         sweeps.start();
-        converged = sweeps.run(plan.sweeps - first);
+        converged = sweeps.run(std::max(plan.sweeps - first, sweeps_before_direct));
       }
     }
     if (!converged) ++counters.unconverged;
     sweeps.set_velocities();
+    if (parameters.accurate) {
+      const auto left = parallel::sum<ImpulseChange, Host>("response.residual", n, LoadResidual{stage});
+      if (left.size > 0) counters.residual = std::max(counters.residual, std::sqrt(left.step / left.size));
+    }
     if (parallel::max<int, Host>("response.gain", n, IsGaining{{stage}}, 0) > 0) {
       islands_.find(set.contacts.view(), solver.view());
       const int scaled =

@@ -85,12 +85,17 @@ SCREE_HD inline void restore_energy(Quat& orientation, Vec3& spin, const Vec3& i
 
 }  // namespace detail
 
+enum class RotationOrder { second, fourth };
+
 /// Turns a free body for the time dt (s). Equal moments: exact. Otherwise the symmetric three-axis splitting
 /// of the body-frame equations (Touma and Wisdom 1994; Dullweber, Leimkuhler, McLachlan 1997, sec. 3): second
 /// order, world angular momentum kept to rounding; then a small turn restores the energy, also to rounding.
 /// What turns far goes in several such steps. The axes are taken by ascending moment, whatever their names:
 /// about a middle axis (accuracy of a tumbling box after 12 s) the other orders are up to 20 times worse.
-SCREE_HD inline void rotate_freely(Quat& orientation, Vec3& spin, const Vec3& inverse_inertia, double dt) {
+/// Fourth order: Suzuki's composition of five such steps, of p, p, 1 - 4 p, p, p times the length, p = 1 / (4
+/// - 4^(1/3)) (Suzuki 1990, "Fractal decomposition of exponential operators").
+SCREE_HD inline void rotate_freely(Quat& orientation, Vec3& spin, const Vec3& inverse_inertia, double dt,
+                                   RotationOrder order = RotationOrder::second) {
   if (has_equal_moments(inverse_inertia)) {
     orientation = (rotation_of(spin * dt) * orientation).normalized();
     return;
@@ -112,11 +117,19 @@ SCREE_HD inline void rotate_freely(Quat& orientation, Vec3& spin, const Vec3& in
   const double h = dt / turns;
   for (int turn = 0; turn < static_cast<int>(turns); ++turn) {
     Vec3 momentum = orientation.conjugate() * world_momentum;
-    detail::turn_about(smallest, orientation, momentum, inverse_inertia, 0.5 * h);
-    detail::turn_about(middle, orientation, momentum, inverse_inertia, 0.5 * h);
-    detail::turn_about(largest, orientation, momentum, inverse_inertia, h);
-    detail::turn_about(middle, orientation, momentum, inverse_inertia, 0.5 * h);
-    detail::turn_about(smallest, orientation, momentum, inverse_inertia, 0.5 * h);
+    const auto split = [&](double length) {
+      detail::turn_about(smallest, orientation, momentum, inverse_inertia, 0.5 * length);
+      detail::turn_about(middle, orientation, momentum, inverse_inertia, 0.5 * length);
+      detail::turn_about(largest, orientation, momentum, inverse_inertia, length);
+      detail::turn_about(middle, orientation, momentum, inverse_inertia, 0.5 * length);
+      detail::turn_about(smallest, orientation, momentum, inverse_inertia, 0.5 * length);
+    };
+    if (order == RotationOrder::second) {
+      split(h);
+    } else {
+      const double p = 1.0 / (4.0 - cbrt(4.0));
+      for (int k = 0; k < 5; ++k) split(k == 2 ? (1.0 - 4.0 * p) * h : p * h);
+    }
     orientation.normalize();
     spin = detail::spin_of(orientation, inverse_inertia, world_momentum);
     detail::restore_energy(orientation, spin, inverse_inertia, world_momentum, energy);

@@ -68,6 +68,7 @@ Json json_of(const Counters& c) {
   return {{"sweeps", c.sweeps},
           {"direct", c.direct},
           {"direct_failed", c.direct_failed},
+          {"residual", c.residual},
           {"scaled", c.scaled},
           {"impacts", c.impacts},
           {"unconverged", c.unconverged},

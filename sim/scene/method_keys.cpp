@@ -30,8 +30,12 @@ Codec<ResponseSettings> response_section() {
   return section<T>(
       "response", "How contacts answer.",
       {
-          key<T>("mode", &T::mode, word<ResponseMode>({{"default", ResponseMode::standard}}, {"accurate"}),
-                 optionally, "how impulses are found"),
+          key<T>(
+              "mode", &T::mode,
+              word<ResponseMode>({{"default", ResponseMode::standard}, {"accurate", ResponseMode::accurate}}),
+              optionally,
+              "accurate: contacts are solved until their natural residual is within the tolerance, free "
+              "rotation is of fourth order, and slower approaches bounce; takes longer"),
           key<T>(
               "iterations", &T::iterations, or_auto(integer(between(1, 1e6))), optionally,
               "most sweeps over the contacts per substep; auto: 20 for heaps, more the fewer contacts there "

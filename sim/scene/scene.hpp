@@ -78,7 +78,7 @@ struct Region {
   Vec3 to = Vec3::Zero();    ///< m; greater in each component
 };
 
-enum class ResponseMode { standard };  ///< `default` in the scene language
+enum class ResponseMode { standard, accurate };  ///< standard: `default` in the scene language
 
 struct ResponseSettings {
   ResponseMode mode = ResponseMode::standard;

@@ -36,23 +36,28 @@ Long3 euler_rk4(Long3 w, const Long3& inertia, long double t, int steps) {
 
 const Vec3 inertia(0.004166666666666667, 0.014166666666666667, 0.016666666666666667);
 
-Vec3 body_spin_after(double t, int steps) {
+Vec3 body_spin_after(double t, int steps, RotationOrder order) {
   Quat q(0.5, 0.1, -0.7, 0.2);
   q.normalize();
   Vec3 spin = q * Vec3(1.5, 4.0, -2.0);
   const Vec3 inverse = inertia.cwiseInverse();
-  for (int k = 0; k < steps; ++k) rotate_freely(q, spin, inverse, t / steps);
+  for (int k = 0; k < steps; ++k) rotate_freely(q, spin, inverse, t / steps, order);
   return q.conjugate() * spin;
 }
 
-TEST(Rotation, ConvergesToEulersEquationsWithOrderTwo) {
+TEST(Rotation, ConvergesToEulersEquationsWithItsOrder) {
   const Long3 exact = euler_rk4({1.5L, 4.0L, -2.0L}, {inertia.x(), inertia.y(), inertia.z()}, 2.0L, 40000);
   const Vec3 reference(static_cast<double>(exact[0]), static_cast<double>(exact[1]),
                        static_cast<double>(exact[2]));
-  const double coarse = (body_spin_after(2.0, 400) - reference).norm();
-  const double fine = (body_spin_after(2.0, 800) - reference).norm();
-  EXPECT_LT(fine, 1e-3);
-  EXPECT_NEAR(std::log2(coarse / fine), 2.0, 0.05);
+  const auto error = [&](int steps, RotationOrder order) {
+    return (body_spin_after(2.0, steps, order) - reference).norm();
+  };
+  const auto expect_order = [&](RotationOrder order, double number, double largest_error) {
+    EXPECT_LT(error(800, order), largest_error);
+    EXPECT_NEAR(std::log2(error(400, order) / error(800, order)), number, 0.05);
+  };
+  expect_order(RotationOrder::second, 2.0, 1e-3);
+  expect_order(RotationOrder::fourth, 4.0, 1e-7);
 }
 
 TEST(Rotation, KeepsWorldAngularMomentumToRounding) {

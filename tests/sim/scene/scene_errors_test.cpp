@@ -136,7 +136,6 @@ constexpr BadScene bad_scenes[] = {
     {"overlay_word", 7, 20, "render.overlay[0]: must be one of grid, pairs, forces, not girds"},
     {"later_trajectory", 7, 22, "record.trajectory: true is part of the scene language but not in this version"},
     {"later_precision", 7, 12, "precision: mixed is part of the scene language but not in this version"},
-    {"later_mode", 7, 18, "response.mode: accurate is part of the scene language but not in this version"},
     {"later_method", 7, 22, "broadphase.method: lbvh is part of the scene language but not in this version"},
     {"body_beyond_end", 8, 65, "bodies[2].from: must be before the end, 1 s, not 1 s"},
     {"body_gone_first", 8, 77, "bodies[2].until: must be at least a step after from, 0.5 s, not 0.501 s"},
