@@ -171,7 +171,7 @@ struct Simulation::Parts {
   }
 
   /// Impacts of the flight of a substep from `problem.from` on. `reach`: to the end of the step (s).
-  void resolve_impacts(double h, double from, double reach, const ResponseParameters& flight) {
+  void resolve_impacts(double h, double from, double reach) {
     constexpr int most_attempts = 8;
     // The flight is never more than half a substep away from the midpoint.
     const auto set_margins = [&] {
@@ -181,7 +181,7 @@ struct Simulation::Parts {
     for (int attempt = 1;; ++attempt) {
       const ConstView<Pair> pairs = kept_pairs.covering(bodies, contact_margin, reach, parameters);
       const timing::Region region("impacts");
-      const Ledger moved = impacts.resolve(impact_problem(pairs, h, from), flight, view_of(bodies));
+      const Ledger moved = impacts.resolve(impact_problem(pairs, h, from), parameters, view_of(bodies));
       if (impacts.impacts().empty()) return;
       // What was struck may have left the boxes: others that it can meet now are not among the pairs.
       set_margins();
@@ -241,11 +241,11 @@ struct Simulation::Parts {
     struck.clear();
     forces.start_substep(bodies);
     timed_fly(start_time + 0.5 * h, 0.5 * h);
-    resolve_impacts(h, 0, reach, parameters);
+    resolve_impacts(h, 0, reach);
     const ConstView<Manifold> manifolds = find_contacts(h, reach);
     respond(manifolds, h);
     // The response has changed the second half of the flight.
-    resolve_impacts(h, 0.5 * h, reach, in_straight_flight(parameters));
+    resolve_impacts(h, 0.5 * h, reach);
     if (!impacts.impacts().empty()) load_solver_bodies(bodies, solver);
     fly(start_time + h, 0.5 * h);
     ledger.work += forces.work(bodies);
@@ -265,13 +265,6 @@ struct Simulation::Parts {
     impacts.mark_flights(impact_problem({}, h, 0), parameters, manifolds, view_of(bodies), contacts);
     ledger = ledger + response.solve(manifolds, h, parameters, view_of(bodies), solver, contacts, counters);
     ledger = ledger + impacts.shift_late(impact_problem({}, h, 0), parameters, view_of(bodies), contacts);
-  }
-
-  /// Without what the response's kick has given already.
-  static ResponseParameters in_straight_flight(ResponseParameters parameters) {
-    parameters.gravity = Vec3::Zero();
-    parameters.acceleration = {};
-    return parameters;
   }
 
   /// Moves every body to the time given, dt later than it is.

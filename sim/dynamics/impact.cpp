@@ -41,10 +41,16 @@ struct FlightStage {
             .inverse_inertia = bodies.inverse_inertia[body],
             .position = bodies.position[body],
             .orientation = bodies.orientation[body],
-            .velocity = bodies.velocity[body],
+            .velocity = bodies.velocity[body] - kick_of(body),
             .spin = parameters.rotation || !is_free(body) ? bodies.spin[body] : Vec3(Vec3::Zero()),
             .acceleration = is_free(body) ? parameters.acceleration_of(body) : Vec3(Vec3::Zero()),
             .midpoint = 0.5 * problem.step};
+  }
+
+  /// What the bodies' velocities have of the substep's kick already (m/s).
+  Vec3 kick_of(std::int32_t body) const {
+    return problem.from > 0 && is_free(body) ? Vec3(problem.step * parameters.acceleration_of(body))
+                                             : Vec3(Vec3::Zero());
   }
 
   /// The slowest approach that bounces on a part without load (m/s).
@@ -210,8 +216,8 @@ struct FlightStage {
                 double s) const {
     if (!after.is_free()) return 0;
     const Vec3 velocity = after.velocity - s * flown.acceleration;
-    bodies.position[body] -= (s - flown.midpoint) * (velocity - bodies.velocity[body]);
-    bodies.velocity[body] = velocity;
+    bodies.position[body] -= (s - flown.midpoint) * (velocity - flown.velocity);
+    bodies.velocity[body] = velocity + kick_of(body);
     clock[body] = s;
     ++hits[body];
     double drift = 0;

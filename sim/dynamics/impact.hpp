@@ -16,8 +16,9 @@ struct ImpactProblem {
   ContactLaws laws;
   const ImpulseMemory& memory;  ///< contacts that carried a load do not bounce
   double step;                  ///< length of the substep (s)
-  double from;   ///< start of the flight, into the substep (s); it ends with the substep. If it is not 0, the
-                 ///< last flight began at 0: who was struck later in it starts then
+  double from;   ///< start of the flight, into the substep (s); it ends with the substep. If not 0, the
+                 ///< last one began at 0 (who was struck later in it starts then), and the response
+                 ///< has kicked the bodies since
   bool bounces;  ///< whether approaches faster than the threshold count; else only those that would go deep
 };
 
