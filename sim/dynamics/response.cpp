@@ -352,7 +352,7 @@ struct MoveByImpulses {
 struct KeepFromGaining {
   SolveStage stage;
   const Islands* islands;
-  SCREE_HD int operator()(std::int64_t island) const {
+  int operator()(std::int64_t island) const {
     const MoveByImpulses move{stage};
     Moved moved;
     for (const std::int32_t c : islands->contacts(island)) moved = moved + move(c);
