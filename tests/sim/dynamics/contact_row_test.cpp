@@ -100,7 +100,8 @@ TEST(ContactRow, TheShortWayOfBallsIsTheLongOne) {
     ASSERT_NEAR(ball.row.tangent_mass, p.row.tangent_mass, rounding * p.row.tangent_mass);
     p.sweep();
     sweep_ball_row(ball.row, ball.normal, ball.friction, ball.i, ball.j);
-    ASSERT_LT(violation(ball), rounding * speed) << "problem " << item;
+    // The direction of a slide that is hardly faster than `still` is known to rounding over its speed only.
+    ASSERT_LT(violation(ball), 1e2 * rounding * speed) << "problem " << item;
     ASSERT_LT((ball.row.impulse - p.row.impulse).norm(), rounding * speed * p.row.normal_mass) << item;
     ASSERT_LT((ball.j.spin - p.j.spin).norm(), rounding * speed) << item;
   }
