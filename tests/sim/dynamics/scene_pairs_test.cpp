@@ -61,7 +61,8 @@ class ScenePairs : public testing::TestWithParam<std::filesystem::path> {
     const BroadPhaseMethod oracle = many ? BroadPhaseMethod::uniform_grid : BroadPhaseMethod::brute_force;
     Simulation simulation(scene, {on_device ? SpaceChoice::cuda : SpaceChoice::host, 0});
     Snapshot state;
-    const std::int64_t stretch = many ? 5 : scene.bodies.count() > 100 ? 25 : 200;
+    const std::int64_t bodies = scene.bodies.count();
+    const std::int64_t stretch = many ? 3 : bodies > 1000 ? 10 : bodies > 100 ? 25 : 200;
     for (int k = 0; k < 4; ++k) {
       simulation.snapshot(state);
       ASSERT_EQ(pairs_of(BroadPhaseMethod::hierarchical_grid, on_device, state, scene),
