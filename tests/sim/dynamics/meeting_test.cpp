@@ -87,7 +87,7 @@ class Meetings : public testing::TestWithParam<std::pair<Shape, Shape>> {
 };
 
 TEST_P(Meetings, AreTheFirst) {
-  constexpr int samples = 4000;
+  constexpr int samples = 1000;
   int met = 0;
   for (std::uint64_t item = 0; item < 300; ++item) {
     const double speed = item % 3 == 0 ? 2.0 : item % 3 == 1 ? 20.0 : 100.0;
