@@ -52,13 +52,13 @@ struct Penetration {
 
 /// What the loops of the run did, since t = 0; those that hit their bound are counted, never silent.
 struct Counters {
-  std::int64_t sweeps = 0;       ///< over the contacts
+  std::int64_t sweeps = 0;         ///< over the contacts
   std::int64_t direct = 0;         ///< islands solved by Newton's method
   std::int64_t direct_failed = 0;  ///< islands that were not, and were left to the sweeps
   double residual = 0;             ///< natural residual left by the response at worst, in the accurate mode
-  std::int64_t scaled = 0;         ///< islands whose impulses were scaled down, since they would have gained energy
-  std::int64_t impacts = 0;        ///< that bounced
-  std::int64_t unconverged = 0;    ///< substeps that used all sweeps; raise response.iterations
+  std::int64_t scaled = 0;   ///< islands whose impulses were scaled down, since they would have gained energy
+  std::int64_t impacts = 0;  ///< that bounced
+  std::int64_t unconverged = 0;  ///< substeps that used all sweeps; raise response.iterations
   std::int64_t unfinished_impacts =
       0;                      ///< substeps whose chains of impacts hit the bound; the rest took e = 0
   std::int64_t pcs_made = 0;  ///< broad phases: once, and whenever a body had left its box
