@@ -3,6 +3,8 @@
 
 #include "core/error.hpp"
 
+#include <cstdio>
+#include <exception>
 #include <map>
 #include <sstream>
 #include <string>
@@ -31,6 +33,17 @@ inline std::vector<std::string> split(const std::string& list) {
   std::istringstream text(list);
   for (std::string item; std::getline(text, item, ',');) items.push_back(item);
   return items;
+}
+
+/// What main() returns: the benchmark's own status, or 2 after the message of an error.
+template <class Benchmark>
+int status_of(const char* program, Benchmark run) {
+  try {
+    return run();
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "%s: %s\n", program, error.what());
+    return 2;
+  }
 }
 
 }  // namespace scree::bench

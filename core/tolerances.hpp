@@ -65,6 +65,29 @@ inline constexpr double flight_margin = 1e-9;
 inline constexpr double impact_time = 1e-15;
 inline constexpr double impact_residual = 1e-15;
 
+/// Gap at which bodies touch in the search for the time of an impact (of the smaller smallest_size): rounding
+/// of positions. Smaller: the search may step through a contact. Must stay well under closed_gap.
+inline constexpr double touching_gap = 1e-12;
+/// How far (likewise) the search may go on where the gap is next to nothing and bodies part or slide. Larger:
+/// a brief touch in between may be missed; smaller: more looks.
+inline constexpr double search_advance = 0.1;
+
+/// Turn of a free body in one step of its splitting (rad); what turns further goes in several. Larger: less
+/// accurate, faster.
+inline constexpr double split_turn = 0.5;
+/// The same of the turn that restores its energy afterwards; beyond it the splitting has failed, and nothing
+/// is restored.
+inline constexpr double energy_turn = 0.1;
+/// Share of its energy that is rounding then.
+inline constexpr double energy_rounding = 4e-16;
+/// Slope of the energy per radian (of the energy) under which the body turns about a principal axis, where
+/// there is nothing to restore.
+inline constexpr double energy_slope = 1e-8;
+
+/// Share of the response's tolerance to which the direct solver goes on, so that the next substep starts from
+/// a solution.
+inline constexpr double direct_share = 0.01;
+
 /// Difference from 1 under which a quaternion's length is that of a unit one, but for rounding. It must
 /// exceed what normalising leaves, some 1e-16: a state that was written is then read back to the bit.
 inline constexpr double unit_length = 1e-14;
@@ -73,6 +96,7 @@ inline constexpr double unit_length = 1e-14;
 inline constexpr double step_count = 1e-9;
 
 static_assert(closed_gap < contact_slack);
+static_assert(touching_gap < closed_gap);
 
 // Narrow phase. Lengths are of the smaller smallest_size of the pair.
 

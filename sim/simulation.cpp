@@ -7,7 +7,7 @@
 #include "sim/applied_forces.hpp"
 #include "sim/dynamics/contact_set.hpp"
 #include "sim/dynamics/correction.hpp"
-#include "sim/dynamics/impact.hpp"
+#include "sim/dynamics/impact_solver.hpp"
 #include "sim/dynamics/motion.hpp"
 #include "sim/dynamics/prescribed.hpp"
 #include "sim/dynamics/region.hpp"

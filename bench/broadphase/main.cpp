@@ -139,10 +139,5 @@ int run_all(int argc, char** argv) {
 }  // namespace scree::bench
 
 int main(int argc, char** argv) {
-  try {
-    return scree::bench::run_all(argc, argv);
-  } catch (const std::exception& error) {
-    std::fprintf(stderr, "scree_bench_broadphase: %s\n", error.what());
-    return 2;
-  }
+  return scree::bench::status_of("scree_bench_broadphase", [&] { return scree::bench::run_all(argc, argv); });
 }

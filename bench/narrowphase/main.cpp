@@ -185,10 +185,6 @@ int run_all(int argc, char** argv) {
 }  // namespace scree::bench
 
 int main(int argc, char** argv) {
-  try {
-    return scree::bench::run_all(argc, argv);
-  } catch (const std::exception& error) {
-    std::fprintf(stderr, "scree_bench_narrowphase: %s\n", error.what());
-    return 2;
-  }
+  return scree::bench::status_of("scree_bench_narrowphase",
+                                 [&] { return scree::bench::run_all(argc, argv); });
 }

@@ -117,11 +117,8 @@ void run_all(int argc, char** argv) {
 }  // namespace scree::bench
 
 int main(int argc, char** argv) {
-  try {
+  return scree::bench::status_of("scree_bench_render", [&] {
     scree::bench::run_all(argc, argv);
     return 0;
-  } catch (const std::exception& error) {
-    std::fprintf(stderr, "scree_bench_render: %s\n", error.what());
-    return 2;
-  }
+  });
 }

@@ -31,6 +31,17 @@ struct Contact {
   Vec3 impulse;   ///< all that its rows gave to j in this substep (N s)
 };
 
+/// What the natural map changes in the impulses of a contact's rows, as they are.
+SCREE_HD inline ImpulseChange natural_residual(const Contact& contact, const ContactRow* rows,
+                                               const SolverBody& i, const SolverBody& j) {
+  ImpulseChange residual;
+  for (int k = 0; k < contact.count; ++k) {
+    const Vec3 u = rows[k].relative_velocity(i, j);
+    residual.add(rows[k], natural_map(rows[k], contact.normal, contact.friction, u) - rows[k].impulse);
+  }
+  return residual;
+}
+
 /// Restitution and friction of a pair of materials.
 struct PairLaw {
   double restitution;

@@ -1,5 +1,7 @@
 #include "sim/dynamics/direct.hpp"
 
+#include "core/tolerances.hpp"
+
 #include <Eigen/SparseCholesky>
 
 #include <algorithm>
@@ -21,9 +23,6 @@ constexpr int most_newton_steps = 20;      // in a pass
 constexpr int most_shortenings = 12;       // of a step
 constexpr double kept_slope = 0.1;         // that may be left, turned, at the end of a step
 constexpr double least_decrement = 1e-12;  // relative
-
-/// It goes on to this share of the tolerance, so that the next substep starts from a solution.
-constexpr double finer = 0.01;
 
 using Vector = Eigen::VectorXd;
 
@@ -287,7 +286,7 @@ class IslandSolver {
       store();
       const ImpulseChange last = residual;
       residual = natural_residual(problem_);
-      if (residual.within(finer * tolerance)) break;
+      if (residual.within(tolerance::direct_share * tolerance)) break;
       const double share = residual.step * last.size / (last.step * residual.size);  // squared
       // Slips that overshoot to and fro are taken half the way.
       start_pass(share > 0.25 ? 0.5 : 1.0);
@@ -364,11 +363,8 @@ ImpulseChange natural_residual(const IslandProblem& problem) {
   ImpulseChange residual;
   for (const std::int32_t c : problem.islands.contacts(problem.island)) {
     const Contact& contact = problem.contacts[c];
-    for (int k = 0; k < contact.count; ++k) {
-      const ContactRow& row = problem.rows[contact.first_row + k];
-      const Vec3 u = row.relative_velocity(problem.solver[contact.i], problem.solver[contact.j]);
-      residual.add(row, natural_map(row, contact.normal, contact.friction, u) - row.impulse);
-    }
+    residual = residual + natural_residual(contact, &problem.rows[contact.first_row],
+                                           problem.solver[contact.i], problem.solver[contact.j]);
   }
   return residual;
 }

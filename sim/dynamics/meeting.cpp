@@ -132,10 +132,8 @@ class Search {
  private:
   static constexpr int most_iterations = 1000;
   static constexpr int most_bisections = 60;
-  static constexpr double touching_share = 1e-12;  // of the smaller size: at this gap bodies touch
-  static constexpr double least_share = 0.1;       // likewise: steps that advance by less may be Newton's
 
-  double touching() const { return touching_share * size_; }
+  double touching() const { return tolerance::touching_gap * size_; }
 
   /// A part that has touched slowly bears load from then on, and does not bounce.
   void settle(const Look& now) {
@@ -176,7 +174,7 @@ class Search {
   /// As far as the gap lasts at the fastest approach; more where that is next to nothing.
   double step_from(const Look& now) const {
     const double safe = std::max(now.gap, 0.0) / fastest_;
-    const double least = least_share * size_ / fastest_;
+    const double least = tolerance::search_advance * size_ / fastest_;
     if (now.closing > 0 && now.gap > touching())
       return std::max(safe, std::min(now.gap / now.closing, least));
     return std::max(safe, least);
@@ -237,12 +235,12 @@ double fastest_approach(const PairFlight& pair) {
   const auto speed = [&normal](const Vec3& v) { return normal.isZero(0) ? v.norm() : fabs(normal.dot(v)); };
   const double linear = speed(pair.j.velocity - pair.i.velocity) +
                         speed(pair.j.acceleration - pair.i.acceleration) * pair.until;
+  // Of a boundary that tilts: how far from its centre the partner may be. Others do not ask.
   const auto far = [&](const BodyFlight& partner) {
     return is_boundary(partner.shape) ? 0.0
                                       : (pair.j.position - pair.i.position).norm() + linear * pair.until +
                                             bounding_radius(partner.shape, partner.size);
   };
-  // (A plane that keeps its normal turns nothing, so that the bound on distances does not matter there.)
   return linear + fastest_turn(pair.i, far(pair.j)) + fastest_turn(pair.j, far(pair.i));
 }
 

@@ -3,6 +3,7 @@
 
 #include "core/bodies.hpp"
 #include "core/math.hpp"
+#include "core/tolerances.hpp"
 
 namespace scree {
 
@@ -67,17 +68,14 @@ SCREE_HD inline Vec3 spin_of(const Quat& orientation, const Vec3& inverse_inerti
 SCREE_HD inline void restore_energy(Quat& orientation, Vec3& spin, const Vec3& inverse_inertia, const Vec3& l,
                                     double energy) {
   constexpr int most_iterations = 4;
-  constexpr double rounding = 4e-16;  // of the energy
-  constexpr double least_slope =
-      1e-8;  // of the energy, per radian: about a principal axis nothing is to restore
-  constexpr double largest_turn = 0.1;  // rad
+  const double least_slope = tolerance::energy_slope * energy;
   for (int iteration = 0; iteration < most_iterations; ++iteration) {
     const double excess = 0.5 * spin.dot(l) - energy;
     const Vec3 slope = spin.cross(l);
     const double square = slope.squaredNorm();
-    if (fabs(excess) <= rounding * energy || square <= least_slope * least_slope * energy * energy) return;
+    if (fabs(excess) <= tolerance::energy_rounding * energy || square <= least_slope * least_slope) return;
     const Vec3 turn = (-excess / square) * slope;
-    if (turn.squaredNorm() > largest_turn * largest_turn) return;
+    if (turn.norm() > tolerance::energy_turn) return;
     orientation = (rotation_of(turn) * orientation).normalized();
     spin = spin_of(orientation, inverse_inertia, l);
   }
@@ -107,11 +105,9 @@ SCREE_HD inline void rotate_freely(Quat& orientation, Vec3& spin, const Vec3& in
     if (inverse_inertia[k] <= inverse_inertia[largest]) largest = k;
   }
   const int middle = 3 - smallest - largest;
-  constexpr double largest_turn = 0.5;  // rad
   constexpr double most_turns = 1000;
-  const double turns =
-      fmin(most_turns,
-           fmax(1.0, ceil(fastest_spin(orientation, spin, inverse_inertia) * fabs(dt) / largest_turn)));
+  const double turns = fmin(most_turns, fmax(1.0, ceil(fastest_spin(orientation, spin, inverse_inertia) *
+                                                       fabs(dt) / tolerance::split_turn)));
   const Vec3 world_momentum = spin_momentum(orientation, spin, inverse_inertia);
   const double energy = 0.5 * spin.dot(world_momentum);
   const double h = dt / turns;

@@ -1,0 +1,77 @@
+#include "sim/dynamics/flight_stage.hpp"
+
+#include "core/tolerances.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace scree {
+
+BodyFlight FlightStage::flight(std::int32_t body) const {
+  return {.shape = bodies.shape[body],
+          .size = bodies.size[body],
+          .inverse_inertia = bodies.inverse_inertia[body],
+          .position = bodies.position[body],
+          .orientation = bodies.orientation[body],
+          .velocity = bodies.velocity[body] - kick_of(body),
+          .spin = parameters.rotation || !is_free(body) ? bodies.spin[body] : Vec3(Vec3::Zero()),
+          .acceleration = is_free(body) ? parameters.acceleration_of(body) : Vec3(Vec3::Zero()),
+          .midpoint = 0.5 * problem.step};
+}
+
+double FlightStage::slowest_bounce(std::int32_t i, std::int32_t j) const {
+  const double restitution = problem.laws.between(i, j).restitution;
+  if (!parameters.restitution || restitution == 0) return HUGE_VAL;
+  const double rounding = tolerance::closing_speed * (bodies.velocity[i].norm() + bodies.velocity[j].norm());
+  return std::max(parameters.restitution_threshold.of(restitution), rounding);
+}
+
+PairFlight FlightStage::pair_of(std::int32_t i, std::int32_t j, double until) const {
+  PairFlight pair{.i = flight(i), .j = flight(j), .until = until, .slowest = {}};
+  std::fill_n(pair.slowest, PairFlight::parts, HUGE_VAL);
+  return pair;
+}
+
+double FlightStage::reach_of(std::int32_t body) const {
+  if (bodies.mobility[body] == Mobility::absent) return 0;
+  return fastest_surface(flight(body), problem.step) * (0.5 * problem.step);
+}
+
+bool FlightStage::are_far(std::int32_t i, std::int32_t j) const {
+  const bool boundary_i = is_boundary(bodies.shape[i]);
+  const bool boundary_j = is_boundary(bodies.shape[j]);
+  double near = reach[i] + reach[j];
+  if (!boundary_i) near += bounding_radius(bodies.shape[i], bodies.size[i]);
+  if (!boundary_j) near += bounding_radius(bodies.shape[j], bodies.size[j]);
+  const Vec3 offset = bodies.position[j] - bodies.position[i];
+  if (!boundary_i && !boundary_j) return offset.squaredNorm() > near * near;
+  const std::int32_t boundary = boundary_i ? i : j;
+  if (bodies.shape[boundary] == Shape::tube) return false;
+  const Vec3 up = bodies.orientation[boundary] * Vec3::UnitZ();
+  return (boundary_i ? 1.0 : -1.0) * up.dot(offset) > near;
+}
+
+Meeting FlightStage::next(std::int32_t i, std::int32_t j) const {
+  if (!is_free(i) && !is_free(j)) return {};
+  if (bodies.mobility[i] == Mobility::absent || bodies.mobility[j] == Mobility::absent) return {};
+  if (are_far(i, j) || std::max(hits[i], hits[j]) >= most_hits) return {};
+  const double earliest = std::max(clock[i], clock[j]);
+  if (!(earliest < problem.step)) return {};
+  PairFlight pair = pair_of(i, j, problem.step);
+  pair.farthest = tolerance::deep_approach * std::min(smallest_size(pair.i.shape, pair.i.size),
+                                                      smallest_size(pair.j.shape, pair.j.size));
+  const double fastest = fastest_approach(pair);
+  const double slowest = problem.bounces ? slowest_bounce(i, j) : HUGE_VAL;
+  const bool may_bounce = fastest > slowest;
+  const bool may_go_deep = parameters.continuous && fastest * (problem.step - earliest) > pair.farthest;
+  if (!(may_bounce || may_go_deep)) return {};
+  if (may_bounce) {
+    for (int part = 0; part < PairFlight::parts; ++part) {
+      if (!problem.memory.is_loaded(i, j, part)) pair.slowest[part] = slowest;
+    }
+  }
+  if (!may_go_deep) pair.farthest = HUGE_VAL;
+  return next_meeting(pair, earliest);
+}
+
+}  // namespace scree

@@ -1,0 +1,81 @@
+// The bodies of one flight, as the search for their impacts sees them.
+#pragma once
+
+#include "core/array.hpp"
+#include "core/bodies.hpp"
+#include "narrowphase/narrow_phase.hpp"
+#include "sim/dynamics/contact_set.hpp"
+#include "sim/dynamics/meeting.hpp"
+#include "sim/dynamics/state.hpp"
+
+#include <cstdint>
+
+namespace scree {
+
+/// Impacts of one body in a flight after which it bounces no more, and after which it has no more.
+inline constexpr std::int32_t most_bounces = 64;
+inline constexpr std::int32_t most_hits = 256;
+
+/// What may meet, and how, in one flight.
+struct ImpactProblem {
+  ConstView<Pair> pairs;  ///< among which are all that may meet, but for planes, which may meet everybody
+  ContactLaws laws;
+  const ImpulseMemory& memory;  ///< contacts that carried a load do not bounce
+  double step;                  ///< length of the substep (s)
+  double from;   ///< start of the flight, into the substep (s); it ends with the substep. If not 0, the
+                 ///< last one began at 0 (who was struck later in it starts then), and the response
+                 ///< has kicked the bodies since
+  bool bounces;  ///< whether approaches faster than the threshold count; else only those that would go deep
+};
+
+/// Of each body in a flight.
+struct FlightLog {
+  Array<double, Host> clock;       ///< time of its last impact (s); the start if it had none
+  Array<std::int32_t, Host> hits;  ///< its impacts so far
+  Array<double, Host> reach;       ///< of its surface from the midpoint, to either end of the substep (m)
+};
+
+/// The bodies in flight, and what has become of them. Cheap to copy; the bodies and the log are the caller's.
+struct FlightStage {
+  FlightStage(const ImpactProblem& p, const ResponseParameters& r, const BodyView& b, FlightLog& log)
+      : problem(p),
+        parameters(r),
+        bodies(b),
+        clock(log.clock.view()),
+        hits(log.hits.view()),
+        reach(log.reach.view()) {}
+
+  ImpactProblem problem;
+  ResponseParameters parameters;
+  BodyView bodies;
+  View<double> clock;
+  View<std::int32_t> hits;
+  View<double> reach;
+
+  bool is_free(std::int32_t body) const { return bodies.mobility[body] == Mobility::free; }
+
+  BodyFlight flight(std::int32_t body) const;
+  /// What the bodies' velocities have of the substep's kick already (m/s).
+  Vec3 kick_of(std::int32_t body) const {
+    return problem.from > 0 && is_free(body) ? Vec3(problem.step * parameters.acceleration_of(body))
+                                             : Vec3(Vec3::Zero());
+  }
+
+  /// The slowest approach that bounces on a part without load (m/s).
+  double slowest_bounce(std::int32_t i, std::int32_t j) const;
+
+  /// Two bodies until the end of the substep; no meeting of theirs counts yet.
+  PairFlight pair_of(std::int32_t i, std::int32_t j, double until) const;
+
+  /// Bound on how far any point of a body's surface gets from where it is at the midpoint (m).
+  double reach_of(std::int32_t body) const;
+
+  /// The next impact of two bodies.
+  Meeting next(std::int32_t i, std::int32_t j) const;
+
+ private:
+  /// True if two bodies do not come near one another in the substep.
+  bool are_far(std::int32_t i, std::int32_t j) const;
+};
+
+}  // namespace scree
