@@ -157,20 +157,32 @@ struct FindContacts {
   int test(std::int32_t i, std::int32_t j, Manifold* out, NarrowPhaseStats& stats) const {
     if (bodies.mobility[i] != Mobility::free && bodies.mobility[j] != Mobility::free) return 0;
     ++stats.tested;
+    const bool later = is_late(i, j);
+    const bool boxes = bodies.shape[i] == Shape::box && bodies.shape[j] == Shape::box;
+    const bool checked = boxes && is_crosschecked(crosscheck_share, search, i, j);
+    if (!later && !checked && are_far(i, j)) return 0;
     const PairTest pair_test =
         table->of[static_cast<int>(bodies.shape[i])][static_cast<int>(bodies.shape[j])];
-    const bool later = is_late(i, j);
     const double time = later ? late->time_of(i, j) : 0.0;
     const Solid a = later ? late->solid_at(i, time) : solid(i);
     const Solid b = later ? late->solid_at(j, time) : solid(j);
     const int count = pair_test(a, b, margin[i] + margin[j], out, stats);
-    const bool boxes = bodies.shape[i] == Shape::box && bodies.shape[j] == Shape::box;
-    if (boxes && is_crosschecked(crosscheck_share, search, i, j)) crosscheck(a, b, stats.crosscheck);
+    if (checked) crosscheck(a, b, stats.crosscheck);
     for (int m = 0; m < count; ++m) {
       out[m].i = i;
       out[m].j = j;
     }
     return count;
+  }
+
+  /// True if the spheres around two boxes, or a box and a ball, are too far apart for a contact: their tests
+  /// cost far more.
+  bool are_far(std::int32_t i, std::int32_t j) const {
+    if (is_boundary(bodies.shape[i]) || is_boundary(bodies.shape[j])) return false;
+    if (bodies.shape[i] == Shape::sphere && bodies.shape[j] == Shape::sphere) return false;
+    const double reach = bounding_radius(bodies.shape[i], bodies.size[i]) +
+                         bounding_radius(bodies.shape[j], bodies.size[j]) + margin[i] + margin[j];
+    return (bodies.position[j] - bodies.position[i]).squaredNorm() > reach * reach;
   }
 
   bool is_late(std::int32_t i, std::int32_t j) const {

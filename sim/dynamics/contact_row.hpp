@@ -8,8 +8,8 @@
 namespace scree {
 
 /// What the solver reads and writes of a body: velocities, and the inverse masses at the midpoint
-/// orientation. Two cache lines; a round body needs but the first.
-struct alignas(64) SolverBody {
+/// orientation.
+struct SolverBody {
   Vec3 velocity;
   Vec3 spin;
   double inverse_mass;   ///< 0: not free
@@ -20,11 +20,6 @@ struct alignas(64) SolverBody {
   SCREE_HD void push(const Vec3& arm, const Vec3& impulse) {
     velocity += inverse_mass * impulse;
     spin += inverse_inertia * arm.cross(impulse);
-  }
-  /// The same where the inertia is that of a ball.
-  SCREE_HD void push_ball(const Vec3& arm, const Vec3& impulse) {
-    velocity += inverse_mass * impulse;
-    spin += inverse_inertia(0, 0) * arm.cross(impulse);
   }
 };
 
@@ -39,11 +34,13 @@ struct ContactRow {
   Vec3 impulse;         ///< accumulated, world frame (N s)
   double normal_mass;   ///< 1 / (n.W n), W: the Delassus matrix of the point (kg)
   double tangent_mass;  ///< 1 / largest eigenvalue of W in the tangent plane (kg)
-  Vec3 direction;       ///< conjugate direction of the impulse (N s)
-  Vec3 change;          ///< of the impulse in the last sweep (N s)
 
+  SCREE_HD Vec3 relative_velocity(const Vec3& velocity_i, const Vec3& spin_i, const Vec3& velocity_j,
+                                  const Vec3& spin_j) const {
+    return velocity_j + spin_j.cross(arm_j) - (velocity_i + spin_i.cross(arm_i));
+  }
   SCREE_HD Vec3 relative_velocity(const SolverBody& i, const SolverBody& j) const {
-    return j.velocity_at(arm_j) - i.velocity_at(arm_i);
+    return relative_velocity(i.velocity, i.spin, j.velocity, j.spin);
   }
   SCREE_HD void push(const Vec3& more, SolverBody& i, SolverBody& j) const {
     i.push(arm_i, -more);
@@ -87,7 +84,7 @@ SCREE_HD inline ContactRow row_at(const Vec3& arm_i, const Vec3& arm_j, double g
   row.arm_j = arm_j;
   row.gap = gap;
   row.bend = row.target = 0;
-  row.impulse = row.direction = row.change = Vec3::Zero();
+  row.impulse.setZero();
   return row;
 }
 
@@ -178,16 +175,6 @@ SCREE_HD inline void sweep_rows(ContactRow* rows, const RowCoupling* couplings, 
     row.push(impulse - row.impulse, i, j);
     row.impulse = impulse;
   }
-}
-
-/// The same for the one row of a contact of balls.
-SCREE_HD inline void sweep_ball_row(ContactRow& row, const Vec3& normal, double friction, SolverBody& i,
-                                    SolverBody& j) {
-  const Vec3 impulse = natural_map(row, normal, friction, row.relative_velocity(i, j));
-  const Vec3 change = impulse - row.impulse;
-  i.push_ball(row.arm_i, -change);
-  j.push_ball(row.arm_j, change);
-  row.impulse = impulse;
 }
 
 }  // namespace scree

@@ -23,6 +23,7 @@ struct PrepareRows {
         contact.count == 1 ? 0.0
                            : tolerance::closed_gap * fmin(smallest_size(bodies.shape[m.i], bodies.size[m.i]),
                                                           smallest_size(bodies.shape[m.j], bodies.size[m.j]));
+    contact.aligned = contact.balls && turns_as_ball(contact.i) && turns_as_ball(contact.j);
     for (int k = 0; k < contact.count; ++k) {
       ContactRow& row = stage.rows_of(c)[k];
       const Vec3 impulse = row.impulse;
@@ -45,9 +46,13 @@ struct PrepareRows {
       }
       // Held, a contact that was parting before the kick would gain energy, p.(u- + u+)/2: it may close as
       // fast.
-      row.target = fmin(row.target, noise - speed_before(contact, row));
+      row.target = fmin(row.target, noise - contact.normal.dot(stage.velocity_before(contact, row)));
       if (contact.flying) row.target = fmin(row.target, flight_speed(contact, row));
     }
+  }
+
+  SCREE_HD bool turns_as_ball(std::int32_t body) const {
+    return stage.solver[body].is_free() || stage.solver[body].spin.isZero(0);
   }
 
   /// Of balls on one another, and of a ball along the wall of a tube: the normal turns with the centres.
@@ -66,16 +71,9 @@ struct PrepareRows {
     return reach > 0 ? -across.squaredNorm() / reach : 0.0;
   }
 
-  /// At which the contact parts before the kick.
-  SCREE_HD double speed_before(const Contact& contact, const ContactRow& row) const {
-    return contact.normal.dot(
-        row.relative_velocity(stage.before_kick(contact.i), stage.before_kick(contact.j)));
-  }
-
   /// A little faster than the flight closes along the normal, so that rounding pushes nobody.
   SCREE_HD double flight_speed(const Contact& contact, const ContactRow& row) const {
-    const double speed =
-        contact.normal.dot(row.relative_velocity(stage.solver[contact.i], stage.solver[contact.j]));
+    const double speed = contact.normal.dot(stage.velocity_after(contact, row));
     return speed - tolerance::flight_margin * fabs(speed);
   }
 };

@@ -75,6 +75,7 @@ struct PrepareContact {
         .loaded = loaded,
         .flying = false,
         .balls = laws.acts_as_ball(manifold.i) && laws.acts_as_ball(manifold.j),
+        .aligned = false,
         .free_ends = static_cast<int>(laws.is_free(manifold.i)) + static_cast<int>(laws.is_free(manifold.j)),
         .lead = 0,
         .impulse = Vec3::Zero()};

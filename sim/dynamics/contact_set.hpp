@@ -6,6 +6,7 @@
 #include "narrowphase/contact.hpp"
 #include "sim/dynamics/coloring.hpp"
 #include "sim/dynamics/contact_row.hpp"
+#include "sim/dynamics/lanes/batches.hpp"
 #include "sim/dynamics/state.hpp"
 
 #include <algorithm>
@@ -26,6 +27,7 @@ struct Contact {
   bool loaded;    ///< carried an impulse in the last substep: it does not bounce
   bool flying;    ///< known not to meet in this substep: its rows only guard what the flight leaves free
   bool balls;     ///< between balls and bodies that are not free: its row needs no coupling
+  bool aligned;   ///< of balls, and what is not free does not turn: only arms along the normal matter
   int free_ends;  ///< how many of its two bodies are free
   double lead;    ///< how long after the midpoint its geometry is of (s)
   Vec3 impulse;   ///< all that its rows gave to j in this substep (N s)
@@ -56,6 +58,7 @@ struct ContactSet {
   Array<Contact, Host> contacts;       ///< in the order of the colours
   Array<ContactRow, Host> rows;        ///< of one contact after the other
   Array<RowCoupling, Host> couplings;  ///< of the rows; not set for those of balls
+  lanes::Batches batches;              ///< the same for the kernels
 };
 
 /// Impulses of the last substep, by pair, part and feature. Ordered by (i, j, part), as manifolds are, with

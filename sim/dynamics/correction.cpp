@@ -2,7 +2,7 @@
 
 #include "core/parallel.hpp"
 #include "core/tolerances.hpp"
-#include "sim/dynamics/colored.hpp"
+#include "sim/dynamics/lanes/colored.hpp"
 #include "sim/dynamics/rotation.hpp"
 
 namespace scree {
@@ -12,21 +12,12 @@ struct PositionCorrector::Stage {
   ConstView<SolverBody> solver;
   ConstView<Contact> contacts;
   ConstView<ContactRow> rows;
-  View<double> flown_gap;  ///< of each row at the end of the substep, without displacements
-  View<Displacement> displacement;
+  View<lanes::Body> displacement;  ///< of the centre (m), and turn (rad)
   double step;
-
-  /// Gap at the end of the substep, to first order in what moved since the midpoint.
-  SCREE_HD double gap_at_end(const Contact& c, std::int64_t row) const {
-    const Displacement& i = displacement[c.i];
-    const Displacement& j = displacement[c.j];
-    return flown_gap[row] + c.normal.dot(j.linear + j.angular.cross(rows[row].arm_j) - i.linear -
-                                         i.angular.cross(rows[row].arm_i));
-  }
 
   /// How far a gap has opened since the contact was seen. From the places that bodies struck late have come
   /// to; for the others from their velocities, which know of no origin.
-  SCREE_HD double flown(const Contact& c, const ContactRow& row) const {
+  double flown(const Contact& c, const ContactRow& row) const {
     const SolverBody& i = solver[c.i];
     const SolverBody& j = solver[c.j];
     if (c.lead == 0) {
@@ -37,51 +28,77 @@ struct PositionCorrector::Stage {
     return c.normal.dot(moved + (0.5 * step - c.lead) * turned);
   }
 
-  SCREE_HD void move(std::int32_t body, const Vec3& arm, const Vec3& impulse) const {
-    const SolverBody& b = solver[body];
-    if (!b.is_free()) return;
-    displacement[body].linear += b.inverse_mass * impulse;
-    displacement[body].angular += b.inverse_inertia * arm.cross(impulse);
+  /// Gap at the end of the substep, without displacements.
+  double flown_gap(const Contact& c, const ContactRow& row) const {
+    // What flies past is nearer to the other's tangent plane than to the other.
+    if (c.flying && row.impulse.isZero(0)) return HUGE_VAL;
+    return row.gap + flown(c, row);
+  }
+
+  double largest_part(const Contact& c) const {
+    return tolerance::correction_cap * fmin(smallest_size(bodies.shape[c.i], bodies.size[c.i]),
+                                            smallest_size(bodies.shape[c.j], bodies.size[c.j]));
   }
 };
 
-/// Fills the gaps of a contact's rows and returns its deepest overlap.
+/// Fills the gaps of a batch's points and the largest part of each contact; returns the deepest overlap.
 struct PositionCorrector::Fly {
   Stage stage;
-  SCREE_HD double operator()(std::int64_t k) const {
-    const Contact& c = stage.contacts[k];
+  ConstView<lanes::Members> members;
+  View<lanes::Lane> largest;
+  View<lanes::Lane> gaps;
+  double of(std::int64_t b, std::int64_t first_gap, int points) const {
     double deepest = 0;
-    for (std::int64_t r = c.first_row; r < c.first_row + c.count; ++r) {
-      const ContactRow& row = stage.rows[r];
-      // What flies past is nearer to the other's tangent plane than to the other.
-      if (c.flying && row.impulse.isZero(0)) {
-        stage.flown_gap[r] = HUGE_VAL;
-        continue;
+    for (int l = 0; l < lanes::width; ++l) {
+      const std::int32_t c = members[b].contact[l];
+      largest[b].at[l] = c < 0 ? 0.0 : stage.largest_part(stage.contacts[c]);
+      for (int k = 0; k < points; ++k) {
+        double& gap = gaps[first_gap + k].at[l];
+        gap = c < 0 ? 0.0 : stage.flown_gap(stage.contacts[c], stage.rows[stage.contacts[c].first_row + k]);
+        deepest = fmax(deepest, -gap);
       }
-      stage.flown_gap[r] = row.gap + stage.flown(c, row);
-      deepest = fmax(deepest, -stage.flown_gap[r]);
     }
     return deepest;
   }
 };
 
-struct PositionCorrector::Sweep {
+struct PositionCorrector::FlyBalls {
+  Fly fly;
+  double operator()(std::int64_t b) const { return fly.of(b, b, 1); }
+};
+
+struct PositionCorrector::FlyPoints {
+  Fly fly;
+  ConstView<lanes::PointBatch> batches;
+  double operator()(std::int64_t b) const { return fly.of(b, batches[b].first_row, batches[b].count); }
+};
+
+struct PositionCorrector::Reset {
   Stage stage;
-  std::int64_t first;
-  SCREE_HD void operator()(std::int64_t k) const {
-    const Contact& c = stage.contacts[first + k];
-    const double largest =
-        tolerance::correction_cap * fmin(smallest_size(stage.bodies.shape[c.i], stage.bodies.size[c.i]),
-                                         smallest_size(stage.bodies.shape[c.j], stage.bodies.size[c.j]));
-    for (std::int64_t r = c.first_row; r < c.first_row + c.count; ++r) {
-      const double overlap = -stage.gap_at_end(c, r);
-      if (overlap <= 0) continue;
-      const ContactRow& row = stage.rows[r];
-      const double part = fmin(tolerance::correction_share * overlap, largest);
-      const Vec3 impulse = (part * row.normal_mass) * c.normal;
-      stage.move(c.i, row.arm_i, -impulse);
-      stage.move(c.j, row.arm_j, impulse);
-    }
+  void operator()(std::int64_t k) const {
+    const bool nobody = k == stage.solver.size();
+    stage.displacement[k] = {Vec3::Zero(), nobody ? 0.0 : stage.solver[k].inverse_mass, Vec3::Zero(), 0};
+  }
+};
+
+struct PositionCorrector::PartBalls {
+  ConstView<lanes::BallBatch> batches;
+  ConstView<lanes::Lane> gaps, largest;
+  lanes::Body* displacement;
+  void operator()(std::int64_t b) const {
+    lanes::kernels().part_balls(batches[b], gaps[b], largest[b], tolerance::correction_share, displacement);
+  }
+};
+
+struct PositionCorrector::PartPoints {
+  ConstView<lanes::PointBatch> batches;
+  ConstView<lanes::PointRow> rows;
+  ConstView<lanes::Lane> gaps, largest;
+  lanes::Body* displacement;
+  void operator()(std::int64_t b) const {
+    const std::int64_t first = batches[b].first_row;
+    lanes::kernels().part_points(batches[b], &rows[first], &gaps[first], largest[b],
+                                 tolerance::correction_share, displacement);
   }
 };
 
@@ -91,7 +108,7 @@ struct PositionCorrector::Apply {
   Vec3 gravity;
   bool rotation;
   SCREE_HD Ledger operator()(std::int64_t k) const {
-    const Displacement& d = stage.displacement[k];
+    const lanes::Body& d = stage.displacement[k];
     if (!stage.solver[k].is_free()) return {};
     const double mass = 1.0 / stage.solver[k].inverse_mass;
     const Vec3& spin = stage.bodies.spin[k];
@@ -100,14 +117,14 @@ struct PositionCorrector::Apply {
     Ledger ledger;
     Vec3& position = stage.bodies.position[k];
     const Vec3 before = position;
-    position += d.linear;
+    position += d.velocity;
     const Vec3 moved = position - before;  // far from the origin rounding drops some
     ledger.correction = mass * gravity.dot(moved);
     ledger.angular_correction = mass * moved.cross(stage.bodies.velocity[k]);
-    if (rotation && !d.angular.isZero(0)) {
+    if (rotation && !d.spin.isZero(0)) {
       const double energy = rotational_energy(q, spin, inverse_inertia);
       const Vec3 momentum = spin_momentum(q, spin, inverse_inertia);
-      q = (rotation_of(d.angular) * q).normalized();
+      q = (rotation_of(d.spin) * q).normalized();
       ledger.correction -= rotational_energy(q, spin, inverse_inertia) - energy;
       ledger.angular_correction += spin_momentum(q, spin, inverse_inertia) - momentum;
     }
@@ -116,24 +133,30 @@ struct PositionCorrector::Apply {
 };
 
 Ledger PositionCorrector::correct(double step, const ResponseParameters& parameters, BodyView bodies,
-                                  const Array<SolverBody, Host>& solver, ContactSet& set) {
-  displacement_.resize(solver.size());
+                                  const Array<SolverBody, Host>& solver, const ContactSet& set) {
   if (set.contacts.empty()) return {};
-  flown_gap_.resize(set.rows.size());
-  const Stage stage{bodies,
-                    solver.view(),
-                    std::as_const(set.contacts).view(),
-                    std::as_const(set.rows).view(),
-                    flown_gap_.view(),
-                    displacement_.view(),
-                    step};
-  const double deepest = parallel::max<double, Host>("correction.gaps", set.contacts.size(), Fly{stage}, 0.0);
+  const lanes::Batches& batches = set.batches;
+  displacement_.resize(solver.size() + 1);
+  ball_gaps_.resize(batches.balls.size());
+  largest_of_balls_.resize(batches.balls.size());
+  point_gaps_.resize(batches.rows.size());
+  largest_of_points_.resize(batches.points.size());
+  const Stage stage{bodies, solver.view(), set.contacts.view(), set.rows.view(), displacement_.view(), step};
+  const FlyBalls fly_balls{{stage, batches.ball_members.view(), largest_of_balls_.view(), ball_gaps_.view()}};
+  const FlyPoints fly_points{
+      {stage, batches.point_members.view(), largest_of_points_.view(), point_gaps_.view()},
+      batches.points.view()};
+  const double deepest =
+      fmax(parallel::max<double, Host>("correction.gaps", batches.balls.size(), fly_balls, 0.0),
+           parallel::max<double, Host>("correction.gaps", batches.points.size(), fly_points, 0.0));
   if (deepest == 0) return {};
-  parallel::fill("correction.reset", displacement_, Displacement{});
+  parallel::for_each<Host>("correction.reset", displacement_.size(), Reset{stage});
   for (int sweep = 0; sweep < tolerance::correction_sweeps; ++sweep) {
-    for_each_color("correction.sweep", set.coloring, [&stage](std::int64_t first) {
-      return Sweep{stage, first};
-    });
+    lanes::for_each_color(
+        "correction.sweep", batches,
+        PartBalls{batches.balls.view(), ball_gaps_.view(), largest_of_balls_.view(), displacement_.data()},
+        PartPoints{batches.points.view(), batches.rows.view(), point_gaps_.view(), largest_of_points_.view(),
+                   displacement_.data()});
   }
   return parallel::sum<Ledger, Host>("correction.apply", solver.size(),
                                      Apply{stage, parameters.gravity, parameters.rotation});

@@ -10,23 +10,24 @@ class PositionCorrector {
  public:
   /// A few sweeps of nonlinear Gauss-Seidel on the gaps predicted for the end of the substep: each
   /// overlapping point is parted by a share of its overlap, mass weighted, with rotation. `bodies` are at the
-  /// end of the substep, the rows of `set` at its midpoint. Velocities and spins stay; what that changes in
-  /// energy and angular momentum is returned.
+  /// end of the substep, the rows and batches of `set` at its midpoint. Velocities and spins stay; what that
+  /// changes in energy and angular momentum is returned.
   Ledger correct(double step, const ResponseParameters& parameters, BodyView bodies,
-                 const Array<SolverBody, Host>& solver, ContactSet& set);
+                 const Array<SolverBody, Host>& solver, const ContactSet& set);
 
  private:
-  /// Displacement of one body: of its centre (m), and its turn (rad).
-  struct Displacement {
-    Vec3 linear = Vec3::Zero();
-    Vec3 angular = Vec3::Zero();
-  };
   struct Stage;
   struct Fly;
-  struct Sweep;
+  struct FlyBalls;
+  struct FlyPoints;
+  struct Reset;
+  struct PartBalls;
+  struct PartPoints;
   struct Apply;
-  Array<double, Host> flown_gap_;
-  Array<Displacement, Host> displacement_;
+  Array<lanes::Body, Host> displacement_;  // and that of nobody
+  // Of each batch, or of its points.
+  Array<lanes::Lane, Host> ball_gaps_, largest_of_balls_;
+  Array<lanes::Lane, Host> point_gaps_, largest_of_points_;
 };
 
 }  // namespace scree

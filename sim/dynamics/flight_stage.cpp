@@ -32,9 +32,23 @@ PairFlight FlightStage::pair_of(std::int32_t i, std::int32_t j, double until) co
   return pair;
 }
 
-double FlightStage::reach_of(std::int32_t body) const {
-  if (bodies.mobility[body] == Mobility::absent) return 0;
-  return fastest_surface(flight(body), problem.step) * (0.5 * problem.step);
+void FlightStage::bound(std::int32_t body) const {
+  const bool absent = bodies.mobility[body] == Mobility::absent;
+  turn[body] = absent ? 0.0 : fastest_turn(flight(body));
+  const double linear = (bodies.velocity[body] - kick_of(body)).norm();
+  const double gained = is_free(body) ? parameters.acceleration_of(body).norm() * problem.step : 0.0;
+  reach[body] = absent ? 0.0 : (linear + gained + turn[body]) * (0.5 * problem.step);
+}
+
+double FlightStage::fastest(std::int32_t i, std::int32_t j) const {
+  Vec3 velocity = bodies.velocity[j] - bodies.velocity[i];
+  Vec3 gained = Vec3::Zero();
+  if (is_free(i) != is_free(j) || parameters.acceleration.size() > 0) {
+    velocity += kick_of(i) - kick_of(j);
+    if (is_free(i)) gained -= problem.step * parameters.acceleration_of(i);
+    if (is_free(j)) gained += problem.step * parameters.acceleration_of(j);
+  }
+  return velocity.norm() + gained.norm() + turn[i] + turn[j];
 }
 
 bool FlightStage::are_far(std::int32_t i, std::int32_t j) const {
@@ -57,20 +71,24 @@ Meeting FlightStage::next(std::int32_t i, std::int32_t j) const {
   if (are_far(i, j) || std::max(hits[i], hits[j]) >= most_hits) return {};
   const double earliest = std::max(clock[i], clock[j]);
   if (!(earliest < problem.step)) return {};
-  PairFlight pair = pair_of(i, j, problem.step);
-  pair.farthest = tolerance::deep_approach * std::min(smallest_size(pair.i.shape, pair.i.size),
-                                                      smallest_size(pair.j.shape, pair.j.size));
-  const double fastest = fastest_approach(pair);
+  const double farthest = tolerance::deep_approach * std::min(smallest_size(bodies.shape[i], bodies.size[i]),
+                                                              smallest_size(bodies.shape[j], bodies.size[j]));
   const double slowest = problem.bounces ? slowest_bounce(i, j) : HUGE_VAL;
-  const bool may_bounce = fastest > slowest;
-  const bool may_go_deep = parameters.continuous && fastest * (problem.step - earliest) > pair.farthest;
-  if (!(may_bounce || may_go_deep)) return {};
-  if (may_bounce) {
+  const auto may_bounce = [&](double speed) { return speed > slowest; };
+  const auto may_go_deep = [&](double speed) {
+    return parameters.continuous && speed * (problem.step - earliest) > farthest;
+  };
+  const double bound = fastest(i, j);
+  if (!may_bounce(bound) && !may_go_deep(bound)) return {};
+  PairFlight pair = pair_of(i, j, problem.step);
+  const double speed = fastest_approach(pair);
+  if (!may_bounce(speed) && !may_go_deep(speed)) return {};
+  if (may_bounce(speed)) {
     for (int part = 0; part < PairFlight::parts; ++part) {
       if (!problem.memory.is_loaded(i, j, part)) pair.slowest[part] = slowest;
     }
   }
-  if (!may_go_deep) pair.farthest = HUGE_VAL;
+  if (may_go_deep(speed)) pair.farthest = farthest;
   return next_meeting(pair, earliest);
 }
 

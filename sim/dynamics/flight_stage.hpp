@@ -32,6 +32,7 @@ struct ImpactProblem {
 struct FlightLog {
   Array<double, Host> clock;       ///< time of its last impact (s); the start if it had none
   Array<std::int32_t, Host> hits;  ///< its impacts so far
+  Array<double, Host> turn;        ///< bound on the speed that turning gives its surface (m/s)
   Array<double, Host> reach;       ///< of its surface from the midpoint, to either end of the substep (m)
 };
 
@@ -43,6 +44,7 @@ struct FlightStage {
         bodies(b),
         clock(log.clock.view()),
         hits(log.hits.view()),
+        turn(log.turn.view()),
         reach(log.reach.view()) {}
 
   ImpactProblem problem;
@@ -50,6 +52,7 @@ struct FlightStage {
   BodyView bodies;
   View<double> clock;
   View<std::int32_t> hits;
+  View<double> turn;
   View<double> reach;
 
   bool is_free(std::int32_t body) const { return bodies.mobility[body] == Mobility::free; }
@@ -67,8 +70,8 @@ struct FlightStage {
   /// Two bodies until the end of the substep; no meeting of theirs counts yet.
   PairFlight pair_of(std::int32_t i, std::int32_t j, double until) const;
 
-  /// Bound on how far any point of a body's surface gets from where it is at the midpoint (m).
-  double reach_of(std::int32_t body) const;
+  /// Sets the turn and the reach of a body as it flies now.
+  void bound(std::int32_t body) const;
 
   /// The next impact of two bodies.
   Meeting next(std::int32_t i, std::int32_t j) const;
@@ -76,6 +79,8 @@ struct FlightStage {
  private:
   /// True if two bodies do not come near one another in the substep.
   bool are_far(std::int32_t i, std::int32_t j) const;
+  /// Bound on how fast two bodies come closer in the substep (m/s).
+  double fastest(std::int32_t i, std::int32_t j) const;
 };
 
 }  // namespace scree

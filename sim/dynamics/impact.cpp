@@ -70,7 +70,7 @@ double fly_on(const FlightStage& stage, std::int32_t body, const BodyFlight& flo
                   flown.midpoint - s);
     drift += energy(stage.bodies.orientation[body], stage.bodies.spin[body]);
   }
-  stage.reach[body] = stage.reach_of(body);
+  stage.bound(body);
   return drift;
 }
 

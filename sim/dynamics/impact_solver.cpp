@@ -46,7 +46,7 @@ struct StartClock {
 
 struct SetReach {
   FlightStage stage;
-  void operator()(std::int64_t k) const { stage.reach[k] = stage.reach_of(static_cast<std::int32_t>(k)); }
+  void operator()(std::int64_t k) const { stage.bound(static_cast<std::int32_t>(k)); }
 };
 
 struct LoadReach {
@@ -83,6 +83,7 @@ Ledger ImpactSolver::resolve(const ImpactProblem& problem, const ResponseParamet
   impacts_.clear();
   saved_.clear();
   hit_bound_ = false;
+  log_.turn.resize(n);
   log_.reach.resize(n);
   const FlightStage stage(problem, parameters, bodies, log_);
   parallel::for_each<Host>("impact.reach", n, SetReach{stage});

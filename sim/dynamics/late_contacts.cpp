@@ -15,6 +15,7 @@ bool is_late(const FlightStage& stage, const StruckBody& body) {
 
 struct MarkFlights {
   FlightStage stage;
+  StruckBodies struck;
   ConstView<Manifold> manifolds;
   View<Contact> contacts;
 
@@ -24,7 +25,7 @@ struct MarkFlights {
     Contact& contact = contacts[index];
     const Manifold& m = manifolds[contact.manifold];
     const double step = stage.problem.step;
-    const double seen = std::max(0.5 * step, StruckBodies(stage).time_of(m.i, m.j));
+    const double seen = std::max(0.5 * step, struck.time_of(m.i, m.j));
     contact.lead = seen - 0.5 * step;
     if (contact.loaded || !would_push_apart(m, seen)) return;
     PairFlight pair = stage.pair_of(m.i, m.j, 1.5 * step);
@@ -35,7 +36,6 @@ struct MarkFlights {
   }
 
   bool would_push_apart(const Manifold& m, double seen) const {
-    const StruckBodies struck(stage);
     const BodyInstant i = struck.at(m.i, seen);
     const BodyInstant j = struck.at(m.j, seen);
     bool pushes = false;
@@ -69,7 +69,7 @@ bool any_is_late(const FlightStage& stage, const std::vector<StruckBody>& struck
 
 void mark_flights(const FlightStage& stage, ConstView<Manifold> manifolds, ContactSet& set) {
   parallel::for_each<Host>("impact.flights", set.contacts.size(),
-                           MarkFlights{stage, manifolds, set.contacts.view()});
+                           MarkFlights{stage, StruckBodies(stage), manifolds, set.contacts.view()});
 }
 
 Ledger shift_late(const FlightStage& stage, const std::vector<StruckBody>& struck, const ContactSet& set,

@@ -221,9 +221,9 @@ double closing_speed(const Manifold& manifold, int point, const BodyInstant& i, 
   return manifold.normal.dot(i.velocity_at(position) - j.velocity_at(position));
 }
 
-double fastest_surface(const BodyFlight& flight, double time) {
+double fastest_turn(const BodyFlight& flight) {
   if (is_boundary(flight.shape) && !tilting_spin(flight).isZero(0)) return HUGE_VAL;
-  return flight.velocity.norm() + flight.acceleration.norm() * time + fastest_turn(flight, 0.0);
+  return fastest_turn(flight, 0.0);
 }
 
 double fastest_approach(const PairFlight& pair) {

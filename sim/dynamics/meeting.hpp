@@ -61,9 +61,9 @@ struct Meeting {
 /// Bound on how fast any two points of the bodies near one another approach, until the search ends (m/s).
 double fastest_approach(const PairFlight& pair);
 
-/// Bound on the speed of any point of a body's surface within the time given (m/s); infinite for a boundary
-/// that turns over.
-double fastest_surface(const BodyFlight& flight, double time);
+/// Bound on the speed that turning gives any point of a body's surface (m/s); infinite for a boundary that
+/// turns over.
+double fastest_turn(const BodyFlight& flight);
 
 /// The first meeting that counts, at `earliest` (s) or later. Balls, and balls with planes and tubes that do
 /// not turn over, have closed forms. For the others it is conservative advancement (Mirtich 1996, sec. 2.3):

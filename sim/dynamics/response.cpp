@@ -33,50 +33,49 @@ struct Kick {
   }
 };
 
-struct Account {
-  SolveStage stage;
-  SCREE_HD Ledger operator()(std::int64_t c) const {
-    Contact& contact = stage.contacts[c];
-    const SolverBody& i = stage.solver[contact.i];
-    const SolverBody& j = stage.solver[contact.j];
-    const SolverBody i0 = stage.before_kick(contact.i);
-    const SolverBody j0 = stage.before_kick(contact.j);
-    Ledger ledger;
-    for (int k = 0; k < contact.count; ++k) {
-      const ContactRow& row = stage.rows_of(c)[k];
-      ledger = ledger + account(row, contact.normal, row.relative_velocity(i0, j0), i, j);
-      contact.impulse += row.impulse;
-    }
-    return ledger;
+/// What the impulses of a contact move, in all of its rows.
+SCREE_HD Moved moved_by(const SolveStage& stage, const Contact& contact) {
+  Moved moved;
+  for (int k = 0; k < contact.count; ++k) {
+    const ContactRow& row = stage.rows[contact.first_row + k];
+    const Vec3 kicked = stage.free_velocity_of(contact, row);
+    moved.linear += 0.5 * row.impulse.dot(stage.velocity_before(contact, row) + kicked);
+    moved.square += 0.5 * row.impulse.dot(stage.velocity_after(contact, row) - kicked);
+  }
+  return moved;
+}
+
+/// The books of a substep, and how many contacts gain.
+struct Accounts {
+  Ledger ledger;
+  std::int64_t gaining = 0;
+  SCREE_HD friend Accounts operator+(const Accounts& a, const Accounts& b) {
+    return {a.ledger + b.ledger, a.gaining + b.gaining};
   }
 };
 
-struct MoveByImpulses {
+struct Account {
   SolveStage stage;
-  SCREE_HD Moved operator()(std::int64_t c) const {
-    const Contact& contact = stage.contacts[c];
-    const SolverBody& i = stage.solver[contact.i];
-    const SolverBody& j = stage.solver[contact.j];
-    const SolverBody i0 = stage.before_kick(contact.i);
-    const SolverBody j0 = stage.before_kick(contact.j);
-    const SolverBody i1 = stage.without_contacts(contact.i);
-    const SolverBody j1 = stage.without_contacts(contact.j);
-    Moved moved;
+  SCREE_HD Accounts operator()(std::int64_t c) const {
+    Contact& contact = stage.contacts[c];
+    Accounts accounts;
+    contact.impulse.setZero();
     for (int k = 0; k < contact.count; ++k) {
-      const ContactRow& row = stage.rows_of(c)[k];
-      const Vec3 kicked = row.relative_velocity(i1, j1);
-      moved.linear += 0.5 * row.impulse.dot(row.relative_velocity(i0, j0) + kicked);
-      moved.square += 0.5 * row.impulse.dot(row.relative_velocity(i, j) - kicked);
+      const ContactRow& row = stage.rows[contact.first_row + k];
+      accounts.ledger = accounts.ledger + account(row, contact.normal, stage.velocity_before(contact, row),
+                                                  stage.solver[contact.i], stage.solver[contact.j]);
+      contact.impulse += row.impulse;
     }
-    return moved;
+    const bool loses = accounts.ledger.restitution + accounts.ledger.friction >= 0;
+    accounts.gaining = !loses && moved_by(stage, contact).gains(tolerance::response_gain) ? 1 : 0;
+    return accounts;
   }
 };
 
 /// Scales down the impulses of an island that gains energy, to where it gains none. Whether it did.
 bool keep_from_gaining(const SolveStage& stage, ConstView<std::int32_t> contacts) {
-  const MoveByImpulses move{stage};
   Moved moved;
-  for (const std::int32_t c : contacts) moved = moved + move(c);
+  for (const std::int32_t c : contacts) moved = moved + moved_by(stage, stage.contacts[c]);
   if (!moved.gains(tolerance::response_gain)) return false;
   const double scale = moved.scale_without_gain();
   for (const std::int32_t c : contacts) {
@@ -84,11 +83,6 @@ bool keep_from_gaining(const SolveStage& stage, ConstView<std::int32_t> contacts
   }
   return true;
 }
-
-struct IsGaining {
-  MoveByImpulses move;
-  SCREE_HD int operator()(std::int64_t c) const { return move(c).gains(tolerance::response_gain) ? 1 : 0; }
-};
 
 /// Work of the torques: by the mean of the spins before and after, as that of impulses.
 struct WorkOfTorque {
@@ -164,7 +158,6 @@ Ledger ResponseSolver::solve(ConstView<Manifold> manifolds, double step, const R
                              Counters& counters) {
   const std::int64_t n = set.contacts.size();
   change_.resize(n);
-  body_acceleration_.resize(solver.size());
   free_velocity_.resize(solver.size());
   free_spin_.resize(solver.size());
   const SolveStage stage{.manifolds = manifolds,
@@ -174,7 +167,6 @@ Ledger ResponseSolver::solve(ConstView<Manifold> manifolds, double step, const R
                          .rows = set.rows.view(),
                          .couplings = set.couplings.view(),
                          .change = change_.view(),
-                         .acceleration = body_acceleration_.view(),
                          .free_velocity = free_velocity_.view(),
                          .free_spin = free_spin_.view(),
                          .step = step};
@@ -186,10 +178,14 @@ Ledger ResponseSolver::solve(ConstView<Manifold> manifolds, double step, const R
     SweepPlan plan = automatic_sweeps(set.rows.size());
     if (parameters.iterations > 0) plan.sweeps = parameters.iterations;
     if (parameters.block_sweeps > 0) plan.block_sweeps = parameters.block_sweeps;
-    Sweeps sweeps(stage, set.coloring, plan.block_sweeps, parameters.tolerance, counters.sweeps);
-    sweeps.start();
+    sweeps_.load(stage, set.coloring, set.batches);
+    sweeps_.take_impulses();
+    sweeps_.set_velocities();
+    const auto sweep = [&](int most) {
+      return sweeps_.run(most, plan.block_sweeps, parameters.tolerance, counters.sweeps);
+    };
     const int first = plan.direct ? std::min(plan.sweeps, sweeps_before_direct) : plan.sweeps;
-    bool converged = sweeps.run(first);
+    bool converged = sweep(first);
     if (parameters.accurate || (!converged && first < plan.sweeps)) {
       islands_.find(set.contacts.view(), solver.view());
       outcome_.resize(islands_.count());
@@ -197,27 +193,33 @@ Ledger ResponseSolver::solve(ConstView<Manifold> manifolds, double step, const R
           "response.islands", islands_.count(),
           SolveIsland{stage, &islands_, parameters.tolerance, parameters.accurate, outcome_.view()});
       converged = count_outcomes(counters);
+      sweeps_.take_impulses();
       if (!converged) {
-        sweeps.start();
-        converged = sweeps.run(std::max(plan.sweeps - first, sweeps_before_direct));
+        sweeps_.set_velocities();
+        converged = sweep(std::max(plan.sweeps - first, sweeps_before_direct));
       }
     }
     if (!converged) ++counters.unconverged;
-    sweeps.set_velocities();
+    sweeps_.set_velocities();
     if (parameters.accurate) {
       const auto left = parallel::sum<ImpulseChange, Host>("response.residual", n, LoadResidual{stage});
       if (left.size > 0) counters.residual = std::max(counters.residual, std::sqrt(left.step / left.size));
     }
-    if (parallel::max<int, Host>("response.gain", n, IsGaining{{stage}}, 0) > 0) {
+    Accounts accounts = parallel::sum<Accounts, Host>("response.ledger", n, Account{stage});
+    if (accounts.gaining > 0) {
       islands_.find(set.contacts.view(), solver.view());
       int scaled = 0;
       for (std::int64_t island = 0; island < islands_.count(); ++island) {
         scaled += keep_from_gaining(stage, islands_.contacts(island));
       }
       counters.scaled += scaled;
-      if (scaled > 0) sweeps.set_velocities();
+      if (scaled > 0) {
+        sweeps_.take_impulses();
+        sweeps_.set_velocities();
+        accounts = parallel::sum<Accounts, Host>("response.ledger", n, Account{stage});
+      }
     }
-    ledger = parallel::sum<Ledger, Host>("response.ledger", n, Account{stage});
+    ledger = accounts.ledger;
   }
   if (parameters.torque.size() > 0) {
     ledger.work +=

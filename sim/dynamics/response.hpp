@@ -3,7 +3,7 @@
 #pragma once
 
 #include "sim/dynamics/direct.hpp"
-#include "sim/dynamics/solve_stage.hpp"
+#include "sim/dynamics/sweeps.hpp"
 
 namespace scree {
 
@@ -23,7 +23,7 @@ class ResponseSolver {
   bool count_outcomes(Counters& counters) const;
 
   Array<ImpulseChange, Host> change_;  // per contact, of the last sweep
-  Array<BodyAcceleration, Host> body_acceleration_;
+  Sweeps sweeps_;
   Array<Vec3, Host> free_velocity_, free_spin_;  // of each body without contacts
   Islands islands_;
   Array<DirectOutcome, Host> outcome_;  // of each island

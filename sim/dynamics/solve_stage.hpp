@@ -11,12 +11,6 @@
 
 namespace scree {
 
-/// What the conjugate direction needs of a body.
-struct BodyAcceleration {
-  Vec3 last_velocity, last_spin;
-  Vec3 velocity_direction, spin_direction;
-};
-
 struct SolveStage {
   ConstView<Manifold> manifolds;
   BodyView bodies;
@@ -24,31 +18,25 @@ struct SolveStage {
   View<Contact> contacts;
   View<ContactRow> rows;
   View<RowCoupling> couplings;
-  View<ImpulseChange> change;
-  View<BodyAcceleration> acceleration;
-  View<Vec3> free_velocity;  ///< of each body without contacts
+  View<ImpulseChange> change;  ///< of each contact, in the last sweep
+  View<Vec3> free_velocity;    ///< of each body without contacts
   View<Vec3> free_spin;
   double step;
 
-  /// A body with its velocities before the kick; those of bodies that are not free do not change.
-  SCREE_HD SolverBody before_kick(std::int32_t body) const {
-    SolverBody state = solver[body];
-    state.velocity = bodies.velocity[body];
-    state.spin = bodies.spin[body];
-    return state;
+  /// Relative velocity of a row of a contact: before the kick,
+  SCREE_HD Vec3 velocity_before(const Contact& c, const ContactRow& row) const {
+    return row.relative_velocity(bodies.velocity[c.i], bodies.spin[c.i], bodies.velocity[c.j],
+                                 bodies.spin[c.j]);
   }
-  SCREE_HD SolverBody without_contacts(std::int32_t body) const {
-    SolverBody state = solver[body];
-    state.velocity = free_velocity[body];
-    state.spin = free_spin[body];
-    return state;
+  /// after it without impulses,
+  SCREE_HD Vec3 free_velocity_of(const Contact& c, const ContactRow& row) const {
+    return row.relative_velocity(free_velocity[c.i], free_spin[c.i], free_velocity[c.j], free_spin[c.j]);
+  }
+  /// and with them.
+  SCREE_HD Vec3 velocity_after(const Contact& c, const ContactRow& row) const {
+    return row.relative_velocity(solver[c.i], solver[c.j]);
   }
   SCREE_HD ContactRow* rows_of(std::int64_t c) const { return &rows[contacts[c].first_row]; }
-  SCREE_HD void store(std::int32_t body, const SolverBody& state) const {
-    if (!state.is_free()) return;
-    solver[body].velocity = state.velocity;
-    solver[body].spin = state.spin;
-  }
 };
 
 }  // namespace scree

@@ -1,142 +1,139 @@
 #include "sim/dynamics/sweeps.hpp"
 
 #include "core/parallel.hpp"
-#include "sim/dynamics/colored.hpp"
+#include "sim/dynamics/lanes/colored.hpp"
 
 namespace scree {
 
 namespace {
 
-struct Release {
-  SolveStage stage;
-  SCREE_HD void operator()(std::int64_t k) const {
-    stage.solver[k].velocity = stage.free_velocity[k];
-    stage.solver[k].spin = stage.free_spin[k];
+struct PushBalls {
+  ConstView<lanes::BallBatch> batches;
+  View<lanes::Body> bodies;
+  void operator()(std::int64_t b) const { lanes::kernels().push_balls(batches[b], bodies.data()); }
+};
+
+struct PushPoints {
+  ConstView<lanes::PointBatch> batches;
+  ConstView<lanes::PointRow> rows;
+  View<lanes::Body> bodies;
+  void operator()(std::int64_t b) const {
+    lanes::kernels().push_points(batches[b], &rows[batches[b].first_row], bodies.data());
   }
 };
 
-/// Gives the bodies what the impulses are.
-struct Push {
-  SolveStage stage;
-  std::int64_t first;
-  SCREE_HD void operator()(std::int64_t k) const {
-    const Contact& contact = stage.contacts[first + k];
-    SolverBody i = stage.solver[contact.i];
-    SolverBody j = stage.solver[contact.j];
-    for (int p = 0; p < contact.count; ++p) {
-      ContactRow& row = stage.rows_of(first + k)[p];
-      row.push(row.impulse, i, j);
-      row.change.setZero();
-    }
-    stage.store(contact.i, i);
-    stage.store(contact.j, j);
+struct SweepBalls {
+  View<lanes::BallBatch> batches;
+  View<lanes::Body> bodies;
+  double beta;
+  lanes::Change* change;
+  void operator()(std::int64_t b) const {
+    change[b] = lanes::kernels().sweep_balls(batches[b], bodies.data(), beta);
   }
 };
 
-/// One visit of a contact. Going on by beta in the direction of the sweeps before, which the bodies have done
-/// already, waits for it.
-struct Sweep {
-  SolveStage stage;
-  std::int64_t first;
+struct SweepPoints {
+  ConstView<lanes::PointBatch> batches;
+  View<lanes::PointRow> rows;
+  View<lanes::Body> bodies;
   double beta;
   int block_sweeps;
-
-  SCREE_HD void operator()(std::int64_t k) const {
-    const std::int64_t c = first + k;
-    const Contact& contact = stage.contacts[c];
-    ContactRow* rows = stage.rows_of(c);
-    SolverBody i = stage.solver[contact.i];
-    SolverBody j = stage.solver[contact.j];
-    Vec3 last[Manifold::max_points];
-    for (int p = 0; p < contact.count; ++p) {
-      ContactRow& row = rows[p];
-      row.impulse += beta * row.direction;
-      row.direction = beta * row.direction + row.change;
-      last[p] = row.impulse;
-    }
-    if (contact.balls) {
-      for (int p = 0; p < contact.count; ++p) sweep_ball_row(rows[p], contact.normal, contact.friction, i, j);
-    } else {
-      const int sweeps = contact.count > 1 ? block_sweeps : 1;
-      for (int sweep = 0; sweep < sweeps; ++sweep) {
-        sweep_rows(rows, &stage.couplings[contact.first_row], contact.count, contact.normal, contact.friction,
-                   i, j);
-      }
-    }
-    stage.store(contact.i, i);
-    stage.store(contact.j, j);
-    ImpulseChange change;
-    for (int p = 0; p < contact.count; ++p) {
-      ContactRow& row = rows[p];
-      row.change = row.impulse - last[p];
-      change.add(row, row.change);
-    }
-    stage.change[c] = change;
+  lanes::Change* change;
+  void operator()(std::int64_t b) const {
+    change[b] = lanes::kernels().sweep_points(batches[b], &rows[batches[b].first_row], bodies.data(), beta,
+                                              block_sweeps);
   }
 };
 
 struct LoadChange {
-  ConstView<ImpulseChange> change;
-  SCREE_HD ImpulseChange operator()(std::int64_t c) const { return change[c]; }
+  ConstView<lanes::Change> change;
+  SCREE_HD ImpulseChange operator()(std::int64_t b) const { return {change[b].step, change[b].size}; }
 };
 
 /// Velocities are linear in the impulses: what beta does to these it does to them.
-struct AccelerateBodies {
-  SolveStage stage;
+struct Accelerate {
+  lanes::Body* bodies;
+  lanes::Body* last;
+  lanes::Body* direction;
   double beta;
-  SCREE_HD void operator()(std::int64_t k) const {
-    SolverBody& body = stage.solver[k];
-    BodyAcceleration& a = stage.acceleration[k];
-    if (!body.is_free()) return;
-    const Vec3 velocity_step = body.velocity - a.last_velocity;
-    const Vec3 spin_step = body.spin - a.last_spin;
-    body.velocity += beta * a.velocity_direction;
-    body.spin += beta * a.spin_direction;
-    a.velocity_direction = beta * a.velocity_direction + velocity_step;
-    a.spin_direction = beta * a.spin_direction + spin_step;
-    a.last_velocity = body.velocity;
-    a.last_spin = body.spin;
-  }
-};
-
-struct StartBodies {
-  SolveStage stage;
-  SCREE_HD void operator()(std::int64_t k) const {
-    stage.acceleration[k] = {stage.solver[k].velocity, stage.solver[k].spin, Vec3::Zero(), Vec3::Zero()};
+  void operator()(std::int64_t k) const {
+    lanes::kernels().accelerate(bodies[k], last[k], direction[k], beta);
   }
 };
 
 }  // namespace
 
-void Sweeps::start() {
-  set_velocities();
-  parallel::for_each<Host>("response.start", stage_.solver.size(), StartBodies{stage_});
+/// Bodies without contacts.
+struct Sweeps::Release {
+  SolveStage stage;
+  View<lanes::Body> bodies;
+  void operator()(std::int64_t k) const {
+    if (k == stage.solver.size()) {
+      bodies[k] = {Vec3::Zero(), 0, Vec3::Zero(), 0};
+      return;
+    }
+    bodies[k] = {stage.free_velocity[k], stage.solver[k].inverse_mass, stage.free_spin[k],
+                 stage.solver[k].inverse_inertia(0, 0)};
+  }
+};
+
+struct Sweeps::StoreVelocities {
+  SolveStage stage;
+  ConstView<lanes::Body> bodies;
+  void operator()(std::int64_t k) const {
+    stage.solver[k].velocity = bodies[k].velocity;
+    stage.solver[k].spin = bodies[k].spin;
+  }
+};
+
+void Sweeps::load(const SolveStage& stage, const Coloring& coloring, lanes::Batches& batches) {
+  stage_.emplace(stage);
+  batches_ = &batches;
+  lanes::arrange(coloring, stage.contacts, batches);
+  lanes::load(stage.contacts, stage.rows, stage.couplings, stage.solver,
+              static_cast<std::int32_t>(stage.solver.size()), batches);
+  bodies_.resize(stage.solver.size() + 1);
+  direction_.resize(bodies_.size());
+  change_.resize(batches.balls.size() + batches.points.size());
 }
+
+void Sweeps::take_impulses() { lanes::load_impulses(stage_->contacts, stage_->rows, *batches_); }
 
 void Sweeps::set_velocities() {
-  parallel::for_each<Host>("response.release", stage_.solver.size(), Release{stage_});
-  for_each_color("response.push", coloring_, [this](std::int64_t first) { return Push{stage_, first}; });
+  parallel::for_each<Host>("response.release", bodies_.size(), Release{*stage_, bodies_.view()});
+  lanes::for_each_color("response.push", *batches_, PushBalls{batches_->balls.view(), bodies_.view()},
+                        PushPoints{batches_->points.view(), batches_->rows.view(), bodies_.view()});
+  parallel::for_each<Host>("response.velocities", stage_->solver.size(),
+                           StoreVelocities{*stage_, bodies_.view()});
 }
 
-bool Sweeps::run(int most) {
+bool Sweeps::run(int most, int block_sweeps, double tolerance, std::int64_t& count) {
+  copy(last_, bodies_);
+  parallel::fill("response.start", direction_, lanes::Body{Vec3::Zero(), 0, Vec3::Zero(), 0});
+  bool converged = false;
   double last_step = 0;
   double beta = 0;
-  for (int sweep = 1; sweep <= most; ++sweep) {
+  for (int sweep = 1; sweep <= most && !converged; ++sweep) {
     if (sweep > 1) {
-      parallel::for_each<Host>("response.accelerate", stage_.solver.size(), AccelerateBodies{stage_, beta});
+      parallel::for_each<Host>("response.accelerate", bodies_.size(),
+                               Accelerate{bodies_.data(), last_.data(), direction_.data(), beta});
     }
-    for_each_color("response.sweep", coloring_, [&](std::int64_t first) {
-      return Sweep{stage_, first, beta, block_sweeps_};
-    });
-    ++count_;
-    const auto total = parallel::sum<ImpulseChange, Host>("response.change", stage_.change.size(),
-                                                          LoadChange{stage_.change});
-    if (total.within(tolerance_)) return true;
+    lanes::for_each_color("response.sweep", *batches_,
+                          SweepBalls{batches_->balls.view(), bodies_.view(), beta, change_.data()},
+                          SweepPoints{batches_->points.view(), batches_->rows.view(), bodies_.view(), beta,
+                                      block_sweeps, change_.data() + batches_->balls.size()});
+    ++count;
+    const auto total =
+        parallel::sum<ImpulseChange, Host>("response.change", change_.size(), LoadChange{change_.view()});
+    converged = total.within(tolerance);
     const double ratio = sweep > 1 ? total.step / last_step : 0.0;
     beta = ratio < 1.0 ? ratio : 0.0;
     last_step = total.step;
   }
-  return false;
+  lanes::store_impulses(stage_->contacts, *batches_, stage_->rows, stage_->change);
+  parallel::for_each<Host>("response.velocities", stage_->solver.size(),
+                           StoreVelocities{*stage_, bodies_.view()});
+  return converged;
 }
 
 }  // namespace scree

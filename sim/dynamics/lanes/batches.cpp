@@ -1,0 +1,284 @@
+#include "sim/dynamics/lanes/batches.hpp"
+
+#include "core/parallel.hpp"
+#include "sim/dynamics/contact_set.hpp"
+
+#include <array>
+
+namespace scree::lanes {
+
+namespace {
+
+/// Batches of one kind and colour hold as many points each: kind 0 is balls, the others are their points.
+constexpr int kinds = Manifold::max_points + 1;
+int kind_of(const Contact& contact) { return contact.aligned ? 0 : contact.count; }
+
+constexpr std::int32_t none = -1;
+constexpr Members nothing = {{none, none, none, none, none, none, none, none}};
+
+void put(Lane& lane, int l, double value) { lane.at[l] = value; }
+void put(LaneVec& lanes, int l, const Vec3& value) {
+  put(lanes.x, l, value.x());
+  put(lanes.y, l, value.y());
+  put(lanes.z, l, value.z());
+}
+void put(Lane* lanes, int l, const Mat3& m) {
+  const double values[] = {m(0, 0), m(1, 1), m(2, 2), m(0, 1), m(0, 2), m(1, 2)};
+  for (int k = 0; k < 6; ++k) put(lanes[k], l, values[k]);
+}
+Vec3 take(const LaneVec& lanes, int l) { return {lanes.x.at[l], lanes.y.at[l], lanes.z.at[l]}; }
+
+/// Where contacts, rows and bodies are.
+struct Source {
+  ConstView<Contact> contacts;
+  ConstView<ContactRow> rows;
+  ConstView<RowCoupling> couplings;
+  ConstView<SolverBody> bodies;
+  std::int32_t nobody;
+};
+
+struct LoadBalls {
+  Source from;
+  ConstView<Members> members;
+  View<BallBatch> batches;
+  void operator()(std::int64_t b) const {
+    BallBatch& batch = batches[b];
+    for (int l = 0; l < width; ++l) {
+      const std::int32_t c = members[b].contact[l];
+      batch.ends.i[l] = c == none ? from.nobody : from.contacts[c].i;
+      batch.ends.j[l] = c == none ? from.nobody : from.contacts[c].j;
+      if (c == none) {
+        put(batch.normal, l, Vec3::Zero());
+        for (Lane* lane : {&batch.arm_i, &batch.arm_j, &batch.friction, &batch.target, &batch.tangent_mass})
+          put(*lane, l, 0);
+        put(batch.normal_mass, l, 1);
+        continue;
+      }
+      const Contact& contact = from.contacts[c];
+      const ContactRow& row = from.rows[contact.first_row];
+      put(batch.normal, l, contact.normal);
+      put(batch.arm_i, l, contact.normal.dot(row.arm_i));
+      put(batch.arm_j, l, contact.normal.dot(row.arm_j));
+      put(batch.friction, l, contact.friction);
+      put(batch.target, l, row.target);
+      put(batch.normal_mass, l, row.normal_mass);
+      put(batch.tangent_mass, l, row.tangent_mass);
+    }
+  }
+};
+
+struct LoadPoints {
+  Source from;
+  ConstView<Members> members;
+  View<PointBatch> batches;
+  View<PointRow> rows;
+  void operator()(std::int64_t b) const {
+    PointBatch& batch = batches[b];
+    for (int l = 0; l < width; ++l) {
+      const std::int32_t c = members[b].contact[l];
+      batch.ends.i[l] = c == none ? from.nobody : from.contacts[c].i;
+      batch.ends.j[l] = c == none ? from.nobody : from.contacts[c].j;
+      put(batch.normal, l, c == none ? Vec3(Vec3::Zero()) : from.contacts[c].normal);
+      put(batch.friction, l, c == none ? 0.0 : from.contacts[c].friction);
+      put(batch.inertia_i, l,
+          c == none ? Mat3(Mat3::Zero()) : from.bodies[from.contacts[c].i].inverse_inertia);
+      put(batch.inertia_j, l,
+          c == none ? Mat3(Mat3::Zero()) : from.bodies[from.contacts[c].j].inverse_inertia);
+      for (int k = 0; k < batch.count; ++k) {
+        if (c == none) {
+          leave(rows[batch.first_row + k], l);
+        } else {
+          const std::int64_t r = from.contacts[c].first_row + k;
+          const Contact& contact = from.contacts[c];
+          load(from.rows[r],
+               contact.balls ? coupling_of_balls(from.rows[r], contact.normal) : from.couplings[r],
+               rows[batch.first_row + k], l);
+        }
+      }
+    }
+  }
+
+  static RowCoupling coupling_of_balls(const ContactRow& row, const Vec3& n) {
+    const Mat3 along = n * n.transpose();
+    return {row.normal_mass * along + row.tangent_mass * (Mat3::Identity() - along), n / row.normal_mass};
+  }
+  static void load(const ContactRow& from_row, const RowCoupling& coupling, PointRow& row, int l) {
+    put(row.arm_i, l, from_row.arm_i);
+    put(row.arm_j, l, from_row.arm_j);
+    put(row.stick, l, coupling.stick);
+    put(row.coupling, l, coupling.normal);
+    put(row.target, l, from_row.target);
+    put(row.normal_mass, l, from_row.normal_mass);
+    put(row.tangent_mass, l, from_row.tangent_mass);
+  }
+  static void leave(PointRow& row, int l) {
+    put(row.arm_i, l, Vec3::Zero());
+    put(row.arm_j, l, Vec3::Zero());
+    put(row.stick, l, Mat3::Zero());
+    put(row.coupling, l, Vec3::Zero());
+    put(row.target, l, 0);
+    put(row.normal_mass, l, 1);
+    put(row.tangent_mass, l, 0);
+  }
+};
+
+void start_from(LaneImpulse& lanes, int l, const Vec3& impulse) {
+  put(lanes.impulse, l, impulse);
+  put(lanes.direction, l, Vec3::Zero());
+  put(lanes.change, l, Vec3::Zero());
+}
+
+struct LoadBallImpulses {
+  Source from;
+  ConstView<Members> members;
+  View<BallBatch> batches;
+  void operator()(std::int64_t b) const {
+    for (int l = 0; l < width; ++l) {
+      const std::int32_t c = members[b].contact[l];
+      start_from(batches[b].impulse, l,
+                 c == none ? Vec3(Vec3::Zero()) : from.rows[from.contacts[c].first_row].impulse);
+    }
+  }
+};
+
+struct LoadPointImpulses {
+  Source from;
+  ConstView<Members> members;
+  ConstView<PointBatch> batches;
+  View<PointRow> rows;
+  void operator()(std::int64_t b) const {
+    for (int l = 0; l < width; ++l) {
+      const std::int32_t c = members[b].contact[l];
+      for (int k = 0; k < batches[b].count; ++k) {
+        start_from(rows[batches[b].first_row + k].impulse, l,
+                   c == none ? Vec3(Vec3::Zero()) : from.rows[from.contacts[c].first_row + k].impulse);
+      }
+    }
+  }
+};
+
+/// Where impulses go back to.
+struct Target {
+  ConstView<Contact> contacts;
+  View<ContactRow> rows;
+  View<ImpulseChange> change;
+
+  void store(const LaneImpulse& lanes, int l, std::int32_t c, int k) const {
+    ContactRow& row = rows[contacts[c].first_row + k];
+    row.impulse = take(lanes.impulse, l);
+    if (k == 0) change[c] = {};
+    change[c].add(row, take(lanes.change, l));
+  }
+};
+
+struct StoreBallImpulses {
+  Target to;
+  ConstView<Members> members;
+  ConstView<BallBatch> batches;
+  void operator()(std::int64_t b) const {
+    for (int l = 0; l < width; ++l) {
+      const std::int32_t c = members[b].contact[l];
+      if (c != none) to.store(batches[b].impulse, l, c, 0);
+    }
+  }
+};
+
+struct StorePointImpulses {
+  Target to;
+  ConstView<Members> members;
+  ConstView<PointBatch> batches;
+  ConstView<PointRow> rows;
+  void operator()(std::int64_t b) const {
+    for (int l = 0; l < width; ++l) {
+      const std::int32_t c = members[b].contact[l];
+      for (int k = 0; c != none && k < batches[b].count; ++k) {
+        to.store(rows[batches[b].first_row + k].impulse, l, c, k);
+      }
+    }
+  }
+};
+
+}  // namespace
+
+void arrange(const Coloring& coloring, ConstView<Contact> contacts, Batches& batches) {
+  const auto colors = static_cast<std::size_t>(coloring.colors());
+  batches.last_is_serial = coloring.last_is_serial;
+  batches.ball_begin.assign(1, 0);
+  batches.point_begin.assign(1, 0);
+  // Contacts that share a free body, in the serial colour, share no batch.
+  const auto is_serial = [&](std::size_t color) { return coloring.last_is_serial && color + 1 == colors; };
+  std::vector<std::array<std::int64_t, kinds>>& next = batches.next_lane;
+  next.assign(colors, {});
+  std::int64_t rows = 0;
+  for (std::size_t color = 0; color < colors; ++color) {
+    std::array<std::int64_t, kinds> counts{};
+    for (std::int64_t c = coloring.color_begin[color]; c < coloring.color_begin[color + 1]; ++c) {
+      ++counts[static_cast<std::size_t>(kind_of(contacts[c]))];
+    }
+    std::int64_t balls = batches.ball_begin.back();
+    std::int64_t points = batches.point_begin.back();
+    for (std::size_t kind = 0; kind < kinds; ++kind) {
+      const std::int64_t batches_of_kind =
+          is_serial(color) ? counts[kind] : (counts[kind] + width - 1) / width;
+      std::int64_t& begin = kind == 0 ? balls : points;
+      next[color][kind] = begin * width;
+      begin += batches_of_kind;
+      rows += static_cast<std::int64_t>(kind) * batches_of_kind;
+    }
+    batches.ball_begin.push_back(balls);
+    batches.point_begin.push_back(points);
+  }
+  batches.balls.resize(batches.ball_begin.back());
+  batches.ball_members.resize(batches.balls.size());
+  batches.points.resize(batches.point_begin.back());
+  batches.point_members.resize(batches.points.size());
+  batches.rows.resize(rows);
+  parallel::fill("lanes.reset", batches.ball_members, nothing);
+  parallel::fill("lanes.reset", batches.point_members, nothing);
+  for (std::size_t color = 0; color < colors; ++color) {
+    for (std::int64_t c = coloring.color_begin[color]; c < coloring.color_begin[color + 1]; ++c) {
+      const int kind = kind_of(contacts[c]);
+      std::int64_t& lane = next[color][static_cast<std::size_t>(kind)];
+      Array<Members, Host>& members = kind == 0 ? batches.ball_members : batches.point_members;
+      members.view()[lane / width].contact[lane % width] = static_cast<std::int32_t>(c);
+      if (kind > 0) batches.points.view()[lane / width].count = kind;
+      lane += is_serial(color) ? width : 1;
+    }
+  }
+  std::int64_t first_row = 0;
+  for (PointBatch& batch : batches.points.view()) {
+    batch.first_row = first_row;
+    first_row += batch.count;
+  }
+}
+
+void load(ConstView<Contact> contacts, ConstView<ContactRow> rows, ConstView<RowCoupling> couplings,
+          ConstView<SolverBody> bodies, std::int32_t nobody, Batches& batches) {
+  const Source from{contacts, rows, couplings, bodies, nobody};
+  parallel::for_each<Host>("lanes.load", batches.balls.size(),
+                           LoadBalls{from, batches.ball_members.view(), batches.balls.view()});
+  parallel::for_each<Host>(
+      "lanes.load", batches.points.size(),
+      LoadPoints{from, batches.point_members.view(), batches.points.view(), batches.rows.view()});
+}
+
+void load_impulses(ConstView<Contact> contacts, ConstView<ContactRow> rows, Batches& batches) {
+  const Source from{contacts, rows, {}, {}, none};
+  parallel::for_each<Host>("lanes.impulses", batches.balls.size(),
+                           LoadBallImpulses{from, batches.ball_members.view(), batches.balls.view()});
+  parallel::for_each<Host>(
+      "lanes.impulses", batches.points.size(),
+      LoadPointImpulses{from, batches.point_members.view(), batches.points.view(), batches.rows.view()});
+}
+
+void store_impulses(ConstView<Contact> contacts, const Batches& batches, View<ContactRow> rows,
+                    View<ImpulseChange> change) {
+  const Target to{contacts, rows, change};
+  parallel::for_each<Host>("lanes.store", batches.balls.size(),
+                           StoreBallImpulses{to, batches.ball_members.view(), batches.balls.view()});
+  parallel::for_each<Host>(
+      "lanes.store", batches.points.size(),
+      StorePointImpulses{to, batches.point_members.view(), batches.points.view(), batches.rows.view()});
+}
+
+}  // namespace scree::lanes

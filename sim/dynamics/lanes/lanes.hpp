@@ -1,0 +1,114 @@
+// Contacts in lanes: eight of one colour side by side, so that one instruction works on all of them. Layouts,
+// and the kernels that work on them.
+#pragma once
+
+#include "core/math.hpp"
+
+#include <cstdint>
+#include <vector>
+
+namespace scree::lanes {
+
+inline constexpr int width = 8;
+
+/// A number of each contact.
+struct alignas(64) Lane {
+  double at[width];
+};
+struct LaneVec {
+  Lane x, y, z;
+};
+
+/// A body: its velocities, or in the position correction its displacement and turn. One cache line.
+struct alignas(64) Body {
+  Vec3 velocity;
+  double inverse_mass;  ///< 0: not free, and never written
+  Vec3 spin;
+  double inverse_inertia;  ///< of a ball
+};
+
+/// The two bodies of each contact. A lane without contact names a body of its own that is not free.
+struct Ends {
+  std::int32_t i[width], j[width];
+};
+
+struct LaneImpulse {
+  LaneVec impulse;    ///< of ContactRow
+  LaneVec direction;  ///< conjugate direction (N s)
+  LaneVec change;     ///< in the last sweep (N s)
+};
+
+/// Eight contacts of balls with balls or with bodies that are not free and do not turn: of the lever arms
+/// only what is along the normal matters (Contact::aligned).
+struct BallBatch {
+  Ends ends;
+  LaneVec normal;
+  Lane arm_i, arm_j;  ///< along the normal (m)
+  Lane friction, target, normal_mass, tangent_mass;
+  LaneImpulse impulse;
+};
+
+/// Eight contacts of any bodies, with the same number of points.
+struct PointBatch {
+  Ends ends;
+  LaneVec normal;
+  Lane friction;
+  Lane inertia_i[6], inertia_j[6];  ///< inverse, world frame: xx, yy, zz, xy, xz, yz
+  std::int64_t first_row;
+  std::int32_t count;  ///< of points
+};
+
+/// One point of each contact of a PointBatch.
+struct PointRow {
+  LaneVec arm_i, arm_j;
+  Lane stick[6];     ///< of RowCoupling, as the inertia
+  LaneVec coupling;  ///< RowCoupling::normal
+  Lane target, normal_mass, tangent_mass;
+  LaneImpulse impulse;
+};
+
+/// Of a batch: ImpulseChange.
+struct Change {
+  double step, size;
+};
+
+/// Each works on one batch; batches of one colour may be worked on at once.
+struct Kernels {
+  /// One visit. Going on by beta in the direction of the sweeps before, which the bodies have done already,
+  /// waits for it. The local law is that of coulomb_update() and natural_map().
+  Change (*sweep_balls)(BallBatch&, Body* bodies, double beta);
+  Change (*sweep_points)(const PointBatch&, PointRow* rows, Body* bodies, double beta, int block_sweeps);
+  /// Goes on in the direction, which takes in what has changed since the last time.
+  void (*accelerate)(Body& body, Body& last, Body& direction, double beta);
+  /// Gives the bodies what the impulses are.
+  void (*push_balls)(const BallBatch&, Body* bodies);
+  void (*push_points)(const PointBatch&, const PointRow* rows, Body* bodies);
+  /// Parts what overlaps: by a share of the overlap, but at most by the cap (m). `flown`: gap of each point
+  /// without displacements (m).
+  void (*part_balls)(const BallBatch&, const Lane& flown, const Lane& cap, double share, Body* bodies);
+  void (*part_points)(const PointBatch&, const PointRow* rows, const Lane* flown, const Lane& cap,
+                      double share, Body* bodies);
+};
+
+/// Those that this processor can run, the widest last. All give the same bits.
+struct NamedKernels {
+  const char* name;
+  const Kernels* kernels;
+};
+std::vector<NamedKernels> supported_kernels();
+
+/// The widest of them.
+const Kernels& kernels();
+
+// One for each way in which kernels.cpp is compiled; not all exist on every processor.
+namespace baseline {
+extern const Kernels kernels;
+}
+namespace avx2 {
+extern const Kernels kernels;
+}
+namespace avx512 {
+extern const Kernels kernels;
+}
+
+}  // namespace scree::lanes

@@ -1,0 +1,254 @@
+// The kernels beside the scalar law, lane by lane, and beside one another, bit by bit.
+#include "sim/dynamics/lanes/lanes.hpp"
+
+#include "core/rng.hpp"
+#include "sim/dynamics/contact_set.hpp"
+#include "sim/dynamics/lanes/batches.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cstring>
+#include <vector>
+
+namespace scree {
+namespace {
+
+constexpr double rounding = 1e-12;  // of velocities of some m/s, and of impulses of some N s
+
+Vec3 random_vector(Random& random, double size) {
+  return Vec3(random.uniform(-size, size), random.uniform(-size, size), random.uniform(-size, size));
+}
+
+/// Contacts of all kinds, each between two bodies of its own. Every fifth has a first body that is not free.
+struct Problem {
+  std::vector<Contact> contacts;
+  std::vector<ContactRow> rows;
+  std::vector<RowCoupling> couplings;
+  std::vector<SolverBody> bodies;
+  Coloring coloring;
+  lanes::Batches batches;
+
+  explicit Problem(int count) {
+    for (int c = 0; c < count; ++c) add(c);
+    coloring.color_begin = {0, count};
+    lanes::arrange(coloring, contact_view(), batches);
+    lanes::load(contact_view(), row_view(), {couplings.data(), size(couplings)},
+                {bodies.data(), size(bodies)}, static_cast<std::int32_t>(bodies.size()), batches);
+    lanes::load_impulses(contact_view(), row_view(), batches);
+  }
+
+  template <class T>
+  static std::int64_t size(const std::vector<T>& list) {
+    return static_cast<std::int64_t>(list.size());
+  }
+  ConstView<Contact> contact_view() const { return {contacts.data(), size(contacts)}; }
+  View<ContactRow> row_view() { return {rows.data(), size(rows)}; }
+
+  void add(int c) {
+    Random random(29, static_cast<std::uint64_t>(c));
+    Contact contact{};
+    contact.impulse.setZero();
+    contact.i = 2 * c;
+    contact.j = 2 * c + 1;
+    contact.balls = contact.aligned = c % 3 == 0;
+    contact.count = contact.balls ? 1 : 1 + c % Manifold::max_points;
+    contact.first_row = size(rows);
+    contact.normal = random_vector(random, 1).normalized();
+    contact.friction = c % 7 == 0 ? 0.0 : random.uniform(0, 1.2);
+    for (int side = 0; side < 2; ++side) {
+      const bool fixed = side == 0 && c % 5 == 0;
+      SolverBody body{random_vector(random, 2), random_vector(random, 3), random.uniform(0.2, 3), {}};
+      Mat3 m;
+      m << random_vector(random, 1), random_vector(random, 1), random_vector(random, 1);
+      body.inverse_inertia = contact.balls ? Mat3(random.uniform(1, 20) * Mat3::Identity())
+                                           : Mat3(Mat3::Identity() + m * m.transpose());
+      if (fixed) {
+        body.inverse_mass = 0;
+        body.inverse_inertia.setZero();
+      }
+      bodies.push_back(body);
+    }
+    const SolverBody& i = bodies[static_cast<std::size_t>(contact.i)];
+    const SolverBody& j = bodies[static_cast<std::size_t>(contact.j)];
+    for (int k = 0; k < contact.count; ++k) {
+      RowCoupling coupling{Mat3::Zero(), Vec3::Zero()};
+      ContactRow row = contact.balls ? make_ball_row(random.uniform(0.1, 1) * contact.normal,
+                                                     -random.uniform(0.1, 1) * contact.normal, 0.0, i, j)
+                                     : make_row(contact.normal, random_vector(random, 0.5),
+                                                random_vector(random, 0.5), 0.0, i, j, coupling);
+      row.target = random.uniform(-0.5, 0.5);
+      row.impulse = project_on_cone(random_vector(random, 1), contact.normal, contact.friction);
+      rows.push_back(row);
+      couplings.push_back(coupling);
+    }
+    contacts.push_back(contact);
+  }
+
+  std::vector<lanes::Body> lane_bodies() const {
+    std::vector<lanes::Body> all;
+    for (const SolverBody& b : bodies)
+      all.push_back({b.velocity, b.inverse_mass, b.spin, b.inverse_inertia(0, 0)});
+    all.push_back({Vec3::Zero(), 0, Vec3::Zero(), 0});
+    return all;
+  }
+
+  lanes::Change sweep(const lanes::Kernels& kernels, std::vector<lanes::Body>& all, double beta) {
+    lanes::Change total{0, 0};
+    const auto add_up = [&total](const lanes::Change& change) {
+      total.step += change.step;
+      total.size += change.size;
+    };
+    for (lanes::BallBatch& batch : batches.balls.view()) add_up(kernels.sweep_balls(batch, all.data(), beta));
+    for (const lanes::PointBatch& batch : batches.points.view()) {
+      add_up(kernels.sweep_points(batch, &batches.rows.view()[batch.first_row], all.data(), beta, 2));
+    }
+    return total;
+  }
+
+  void take_impulses_back() {
+    std::vector<ImpulseChange> change(contacts.size());
+    lanes::store_impulses(contact_view(), batches, row_view(), {change.data(), size(change)});
+  }
+};
+
+constexpr int odd_count = 213;  // leaves lanes without contact in every kind
+
+TEST(Lanes, SweepAsTheScalarLawDoes) {
+  for (const auto& [name, kernels] : lanes::supported_kernels()) {
+    Problem p(odd_count);
+    Problem scalar(odd_count);
+    std::vector<lanes::Body> bodies = p.lane_bodies();
+    const lanes::Change change = p.sweep(*kernels, bodies, 0.0);
+    p.take_impulses_back();
+    ImpulseChange expected;
+    for (const Contact& c : scalar.contacts) {
+      SolverBody& i = scalar.bodies[static_cast<std::size_t>(c.i)];
+      SolverBody& j = scalar.bodies[static_cast<std::size_t>(c.j)];
+      ContactRow* rows = &scalar.rows[static_cast<std::size_t>(c.first_row)];
+      Vec3 last[Manifold::max_points];
+      for (int k = 0; k < c.count; ++k) last[k] = rows[k].impulse;
+      if (c.balls) {
+        rows[0].impulse = natural_map(rows[0], c.normal, c.friction, rows[0].relative_velocity(i, j));
+        rows[0].push(rows[0].impulse - last[0], i, j);
+      } else {
+        for (int sweep = 0; sweep < (c.count > 1 ? 2 : 1); ++sweep) {
+          sweep_rows(rows, &scalar.couplings[static_cast<std::size_t>(c.first_row)], c.count, c.normal,
+                     c.friction, i, j);
+        }
+      }
+      for (int k = 0; k < c.count; ++k) {
+        expected.add(rows[k], rows[k].impulse - last[k]);
+        const auto r = static_cast<std::size_t>(c.first_row + k);
+        ASSERT_LT((p.rows[r].impulse - rows[k].impulse).norm(), rounding) << name << ", row " << r;
+      }
+      for (const std::int32_t b : {c.i, c.j}) {
+        const auto at = static_cast<std::size_t>(b);
+        ASSERT_LT((bodies[at].velocity - scalar.bodies[at].velocity).norm(), rounding) << name << b;
+        ASSERT_LT((bodies[at].spin - scalar.bodies[at].spin).norm(), rounding) << name << b;
+      }
+    }
+    EXPECT_NEAR(change.step, expected.step, rounding * expected.step) << name;
+    EXPECT_NEAR(change.size, expected.size, rounding * expected.size) << name;
+  }
+}
+
+TEST(Lanes, PushesGiveTheBodiesWhatTheImpulsesAre) {
+  for (const auto& [name, kernels] : lanes::supported_kernels()) {
+    Problem p(odd_count);
+    std::vector<lanes::Body> bodies = p.lane_bodies();
+    for (const lanes::BallBatch& batch : p.batches.balls.view()) kernels->push_balls(batch, bodies.data());
+    for (const lanes::PointBatch& batch : p.batches.points.view())
+      kernels->push_points(batch, &p.batches.rows.view()[batch.first_row], bodies.data());
+    for (const Contact& c : p.contacts) {
+      SolverBody i = p.bodies[static_cast<std::size_t>(c.i)];
+      SolverBody j = p.bodies[static_cast<std::size_t>(c.j)];
+      for (int k = 0; k < c.count; ++k) {
+        const ContactRow& row = p.rows[static_cast<std::size_t>(c.first_row + k)];
+        row.push(row.impulse, i, j);
+      }
+      ASSERT_LT((bodies[static_cast<std::size_t>(c.i)].velocity - i.velocity).norm(), rounding) << name;
+      ASSERT_LT((bodies[static_cast<std::size_t>(c.j)].velocity - j.velocity).norm(), rounding) << name;
+      ASSERT_LT((bodies[static_cast<std::size_t>(c.i)].spin - i.spin).norm(), 10 * rounding) << name;
+      ASSERT_LT((bodies[static_cast<std::size_t>(c.j)].spin - j.spin).norm(), 10 * rounding) << name;
+    }
+  }
+}
+
+/// One overlapping point between two free bodies is parted by its share, and their common centre stays.
+TEST(Lanes, PartsByTheShareAndKeepsTheCentre) {
+  constexpr double share = 0.5;
+  for (const auto& [name, kernels] : lanes::supported_kernels()) {
+    Problem p(odd_count);
+    std::vector<lanes::Body> moved = p.lane_bodies();
+    for (lanes::Body& b : moved) b.velocity = b.spin = Vec3::Zero();
+    lanes::Lane gap[Manifold::max_points];
+    lanes::Lane cap;
+    for (int l = 0; l < lanes::width; ++l) {
+      for (lanes::Lane& of_point : gap) of_point.at[l] = 0.1;
+      gap[0].at[l] = l % 2 == 0 ? -0.01 : 0.01;
+      cap.at[l] = 0.004;
+    }
+    for (const lanes::BallBatch& batch : p.batches.balls.view())
+      kernels->part_balls(batch, gap[0], cap, share, moved.data());
+    for (const lanes::PointBatch& batch : p.batches.points.view())
+      kernels->part_points(batch, &p.batches.rows.view()[batch.first_row], gap, cap, share, moved.data());
+    const auto check = [&](const lanes::Members& members) {
+      for (int l = 0; l < lanes::width; ++l) {
+        if (members.contact[l] < 0) continue;
+        const Contact& c = p.contacts[static_cast<std::size_t>(members.contact[l])];
+        const ContactRow& row = p.rows[static_cast<std::size_t>(c.first_row)];
+        const lanes::Body& i = moved[static_cast<std::size_t>(c.i)];
+        const lanes::Body& j = moved[static_cast<std::size_t>(c.j)];
+        const double parted = c.normal.dot(row.relative_velocity(i.velocity, i.spin, j.velocity, j.spin));
+        ASSERT_NEAR(parted, l % 2 == 0 ? 0.004 : 0.0, rounding) << name;
+        if (i.inverse_mass > 0) {
+          ASSERT_LT((i.velocity / i.inverse_mass + j.velocity / j.inverse_mass).norm(), rounding) << name;
+        } else {
+          ASSERT_TRUE(i.velocity.isZero(0) && i.spin.isZero(0)) << name;
+        }
+      }
+    };
+    for (const lanes::Members& members : p.batches.ball_members.view()) check(members);
+    for (const lanes::Members& members : p.batches.point_members.view()) check(members);
+  }
+}
+
+TEST(Lanes, EveryInstructionSetGivesTheSameBits) {
+  std::vector<lanes::Body> first;
+  for (const auto& [name, kernels] : lanes::supported_kernels()) {
+    Problem p(odd_count);
+    std::vector<lanes::Body> bodies = p.lane_bodies();
+    std::vector<lanes::Body> last = bodies;
+    std::vector<lanes::Body> direction(bodies.size(), {Vec3::Zero(), 0, Vec3::Zero(), 0});
+    for (int sweep = 0; sweep < 5; ++sweep) {
+      const double beta = 0.15 * sweep;
+      for (std::size_t b = 0; b < bodies.size(); ++b) {
+        kernels->accelerate(bodies[b], last[b], direction[b], beta);
+      }
+      p.sweep(*kernels, bodies, beta);
+    }
+    if (first.empty()) {
+      first = bodies;
+      continue;
+    }
+    EXPECT_EQ(std::memcmp(first.data(), bodies.data(), bodies.size() * sizeof(lanes::Body)), 0) << name;
+  }
+}
+
+/// Contacts that share a body, in the serial colour, come one after the other.
+TEST(Lanes, TheSerialColourSharesNoBatch) {
+  Problem p(odd_count);
+  p.coloring.last_is_serial = true;
+  lanes::arrange(p.coloring, p.contact_view(), p.batches);
+  std::int64_t alone = 0;
+  const auto count = [&alone](const lanes::Members& members) {
+    alone += members.contact[0] >= 0 ? 1 : 0;
+    for (int l = 1; l < lanes::width; ++l) EXPECT_LT(members.contact[l], 0);
+  };
+  for (const lanes::Members& members : p.batches.ball_members.view()) count(members);
+  for (const lanes::Members& members : p.batches.point_members.view()) count(members);
+  EXPECT_EQ(alone, odd_count);
+}
+
+}  // namespace
+}  // namespace scree
