@@ -19,13 +19,14 @@
 
 namespace scree::parallel {
 
+/// Under this many items the cost of waking threads exceeds the work, on the host.
+inline constexpr std::int64_t few = 256;
+
 /// Calls f(i) for 0 <= i < n, in any order and at once. f is a copyable function object over views; on
 /// Device the call returns before the work is done. `label` names the work to a profiler.
 template <class Space, class F>
 void for_each(const char* label, std::int64_t n, F f) {
   const timing::Call<Space> call(label);
-  // Under this many items the cost of waking threads exceeds the work.
-  constexpr std::int64_t few = 256;
   if constexpr (std::is_same_v<Space, Host>) {
     if (n < few) {
       for (std::int64_t i = 0; i < n; ++i) f(i);
@@ -86,6 +87,14 @@ void fill(const char* label, Array<T, Space>& values, const T& value) {
 template <class T, class Space, class F>
 T sum(const char* label, std::int64_t n, F f) {
   if (n <= 0) return T{};
+  if constexpr (std::is_same_v<Space, Host>) {
+    if (n <= detail::leaf) {
+      const timing::Call<Space> call(label);
+      T total;
+      detail::SumLeaf<T, F>{f, &total, n}(0);
+      return total;
+    }
+  }
   std::int64_t blocks = (n + detail::leaf - 1) / detail::leaf;
   Array<T, Space> partial(blocks);
   parallel::for_each<Space>(label, blocks, detail::SumLeaf<T, F>{f, partial.data(), n});
@@ -102,22 +111,26 @@ T sum(const char* label, std::int64_t n, F f) {
   return total;
 }
 
-/// Largest f(i), and `lowest` for n = 0. Exact, whatever the grouping.
-template <class T, class Space, class F>
-T max(const char* label, std::int64_t n, F f, T lowest) {
-  const timing::Call<Space> call(label);
-  const thrust::counting_iterator<std::int64_t> first(0);
-  return thrust::transform_reduce(scree::detail::policy(Space{}), first, first + n, f, lowest,
-                                  thrust::maximum<T>());
-}
-
 /// All of f(i) for 0 <= i < n joined by `join`, and `neutral` for n = 0. The grouping is free: `join` must be
 /// exact, associative and commutative (integers, minima, maxima), or the result would depend on it.
 template <class T, class Space, class F, class Join>
 T reduce(const char* label, std::int64_t n, F f, T neutral, Join join) {
   const timing::Call<Space> call(label);
+  if constexpr (std::is_same_v<Space, Host>) {
+    if (n < few) {
+      T all = neutral;
+      for (std::int64_t i = 0; i < n; ++i) all = join(all, f(i));
+      return all;
+    }
+  }
   const thrust::counting_iterator<std::int64_t> first(0);
   return thrust::transform_reduce(scree::detail::policy(Space{}), first, first + n, f, neutral, join);
+}
+
+/// Largest f(i), and `lowest` for n = 0. Exact, whatever the grouping.
+template <class T, class Space, class F>
+T max(const char* label, std::int64_t n, F f, T lowest) {
+  return reduce<T, Space>(label, n, f, lowest, thrust::maximum<T>());
 }
 
 /// counts[b] = number of i, 0 <= i < n, with f(i) = b, for 0 <= b < bins; other values are not counted. f
