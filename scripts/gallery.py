@@ -20,7 +20,6 @@ MOMENTS = {
     "02_incline": 1.2,
     "06_hopper": 2.6,
     "08_wall": 0.35,
-    "09_rockslide": 4.0,
     "10_billiard": 0.4,
     "11_dominoes": 4.0,
 }

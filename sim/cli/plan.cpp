@@ -158,7 +158,7 @@ std::string memory_words(const Scene& scene) {
 std::string response_words(const ResponseSettings& settings) {
   const std::string sweeps = settings.iterations
                                  ? fmt::format("at most {} sweeps", *settings.iterations)
-                                 : std::string("sweeps by the number of contact points, 20 in a heap");
+                                 : std::string("sweeps by the number of contact points, at least 20");
   return fmt::format("{}, until the impulses change by less than {:g} of their size", sweeps,
                      settings.tolerance);
 }

@@ -38,7 +38,7 @@ Codec<ResponseSettings> response_section() {
               "rotation is of fourth order, and slower approaches bounce; takes longer"),
           key<T>(
               "iterations", &T::iterations, or_auto(integer(between(1, 1e6))), optionally,
-              "most sweeps over the contacts per substep; auto: 20 for heaps, more the fewer contacts there "
+              "most sweeps over the contacts per substep; auto: at least 20, more the fewer contacts there "
               "are, until they converge"),
           key<T>("block_sweeps", &T::block_sweeps, or_auto(integer(between(1, 100))), optionally,
                  "sweeps over the points that two bodies share, at each visit; auto: 4, with which stacks "
