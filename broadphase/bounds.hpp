@@ -49,7 +49,7 @@ SCREE_HD inline Vec3 half_extent_of(const BodyGeometry& body) {
 
 /// Box of a sphere, box or tube, fat by `margin` on every side, relative to `origin` (m). It holds the box of
 /// exact arithmetic: the rounding of the double formula is added before the result is rounded outward to
-/// float. Planes are absent: the narrow phase tests them against every body.
+/// float. Planes are absent: Candidates lists them with the bodies near them.
 SCREE_HD inline Aabb bounds_of(const BodyGeometry& body, double margin, const Vec3& origin) {
   if (body.shape == Shape::plane) return absent_bounds();
   const Vec3 half_extent = half_extent_of(body);

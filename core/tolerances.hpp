@@ -20,12 +20,20 @@ inline constexpr double pair_skin = 0.1;
 /// Safety factor on the distance that a body can travel in a step, for what impacts add to its speed.
 inline constexpr double travel_factor = 1.05;
 
-/// Share of an overlap that one position correction removes. 1 can collapse a pile, 0.2 leaves 4 times the
-/// overlap.
-inline constexpr double correction_share = 0.5;
-/// Sweeps of position correction in a substep. One lifts a tall heap too slowly; more than a few gain
-/// nothing.
-inline constexpr int correction_sweeps = 4;
+/// Share of an overlap that one visit of the position correction removes. 1 can collapse a pile, 0.5 takes
+/// three times as many sweeps.
+inline constexpr double correction_share = 0.8;
+/// Overlap of the deepest contact (of smallest_size) at which it stops.
+inline constexpr double corrected_overlap = 1e-7;
+/// Overlap that a substep may leave to be corrected (of the smaller smallest_size): after more, the next step
+/// is taken in twice as many substeps, if their number is free. It falls with the square of the substep's
+/// length. Smaller: impacts of many bodies at once cost more and are more accurate.
+inline constexpr double substep_overlap = 0.06;
+/// Under this much (likewise) the next step is taken in half as many. Must be under a quarter of the other,
+/// or their number flickers.
+inline constexpr double coarser_overlap = 0.012;
+/// Most substeps that a step takes by itself. Larger: bodies wedged for good cost more.
+inline constexpr int most_substeps = 4;
 /// Largest correction of one body in one step (of smallest_size): deep overlaps part gently.
 inline constexpr double correction_cap = 0.2;
 
@@ -48,6 +56,12 @@ inline constexpr double deep_approach = 0.25;
 inline constexpr double closing_speed = 1e-12;
 /// Share of its approach's energy that an impact may gain before its impulses are scaled down: rounding.
 inline constexpr double impact_gain = 1e-12;
+
+/// Change of the impulses in one sweep at which they have converged (of their size): few contacts are solved
+/// to the first, of a heap what is beyond the second is left to the next substeps. response.tolerance
+/// replaces both. Larger: towers rock; heaps come to rest too dense.
+inline constexpr double response_change = 1e-10;
+inline constexpr double heap_change = 3e-3;
 
 /// Speed at which a contact may part before gravity's kick and still be held at 0 by it, in units of
 /// |gravity| * step. Smaller: the noise of resting faces becomes targets that no rigid body can meet at all
@@ -96,9 +110,15 @@ inline constexpr double unit_length = 1e-14;
 inline constexpr double step_count = 1e-9;
 
 static_assert(closed_gap < contact_slack);
+static_assert(corrected_overlap < closed_gap);
+static_assert(4 * coarser_overlap < substep_overlap);
 static_assert(touching_gap < closed_gap);
 
 // Narrow phase. Lengths are of the smaller smallest_size of the pair.
+
+/// Rounding of the square of a distance, by which bodies must be farther apart than their margins before
+/// their test is left out.
+inline constexpr double far_rounding = 1e-12;
 
 /// Distance of two sphere centres under which their direction is rounding noise (of the sum of the radii).
 inline constexpr double coincident = 1e-14;

@@ -1,6 +1,7 @@
 // What the narrow phase finds: contact points, grouped by pair into manifolds.
 #pragma once
 
+#include "core/array.hpp"
 #include "core/math.hpp"
 
 #include <cstdint>
@@ -24,6 +25,25 @@ struct Manifold {
   Vec3 normal;            ///< unit, from i to j
   int count = 0;          ///< points in use
   ContactPoint points[max_points];
+};
+
+/// A manifold among others: its points are in a list of their own, so that it takes what it has.
+struct ManifoldHeader {
+  std::int32_t i;
+  std::int32_t j;
+  std::int32_t part;
+  std::int32_t count;
+  std::int64_t first_point;
+  Vec3 normal;
+};
+
+/// Many manifolds, and all their points in the same order.
+struct Manifolds {
+  ConstView<ManifoldHeader> headers;
+  ConstView<ContactPoint> points;
+
+  SCREE_HD std::int64_t size() const { return headers.size(); }
+  SCREE_HD const ContactPoint* points_of(const ManifoldHeader& m) const { return &points[m.first_point]; }
 };
 
 /// A pair has at most this many manifolds: those of a box that just fits into a tube, whose 8 corners touch

@@ -1,8 +1,9 @@
-// One pass over all candidates appends what it finds, in blocks whose order depends on the threads; a
-// counting sort by (i, j) then makes the order unique.
+// One pass over the pairs, chunk by chunk; what the chunks have found is then put side by side in their
+// order.
 #include "narrowphase/narrow_phase.hpp"
 
 #include "core/parallel.hpp"
+#include "core/tolerances.hpp"
 #include "narrowphase/box_box_ccd.hpp"
 #include "narrowphase/box_box_crosscheck.hpp"
 #include "narrowphase/box_plane.hpp"
@@ -13,16 +14,12 @@
 #include "narrowphase/sphere_tube.hpp"
 
 #include <algorithm>
-#include <atomic>
-#include <mutex>
 #include <type_traits>
+#include <utility>
 
 namespace scree {
 
 namespace {
-
-// One candidate's cost is near that of an atomic addition, so they are taken by the block.
-constexpr std::int64_t block = 32;
 
 /// Sets the manifolds of a pair, and returns their number.
 using PairTest = int (*)(const Solid&, const Solid&, double margin, Manifold* out, NarrowPhaseStats&);
@@ -79,83 +76,45 @@ constexpr PairTable tables[] = {
     table_with(by_ccd<ccd::Method::mpr>),
 };
 
-/// What the blocks share while they append.
-struct Tally {
-  std::atomic<std::int64_t> found{0}, tested{0};
-  std::mutex mutex;
-  NarrowPhaseStats of_ccd;  // but for `tested`, which every block adds to: a lock would hold them up
-
-  void add(const NarrowPhaseStats& stats) {
-    tested += stats.tested;
-    if (stats.ccd_calls + stats.crosscheck.asked == 0) return;
-    const std::lock_guard lock(mutex);
-    of_ccd += stats;
-  }
-  NarrowPhaseStats total() const {
-    NarrowPhaseStats stats = of_ccd;
-    stats.tested = tested;
-    return stats;
+/// How near to its centre a body touches others (m); infinite for boundaries.
+struct SetExtent {
+  ConstBodyView bodies;
+  ConstView<double> margin;
+  View<double> extent;
+  void operator()(std::int64_t k) const {
+    extent[k] = is_boundary(bodies.shape[k]) ? HUGE_VAL
+                                             : bounding_radius(bodies.shape[k], bodies.size[k]) + margin[k];
   }
 };
 
-/// Tests one block of candidates, and appends the manifolds found as far as there is room. The candidates are
-/// the pairs, then each plane with each body.
+/// Tests one chunk of the pairs, and keeps what it finds in their order.
 struct FindContacts {
   ConstBodyView bodies;
   ConstView<Pair> pairs;
   ConstView<double> margin;
-  ConstView<std::int32_t> planes;
+  ConstView<double> extent;
   const PairTable* table;
   double crosscheck_share;
   std::uint64_t search;
   const LateBodies* late;
-  View<Manifold> room;
-  Tally* tally;
+  std::int64_t chunk_size;
+  detail::ManifoldChunk* chunks;
 
-  std::int64_t candidates() const { return pairs.size() + planes.size() * bodies.count(); }
-
-  void operator()(std::int64_t b) const {
-    Manifold found[block + max_pair_manifolds];
-    int count = 0;
-    NarrowPhaseStats stats;
-    const std::int64_t last = std::min((b + 1) * block, candidates());
-    for (std::int64_t c = b * block; c < last; ++c) {
-      count += c < pairs.size() ? test_pair(pairs[c], found + count, stats)
-                                : test_plane(c - pairs.size(), found + count, stats);
-      if (count <= block) continue;
-      append(found, count);
-      count = 0;
+  void operator()(std::int64_t c) const {
+    detail::ManifoldChunk& chunk = chunks[c];
+    chunk.headers.clear();
+    chunk.points.clear();
+    chunk.stats = {};
+    Manifold found[max_pair_manifolds];
+    const std::int64_t last = std::min((c + 1) * chunk_size, pairs.size());
+    for (std::int64_t k = c * chunk_size; k < last; ++k) {
+      const int count = test(pairs[k].i, pairs[k].j, found, chunk.stats);
+      for (int m = 0; m < count; ++m) chunk.append(found[m]);
     }
-    append(found, count);
-    tally->add(stats);
   }
 
  private:
-  void append(const Manifold* found, int count) const {
-    if (count == 0) return;
-    const std::int64_t first = tally->found.fetch_add(count);
-    for (int k = 0; k < count && first + k < room.size(); ++k) room[first + k] = found[k];
-  }
-
-  /// Pairs with planes are left to test_plane, whoever lists them, so that none comes twice.
-  int test_pair(const Pair& pair, Manifold* out, NarrowPhaseStats& stats) const {
-    const bool has_plane = bodies.shape[pair.i] == Shape::plane || bodies.shape[pair.j] == Shape::plane;
-    return has_plane ? 0 : test(pair.i, pair.j, out, stats);
-  }
-
-  int test_plane(std::int64_t candidate, Manifold* out, NarrowPhaseStats& stats) const {
-    const std::int32_t plane = planes[candidate / bodies.count()];
-    const auto body = static_cast<std::int32_t>(candidate % bodies.count());
-    if (bodies.mobility[body] != Mobility::free || bodies.mobility[plane] == Mobility::absent) return 0;
-    const Vec3 up = bodies.orientation[plane] * Vec3::UnitZ();
-    const double reach =
-        bounding_radius(bodies.shape[body], bodies.size[body]) + margin[plane] + margin[body];
-    if (!is_late(plane, body) && up.dot(bodies.position[body] - bodies.position[plane]) > reach) return 0;
-    return test(std::min(plane, body), std::max(plane, body), out, stats);
-  }
-
   int test(std::int32_t i, std::int32_t j, Manifold* out, NarrowPhaseStats& stats) const {
-    if (bodies.mobility[i] != Mobility::free && bodies.mobility[j] != Mobility::free) return 0;
     ++stats.tested;
     const bool later = is_late(i, j);
     const bool boxes = bodies.shape[i] == Shape::box && bodies.shape[j] == Shape::box;
@@ -175,14 +134,11 @@ struct FindContacts {
     return count;
   }
 
-  /// True if the spheres around two boxes, or a box and a ball, are too far apart for a contact: their tests
-  /// cost far more.
+  /// True if the spheres around two bodies are too far apart for a contact.
   bool are_far(std::int32_t i, std::int32_t j) const {
-    if (is_boundary(bodies.shape[i]) || is_boundary(bodies.shape[j])) return false;
-    if (bodies.shape[i] == Shape::sphere && bodies.shape[j] == Shape::sphere) return false;
-    const double reach = bounding_radius(bodies.shape[i], bodies.size[i]) +
-                         bounding_radius(bodies.shape[j], bodies.size[j]) + margin[i] + margin[j];
-    return (bodies.position[j] - bodies.position[i]).squaredNorm() > reach * reach;
+    const double reach = extent[i] + extent[j];
+    return (bodies.position[j] - bodies.position[i]).squaredNorm() >
+           (1 + tolerance::far_rounding) * reach * reach;
   }
 
   bool is_late(std::int32_t i, std::int32_t j) const {
@@ -192,44 +148,20 @@ struct FindContacts {
   Solid solid(std::int32_t i) const { return {bodies.position[i], bodies.orientation[i], bodies.size[i]}; }
 };
 
-std::atomic_ref<std::int32_t> shared(std::int32_t& count) { return std::atomic_ref<std::int32_t>(count); }
-
-struct CountByFirst {
-  ConstView<Manifold> found;
-  View<std::int32_t> counts;
-  void operator()(std::int64_t k) const { ++shared(counts[found[k].i]); }
-};
-
-/// Puts each manifold into the range of its first body, in any order.
-struct PlaceByFirst {
-  ConstView<Manifold> found;
-  ConstView<std::int64_t> offsets;
-  View<std::int32_t> counts;
-  View<detail::ManifoldSlot> slots;
-  void operator()(std::int64_t k) const {
-    const std::int32_t i = found[k].i;
-    slots[offsets[i] + --shared(counts[i])] = {found[k].j, k};
-  }
-};
-
-/// Orders the range of one first body by the second. No pair comes twice, and one thread appends all of a
-/// pair's manifolds, so there is one such order.
-struct SortBySecond {
-  ConstView<std::int64_t> offsets;
-  View<detail::ManifoldSlot> slots;
-  void operator()(std::int64_t i) const {
-    const auto less = [](const auto& a, const auto& b) {
-      return a.j != b.j ? a.j < b.j : a.source < b.source;
-    };
-    std::sort(slots.data() + offsets[i], slots.data() + offsets[i + 1], less);
-  }
-};
-
+/// Copies a chunk to its place among the others.
 struct Gather {
-  ConstView<Manifold> found;
-  ConstView<detail::ManifoldSlot> slots;
-  View<Manifold> manifolds;
-  void operator()(std::int64_t k) const { manifolds[k] = found[slots[k].source]; }
+  const detail::ManifoldChunk* chunks;
+  View<ManifoldHeader> headers;
+  View<ContactPoint> points;
+  void operator()(std::int64_t c) const {
+    const detail::ManifoldChunk& chunk = chunks[c];
+    for (std::size_t k = 0; k < chunk.headers.size(); ++k) {
+      ManifoldHeader& header = headers[chunk.first_header + static_cast<std::int64_t>(k)];
+      header = chunk.headers[k];
+      header.first_point += chunk.first_point;
+    }
+    std::copy(chunk.points.begin(), chunk.points.end(), points.data() + chunk.first_point);
+  }
 };
 
 }  // namespace
@@ -242,55 +174,35 @@ int find_pair_contacts(Shape shape_a, const Solid& a, Shape shape_b, const Solid
   return test != nullptr ? test(a, b, margin, out, stats) : 0;
 }
 
-ConstView<Manifold> NarrowPhase::find(const ConstBodyView& bodies, ConstView<Pair> pairs,
-                                      ConstView<double> margin, const LateBodies* late) {
-  list_planes(bodies);
-  FindContacts search{bodies,
-                      pairs,
-                      margin,
-                      planes_.view(),
-                      &tables[static_cast<int>(settings_.box_box)],
-                      settings_.crosscheck,
-                      searches_++,
-                      late,
-                      found_.view(),
-                      nullptr};
-  std::int64_t count = 0;
-  for (bool complete = false; !complete;) {
-    Tally tally;
-    search.tally = &tally;
-    search.room = found_.view();
-    parallel::for_each<Host>("find contacts", (search.candidates() + block - 1) / block, search);
-    count = tally.found;
-    stats_ = tally.total();
-    complete = count <= found_.size();
-    if (!complete) found_.resize(count + count / 4);  // room for the steps that follow
+Manifolds NarrowPhase::find(const ConstBodyView& bodies, ConstView<Pair> pairs, ConstView<double> margin,
+                            const LateBodies* late) {
+  // One pair's cost is next to nothing, so they are taken by the chunk; of the most that there are, each
+  // holds as many as it must.
+  constexpr std::int64_t smallest_chunk = 256, most_chunks = 4096;
+  const std::int64_t chunk_size = std::max(smallest_chunk, (pairs.size() + most_chunks - 1) / most_chunks);
+  const std::int64_t count = (pairs.size() + chunk_size - 1) / chunk_size;
+  if (count > static_cast<std::int64_t>(chunks_.size())) chunks_.resize(static_cast<std::size_t>(count));
+  extent_.resize(bodies.count());
+  parallel::for_each<Host>("find contacts", bodies.count(), SetExtent{bodies, margin, extent_.view()});
+  parallel::for_each<Host>("find contacts", count,
+                           FindContacts{bodies, pairs, margin, std::as_const(extent_).view(),
+                                        &tables[static_cast<int>(settings_.box_box)], settings_.crosscheck,
+                                        searches_++, late, chunk_size, chunks_.data()});
+  stats_ = {};
+  std::int64_t headers = 0;
+  std::int64_t points = 0;
+  for (std::int64_t c = 0; c < count; ++c) {
+    detail::ManifoldChunk& chunk = chunks_[static_cast<std::size_t>(c)];
+    stats_ += chunk.stats;
+    chunk.first_header = headers;
+    chunk.first_point = points;
+    headers += static_cast<std::int64_t>(chunk.headers.size());
+    points += static_cast<std::int64_t>(chunk.points.size());
   }
-  sort_by_pair(bodies.count(), count);
-  return manifolds_.view();
-}
-
-void NarrowPhase::list_planes(const ConstBodyView& bodies) {
-  const auto is_plane = [](Shape shape) { return shape == Shape::plane; };
-  planes_.resize(std::count_if(bodies.shape.begin(), bodies.shape.end(), is_plane));
-  std::int64_t next = 0;
-  for (std::int64_t i = 0; next < planes_.size(); ++i) {
-    if (is_plane(bodies.shape[i])) planes_.view()[next++] = static_cast<std::int32_t>(i);
-  }
-}
-
-void NarrowPhase::sort_by_pair(std::int64_t body_count, std::int64_t count) {
-  const ConstView<Manifold> found(found_.data(), count);
-  counts_.resize(body_count);
-  parallel::fill("contacts of body", counts_, 0);
-  parallel::for_each<Host>("contacts of body", count, CountByFirst{found, counts_.view()});
-  parallel::exclusive_scan<Host>("contacts of body", counts_, offsets_);
-  slots_.resize(count);
-  parallel::for_each<Host>("sort contacts", count,
-                           PlaceByFirst{found, offsets_.view(), counts_.view(), slots_.view()});
-  parallel::for_each<Host>("sort contacts", body_count, SortBySecond{offsets_.view(), slots_.view()});
-  manifolds_.resize(count);
-  parallel::for_each<Host>("sort contacts", count, Gather{found, slots_.view(), manifolds_.view()});
+  headers_.resize(headers);
+  points_.resize(points);
+  parallel::for_each<Host>("gather contacts", count, Gather{chunks_.data(), headers_.view(), points_.view()});
+  return {std::as_const(headers_).view(), std::as_const(points_).view()};
 }
 
 }  // namespace scree

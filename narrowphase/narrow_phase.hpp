@@ -10,14 +10,27 @@
 #include "narrowphase/stats.hpp"
 
 #include <cstdint>
+#include <vector>
 
 namespace scree {
 
 namespace detail {
-/// Stands for a manifold while they are put in order.
-struct ManifoldSlot {
-  std::int32_t j;
-  std::int64_t source;  ///< its place among those found; grows in the order of the pair's test
+/// What a chunk of the pairs has found.
+struct alignas(64) ManifoldChunk {
+  std::vector<ManifoldHeader> headers;
+  std::vector<ContactPoint> points;
+  NarrowPhaseStats stats;
+  std::int64_t first_header, first_point;  ///< its place among all
+
+  void append(const Manifold& m) {
+    headers.push_back({.i = m.i,
+                       .j = m.j,
+                       .part = m.part,
+                       .count = m.count,
+                       .first_point = static_cast<std::int64_t>(points.size()),
+                       .normal = m.normal});
+    points.insert(points.end(), m.points, m.points + m.count);
+  }
 };
 }  // namespace detail
 
@@ -42,30 +55,23 @@ class NarrowPhase {
  public:
   explicit NarrowPhase(const NarrowPhaseSettings& settings) : settings_(settings) {}
 
-  /// All manifolds with a gap of at most margin[i] + margin[j] (m), for the pairs given and for every
-  /// plane with every body that is not fixed; ordered by (i, j, part), each pair tested once. Bodies that are
-  /// not free make no contact with each other. The view is valid until the next call.
-  ConstView<Manifold> find(const ConstBodyView& bodies, ConstView<Pair> pairs, ConstView<double> margin,
-                           const LateBodies* late = nullptr);
+  /// All manifolds with a gap of at most margin[i] + margin[j] (m), in the order of the pairs given, which
+  /// are Candidates (each has a free body, planes are among them). The views are valid until the next call.
+  Manifolds find(const ConstBodyView& bodies, ConstView<Pair> pairs, ConstView<double> margin,
+                 const LateBodies* late = nullptr);
 
   /// Of the last search.
   const NarrowPhaseStats& stats() const { return stats_; }
 
  private:
-  void list_planes(const ConstBodyView& bodies);
-  /// Fills manifolds_ with the first `count` of found_.
-  void sort_by_pair(std::int64_t body_count, std::int64_t count);
-
   NarrowPhaseSettings settings_;
   NarrowPhaseStats stats_;
   std::uint64_t searches_ = 0;
   // Buffers that keep their capacity from step to step.
-  Array<std::int32_t, Host> planes_;
-  Array<Manifold, Host> found_;        ///< in the order of finding; grows to the most found so far
-  Array<std::int32_t, Host> counts_;   ///< manifolds of each first body
-  Array<std::int64_t, Host> offsets_;  ///< where its manifolds begin
-  Array<detail::ManifoldSlot, Host> slots_;
-  Array<Manifold, Host> manifolds_;
+  Array<double, Host> extent_;  ///< of each body
+  std::vector<detail::ManifoldChunk> chunks_;
+  Array<ManifoldHeader, Host> headers_;
+  Array<ContactPoint, Host> points_;
 };
 
 }  // namespace scree

@@ -70,17 +70,18 @@ void measure_contacts(const ContactSet& contacts, std::int64_t free_bodies, Obse
       free_bodies > 0 ? static_cast<double>(ends) / static_cast<double>(free_bodies) : 0.0;
 }
 
-void measure_penetration(ConstView<Manifold> manifolds, const ConstBodyView& bodies, Penetration& out) {
+void measure_penetration(const Manifolds& manifolds, const ConstBodyView& bodies, Penetration& out) {
   out = {};
   std::vector<double> depths;
   double sum = 0;
   double relative_sum = 0;
-  for (auto m = manifolds.begin(); m != manifolds.end();) {
+  const ManifoldHeader* const end = manifolds.headers.end();
+  for (const ManifoldHeader* m = manifolds.headers.begin(); m != end;) {
     const std::int32_t i = m->i;
     const std::int32_t j = m->j;
     double depth = 0;
-    for (; m != manifolds.end() && m->i == i && m->j == j; ++m) {
-      for (int k = 0; k < m->count; ++k) depth = std::max(depth, -m->points[k].gap);
+    for (; m != end && m->i == i && m->j == j; ++m) {
+      for (int k = 0; k < m->count; ++k) depth = std::max(depth, -manifolds.points_of(*m)[k].gap);
     }
     if (depth <= 0) continue;
     const double relative = depth / std::min(smallest_size(bodies.shape[i], bodies.size[i]),

@@ -46,6 +46,6 @@ void measure_regions(const std::vector<Region>& regions, const std::vector<Regio
 void measure_contacts(const ContactSet& contacts, std::int64_t free_bodies, Observation& out);
 
 /// Penetration over all manifolds with a negative gap: per pair its deepest point.
-void measure_penetration(ConstView<Manifold> manifolds, const ConstBodyView& bodies, Penetration& out);
+void measure_penetration(const Manifolds& manifolds, const ConstBodyView& bodies, Penetration& out);
 
 }  // namespace scree

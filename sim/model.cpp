@@ -48,7 +48,7 @@ ModelPlan plan_model(const Scene& scene) {
                      any_unequal ? "some box is no cube" : "only spheres and cubes move freely"};
   plan.continuous =
       choose(scene.model.continuous, true, "in substeps where some body is fast for the sizes", "");
-  const double step = scene.time.step / scene.time.substeps;
+  const double step = scene.time.step / scene.time.substeps.value_or(1);
   const double threshold = scene.response.mode == ResponseMode::accurate
                                ? tolerance::accurate_restitution_threshold
                                : tolerance::restitution_threshold;

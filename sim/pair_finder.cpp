@@ -93,7 +93,9 @@ ConstView<Pair> KeptPairs::covering(const Bodies<Host>& bodies, const Array<doub
   const timing::Region region("broadphase");
   if (cover(bodies, contact_margin)) return pairs_;
   boxes_.put_around(bodies, reach, parameters, contact_margin);
-  pairs_ = finder_->find(bodies, boxes_.margin());
+  const ConstView<Pair> pcs = finder_->find(bodies, boxes_.margin());
+  pcs_size_ = pcs.size();
+  pairs_ = candidates_.list(view_of(bodies), pcs, boxes_.margin().view());
   kept_ = true;
   ++times_made_;
   return pairs_;

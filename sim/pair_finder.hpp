@@ -3,6 +3,7 @@
 
 #include "broadphase/broad_phase.hpp"
 #include "core/bodies.hpp"
+#include "narrowphase/candidates.hpp"
 #include "sim/dynamics/motion.hpp"
 #include "sim/inspection.hpp"
 
@@ -26,14 +27,15 @@ class PairFinder {
 std::unique_ptr<PairFinder> make_pair_finder(const BroadPhaseSettings& settings, bool on_device,
                                              const Vec3& origin);
 
-/// The PCS, made anew only when a body has left its box.
+/// The PCS and the candidates for contacts, made anew only when a body has left its box.
 class KeptPairs {
  public:
   KeptPairs(const BroadPhaseSettings& settings, bool on_device, const Vec3& origin)
       : finder_(make_pair_finder(settings, on_device, origin)) {}
 
-  /// Pairs among which are all that may come as close as their contact margins (m). Where they have to be
-  /// made anew, they have room for the bodies' travel within `reach` (s). Valid until the next call.
+  /// Candidates among which are all pairs that may come as close as their contact margins (m). Where they
+  /// have to be made anew, they have room for the bodies' travel within `reach` (s). Valid until the next
+  /// call.
   ConstView<Pair> covering(const Bodies<Host>& bodies, const Array<double, Host>& contact_margin,
                            double reach, const ResponseParameters& parameters);
   /// Whether they still do, for the bodies where they are now.
@@ -48,13 +50,17 @@ class KeptPairs {
   void forget() { kept_ = false; }
 
   GridOccupancy grid_occupancy() const { return finder_->grid_occupancy(); }
+  /// Of the PCS.
+  std::int64_t size() const { return pcs_size_; }
   std::int64_t times_made() const { return times_made_; }
   const char* space_name() const { return finder_->space_name(); }
 
  private:
   std::unique_ptr<PairFinder> finder_;
   FatBoxes boxes_;
+  Candidates candidates_;
   ConstView<Pair> pairs_;
+  std::int64_t pcs_size_ = 0;
   bool kept_ = false;
   std::int64_t times_made_ = 0;
 };

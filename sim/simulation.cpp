@@ -21,6 +21,7 @@
 #include <fmt/format.h>
 #include <tbb/global_control.h>
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -42,7 +43,7 @@ ResponseParameters parameters_of(const Scene& scene) {
           .accurate = scene.response.mode == ResponseMode::accurate,
           .iterations = scene.response.iterations.value_or(0),
           .block_sweeps = scene.response.block_sweeps.value_or(0),
-          .tolerance = scene.response.tolerance,
+          .tolerance = scene.response.tolerance.value_or(0),
           .restitution_threshold = plan.restitution_threshold};
 }
 
@@ -119,6 +120,7 @@ struct Simulation::Parts {
   PositionCorrector corrector;
 
   std::int64_t step = 0;
+  int substeps = 1;         // of the next, if the scene leaves it open
   double last_step = 0;     // its length
   double last_substep = 0;  // likewise; scales the remembered impulses
   MovingState start;        // of the last step
@@ -210,17 +212,17 @@ struct Simulation::Parts {
   }
 
   ContactLaws contact_laws() const {
-    return {bodies.shape.view(), bodies.mobility.view(), bodies.material.view(), laws.view(),
-            static_cast<std::int64_t>(scene.materials.size())};
+    return {bodies.shape.view(),    bodies.size.view(), bodies.mobility.view(),
+            bodies.material.view(), laws.view(),        static_cast<std::int64_t>(scene.materials.size())};
   }
 
   /// That may close by the next midpoint. `reach`: to the end of the step (s).
-  ConstView<Manifold> find_contacts(double h, double reach) {
+  Manifolds find_contacts(double h, double reach) {
     contact_margins(bodies, h, tolerance::contact_slack, parameters, contact_margin);
     const ConstView<Pair> pairs = kept_pairs.covering(bodies, contact_margin, reach, parameters);
     counters.pcs_made = kept_pairs.times_made();
     const timing::Region region("narrowphase");
-    const ConstView<Manifold> manifolds =
+    const Manifolds manifolds =
         narrow_phase.find(view_of(std::as_const(bodies)), pairs, contact_margin.view(),
                           impacts.late_bodies(impact_problem(pairs, h, 0), parameters, view_of(bodies)));
     counters.narrowphase += narrow_phase.stats();
@@ -242,7 +244,7 @@ struct Simulation::Parts {
     forces.start_substep(bodies);
     timed_fly(start_time + 0.5 * h, 0.5 * h);
     resolve_impacts(h, 0, reach);
-    const ConstView<Manifold> manifolds = find_contacts(h, reach);
+    const Manifolds manifolds = find_contacts(h, reach);
     respond(manifolds, h);
     // The response has changed the second half of the flight.
     resolve_impacts(h, 0.5 * h, reach);
@@ -251,15 +253,16 @@ struct Simulation::Parts {
     ledger.work += forces.work(bodies);
     ledger = ledger + corrector.correct(h, parameters, view_of(bodies), solver, contacts);
     memory.remember(manifolds, contacts, bodies.count());
-    for (const Contact& c : std::as_const(contacts.contacts).view())
-      add_impulse_on_driven_bodies(c.i, c.j, c.impulse);
+    for (const Contact& c : std::as_const(contacts.contacts).view()) {
+      if (c.free_ends < 2) add_impulse_on_driven_bodies(c.i, c.j, contacts.impulse_of(c));
+    }
     last_substep = h;
   }
 
-  void respond(ConstView<Manifold> manifolds, double h) {
+  void respond(const Manifolds& manifolds, double h) {
     const timing::Region region("response");
     load_solver_bodies(bodies, solver);
-    color_contacts(manifolds, std::as_const(bodies.mobility).view(), contacts.coloring);
+    color_contacts(manifolds.headers, std::as_const(bodies.mobility).view(), contacts.coloring);
     const double scale = last_substep > 0 ? h / last_substep : 1.0;
     prepare_contacts(manifolds, contact_laws(), memory, scale, parameters, contacts);
     impacts.mark_flights(impact_problem({}, h, 0), parameters, manifolds, view_of(bodies), contacts);
@@ -287,13 +290,18 @@ struct Simulation::Parts {
 
   void do_step() {
     const double dt = grid.length(step + 1);
-    const double h = dt / scene.time.substeps;
+    const int n = scene.time.substeps.value_or(substeps);
+    const double h = dt / n;
+    double overlap = 0;
     start.save(bodies);
     const Ledger ledger_before = ledger;
     std::fill(contact_impulse.begin(), contact_impulse.end(), Vec3(Vec3::Zero()));
     try {
       forces.act(step, bodies, parameters);
-      for (int s = 0; s < scene.time.substeps; ++s) substep(h, s * h);
+      for (int s = 0; s < n; ++s) {
+        substep(h, s * h);
+        overlap = std::max(overlap, corrector.overlap());
+      }
       baseline.extend(totals_of(bodies, parameters.gravity, origin));
       if (!baseline.is_finite()) throw RunError(non_finite_body());
     } catch (const RunError& error) {
@@ -301,6 +309,9 @@ struct Simulation::Parts {
       ledger = ledger_before;
       throw RunError(fmt::format("step {} (t = {} s): {}", step + 1, grid.time(step), error.what()));
     }
+    if (overlap > tolerance::substep_overlap) substeps = std::min(2 * n, tolerance::most_substeps);
+    if (overlap < tolerance::coarser_overlap) substeps = std::max(n / 2, 1);
+    counters.substeps += n;
     ++step;
     come_and_go();
     contents_before = std::exchange(contents, region_contents());
@@ -377,7 +388,10 @@ BodyState Simulation::body(std::int32_t id) const {
 
 std::vector<BodyPair> Simulation::pairs() {
   std::vector<BodyPair> pairs;
-  for (const Pair& pair : parts_->pairs_now()) pairs.push_back({pair.i, pair.j});
+  const ConstView<Shape> shape = std::as_const(parts_->bodies.shape).view();
+  for (const Pair& pair : parts_->pairs_now()) {
+    if (shape[pair.i] != Shape::plane && shape[pair.j] != Shape::plane) pairs.push_back({pair.i, pair.j});
+  }
   return pairs;
 }
 
@@ -389,7 +403,8 @@ std::vector<ContactForce> Simulation::contact_forces() const {
   std::vector<ContactForce> forces;
   for (std::int64_t c = 0; c < contacts.size(); ++c) {
     const Contact& contact = contacts[c];
-    if (contact.impulse.isZero(0)) continue;
+    const Vec3 impulse = p.contacts.impulse_of(contact);
+    if (impulse.isZero(0)) continue;
     // From the body that moves freely: the centre of a plane is nowhere near.
     const bool from_j = views.mobility[contact.j] == Mobility::free;
     Vec3 arm = Vec3::Zero();
@@ -397,7 +412,7 @@ std::vector<ContactForce> Simulation::contact_forces() const {
       const ContactRow& row = rows[contact.first_row + k];
       arm += (from_j ? row.arm_j : row.arm_i) / contact.count;
     }
-    forces.push_back({contact.i, contact.j, contact.impulse / p.last_substep,
+    forces.push_back({contact.i, contact.j, impulse / p.last_substep,
                       views.position[from_j ? contact.j : contact.i] + arm});
   }
   for (const Impact& impact : p.struck)
@@ -427,7 +442,7 @@ const Observation& Simulation::observe() {
   measure_regions(p.scene.regions, p.contents, p.contents_before, p.last_step, o.regions);
   measure_contacts(p.contacts, totals.count, o);
   const ConstView<Pair> pairs = p.pairs_now();
-  o.pairs = pairs.size();
+  o.pairs = p.kept_pairs.size();
   measure_penetration(
       p.end_narrow_phase.find(view_of(std::as_const(p.bodies)), pairs, p.contact_margin.view()),
       view_of(std::as_const(p.bodies)), o.penetration);

@@ -68,8 +68,9 @@ void Judge::measure_penetration_of(const BodyTable& state) {
   copy_bodies(bodies, state);
   Array<double, Host> margin;
   copy(margin, std::vector<double>(state.position.size(), 0.0));  // what does not overlap is not asked for
-  const ConstView<Pair> pairs = pair_finder_->find(bodies, margin);
   const ConstBodyView views = view_of(std::as_const(bodies));
+  const ConstView<Pair> pairs =
+      candidates_.list(views, pair_finder_->find(bodies, margin), std::as_const(margin).view());
   measure_penetration(narrow_phase_.find(views, pairs, margin.view()), views, findings_.penetration);
   findings_.worst_penetration = std::max(findings_.worst_penetration, findings_.penetration.max);
 }

@@ -39,6 +39,7 @@ class Judge {
   double first_energy_ = 0;
   Vec3 first_place_;  // of the last body
   std::unique_ptr<PairFinder> pair_finder_;
+  Candidates candidates_;
   NarrowPhase narrow_phase_;
 };
 

@@ -1,4 +1,5 @@
 // scree plan: what a scene will model and what it needs, before anything runs.
+#include "core/tolerances.hpp"
 #include "sim/cli/commands.hpp"
 #include "sim/cli/difficulty.hpp"
 #include "sim/model.hpp"
@@ -69,7 +70,7 @@ void print_difficulty(const Scene& scene) {
     print_row("sizes", fmt::format("{:.3g} m (smallest radius or half edge) to {:.3g} m (largest radius)",
                                    d.least_size, d.largest_size));
   if (d.smallest_size == 0 || d.speed == 0) return;
-  const double travel = d.travel(scene.time.step / scene.time.substeps);
+  const double travel = d.travel(scene.time.step / scene.time.substeps.value_or(1));
   print_row("speed", fmt::format("up to {:.3g} m/s{}", d.speed,
                                  d.fall > 0 ? fmt::format(", after a fall of {:.3g} m", d.fall) : ""));
   print_row("", fmt::format("v dt / smallest size = {:.2g}{}", travel,
@@ -156,11 +157,13 @@ std::string memory_words(const Scene& scene) {
 }
 
 std::string response_words(const ResponseSettings& settings) {
-  const std::string sweeps = settings.iterations
-                                 ? fmt::format("at most {} sweeps", *settings.iterations)
-                                 : std::string("sweeps by the number of contact points, at least 20");
-  return fmt::format("{}, until the impulses change by less than {:g} of their size", sweeps,
-                     settings.tolerance);
+  const std::string sweeps = settings.iterations ? fmt::format("at most {} sweeps", *settings.iterations)
+                                                 : std::string("sweeps by the number of contact points");
+  const std::string tolerance = settings.tolerance
+                                    ? fmt::format("{:g} of their size", *settings.tolerance)
+                                    : fmt::format("{:g} of their size, of a heap's {:g}",
+                                                  tolerance::response_change, tolerance::heap_change);
+  return fmt::format("{}, until the impulses change by less than {}", sweeps, tolerance);
 }
 
 struct OutputPlan {
@@ -199,8 +202,11 @@ int plan(const PlanArguments& arguments) {
   const OutputPlan output = plan_output(scene, grid);
   print_row("scene", fmt::format("{} ({}), seed {}", scene.name, scene.source.string(), scene.seed));
   print_bodies(scene);
+  const std::string substeps = scene.time.substeps
+                                   ? std::to_string(*scene.time.substeps)
+                                   : fmt::format("1 to {}, as overlaps ask", tolerance::most_substeps);
   print_row("time", fmt::format("{} s in {} steps of {} s, substeps {}", scene.time.end, grid.last(),
-                                scene.time.step, scene.time.substeps));
+                                scene.time.step, substeps));
   print_difficulty(scene);
   print_model(plan_model(scene));
   print_row("broad phase", broad_phase_words(scene.broadphase));

@@ -9,7 +9,7 @@ namespace {
 constexpr int parallel_colors = 64;  // bits of the mask
 }
 
-void color_contacts(ConstView<Manifold> manifolds, ConstView<Mobility> mobility, Coloring& coloring) {
+void color_contacts(ConstView<ManifoldHeader> manifolds, ConstView<Mobility> mobility, Coloring& coloring) {
   const auto n = static_cast<std::size_t>(manifolds.size());
   coloring.used.assign(static_cast<std::size_t>(mobility.size()), 0);
   coloring.color_of.resize(n);
@@ -17,7 +17,7 @@ void color_contacts(ConstView<Manifold> manifolds, ConstView<Mobility> mobility,
   begin.assign(parallel_colors + 2, 0);
   int highest = -1;
   for (std::size_t m = 0; m < n; ++m) {
-    const Manifold& contact = manifolds[static_cast<std::int64_t>(m)];
+    const ManifoldHeader& contact = manifolds[static_cast<std::int64_t>(m)];
     // Bodies that are not free are only read, so they constrain nothing.
     const bool free_i = mobility[contact.i] == Mobility::free;
     const bool free_j = mobility[contact.j] == Mobility::free;

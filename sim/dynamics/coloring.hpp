@@ -25,6 +25,6 @@ struct Coloring {
 
 /// Greedy first-fit colouring in the order of the manifolds, with at most 64 colours and a serial rest.
 /// `coloring` keeps its storage from call to call.
-void color_contacts(ConstView<Manifold> manifolds, ConstView<Mobility> mobility, Coloring& coloring);
+void color_contacts(ConstView<ManifoldHeader> manifolds, ConstView<Mobility> mobility, Coloring& coloring);
 
 }  // namespace scree

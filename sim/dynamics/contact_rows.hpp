@@ -15,27 +15,25 @@ struct PrepareRows {
   double noise;  ///< parting speeds that count as none (m/s)
   SCREE_HD void operator()(std::int64_t c) const {
     Contact& contact = stage.contacts[c];
-    const Manifold& m = stage.manifolds[contact.manifold];
+    const ManifoldHeader& m = stage.manifolds.headers[c];
+    const ContactPoint* points = stage.manifolds.points_of(m);
     const BodyView& bodies = stage.bodies;
     // Where several points share the load, the closed shell keeps all of them in contact; a single point
     // rests at 0.
-    const double shell =
-        contact.count == 1 ? 0.0
-                           : tolerance::closed_gap * fmin(smallest_size(bodies.shape[m.i], bodies.size[m.i]),
-                                                          smallest_size(bodies.shape[m.j], bodies.size[m.j]));
+    const double shell = contact.count == 1 ? 0.0 : tolerance::closed_gap * contact.size;
     contact.aligned = contact.balls && turns_as_ball(contact.i) && turns_as_ball(contact.j);
     for (int k = 0; k < contact.count; ++k) {
       ContactRow& row = stage.rows_of(c)[k];
       const Vec3 impulse = row.impulse;
-      const Vec3& point = m.points[k].position;
+      const Vec3& point = points[k].position;
       const SolverBody& i = stage.solver[m.i];
       const SolverBody& j = stage.solver[m.j];
       const Vec3 arm_i = point - (bodies.position[m.i] + contact.lead * i.velocity);
       const Vec3 arm_j = point - (bodies.position[m.j] + contact.lead * j.velocity);
       if (contact.balls) {
-        row = make_ball_row(arm_i, arm_j, m.points[k].gap, i, j);
+        row = make_ball_row(arm_i, arm_j, points[k].gap, i, j);
       } else {
-        row = make_row(m.normal, arm_i, arm_j, m.points[k].gap, i, j, stage.couplings[contact.first_row + k]);
+        row = make_row(m.normal, arm_i, arm_j, points[k].gap, i, j, stage.couplings[contact.first_row + k]);
       }
       row.impulse = impulse;
       // The next midpoint must not overlap: the gap may close by then, and no more (speculative contact).
@@ -56,7 +54,7 @@ struct PrepareRows {
   }
 
   /// Of balls on one another, and of a ball along the wall of a tube: the normal turns with the centres.
-  SCREE_HD double bend_of(const Manifold& m) const {
+  SCREE_HD double bend_of(const ManifoldHeader& m) const {
     const BodyView& bodies = stage.bodies;
     const Vec3 w = stage.solver[m.j].velocity - stage.solver[m.i].velocity;
     Vec3 across = w - w.dot(m.normal) * m.normal;

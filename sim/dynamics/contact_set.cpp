@@ -20,17 +20,18 @@ ConstView<ImpulseMemory::Entry> ImpulseMemory::entries_of(std::int32_t i, std::i
 
 bool ImpulseMemory::is_loaded(std::int32_t i, std::int32_t j, std::int32_t part) const {
   const ConstView<Entry> entries = entries_of(i, j, part);
-  return std::any_of(entries.begin(), entries.end(), [](const Entry& entry) { return entry.is_loaded(); });
+  return std::any_of(entries.begin(), entries.end(), [](const Entry& entry) { return entry.loaded; });
 }
 
-bool ImpulseMemory::recall(const Manifold& manifold, Vec3 impulses[Manifold::max_points]) const {
+bool ImpulseMemory::recall(const ManifoldHeader& manifold, const ContactPoint* points, Vec3* impulses) const {
   for (int k = 0; k < manifold.count; ++k) impulses[k].setZero();
   bool loaded = false;
   for (const Entry& entry : entries_of(manifold.i, manifold.j, manifold.part)) {
-    loaded = loaded || entry.is_loaded();
+    loaded = loaded || entry.loaded;
     for (int old = 0; old < entry.count; ++old) {
+      const Point& point = points_.view()[entry.first_point + old];
       for (int k = 0; k < manifold.count; ++k) {
-        if (entry.feature[old] == manifold.points[k].feature) impulses[k] = entry.impulse[old];
+        if (point.feature == points[k].feature) impulses[k] = point.impulse;
       }
     }
   }
@@ -39,17 +40,8 @@ bool ImpulseMemory::recall(const Manifold& manifold, Vec3 impulses[Manifold::max
 
 namespace {
 
-struct CountPoints {
-  ConstView<Manifold> manifolds;
-  const std::int32_t* order;
-  View<std::int32_t> counts;
-  SCREE_HD void operator()(std::int64_t c) const { counts[c] = manifolds[order[c]].count; }
-};
-
 struct PrepareContact {
-  ConstView<Manifold> manifolds;
-  const std::int32_t* order;
-  ConstView<std::int64_t> first_row;
+  Manifolds manifolds;
   ContactLaws laws;
   const ImpulseMemory* memory;
   double scale;
@@ -58,56 +50,54 @@ struct PrepareContact {
   View<ContactRow> rows;
 
   void operator()(std::int64_t c) const {
-    const Manifold& manifold = manifolds[order[c]];
+    const ManifoldHeader& manifold = manifolds.headers[c];
     const PairLaw& law = laws.between(manifold.i, manifold.j);
     const double friction = parameters.friction ? law.friction : 0.0;
     Vec3 remembered[Manifold::max_points];
-    const bool loaded = memory->recall(manifold, remembered);
-    contacts[c] = {
-        .i = manifold.i,
-        .j = manifold.j,
-        .manifold = order[c],
-        .count = manifold.count,
-        .first_row = first_row[c],
-        .normal = manifold.normal,
-        .friction = friction,
-        .restitution = parameters.restitution ? law.restitution : 0.0,
-        .loaded = loaded,
-        .flying = false,
-        .balls = laws.acts_as_ball(manifold.i) && laws.acts_as_ball(manifold.j),
-        .aligned = false,
-        .free_ends = static_cast<int>(laws.is_free(manifold.i)) + static_cast<int>(laws.is_free(manifold.j)),
-        .lead = 0,
-        .impulse = Vec3::Zero()};
+    const bool loaded = memory->recall(manifold, manifolds.points_of(manifold), remembered);
+    const int free_ends =
+        static_cast<int>(laws.is_free(manifold.i)) + static_cast<int>(laws.is_free(manifold.j));
+    contacts[c] = {.i = manifold.i,
+                   .j = manifold.j,
+                   .first_row = manifold.first_point,
+                   .count = manifold.count,
+                   .loaded = loaded,
+                   .flying = false,
+                   .balls = laws.acts_as_ball(manifold.i) && laws.acts_as_ball(manifold.j),
+                   .aligned = false,
+                   .free_ends = static_cast<std::int8_t>(free_ends),
+                   .normal = manifold.normal,
+                   .friction = friction,
+                   .lead = 0,
+                   .size = laws.smaller_size(manifold.i, manifold.j)};
     for (int k = 0; k < manifold.count; ++k) {
-      rows[first_row[c] + k].impulse = parameters.warm_start
-                                           ? project_on_cone(scale * remembered[k], manifold.normal, friction)
-                                           : Vec3(Vec3::Zero());
+      rows[manifold.first_point + k].impulse =
+          parameters.warm_start ? project_on_cone(scale * remembered[k], manifold.normal, friction)
+                                : Vec3(Vec3::Zero());
     }
   }
 };
 
 struct StoreEntry {
-  ConstView<Manifold> manifolds;
-  ConstView<Contact> contacts;
+  Manifolds manifolds;
   ConstView<ContactRow> rows;
   View<ImpulseMemory::Entry> entries;
-  SCREE_HD void operator()(std::int64_t c) const {
-    const Contact& contact = contacts[c];
-    ImpulseMemory::Entry& entry = entries[contact.manifold];
-    entry.j = contact.j;
-    entry.part = manifolds[contact.manifold].part;
-    entry.count = contact.count;
-    for (int k = 0; k < contact.count; ++k) {
-      entry.feature[k] = manifolds[contact.manifold].points[k].feature;
-      entry.impulse[k] = rows[contact.first_row + k].impulse;
+  View<ImpulseMemory::Point> points;
+  SCREE_HD void operator()(std::int64_t m) const {
+    const ManifoldHeader& manifold = manifolds.headers[m];
+    bool loaded = false;
+    for (int k = 0; k < manifold.count; ++k) {
+      const std::int64_t p = manifold.first_point + k;
+      points[p] = {rows[p].impulse, manifolds.points[p].feature};
+      loaded = loaded || !rows[p].impulse.isZero(0);
     }
+    entries[m] = {manifold.j, manifold.part, manifold.count, loaded, manifold.first_point};
   }
 };
 
 /// The manifolds are ordered by i: each one marks where the bodies after the last i up to its own begin.
 struct MarkBegins {
-  ConstView<Manifold> manifolds;
+  ConstView<ManifoldHeader> manifolds;
   View<std::int64_t> begin;
   SCREE_HD void operator()(std::int64_t m) const {
     const std::int64_t last = m > 0 ? manifolds[m - 1].i : -1;
@@ -118,27 +108,24 @@ struct MarkBegins {
 
 }  // namespace
 
-void ImpulseMemory::remember(ConstView<Manifold> manifolds, const ContactSet& set, std::int64_t bodies) {
+void ImpulseMemory::remember(const Manifolds& manifolds, const ContactSet& set, std::int64_t bodies) {
   entries_.resize(manifolds.size());
+  points_.resize(manifolds.points.size());
   begin_.resize(bodies + 1);
   parallel::for_each<Host>("contacts.remember", manifolds.size(),
-                           StoreEntry{manifolds, set.contacts.view(), set.rows.view(), entries_.view()});
-  parallel::for_each<Host>("contacts.remember", manifolds.size() + 1, MarkBegins{manifolds, begin_.view()});
+                           StoreEntry{manifolds, set.rows.view(), entries_.view(), points_.view()});
+  parallel::for_each<Host>("contacts.remember", manifolds.size() + 1,
+                           MarkBegins{manifolds.headers, begin_.view()});
 }
 
-void prepare_contacts(ConstView<Manifold> manifolds, const ContactLaws& laws, const ImpulseMemory& memory,
+void prepare_contacts(const Manifolds& manifolds, const ContactLaws& laws, const ImpulseMemory& memory,
                       double scale, const ResponseParameters& parameters, ContactSet& set) {
-  const std::int64_t n = manifolds.size();
-  const std::int32_t* order = set.coloring.order.data();
-  set.contacts.resize(n);
-  set.counts.resize(n);
-  parallel::for_each<Host>("contacts.count", n, CountPoints{manifolds, order, set.counts.view()});
-  const std::int64_t rows = parallel::exclusive_scan<Host>("contacts.first_row", set.counts, set.first_row);
-  set.rows.resize(rows);
-  set.couplings.resize(rows);
-  parallel::for_each<Host>("contacts.prepare", n,
-                           PrepareContact{manifolds, order, std::as_const(set.first_row).view(), laws,
-                                          &memory, scale, parameters, set.contacts.view(), set.rows.view()});
+  set.contacts.resize(manifolds.size());
+  set.rows.resize(manifolds.points.size());
+  set.couplings.resize(manifolds.points.size());
+  parallel::for_each<Host>(
+      "contacts.prepare", manifolds.size(),
+      PrepareContact{manifolds, laws, &memory, scale, parameters, set.contacts.view(), set.rows.view()});
 }
 
 }  // namespace scree

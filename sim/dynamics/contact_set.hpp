@@ -9,28 +9,25 @@
 #include "sim/dynamics/lanes/batches.hpp"
 #include "sim/dynamics/state.hpp"
 
-#include <algorithm>
 #include <cstdint>
 
 namespace scree {
 
-/// One manifold with its law and its rows.
+/// One manifold with its law and its rows: it has the manifold's number, and its rows those of the points.
 struct Contact {
   std::int32_t i;
   std::int32_t j;
-  std::int32_t manifold;  ///< its place in the order of the narrow phase
-  std::int32_t count;     ///< rows in use
   std::int64_t first_row;
+  std::int32_t count;  ///< rows in use
+  bool loaded;         ///< carried an impulse in the last substep: it does not bounce
+  bool flying;         ///< known not to meet in this substep: its rows only guard what the flight leaves free
+  bool balls;          ///< between balls and bodies that are not free: its row needs no coupling
+  bool aligned;        ///< of balls, and what is not free does not turn: only arms along the normal matter
+  std::int8_t free_ends;  ///< how many of its two bodies are free
   Vec3 normal;
   double friction;
-  double restitution;
-  bool loaded;    ///< carried an impulse in the last substep: it does not bounce
-  bool flying;    ///< known not to meet in this substep: its rows only guard what the flight leaves free
-  bool balls;     ///< between balls and bodies that are not free: its row needs no coupling
-  bool aligned;   ///< of balls, and what is not free does not turn: only arms along the normal matter
-  int free_ends;  ///< how many of its two bodies are free
-  double lead;    ///< how long after the midpoint its geometry is of (s)
-  Vec3 impulse;   ///< all that its rows gave to j in this substep (N s)
+  double lead;  ///< how long after the midpoint its geometry is of (s)
+  double size;  ///< the smaller smallest_size of the two (m)
 };
 
 /// What the natural map changes in the impulses of a contact's rows, as they are.
@@ -53,12 +50,25 @@ struct PairLaw {
 /// What the response works on.
 struct ContactSet {
   Coloring coloring;
-  Array<std::int32_t, Host> counts;  ///< of the points of each contact, and where its rows begin
-  Array<std::int64_t, Host> first_row;
-  Array<Contact, Host> contacts;       ///< in the order of the colours
+  Array<Contact, Host> contacts;
   Array<ContactRow, Host> rows;        ///< of one contact after the other
   Array<RowCoupling, Host> couplings;  ///< of the rows; not set for those of balls
-  lanes::Batches batches;              ///< the same for the kernels
+  lanes::Batches batches;              ///< the same for the kernels, colour by colour
+
+  /// So many points that solving them to the end in every substep is not worth what it costs: what is left is
+  /// for the next ones, which start from there.
+  bool is_heap() const {
+    constexpr std::int64_t fewest = 2500;
+    return rows.size() >= fewest;
+  }
+  /// Whether contacts have several points, among which the load moves slowly.
+  bool shares_loads() const { return rows.size() > contacts.size(); }
+  /// All that a contact's rows gave to its body j in the last substep (N s).
+  Vec3 impulse_of(const Contact& contact) const {
+    Vec3 impulse = Vec3::Zero();
+    for (int k = 0; k < contact.count; ++k) impulse += rows.view()[contact.first_row + k].impulse;
+    return impulse;
+  }
 };
 
 /// Impulses of the last substep, by pair, part and feature. Ordered by (i, j, part), as manifolds are, with
@@ -67,22 +77,23 @@ class ImpulseMemory {
  public:
   /// Finds the last impulses of a manifold's points (N s, world frame). False if none of the pair's points on
   /// that part carried any: where one corner rests, the others do not bounce.
-  bool recall(const Manifold& manifold, Vec3 impulses[Manifold::max_points]) const;
+  bool recall(const ManifoldHeader& manifold, const ContactPoint* points, Vec3* impulses) const;
   /// Whether a part of the pair i, j carried an impulse.
   bool is_loaded(std::int32_t i, std::int32_t j, std::int32_t part) const;
   /// Takes the impulses of the rows; `bodies` is their number.
-  void remember(ConstView<Manifold> manifolds, const ContactSet& set, std::int64_t bodies);
+  void remember(const Manifolds& manifolds, const ContactSet& set, std::int64_t bodies);
 
+  /// A manifold.
   struct Entry {
     std::int32_t j;
     std::int32_t part;
     std::int32_t count;
-    std::uint32_t feature[Manifold::max_points];
-    Vec3 impulse[Manifold::max_points];
-
-    bool is_loaded() const {
-      return std::any_of(impulse, impulse + count, [](const Vec3& p) { return !p.isZero(0); });
-    }
+    bool loaded;
+    std::int64_t first_point;
+  };
+  struct Point {
+    Vec3 impulse;
+    std::uint32_t feature;
   };
 
  private:
@@ -90,12 +101,14 @@ class ImpulseMemory {
   ConstView<Entry> entries_of(std::int32_t i, std::int32_t j, std::int32_t part) const;
 
   Array<Entry, Host> entries_;
+  Array<Point, Host> points_;
   Array<std::int64_t, Host> begin_;  ///< of the entries of each i; one more than bodies, empty at first
 };
 
 /// Which law holds between two bodies, and what they are.
 struct ContactLaws {
   ConstView<Shape> shape;            ///< of each body
+  ConstView<Vec3> size;              ///< of each body (m)
   ConstView<Mobility> mobility;      ///< of each body
   ConstView<std::int32_t> material;  ///< of each body
   ConstView<PairLaw> table;          ///< materials x materials
@@ -103,14 +116,18 @@ struct ContactLaws {
 
   bool is_free(std::int32_t body) const { return mobility[body] == Mobility::free; }
   bool acts_as_ball(std::int32_t body) const { return shape[body] == Shape::sphere || !is_free(body); }
+  /// The smaller smallest_size of two bodies (m).
+  double smaller_size(std::int32_t i, std::int32_t j) const {
+    return fmin(smallest_size(shape[i], size[i]), smallest_size(shape[j], size[j]));
+  }
   const PairLaw& between(std::int32_t i, std::int32_t j) const {
     return table[material[i] * materials + material[j]];
   }
 };
 
-/// Fills the contacts, in the order of the colours, with their laws and with the impulses remembered, scaled
-/// by `scale` (ratio of the substeps' lengths) and projected on the cone at the new normal.
-void prepare_contacts(ConstView<Manifold> manifolds, const ContactLaws& laws, const ImpulseMemory& memory,
+/// Fills the contacts with their laws, and the rows with the impulses remembered, scaled by `scale` (ratio of
+/// the substeps' lengths) and projected on the cone at the new normal.
+void prepare_contacts(const Manifolds& manifolds, const ContactLaws& laws, const ImpulseMemory& memory,
                       double scale, const ResponseParameters& parameters, ContactSet& set);
 
 }  // namespace scree

@@ -5,6 +5,8 @@
 #include "sim/dynamics/lanes/colored.hpp"
 #include "sim/dynamics/rotation.hpp"
 
+#include <utility>
+
 namespace scree {
 
 struct PositionCorrector::Stage {
@@ -34,43 +36,54 @@ struct PositionCorrector::Stage {
     if (c.flying && row.impulse.isZero(0)) return HUGE_VAL;
     return row.gap + flown(c, row);
   }
-
-  double largest_part(const Contact& c) const {
-    return tolerance::correction_cap * fmin(smallest_size(bodies.shape[c.i], bodies.size[c.i]),
-                                            smallest_size(bodies.shape[c.j], bodies.size[c.j]));
-  }
 };
 
-/// Fills the gaps of a batch's points and the largest part of each contact; returns the deepest overlap.
-struct PositionCorrector::Fly {
+/// Flies a batch on from its midpoint; returns the deepest overlap (m).
+struct PositionCorrector::FlyBalls {
   Stage stage;
   ConstView<lanes::Members> members;
-  View<lanes::Lane> largest;
-  View<lanes::Lane> gaps;
-  double of(std::int64_t b, std::int64_t first_gap, int points) const {
+  View<lanes::BallParting> partings;
+  double operator()(std::int64_t b) const {
+    lanes::BallParting& parting = partings[b];
     double deepest = 0;
     for (int l = 0; l < lanes::width; ++l) {
       const std::int32_t c = members[b].contact[l];
-      largest[b].at[l] = c < 0 ? 0.0 : stage.largest_part(stage.contacts[c]);
-      for (int k = 0; k < points; ++k) {
-        double& gap = gaps[first_gap + k].at[l];
-        gap = c < 0 ? 0.0 : stage.flown_gap(stage.contacts[c], stage.rows[stage.contacts[c].first_row + k]);
-        deepest = fmax(deepest, -gap);
+      if (c == lanes::none) continue;
+      double& flown = parting.flown.at[l];
+      if ((parting.apart >> l & 1) != 0) {
+        flown = stage.flown_gap(stage.contacts[c], stage.rows[members[b].row[l]]);
+      } else {
+        const Vec3 normal(parting.normal.x.at[l], parting.normal.y.at[l], parting.normal.z.at[l]);
+        flown +=
+            0.5 * stage.step *
+            normal.dot(stage.solver[parting.ends.j[l]].velocity - stage.solver[parting.ends.i[l]].velocity);
       }
+      deepest = fmax(deepest, -flown);
     }
     return deepest;
   }
 };
 
-struct PositionCorrector::FlyBalls {
-  Fly fly;
-  double operator()(std::int64_t b) const { return fly.of(b, b, 1); }
-};
-
 struct PositionCorrector::FlyPoints {
-  Fly fly;
+  Stage stage;
+  ConstView<lanes::Members> members;
   ConstView<lanes::PointBatch> batches;
-  double operator()(std::int64_t b) const { return fly.of(b, batches[b].first_row, batches[b].count); }
+  View<lanes::Lane> caps;  ///< of each batch
+  View<lanes::Lane> gaps;  ///< of each of its points
+  double operator()(std::int64_t b) const {
+    const lanes::PointBatch& batch = batches[b];
+    double deepest = 0;
+    for (int l = 0; l < lanes::width; ++l) {
+      const std::int32_t c = members[b].contact[l];
+      caps[b].at[l] = c == lanes::none ? 0.0 : tolerance::correction_cap * stage.contacts[c].size;
+      for (int k = 0; k < batch.count; ++k) {
+        double& gap = gaps[batch.first_row + k].at[l];
+        gap = c == lanes::none ? 0.0 : stage.flown_gap(stage.contacts[c], stage.rows[members[b].row[l] + k]);
+        deepest = fmax(deepest, -gap);
+      }
+    }
+    return deepest;
+  }
 };
 
 struct PositionCorrector::Reset {
@@ -82,24 +95,30 @@ struct PositionCorrector::Reset {
 };
 
 struct PositionCorrector::PartBalls {
-  ConstView<lanes::BallBatch> batches;
-  ConstView<lanes::Lane> gaps, largest;
+  ConstView<lanes::BallParting> partings;
   lanes::Body* displacement;
+  double* deepest;  ///< overlap that a batch had, in units of the cap
   void operator()(std::int64_t b) const {
-    lanes::kernels().part_balls(batches[b], gaps[b], largest[b], tolerance::correction_share, displacement);
+    deepest[b] = lanes::kernels().part_balls(partings[b], tolerance::correction_share, displacement);
   }
 };
 
 struct PositionCorrector::PartPoints {
   ConstView<lanes::PointBatch> batches;
   ConstView<lanes::PointRow> rows;
-  ConstView<lanes::Lane> gaps, largest;
+  ConstView<lanes::Lane> gaps, caps;
   lanes::Body* displacement;
+  double* deepest;
   void operator()(std::int64_t b) const {
     const std::int64_t first = batches[b].first_row;
-    lanes::kernels().part_points(batches[b], &rows[first], &gaps[first], largest[b],
-                                 tolerance::correction_share, displacement);
+    deepest[b] = lanes::kernels().part_points(batches[b], &rows[first], &gaps[first], caps[b],
+                                              tolerance::correction_share, displacement);
   }
+};
+
+struct PositionCorrector::LoadDepth {
+  ConstView<double> deepest;
+  SCREE_HD double operator()(std::int64_t b) const { return deepest[b]; }
 };
 
 /// Moves a body and says what that changed, at velocities that stay.
@@ -133,30 +152,37 @@ struct PositionCorrector::Apply {
 };
 
 Ledger PositionCorrector::correct(double step, const ResponseParameters& parameters, BodyView bodies,
-                                  const Array<SolverBody, Host>& solver, const ContactSet& set) {
+                                  const Array<SolverBody, Host>& solver, ContactSet& set) {
+  overlap_ = 0;
   if (set.contacts.empty()) return {};
-  const lanes::Batches& batches = set.batches;
+  lanes::Batches& batches = set.batches;
   displacement_.resize(solver.size() + 1);
-  ball_gaps_.resize(batches.balls.size());
-  largest_of_balls_.resize(batches.balls.size());
   point_gaps_.resize(batches.rows.size());
-  largest_of_points_.resize(batches.points.size());
+  caps_.resize(batches.points.size());
   const Stage stage{bodies, solver.view(), set.contacts.view(), set.rows.view(), displacement_.view(), step};
-  const FlyBalls fly_balls{{stage, batches.ball_members.view(), largest_of_balls_.view(), ball_gaps_.view()}};
-  const FlyPoints fly_points{
-      {stage, batches.point_members.view(), largest_of_points_.view(), point_gaps_.view()},
-      batches.points.view()};
+  const FlyBalls fly_balls{stage, batches.ball_members.view(), batches.partings.view()};
+  const FlyPoints fly_points{stage, batches.point_members.view(), batches.points.view(), caps_.view(),
+                             point_gaps_.view()};
   const double deepest =
       fmax(parallel::max<double, Host>("correction.gaps", batches.balls.size(), fly_balls, 0.0),
            parallel::max<double, Host>("correction.gaps", batches.points.size(), fly_points, 0.0));
   if (deepest == 0) return {};
   parallel::for_each<Host>("correction.reset", displacement_.size(), Reset{stage});
-  for (int sweep = 0; sweep < tolerance::correction_sweeps; ++sweep) {
-    lanes::for_each_color(
-        "correction.sweep", batches,
-        PartBalls{batches.balls.view(), ball_gaps_.view(), largest_of_balls_.view(), displacement_.data()},
-        PartPoints{batches.points.view(), batches.rows.view(), point_gaps_.view(), largest_of_points_.view(),
-                   displacement_.data()});
+  const std::int64_t balls = batches.balls.size();
+  deepest_.resize(balls + batches.points.size());
+  // Few cost nothing; in a heap of single points what is left is for the next substeps.
+  const int most = set.is_heap() && !set.shares_loads() ? 6 : 24;
+  bool corrected = false;
+  for (int sweep = 0; sweep < most && !corrected; ++sweep) {
+    lanes::for_each_color("correction.sweep", batches,
+                          PartBalls{batches.partings.view(), displacement_.data(), deepest_.data()},
+                          PartPoints{batches.points.view(), batches.rows.view(), point_gaps_.view(),
+                                     caps_.view(), displacement_.data(), deepest_.data() + balls});
+    const double overlap = tolerance::correction_cap *
+                           parallel::max<double, Host>("correction.deepest", deepest_.size(),
+                                                       LoadDepth{std::as_const(deepest_).view()}, 0.0);
+    if (sweep == 0) overlap_ = overlap;
+    corrected = overlap <= tolerance::corrected_overlap;
   }
   return parallel::sum<Ledger, Host>("correction.apply", solver.size(),
                                      Apply{stage, parameters.gravity, parameters.rotation});

@@ -1,11 +1,39 @@
 #include "sim/dynamics/flight_stage.hpp"
 
+#include "core/parallel.hpp"
 #include "core/tolerances.hpp"
 
 #include <algorithm>
 #include <cmath>
 
 namespace scree {
+
+namespace {
+
+struct MinusSize {
+  BodyView bodies;
+  SCREE_HD double operator()(std::int64_t k) const {
+    return bodies.mobility[k] == Mobility::absent ? -HUGE_VAL
+                                                  : -smallest_size(bodies.shape[k], bodies.size[k]);
+  }
+};
+
+}  // namespace
+
+double FlightStage::harmless_speed() const {
+  double speed = HUGE_VAL;
+  if (parameters.continuous) {
+    const double size =
+        -parallel::max<double, Host>("impact.size", bodies.count(), MinusSize{bodies}, -HUGE_VAL);
+    speed = tolerance::deep_approach * size / problem.step;
+  }
+  if (problem.bounces && parameters.restitution) {
+    double largest = 0;
+    for (const PairLaw& law : problem.laws.table) largest = std::max(largest, law.restitution);
+    speed = std::min(speed, parameters.restitution_threshold.of(largest));
+  }
+  return speed - problem.step * parameters.gravity.norm();
+}
 
 BodyFlight FlightStage::flight(std::int32_t body) const {
   return {.shape = bodies.shape[body],
@@ -37,7 +65,11 @@ void FlightStage::bound(std::int32_t body) const {
   turn[body] = absent ? 0.0 : fastest_turn(flight(body));
   const double linear = (bodies.velocity[body] - kick_of(body)).norm();
   const double gained = is_free(body) ? parameters.acceleration_of(body).norm() * problem.step : 0.0;
+  top_speed[body] = absent ? 0.0 : linear + turn[body] + (parameters.acceleration.size() > 0 ? gained : 0.0);
   reach[body] = absent ? 0.0 : (linear + gained + turn[body]) * (0.5 * problem.step);
+  extent[body] = is_boundary(bodies.shape[body])
+                     ? HUGE_VAL
+                     : bounding_radius(bodies.shape[body], bodies.size[body]) + reach[body];
 }
 
 double FlightStage::fastest(std::int32_t i, std::int32_t j) const {
@@ -52,27 +84,22 @@ double FlightStage::fastest(std::int32_t i, std::int32_t j) const {
 }
 
 bool FlightStage::are_far(std::int32_t i, std::int32_t j) const {
-  const bool boundary_i = is_boundary(bodies.shape[i]);
-  const bool boundary_j = is_boundary(bodies.shape[j]);
-  double near = reach[i] + reach[j];
-  if (!boundary_i) near += bounding_radius(bodies.shape[i], bodies.size[i]);
-  if (!boundary_j) near += bounding_radius(bodies.shape[j], bodies.size[j]);
+  const double near = extent[i] + extent[j];
   const Vec3 offset = bodies.position[j] - bodies.position[i];
-  if (!boundary_i && !boundary_j) return offset.squaredNorm() > near * near;
+  if (near < HUGE_VAL) return offset.squaredNorm() > near * near;
+  const bool boundary_i = is_boundary(bodies.shape[i]);
   const std::int32_t boundary = boundary_i ? i : j;
   if (bodies.shape[boundary] == Shape::tube) return false;
   const Vec3 up = bodies.orientation[boundary] * Vec3::UnitZ();
-  return (boundary_i ? 1.0 : -1.0) * up.dot(offset) > near;
+  return (boundary_i ? 1.0 : -1.0) * up.dot(offset) > extent[boundary_i ? j : i] + reach[boundary];
 }
 
 Meeting FlightStage::next(std::int32_t i, std::int32_t j) const {
-  if (!is_free(i) && !is_free(j)) return {};
-  if (bodies.mobility[i] == Mobility::absent || bodies.mobility[j] == Mobility::absent) return {};
-  if (are_far(i, j) || std::max(hits[i], hits[j]) >= most_hits) return {};
+  if (top_speed[i] + top_speed[j] <= harmless || are_far(i, j) || std::max(hits[i], hits[j]) >= most_hits)
+    return {};
   const double earliest = std::max(clock[i], clock[j]);
   if (!(earliest < problem.step)) return {};
-  const double farthest = tolerance::deep_approach * std::min(smallest_size(bodies.shape[i], bodies.size[i]),
-                                                              smallest_size(bodies.shape[j], bodies.size[j]));
+  const double farthest = tolerance::deep_approach * problem.laws.smaller_size(i, j);
   const double slowest = problem.bounces ? slowest_bounce(i, j) : HUGE_VAL;
   const auto may_bounce = [&](double speed) { return speed > slowest; };
   const auto may_go_deep = [&](double speed) {

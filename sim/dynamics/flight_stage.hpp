@@ -18,7 +18,7 @@ inline constexpr std::int32_t most_hits = 256;
 
 /// What may meet, and how, in one flight.
 struct ImpactProblem {
-  ConstView<Pair> pairs;  ///< among which are all that may meet, but for planes, which may meet everybody
+  ConstView<Pair> pairs;  ///< candidates, among which are all that may meet
   ContactLaws laws;
   const ImpulseMemory& memory;  ///< contacts that carried a load do not bounce
   double step;                  ///< length of the substep (s)
@@ -33,7 +33,18 @@ struct FlightLog {
   Array<double, Host> clock;       ///< time of its last impact (s); the start if it had none
   Array<std::int32_t, Host> hits;  ///< its impacts so far
   Array<double, Host> turn;        ///< bound on the speed that turning gives its surface (m/s)
+  Array<double, Host> top_speed;   ///< bound on that of its surface, but for what gravity adds (m/s)
   Array<double, Host> reach;       ///< of its surface from the midpoint, to either end of the substep (m)
+  Array<double, Host> extent;  ///< how far from its centre it may be in the substep (m); infinite: boundary
+
+  void resize(std::int64_t bodies) {
+    clock.resize(bodies);
+    hits.resize(bodies);
+    turn.resize(bodies);
+    top_speed.resize(bodies);
+    reach.resize(bodies);
+    extent.resize(bodies);
+  }
 };
 
 /// The bodies in flight, and what has become of them. Cheap to copy; the bodies and the log are the caller's.
@@ -45,7 +56,9 @@ struct FlightStage {
         clock(log.clock.view()),
         hits(log.hits.view()),
         turn(log.turn.view()),
-        reach(log.reach.view()) {}
+        top_speed(log.top_speed.view()),
+        reach(log.reach.view()),
+        extent(log.extent.view()) {}
 
   ImpactProblem problem;
   ResponseParameters parameters;
@@ -53,7 +66,10 @@ struct FlightStage {
   View<double> clock;
   View<std::int32_t> hits;
   View<double> turn;
+  View<double> top_speed;
   View<double> reach;
+  View<double> extent;
+  double harmless = -1;  ///< two bodies whose top speeds sum to no more have no impact (m/s)
 
   bool is_free(std::int32_t body) const { return bodies.mobility[body] == Mobility::free; }
 
@@ -73,7 +89,11 @@ struct FlightStage {
   /// Sets the turn and the reach of a body as it flies now.
   void bound(std::int32_t body) const;
 
-  /// The next impact of two bodies.
+  /// What `harmless` may be, for the bodies as bound() has seen them (m/s): such two neither go deep, nor do
+  /// they close as fast as what bounces, even if gravity adds to it.
+  double harmless_speed() const;
+
+  /// The next impact of two bodies, of which one is free.
   Meeting next(std::int32_t i, std::int32_t j) const;
 
  private:

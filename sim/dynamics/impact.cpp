@@ -96,7 +96,7 @@ bool resolve_impact(const FlightStage& stage, std::int32_t i, std::int32_t j, co
   double fastest = 0;
   int count = 0;
   for (int k = 0; k < m.count; ++k) {
-    const double closing = closing_speed(m, k, at_i, at_j);
+    const double closing = closing_speed(m.normal, m.points[k].position, at_i, at_j);
     if (!(closing > 0)) continue;
     const Vec3& point = m.points[k].position;
     rows[count] = make_row(m.normal, point - at_i.solid.position, point - at_j.solid.position, 0.0, a, b,

@@ -10,30 +10,13 @@ namespace scree {
 
 namespace {
 
-/// The first impact of each pair, then of each plane with each body.
+/// The first impact of each pair.
 struct FindFirst {
   FlightStage stage;
-  const std::int32_t* planes;
   View<Meeting> first;
-
   void operator()(std::int64_t k) const {
-    const auto [i, j] = candidate(k);
-    first[k] = stage.next(i, j);
-  }
-
-  /// Pairs with planes may be among the others too: they are left to the planes.
-  std::pair<std::int32_t, std::int32_t> candidate(std::int64_t k) const {
-    const ConstView<Pair> pairs = stage.problem.pairs;
-    if (k < pairs.size()) {
-      const Pair& pair = pairs[k];
-      const bool has_plane =
-          stage.bodies.shape[pair.i] == Shape::plane || stage.bodies.shape[pair.j] == Shape::plane;
-      return has_plane ? std::pair(pair.i, pair.i) : std::pair(pair.i, pair.j);
-    }
-    const std::int64_t bodies = stage.bodies.count();
-    const std::int32_t plane = planes[(k - pairs.size()) / bodies];
-    const auto body = static_cast<std::int32_t>((k - pairs.size()) % bodies);
-    return std::minmax(plane, body);
+    const Pair& pair = stage.problem.pairs[k];
+    first[k] = stage.next(pair.i, pair.j);
   }
 };
 
@@ -49,61 +32,35 @@ struct SetReach {
   void operator()(std::int64_t k) const { stage.bound(static_cast<std::int32_t>(k)); }
 };
 
-struct LoadReach {
-  View<double> reach;
-  SCREE_HD double operator()(std::int64_t k) const { return reach[k]; }
+struct LoadSpeed {
+  View<double> speed;
+  SCREE_HD double operator()(std::int64_t k) const { return speed[k]; }
 };
-
-struct MinusSize {
-  BodyView bodies;
-  SCREE_HD double operator()(std::int64_t k) const {
-    return bodies.mobility[k] == Mobility::absent ? -HUGE_VAL
-                                                  : -smallest_size(bodies.shape[k], bodies.size[k]);
-  }
-};
-
-/// False if no two bodies can go deep into one another.
-bool may_go_deep(const FlightStage& stage) {
-  const std::int64_t n = stage.bodies.count();
-  const double reach = parallel::max<double, Host>("impact.reach", n, LoadReach{stage.reach}, 0.0);
-  const double size = -parallel::max<double, Host>("impact.size", n, MinusSize{stage.bodies}, -HUGE_VAL);
-  // The reach is of half a substep: two bodies, and both halves.
-  return stage.parameters.continuous && 4 * reach > tolerance::deep_approach * size;
-}
 
 }  // namespace
 
 Ledger ImpactSolver::resolve(const ImpactProblem& problem, const ResponseParameters& parameters,
                              BodyView bodies) {
   const std::int64_t n = bodies.count();
-  log_.clock.resize(n);
-  log_.hits.resize(n);
+  log_.resize(n);
   parallel::for_each<Host>("impact.reset", n, StartClock{log_.clock.view(), problem.from});
   parallel::fill("impact.reset", log_.hits, std::int32_t{0});
   impacts_.clear();
   saved_.clear();
   hit_bound_ = false;
-  log_.turn.resize(n);
-  log_.reach.resize(n);
-  const FlightStage stage(problem, parameters, bodies, log_);
+  FlightStage stage(problem, parameters, bodies, log_);
   parallel::for_each<Host>("impact.reach", n, SetReach{stage});
-  if (!(problem.bounces && parameters.restitution) && !may_go_deep(stage)) return {};
-  planes_.clear();
-  for (std::int64_t k = 0; k < n; ++k) {
-    if (bodies.shape[k] == Shape::plane) planes_.push_back(static_cast<std::int32_t>(k));
-  }
-  first_.resize(problem.pairs.size() + static_cast<std::int64_t>(planes_.size()) * n);
-  const FindFirst find{stage, planes_.data(), first_.view()};
-  parallel::for_each<Host>("impact.first", first_.size(), find);
+  stage.harmless = stage.harmless_speed();
+  if (2 * parallel::max<double, Host>("impact.speed", n, LoadSpeed{stage.top_speed}, 0.0) <= stage.harmless)
+    return {};
+  const ConstView<Pair> pairs = problem.pairs;
+  first_.resize(pairs.size());
+  parallel::for_each<Host>("impact.first", pairs.size(), FindFirst{stage, first_.view()});
 
   events_.clear();
-  for (std::int64_t k = 0; k < first_.size(); ++k) {
-    if (first_.view()[k].time > problem.step) continue;
-    const auto [i, j] = find.candidate(k);
-    foresee(stage, i, j, first_.view()[k]);
-  }
+  for (std::int64_t k = 0; k < pairs.size(); ++k) foresee(stage, pairs[k].i, pairs[k].j, first_.view()[k]);
   if (events_.empty()) return {};
-  list_partners(problem.pairs, bodies);
+  list_partners(pairs, bodies.count());
 
   const auto foresee_all_of = [&](std::int32_t body, std::int32_t but) {
     if (!stage.is_free(body)) return;
@@ -114,7 +71,6 @@ Ledger ImpactSolver::resolve(const ImpactProblem& problem, const ResponseParamet
     };
     const auto k = static_cast<std::size_t>(body);
     for (std::int64_t p = begin_[k]; p < begin_[k + 1]; ++p) look_at(partners_[static_cast<std::size_t>(p)]);
-    for (const std::int32_t plane : planes_) look_at(plane);
   };
   const auto save = [&](std::int32_t body) {
     if (!stage.is_free(body) || stage.hits[body] > 0) return;
@@ -151,25 +107,18 @@ void ImpactSolver::foresee(const FlightStage& stage, std::int32_t i, std::int32_
   std::push_heap(events_.begin(), events_.end(), std::greater<>());
 }
 
-void ImpactSolver::list_partners(ConstView<Pair> pairs, const BodyView& bodies) {
-  begin_.assign(static_cast<std::size_t>(bodies.count()) + 1, 0);
-  const auto count = [&](std::int32_t body) { ++begin_[static_cast<std::size_t>(body) + 1]; };
-  const auto is_listed = [&](const Pair& pair) {
-    return bodies.shape[pair.i] != Shape::plane && bodies.shape[pair.j] != Shape::plane;
-  };
+void ImpactSolver::list_partners(ConstView<Pair> pairs, std::int64_t bodies) {
+  begin_.assign(static_cast<std::size_t>(bodies) + 1, 0);
   for (const Pair& pair : pairs) {
-    if (!is_listed(pair)) continue;
-    count(pair.i);
-    count(pair.j);
+    ++begin_[static_cast<std::size_t>(pair.i) + 1];
+    ++begin_[static_cast<std::size_t>(pair.j) + 1];
   }
   for (std::size_t k = 1; k < begin_.size(); ++k) begin_[k] += begin_[k - 1];
   partners_.resize(static_cast<std::size_t>(begin_.back()));
-  std::vector<std::int64_t>& next = next_;
-  next.assign(begin_.begin(), begin_.end());
+  next_.assign(begin_.begin(), begin_.end());
   for (const Pair& pair : pairs) {
-    if (!is_listed(pair)) continue;
-    partners_[static_cast<std::size_t>(next[static_cast<std::size_t>(pair.i)]++)] = pair.j;
-    partners_[static_cast<std::size_t>(next[static_cast<std::size_t>(pair.j)]++)] = pair.i;
+    partners_[static_cast<std::size_t>(next_[static_cast<std::size_t>(pair.i)]++)] = pair.j;
+    partners_[static_cast<std::size_t>(next_[static_cast<std::size_t>(pair.j)]++)] = pair.i;
   }
 }
 
@@ -193,7 +142,7 @@ const LateBodies* ImpactSolver::late_bodies(const ImpactProblem& problem,
 }
 
 void ImpactSolver::mark_flights(const ImpactProblem& problem, const ResponseParameters& parameters,
-                                ConstView<Manifold> manifolds, BodyView bodies, ContactSet& set) {
+                                const Manifolds& manifolds, BodyView bodies, ContactSet& set) {
   scree::mark_flights(FlightStage(problem, parameters, bodies, log_), manifolds, set);
 }
 

@@ -32,7 +32,7 @@ class ImpactSolver {
                                 BodyView bodies);
   /// As the function of this name, after resolve().
   void mark_flights(const ImpactProblem& problem, const ResponseParameters& parameters,
-                    ConstView<Manifold> manifolds, BodyView bodies, ContactSet& set);
+                    const Manifolds& manifolds, BodyView bodies, ContactSet& set);
 
   /// As the function of this name.
   Ledger shift_late(const ImpactProblem& problem, const ResponseParameters& parameters, BodyView bodies,
@@ -57,11 +57,10 @@ class ImpactSolver {
   };
 
   void foresee(const FlightStage& stage, std::int32_t i, std::int32_t j, const Meeting& meeting);
-  void list_partners(ConstView<Pair> pairs, const BodyView& bodies);
+  void list_partners(ConstView<Pair> pairs, std::int64_t bodies);
 
   FlightLog log_;
-  Array<Meeting, Host> first_;  // of each candidate
-  std::vector<std::int32_t> planes_;
+  Array<Meeting, Host> first_;       // of each candidate
   std::vector<std::int64_t> begin_;  // of the partners of each body
   std::vector<std::int32_t> partners_;
   std::vector<std::int64_t> next_;  // scratch of list_partners()

@@ -16,14 +16,14 @@ bool is_late(const FlightStage& stage, const StruckBody& body) {
 struct MarkFlights {
   FlightStage stage;
   StruckBodies struck;
-  ConstView<Manifold> manifolds;
+  Manifolds manifolds;
   View<Contact> contacts;
 
   /// Two bodies that the rows would hold apart, though nothing else has touched them, may pass by each other:
   /// the normal of the midpoint says nothing of it. Or they meet later, in an impact that will bounce.
   void operator()(std::int64_t index) const {
     Contact& contact = contacts[index];
-    const Manifold& m = manifolds[contact.manifold];
+    const ManifoldHeader& m = manifolds.headers[index];
     const double step = stage.problem.step;
     const double seen = std::max(0.5 * step, struck.time_of(m.i, m.j));
     contact.lead = seen - 0.5 * step;
@@ -35,14 +35,15 @@ struct MarkFlights {
                      (meeting.time > step && fastest_approach(pair) > stage.slowest_bounce(m.i, m.j));
   }
 
-  bool would_push_apart(const Manifold& m, double seen) const {
+  bool would_push_apart(const ManifoldHeader& m, double seen) const {
     const BodyInstant i = struck.at(m.i, seen);
     const BodyInstant j = struck.at(m.j, seen);
     bool pushes = false;
     for (int k = 0; k < m.count; ++k) {
-      const double closing = closing_speed(m, k, i, j);
-      if (closing <= 0 || closing * (1.5 * stage.problem.step - seen) <= m.points[k].gap) continue;
-      if (m.points[k].gap <= 0) return false;  // touches: no impact is to come
+      const ContactPoint& point = manifolds.points_of(m)[k];
+      const double closing = closing_speed(m.normal, point.position, i, j);
+      if (closing <= 0 || closing * (1.5 * stage.problem.step - seen) <= point.gap) continue;
+      if (point.gap <= 0) return false;  // touches: no impact is to come
       pushes = true;
     }
     return pushes;
@@ -67,7 +68,7 @@ bool any_is_late(const FlightStage& stage, const std::vector<StruckBody>& struck
                      [&](const StruckBody& body) { return is_late(stage, body); });
 }
 
-void mark_flights(const FlightStage& stage, ConstView<Manifold> manifolds, ContactSet& set) {
+void mark_flights(const FlightStage& stage, const Manifolds& manifolds, ContactSet& set) {
   parallel::for_each<Host>("impact.flights", set.contacts.size(),
                            MarkFlights{stage, StruckBodies(stage), manifolds, set.contacts.view()});
 }
@@ -76,9 +77,10 @@ Ledger shift_late(const FlightStage& stage, const std::vector<StruckBody>& struc
                   std::vector<Vec3>& total) {
   if (!any_is_late(stage, struck)) return {};
   const BodyView& bodies = stage.bodies;
-  const auto for_each_end = [&bodies](const Contact& c, auto&& act) {
-    if (bodies.mobility[c.i] == Mobility::free) act(c.i, Vec3(-c.impulse));
-    if (bodies.mobility[c.j] == Mobility::free) act(c.j, c.impulse);
+  const auto for_each_end = [&](const Contact& c, auto&& act) {
+    const Vec3 impulse = set.impulse_of(c);
+    if (bodies.mobility[c.i] == Mobility::free) act(c.i, Vec3(-impulse));
+    if (bodies.mobility[c.j] == Mobility::free) act(c.j, impulse);
   };
   total.assign(static_cast<std::size_t>(bodies.count()), Vec3::Zero());
   for (const Contact& c : set.contacts.view()) {
@@ -88,7 +90,7 @@ Ledger shift_late(const FlightStage& stage, const std::vector<StruckBody>& struc
   Ledger ledger;
   // An impulse at a contact's time acts beside the midpoint by as much as the body flies until then.
   for (const Contact& c : set.contacts.view()) {
-    if (c.lead == 0 || c.impulse.isZero(0)) continue;
+    if (c.lead == 0) continue;
     for_each_end(c, [&](std::int32_t body, const Vec3& impulse) {
       const Vec3 before =
           bodies.velocity[body] - bodies.inverse_mass[body] * total[static_cast<std::size_t>(body)];

@@ -37,7 +37,7 @@ class StruckBodies final : public LateBodies {
 bool any_is_late(const FlightStage& stage, const std::vector<StruckBody>& struck);
 
 /// Sets Contact::flying and Contact::lead.
-void mark_flights(const FlightStage& stage, ConstView<Manifold> manifolds, ContactSet& set);
+void mark_flights(const FlightStage& stage, const Manifolds& manifolds, ContactSet& set);
 
 /// After the response: a body that was struck late has been where it was until then, so its midpoint moves
 /// to that from which its new flight leads on from its last impact. Returns what that moved. `total`:

@@ -153,8 +153,9 @@ class Search {
       const int part = manifolds[m].part;
       if (pair_.slowest[part] == HUGE_VAL && pair_.farthest == HUGE_VAL) continue;
       for (int k = 0; k < manifolds[m].count; ++k) {
-        const double gap = manifolds[m].points[k].gap;
-        const double closing = closing_speed(manifolds[m], k, i, j);
+        const ContactPoint& point = manifolds[m].points[k];
+        const double gap = point.gap;
+        const double closing = closing_speed(manifolds[m].normal, point.position, i, j);
         look.near = true;
         if (gap < look.gap) {
           look.gap = gap;
@@ -216,9 +217,8 @@ BodyInstant instant_of(const BodyFlight& flight, double s) {
   return now;
 }
 
-double closing_speed(const Manifold& manifold, int point, const BodyInstant& i, const BodyInstant& j) {
-  const Vec3& position = manifold.points[point].position;
-  return manifold.normal.dot(i.velocity_at(position) - j.velocity_at(position));
+double closing_speed(const Vec3& normal, const Vec3& point, const BodyInstant& i, const BodyInstant& j) {
+  return normal.dot(i.velocity_at(point) - j.velocity_at(point));
 }
 
 double fastest_turn(const BodyFlight& flight) {
@@ -268,7 +268,7 @@ bool contact_at(const BodyInstant& i, Shape shape_i, const BodyInstant& j, Shape
   for (int m = 0; m < count; ++m) {
     if (manifolds[m].part != part) continue;
     for (int k = 0; k < manifolds[m].count; ++k) {
-      const bool closes = closing_speed(manifolds[m], k, i, j) > 0;
+      const bool closes = closing_speed(manifolds[m].normal, manifolds[m].points[k].position, i, j) > 0;
       const double gap = manifolds[m].points[k].gap;
       if (closes < found_closing || (closes == found_closing && gap >= least)) continue;
       out = manifolds[m];

@@ -76,7 +76,7 @@ Meeting next_meeting(const PairFlight& pair, double earliest);
 bool contact_at(const BodyInstant& i, Shape shape_i, const BodyInstant& j, Shape shape_j, int part,
                 double reach, Manifold& out);
 
-/// Speed at which the bodies close at a point of a manifold (m/s); negative: they part.
-double closing_speed(const Manifold& manifold, int point, const BodyInstant& i, const BodyInstant& j);
+/// Speed at which the bodies close at a point along the normal (m/s); negative: they part.
+double closing_speed(const Vec3& normal, const Vec3& point, const BodyInstant& i, const BodyInstant& j);
 
 }  // namespace scree

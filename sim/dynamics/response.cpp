@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace scree {
 
@@ -56,24 +57,26 @@ struct Accounts {
 
 struct Account {
   SolveStage stage;
+  View<double> loss;  ///< of each contact (J)
   SCREE_HD Accounts operator()(std::int64_t c) const {
-    Contact& contact = stage.contacts[c];
+    const Contact& contact = stage.contacts[c];
     Accounts accounts;
-    contact.impulse.setZero();
     for (int k = 0; k < contact.count; ++k) {
       const ContactRow& row = stage.rows[contact.first_row + k];
       accounts.ledger = accounts.ledger + account(row, contact.normal, stage.velocity_before(contact, row),
                                                   stage.solver[contact.i], stage.solver[contact.j]);
-      contact.impulse += row.impulse;
     }
-    const bool loses = accounts.ledger.restitution + accounts.ledger.friction >= 0;
-    accounts.gaining = !loses && moved_by(stage, contact).gains(tolerance::response_gain) ? 1 : 0;
+    loss[c] = accounts.ledger.restitution + accounts.ledger.friction;
+    accounts.gaining = loss[c] < 0 && moved_by(stage, contact).gains(tolerance::response_gain) ? 1 : 0;
     return accounts;
   }
 };
 
 /// Scales down the impulses of an island that gains energy, to where it gains none. Whether it did.
-bool keep_from_gaining(const SolveStage& stage, ConstView<std::int32_t> contacts) {
+bool keep_from_gaining(const SolveStage& stage, ConstView<double> loss, ConstView<std::int32_t> contacts) {
+  double lost = 0;
+  for (const std::int32_t c : contacts) lost += loss[c];
+  if (lost > 0) return false;
   Moved moved;
   for (const std::int32_t c : contacts) moved = moved + moved_by(stage, stage.contacts[c]);
   if (!moved.gains(tolerance::response_gain)) return false;
@@ -153,13 +156,14 @@ bool ResponseSolver::count_outcomes(Counters& counters) const {
   return all_solved;
 }
 
-Ledger ResponseSolver::solve(ConstView<Manifold> manifolds, double step, const ResponseParameters& parameters,
+Ledger ResponseSolver::solve(const Manifolds& manifolds, double step, const ResponseParameters& parameters,
                              BodyView bodies, Array<SolverBody, Host>& solver, ContactSet& set,
                              Counters& counters) {
   const std::int64_t n = set.contacts.size();
-  change_.resize(n);
   free_velocity_.resize(solver.size());
   free_spin_.resize(solver.size());
+  const SweepPlan plan = plan_sweeps(parameters, set);
+  change_.resize(plan.direct ? n : 0);
   const SolveStage stage{.manifolds = manifolds,
                          .bodies = bodies,
                          .solver = solver.view(),
@@ -175,28 +179,22 @@ Ledger ResponseSolver::solve(ConstView<Manifold> manifolds, double step, const R
   if (n > 0) {
     parallel::for_each<Host>("response.rows", n,
                              PrepareRows{stage, tolerance::parting_speed * step * parameters.gravity.norm()});
-    SweepPlan plan = automatic_sweeps(set.rows.size());
-    if (parameters.iterations > 0) plan.sweeps = parameters.iterations;
-    if (parameters.block_sweeps > 0) plan.block_sweeps = parameters.block_sweeps;
     sweeps_.load(stage, set.coloring, set.batches);
-    sweeps_.take_impulses();
     sweeps_.set_velocities();
-    const auto sweep = [&](int most) {
-      return sweeps_.run(most, plan.block_sweeps, parameters.tolerance, counters.sweeps);
-    };
-    const int first = plan.direct ? std::min(plan.sweeps, sweeps_before_direct) : plan.sweeps;
+    const auto sweep = [&](int most) { return sweeps_.run(plan, most, counters.sweeps); };
+    const int first = plan.direct ? std::min(plan.most, sweeps_before_direct) : plan.most;
     bool converged = sweep(first);
-    if (parameters.accurate || (!converged && first < plan.sweeps)) {
+    if (parameters.accurate || (!converged && first < plan.most)) {
       islands_.find(set.contacts.view(), solver.view());
       outcome_.resize(islands_.count());
       parallel::for_each<Host>(
           "response.islands", islands_.count(),
-          SolveIsland{stage, &islands_, parameters.tolerance, parameters.accurate, outcome_.view()});
+          SolveIsland{stage, &islands_, plan.tolerance, parameters.accurate, outcome_.view()});
       converged = count_outcomes(counters);
       sweeps_.take_impulses();
       if (!converged) {
         sweeps_.set_velocities();
-        converged = sweep(std::max(plan.sweeps - first, sweeps_before_direct));
+        converged = sweep(std::max(plan.most - first, sweeps_before_direct));
       }
     }
     if (!converged) ++counters.unconverged;
@@ -205,18 +203,20 @@ Ledger ResponseSolver::solve(ConstView<Manifold> manifolds, double step, const R
       const auto left = parallel::sum<ImpulseChange, Host>("response.residual", n, LoadResidual{stage});
       if (left.size > 0) counters.residual = std::max(counters.residual, std::sqrt(left.step / left.size));
     }
-    Accounts accounts = parallel::sum<Accounts, Host>("response.ledger", n, Account{stage});
+    loss_.resize(n);
+    const Account take_account{stage, loss_.view()};
+    Accounts accounts = parallel::sum<Accounts, Host>("response.ledger", n, take_account);
     if (accounts.gaining > 0) {
       islands_.find(set.contacts.view(), solver.view());
       int scaled = 0;
       for (std::int64_t island = 0; island < islands_.count(); ++island) {
-        scaled += keep_from_gaining(stage, islands_.contacts(island));
+        scaled += keep_from_gaining(stage, std::as_const(loss_).view(), islands_.contacts(island));
       }
       counters.scaled += scaled;
       if (scaled > 0) {
         sweeps_.take_impulses();
         sweeps_.set_velocities();
-        accounts = parallel::sum<Accounts, Host>("response.ledger", n, Account{stage});
+        accounts = parallel::sum<Accounts, Host>("response.ledger", n, take_account);
       }
     }
     ledger = accounts.ledger;

@@ -15,8 +15,8 @@ class ResponseSolver {
   /// bound is hit. On entry `solver` holds the velocities after the impacts; on return those at the end of
   /// the substep. The bodies are at the midpoint and keep their positions; their velocities are set. Returns
   /// what it moved.
-  Ledger solve(ConstView<Manifold> manifolds, double step, const ResponseParameters& parameters,
-               BodyView bodies, Array<SolverBody, Host>& solver, ContactSet& set, Counters& counters);
+  Ledger solve(const Manifolds& manifolds, double step, const ResponseParameters& parameters, BodyView bodies,
+               Array<SolverBody, Host>& solver, ContactSet& set, Counters& counters);
 
  private:
   /// True if no island is left to the sweeps.
@@ -25,6 +25,7 @@ class ResponseSolver {
   Array<ImpulseChange, Host> change_;  // per contact, of the last sweep
   Sweeps sweeps_;
   Array<Vec3, Host> free_velocity_, free_spin_;  // of each body without contacts
+  Array<double, Host> loss_;                     // of each contact (J)
   Islands islands_;
   Array<DirectOutcome, Host> outcome_;  // of each island
 };

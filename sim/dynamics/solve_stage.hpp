@@ -12,13 +12,13 @@
 namespace scree {
 
 struct SolveStage {
-  ConstView<Manifold> manifolds;
+  Manifolds manifolds;
   BodyView bodies;
   View<SolverBody> solver;
   View<Contact> contacts;
   View<ContactRow> rows;
   View<RowCoupling> couplings;
-  View<ImpulseChange> change;  ///< of each contact, in the last sweep
+  View<ImpulseChange> change;  ///< of each contact, in the last sweep; empty if nobody asks
   View<Vec3> free_velocity;    ///< of each body without contacts
   View<Vec3> free_spin;
   double step;

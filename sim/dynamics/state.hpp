@@ -24,10 +24,10 @@ struct ResponseParameters {
   bool gyroscopic = true;
   bool continuous = true;
   bool warm_start = true;
-  bool accurate = false;     ///< solve to the natural residual; rotate to fourth order
-  int iterations = 0;        ///< most sweeps; 0: automatic_sweeps()
-  int block_sweeps = 0;      ///< over the points of a contact at each visit; 0: likewise
-  double tolerance = 1e-10;  ///< of the impulses' change in one sweep, relative
+  bool accurate = false;  ///< solve to the natural residual; rotate to fourth order
+  int iterations = 0;     ///< most sweeps; 0: plan_sweeps()
+  int block_sweeps = 0;   ///< over the points of a contact at each visit; 0: likewise
+  double tolerance = 0;   ///< of the impulses' change in one sweep, relative; 0: plan_sweeps()
   RestitutionThreshold restitution_threshold;
 
   /// Of a free body in flight (m/s^2).

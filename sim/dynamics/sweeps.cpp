@@ -54,11 +54,8 @@ struct LoadChange {
 struct Accelerate {
   lanes::Body* bodies;
   lanes::Body* last;
-  lanes::Body* direction;
   double beta;
-  void operator()(std::int64_t k) const {
-    lanes::kernels().accelerate(bodies[k], last[k], direction[k], beta);
-  }
+  void operator()(std::int64_t k) const { lanes::kernels().accelerate(bodies[k], last[k], beta); }
 };
 
 }  // namespace
@@ -91,13 +88,12 @@ void Sweeps::load(const SolveStage& stage, const Coloring& coloring, lanes::Batc
   batches_ = &batches;
   lanes::arrange(coloring, stage.contacts, batches);
   lanes::load(stage.contacts, stage.rows, stage.couplings, stage.solver,
-              static_cast<std::int32_t>(stage.solver.size()), batches);
+              static_cast<std::int32_t>(stage.solver.size()), stage.step, batches);
   bodies_.resize(stage.solver.size() + 1);
-  direction_.resize(bodies_.size());
   change_.resize(batches.balls.size() + batches.points.size());
 }
 
-void Sweeps::take_impulses() { lanes::load_impulses(stage_->contacts, stage_->rows, *batches_); }
+void Sweeps::take_impulses() { lanes::take_impulses(stage_->rows, *batches_); }
 
 void Sweeps::set_velocities() {
   parallel::for_each<Host>("response.release", bodies_.size(), Release{*stage_, bodies_.view()});
@@ -107,30 +103,29 @@ void Sweeps::set_velocities() {
                            StoreVelocities{*stage_, bodies_.view()});
 }
 
-bool Sweeps::run(int most, int block_sweeps, double tolerance, std::int64_t& count) {
+bool Sweeps::run(const SweepPlan& plan, int most, std::int64_t& count) {
   copy(last_, bodies_);
-  parallel::fill("response.start", direction_, lanes::Body{Vec3::Zero(), 0, Vec3::Zero(), 0});
   bool converged = false;
   double last_step = 0;
   double beta = 0;
   for (int sweep = 1; sweep <= most && !converged; ++sweep) {
     if (sweep > 1) {
       parallel::for_each<Host>("response.accelerate", bodies_.size(),
-                               Accelerate{bodies_.data(), last_.data(), direction_.data(), beta});
+                               Accelerate{bodies_.data(), last_.data(), beta});
     }
     lanes::for_each_color("response.sweep", *batches_,
                           SweepBalls{batches_->balls.view(), bodies_.view(), beta, change_.data()},
                           SweepPoints{batches_->points.view(), batches_->rows.view(), bodies_.view(), beta,
-                                      block_sweeps, change_.data() + batches_->balls.size()});
+                                      plan.block_sweeps, change_.data() + batches_->balls.size()});
     ++count;
     const auto total =
         parallel::sum<ImpulseChange, Host>("response.change", change_.size(), LoadChange{change_.view()});
-    converged = total.within(tolerance);
+    converged = sweep >= plan.least && total.within(plan.tolerance);
     const double ratio = sweep > 1 ? total.step / last_step : 0.0;
     beta = ratio < 1.0 ? ratio : 0.0;
     last_step = total.step;
   }
-  lanes::store_impulses(stage_->contacts, *batches_, stage_->rows, stage_->change);
+  lanes::store_impulses(*batches_, stage_->rows, stage_->change);
   parallel::for_each<Host>("response.velocities", stage_->solver.size(),
                            StoreVelocities{*stage_, bodies_.view()});
   return converged;

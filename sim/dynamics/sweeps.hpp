@@ -1,46 +1,68 @@
-// Sweeps over coloured contacts: sequential impulses with conjugate directions.
+// Sweeps over coloured contacts: sequential impulses with momentum.
 #pragma once
 
+#include "core/tolerances.hpp"
 #include "sim/dynamics/coloring.hpp"
 #include "sim/dynamics/lanes/batches.hpp"
 #include "sim/dynamics/solve_stage.hpp"
 
+#include <algorithm>
+#include <cstdint>
 #include <optional>
 
 namespace scree {
 
-/// How often contacts are swept at most.
+/// How often contacts are swept.
 struct SweepPlan {
-  int sweeps;
+  int least, most;
   int block_sweeps;  ///< over the points of a contact at each visit
+  double tolerance;  ///< change of the impulses in one sweep (of their size) at which they have converged
   bool direct;       ///< islands on which sweeps creep are for the direct solver
 };
 
-/// For so many contact points: few are solved to the tolerance whatever it takes, since they cost nothing; of
-/// many, a heap, the visits are bounded, since it moves on before it converges, and each visit sweeps a point
-/// once, since news travels one contact per sweep however well each is solved (docs/decisions/0005).
-SCREE_HD inline SweepPlan automatic_sweeps(std::int64_t points) {
-  constexpr std::int64_t heap = 2500;      // points
+/// Few contacts are solved to the tolerance whatever it takes, since they cost nothing. Of a heap each visit
+/// sweeps a point once, since news travels one contact per sweep however well each is solved, and the least
+/// number of sweeps sees to the slow modes, of which one sweep's change tells nothing (docs/decisions/0005,
+/// 0014).
+inline SweepPlan plan_sweeps(const ResponseParameters& parameters, const ContactSet& set) {
   constexpr std::int64_t visits = 400000;  // of points in a substep
-  constexpr std::int64_t fewest = 20, most = 10000;
-  const bool is_heap = points >= heap;
-  const int block = is_heap ? 1 : 4;
-  const std::int64_t sweeps = visits / (block * (points > 0 ? points : 1));
-  return {static_cast<int>(sweeps < fewest ? fewest : sweeps < most ? sweeps : most), block, !is_heap};
+  constexpr std::int64_t fewest = 60, most = 10000;
+  const bool heap = set.is_heap();
+  SweepPlan plan{
+      .least = !heap                ? 1
+               : set.shares_loads() ? 12
+                                    : 6,
+      .most = 0,
+      .block_sweeps = heap ? 1 : 4,
+      .tolerance = heap && !parameters.accurate ? tolerance::heap_change : tolerance::response_change,
+      .direct = !heap};
+  const std::int64_t points = std::max<std::int64_t>(set.rows.size(), 1);
+  plan.most = static_cast<int>(std::clamp(visits / (plan.block_sweeps * points), fewest, most));
+  if (parameters.block_sweeps > 0) plan.block_sweeps = parameters.block_sweeps;
+  if (parameters.iterations > 0) {
+    plan.most = parameters.iterations;
+    plan.least = std::min(plan.least, plan.most);
+  }
+  if (parameters.tolerance > 0) {
+    plan.tolerance = parameters.tolerance;
+    plan.least = 1;
+  }
+  return plan;
 }
 
-/// Sequential impulses over coloured contacts, accelerated by the nonsmooth nonlinear conjugate gradient
-/// method (Silcowitz, Niebe, Erleben 2010, "A nonsmooth nonlinear conjugate gradient method for interactive
-/// contact force problems", algorithm 1): a sweep's change of the impulses is taken as minus a gradient, and
-/// Fletcher-Reeves directions on it overcome the slow modes (tall stacks, heavy on light) on which plain
-/// sweeps creep.
+/// Sequential impulses over coloured contacts, with momentum: a sweep starts where the last one would be if
+/// it had gone on by beta of its change. Beta is Fletcher and Reeves' ratio, of the squares of the last two
+/// sweeps' own changes, and 0 where they grow, as in the nonsmooth nonlinear conjugate gradient method
+/// (Silcowitz, Niebe, Erleben 2010, "A nonsmooth nonlinear conjugate gradient method for interactive contact
+/// force problems", algorithm 1), which goes on by the change before that one: this takes fewer sweeps and
+/// one vector less. So slow modes (tall stacks, heavy on light), on which plain sweeps creep, are overcome.
 class Sweeps {
  public:
-  /// The contacts of one substep, with their rows. What `stage` and `batches` name must stay until the last
-  /// call about them.
+  /// The contacts of one substep, with their rows and the impulses these have. What `stage` and `batches`
+  /// name must stay until the last call about them.
   void load(const SolveStage& stage, const Coloring& coloring, lanes::Batches& batches);
 
-  /// Takes the impulses that the rows have.
+  /// Takes the impulses that the rows have now.
   void take_impulses();
 
   /// Sets the velocities to what the impulses taken, or found since, give.
@@ -48,7 +70,7 @@ class Sweeps {
 
   /// From there on, until they converge, but at most so often. The last sweep stands as it is, so that every
   /// impulse ends inside its cone. `count` goes up with each sweep.
-  bool run(int most, int block_sweeps, double tolerance, std::int64_t& count);
+  bool run(const SweepPlan& plan, int most, std::int64_t& count);
 
  private:
   struct Release;
@@ -56,10 +78,9 @@ class Sweeps {
 
   std::optional<SolveStage> stage_;
   lanes::Batches* batches_ = nullptr;
-  Array<lanes::Body, Host> bodies_;     // and one that is nobody
-  Array<lanes::Body, Host> last_;       // bodies after the last sweep
-  Array<lanes::Body, Host> direction_;  // of theirs
-  Array<lanes::Change, Host> change_;   // of each batch: the balls', then the others
+  Array<lanes::Body, Host> bodies_;    // and one that is nobody
+  Array<lanes::Body, Host> last_;      // bodies before the last sweep
+  Array<lanes::Change, Host> change_;  // of each batch: the balls', then the others
 };
 
 }  // namespace scree

@@ -65,7 +65,8 @@ Json json_of(const CrosscheckStats& c) {
 }
 
 Json json_of(const Counters& c) {
-  return {{"sweeps", c.sweeps},
+  return {{"substeps", c.substeps},
+          {"sweeps", c.sweeps},
           {"direct", c.direct},
           {"direct_failed", c.direct_failed},
           {"residual", c.residual},

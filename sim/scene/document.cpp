@@ -165,6 +165,7 @@ class TreeBuilder final : public YAML::EventHandler {
   void close() {
     Open done = std::move(open_.back());
     open_.pop_back();
+    done.node.items.shrink_to_fit();
     if (done.node.kind == Node::Kind::map) refuse_duplicates(done.node);
     add(std::move(done.node), done.anchor);
   }

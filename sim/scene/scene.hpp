@@ -31,9 +31,10 @@ struct ContactLaw {
 };
 
 struct TimeSettings {
-  double end = 0;    ///< s
-  double step = 0;   ///< s; the last step is shorter if `end` is no multiple
-  int substeps = 1;  ///< contacts are found and solved this many times per step
+  double end = 0;   ///< s
+  double step = 0;  ///< s; the last step is shorter if `end` is no multiple
+  std::optional<int> substeps =
+      {};  ///< contacts are found and solved so often per step; absent: as overlaps ask
 };
 
 /// Prescribed motion: constant spin about a point that moves along with constant velocity.
@@ -84,7 +85,7 @@ struct ResponseSettings {
   ResponseMode mode = ResponseMode::standard;
   std::optional<int> iterations;    ///< most sweeps over the contacts per substep; absent: from their number
   std::optional<int> block_sweeps;  ///< sweeps over the points of a contact at each visit; absent: likewise
-  double tolerance = 1e-10;         ///< sweeps stop when they change the impulses by less than this share
+  std::optional<double> tolerance;  ///< share that sweeps change at which they stop; absent: by number
   bool warm_start = true;           ///< start from the last step's impulses
   std::optional<double> restitution_threshold;  ///< m/s; absent: from gravity, step and e
 };

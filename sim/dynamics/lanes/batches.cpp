@@ -1,6 +1,7 @@
 #include "sim/dynamics/lanes/batches.hpp"
 
 #include "core/parallel.hpp"
+#include "core/tolerances.hpp"
 #include "sim/dynamics/contact_set.hpp"
 
 #include <array>
@@ -10,11 +11,11 @@ namespace scree::lanes {
 namespace {
 
 /// Batches of one kind and colour hold as many points each: kind 0 is balls, the others are their points.
-constexpr int kinds = Manifold::max_points + 1;
+constexpr int kinds = most_points + 1;
+static_assert(most_points == Manifold::max_points);
 int kind_of(const Contact& contact) { return contact.aligned ? 0 : contact.count; }
 
-constexpr std::int32_t none = -1;
-constexpr Members nothing = {{none, none, none, none, none, none, none, none}};
+constexpr Members nothing = {{none, none, none, none, none, none, none, none}, {}};
 
 void put(Lane& lane, int l, double value) { lane.at[l] = value; }
 void put(LaneVec& lanes, int l, const Vec3& value) {
@@ -28,6 +29,11 @@ void put(Lane* lanes, int l, const Mat3& m) {
 }
 Vec3 take(const LaneVec& lanes, int l) { return {lanes.x.at[l], lanes.y.at[l], lanes.z.at[l]}; }
 
+void start_from(LaneImpulse& lanes, int l, const Vec3& impulse) {
+  put(lanes.impulse, l, impulse);
+  put(lanes.last, l, impulse);
+}
+
 /// Where contacts, rows and bodies are.
 struct Source {
   ConstView<Contact> contacts;
@@ -35,27 +41,38 @@ struct Source {
   ConstView<RowCoupling> couplings;
   ConstView<SolverBody> bodies;
   std::int32_t nobody;
+  double step;
+
+  void put_ends(Ends& ends, int l, std::int32_t c) const {
+    ends.i[l] = c == none ? nobody : contacts[c].i;
+    ends.j[l] = c == none ? nobody : contacts[c].j;
+  }
 };
 
 struct LoadBalls {
   Source from;
   ConstView<Members> members;
   View<BallBatch> batches;
+  View<BallParting> partings;
   void operator()(std::int64_t b) const {
     BallBatch& batch = batches[b];
+    BallParting& parting = partings[b];
+    parting.apart = 0;
     for (int l = 0; l < width; ++l) {
       const std::int32_t c = members[b].contact[l];
-      batch.ends.i[l] = c == none ? from.nobody : from.contacts[c].i;
-      batch.ends.j[l] = c == none ? from.nobody : from.contacts[c].j;
+      from.put_ends(batch.ends, l, c);
       if (c == none) {
         put(batch.normal, l, Vec3::Zero());
         for (Lane* lane : {&batch.arm_i, &batch.arm_j, &batch.friction, &batch.target, &batch.tangent_mass})
           put(*lane, l, 0);
         put(batch.normal_mass, l, 1);
+        start_from(batch.impulse, l, Vec3::Zero());
+        put(parting.flown, l, 0);
+        put(parting.cap, l, 0);
         continue;
       }
       const Contact& contact = from.contacts[c];
-      const ContactRow& row = from.rows[contact.first_row];
+      const ContactRow& row = from.rows[members[b].row[l]];
       put(batch.normal, l, contact.normal);
       put(batch.arm_i, l, contact.normal.dot(row.arm_i));
       put(batch.arm_j, l, contact.normal.dot(row.arm_j));
@@ -63,7 +80,14 @@ struct LoadBalls {
       put(batch.target, l, row.target);
       put(batch.normal_mass, l, row.normal_mass);
       put(batch.tangent_mass, l, row.tangent_mass);
+      start_from(batch.impulse, l, row.impulse);
+      put(parting.flown, l, row.gap + 0.125 * from.step * from.step * row.bend);
+      put(parting.cap, l, tolerance::correction_cap * contact.size);
+      if (contact.flying || contact.lead != 0) parting.apart |= std::int64_t{1} << l;
     }
+    parting.ends = batch.ends;
+    parting.normal = batch.normal;
+    parting.normal_mass = batch.normal_mass;
   }
 };
 
@@ -76,24 +100,25 @@ struct LoadPoints {
     PointBatch& batch = batches[b];
     for (int l = 0; l < width; ++l) {
       const std::int32_t c = members[b].contact[l];
-      batch.ends.i[l] = c == none ? from.nobody : from.contacts[c].i;
-      batch.ends.j[l] = c == none ? from.nobody : from.contacts[c].j;
-      put(batch.normal, l, c == none ? Vec3(Vec3::Zero()) : from.contacts[c].normal);
-      put(batch.friction, l, c == none ? 0.0 : from.contacts[c].friction);
-      put(batch.inertia_i, l,
-          c == none ? Mat3(Mat3::Zero()) : from.bodies[from.contacts[c].i].inverse_inertia);
-      put(batch.inertia_j, l,
-          c == none ? Mat3(Mat3::Zero()) : from.bodies[from.contacts[c].j].inverse_inertia);
+      from.put_ends(batch.ends, l, c);
+      if (c == none) {
+        put(batch.normal, l, Vec3::Zero());
+        put(batch.friction, l, 0);
+        put(batch.inertia_i, l, Mat3::Zero());
+        put(batch.inertia_j, l, Mat3::Zero());
+        for (int k = 0; k < batch.count; ++k) leave(rows[batch.first_row + k], l);
+        continue;
+      }
+      const Contact& contact = from.contacts[c];
+      put(batch.normal, l, contact.normal);
+      put(batch.friction, l, contact.friction);
+      put(batch.inertia_i, l, from.bodies[contact.i].inverse_inertia);
+      put(batch.inertia_j, l, from.bodies[contact.j].inverse_inertia);
       for (int k = 0; k < batch.count; ++k) {
-        if (c == none) {
-          leave(rows[batch.first_row + k], l);
-        } else {
-          const std::int64_t r = from.contacts[c].first_row + k;
-          const Contact& contact = from.contacts[c];
-          load(from.rows[r],
-               contact.balls ? coupling_of_balls(from.rows[r], contact.normal) : from.couplings[r],
-               rows[batch.first_row + k], l);
-        }
+        const std::int64_t r = contact.first_row + k;
+        load(from.rows[r],
+             contact.balls ? coupling_of_balls(from.rows[r], contact.normal) : from.couplings[r],
+             rows[batch.first_row + k], l);
       }
     }
   }
@@ -110,6 +135,7 @@ struct LoadPoints {
     put(row.target, l, from_row.target);
     put(row.normal_mass, l, from_row.normal_mass);
     put(row.tangent_mass, l, from_row.tangent_mass);
+    start_from(row.impulse, l, from_row.impulse);
   }
   static void leave(PointRow& row, int l) {
     put(row.arm_i, l, Vec3::Zero());
@@ -119,39 +145,32 @@ struct LoadPoints {
     put(row.target, l, 0);
     put(row.normal_mass, l, 1);
     put(row.tangent_mass, l, 0);
+    start_from(row.impulse, l, Vec3::Zero());
   }
 };
 
-void start_from(LaneImpulse& lanes, int l, const Vec3& impulse) {
-  put(lanes.impulse, l, impulse);
-  put(lanes.direction, l, Vec3::Zero());
-  put(lanes.change, l, Vec3::Zero());
-}
-
-struct LoadBallImpulses {
-  Source from;
+struct TakeBallImpulses {
+  ConstView<ContactRow> from;
   ConstView<Members> members;
   View<BallBatch> batches;
   void operator()(std::int64_t b) const {
     for (int l = 0; l < width; ++l) {
       const std::int32_t c = members[b].contact[l];
-      start_from(batches[b].impulse, l,
-                 c == none ? Vec3(Vec3::Zero()) : from.rows[from.contacts[c].first_row].impulse);
+      if (c != none) start_from(batches[b].impulse, l, from[members[b].row[l]].impulse);
     }
   }
 };
 
-struct LoadPointImpulses {
-  Source from;
+struct TakePointImpulses {
+  ConstView<ContactRow> from;
   ConstView<Members> members;
   ConstView<PointBatch> batches;
   View<PointRow> rows;
   void operator()(std::int64_t b) const {
     for (int l = 0; l < width; ++l) {
       const std::int32_t c = members[b].contact[l];
-      for (int k = 0; k < batches[b].count; ++k) {
-        start_from(rows[batches[b].first_row + k].impulse, l,
-                   c == none ? Vec3(Vec3::Zero()) : from.rows[from.contacts[c].first_row + k].impulse);
+      for (int k = 0; c != none && k < batches[b].count; ++k) {
+        start_from(rows[batches[b].first_row + k].impulse, l, from[members[b].row[l] + k].impulse);
       }
     }
   }
@@ -159,15 +178,15 @@ struct LoadPointImpulses {
 
 /// Where impulses go back to.
 struct Target {
-  ConstView<Contact> contacts;
   View<ContactRow> rows;
-  View<ImpulseChange> change;
+  View<ImpulseChange> change;  ///< empty if nobody asks
 
-  void store(const LaneImpulse& lanes, int l, std::int32_t c, int k) const {
-    ContactRow& row = rows[contacts[c].first_row + k];
+  void store(const LaneImpulse& lanes, int l, std::int32_t c, std::int64_t first_row, int k) const {
+    ContactRow& row = rows[first_row + k];
     row.impulse = take(lanes.impulse, l);
+    if (change.size() == 0) return;
     if (k == 0) change[c] = {};
-    change[c].add(row, take(lanes.change, l));
+    change[c].add(row, row.impulse - take(lanes.last, l));
   }
 };
 
@@ -178,7 +197,7 @@ struct StoreBallImpulses {
   void operator()(std::int64_t b) const {
     for (int l = 0; l < width; ++l) {
       const std::int32_t c = members[b].contact[l];
-      if (c != none) to.store(batches[b].impulse, l, c, 0);
+      if (c != none) to.store(batches[b].impulse, l, c, members[b].row[l], 0);
     }
   }
 };
@@ -192,7 +211,7 @@ struct StorePointImpulses {
     for (int l = 0; l < width; ++l) {
       const std::int32_t c = members[b].contact[l];
       for (int k = 0; c != none && k < batches[b].count; ++k) {
-        to.store(rows[batches[b].first_row + k].impulse, l, c, k);
+        to.store(rows[batches[b].first_row + k].impulse, l, c, members[b].row[l], k);
       }
     }
   }
@@ -212,8 +231,8 @@ void arrange(const Coloring& coloring, ConstView<Contact> contacts, Batches& bat
   std::int64_t rows = 0;
   for (std::size_t color = 0; color < colors; ++color) {
     std::array<std::int64_t, kinds> counts{};
-    for (std::int64_t c = coloring.color_begin[color]; c < coloring.color_begin[color + 1]; ++c) {
-      ++counts[static_cast<std::size_t>(kind_of(contacts[c]))];
+    for (std::int64_t k = coloring.color_begin[color]; k < coloring.color_begin[color + 1]; ++k) {
+      ++counts[static_cast<std::size_t>(kind_of(contacts[coloring.order[static_cast<std::size_t>(k)]]))];
     }
     std::int64_t balls = batches.ball_begin.back();
     std::int64_t points = batches.point_begin.back();
@@ -236,11 +255,13 @@ void arrange(const Coloring& coloring, ConstView<Contact> contacts, Batches& bat
   parallel::fill("lanes.reset", batches.ball_members, nothing);
   parallel::fill("lanes.reset", batches.point_members, nothing);
   for (std::size_t color = 0; color < colors; ++color) {
-    for (std::int64_t c = coloring.color_begin[color]; c < coloring.color_begin[color + 1]; ++c) {
+    for (std::int64_t k = coloring.color_begin[color]; k < coloring.color_begin[color + 1]; ++k) {
+      const std::int32_t c = coloring.order[static_cast<std::size_t>(k)];
       const int kind = kind_of(contacts[c]);
       std::int64_t& lane = next[color][static_cast<std::size_t>(kind)];
       Array<Members, Host>& members = kind == 0 ? batches.ball_members : batches.point_members;
-      members.view()[lane / width].contact[lane % width] = static_cast<std::int32_t>(c);
+      members.view()[lane / width].contact[lane % width] = c;
+      members.view()[lane / width].row[lane % width] = contacts[c].first_row;
       if (kind > 0) batches.points.view()[lane / width].count = kind;
       lane += is_serial(color) ? width : 1;
     }
@@ -253,27 +274,27 @@ void arrange(const Coloring& coloring, ConstView<Contact> contacts, Batches& bat
 }
 
 void load(ConstView<Contact> contacts, ConstView<ContactRow> rows, ConstView<RowCoupling> couplings,
-          ConstView<SolverBody> bodies, std::int32_t nobody, Batches& batches) {
-  const Source from{contacts, rows, couplings, bodies, nobody};
-  parallel::for_each<Host>("lanes.load", batches.balls.size(),
-                           LoadBalls{from, batches.ball_members.view(), batches.balls.view()});
+          ConstView<SolverBody> bodies, std::int32_t nobody, double step, Batches& batches) {
+  const Source from{contacts, rows, couplings, bodies, nobody, step};
+  batches.partings.resize(batches.balls.size());
+  parallel::for_each<Host>(
+      "lanes.load", batches.balls.size(),
+      LoadBalls{from, batches.ball_members.view(), batches.balls.view(), batches.partings.view()});
   parallel::for_each<Host>(
       "lanes.load", batches.points.size(),
       LoadPoints{from, batches.point_members.view(), batches.points.view(), batches.rows.view()});
 }
 
-void load_impulses(ConstView<Contact> contacts, ConstView<ContactRow> rows, Batches& batches) {
-  const Source from{contacts, rows, {}, {}, none};
+void take_impulses(ConstView<ContactRow> rows, Batches& batches) {
   parallel::for_each<Host>("lanes.impulses", batches.balls.size(),
-                           LoadBallImpulses{from, batches.ball_members.view(), batches.balls.view()});
+                           TakeBallImpulses{rows, batches.ball_members.view(), batches.balls.view()});
   parallel::for_each<Host>(
       "lanes.impulses", batches.points.size(),
-      LoadPointImpulses{from, batches.point_members.view(), batches.points.view(), batches.rows.view()});
+      TakePointImpulses{rows, batches.point_members.view(), batches.points.view(), batches.rows.view()});
 }
 
-void store_impulses(ConstView<Contact> contacts, const Batches& batches, View<ContactRow> rows,
-                    View<ImpulseChange> change) {
-  const Target to{contacts, rows, change};
+void store_impulses(const Batches& batches, View<ContactRow> rows, View<ImpulseChange> change) {
+  const Target to{rows, change};
   parallel::for_each<Host>("lanes.store", batches.balls.size(),
                            StoreBallImpulses{to, batches.ball_members.view(), batches.balls.view()});
   parallel::for_each<Host>(

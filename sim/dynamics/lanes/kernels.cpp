@@ -103,11 +103,12 @@ const V& whole(const Body& body) { return reinterpret_cast<const V&>(body); }
   }
 }
 
-/// Goes on in the direction, which takes in the last change.
+/// Goes on by beta of what the last sweep has changed.
 [[gnu::always_inline]] inline V3 accelerate(LaneImpulse& lanes, const V& beta) {
-  const V3 direction = get(lanes.direction);
-  set(lanes.direction, beta * direction + get(lanes.change));
-  return get(lanes.impulse) + beta * direction;
+  const V3 p = get(lanes.impulse);
+  const V3 ahead = p + beta * (p - get(lanes.last));
+  set(lanes.last, p);
+  return ahead;
 }
 
 /// Those of the contacts' rows, in the order of the lanes.
@@ -157,7 +158,6 @@ Change sweep_balls(BallBatch& batch, Body* bodies, double beta) {
   const V3 p = on_disc(pn, pt, n, get(batch.friction));
   const V3 change = p - last;
   set(batch.impulse.impulse, p);
-  set(batch.impulse.change, change);
   push_ball(batch, n, change, i, j);
   store(i, bodies, batch.ends.i);
   store(j, bodies, batch.ends.j);
@@ -186,7 +186,6 @@ Change sweep_points(const PointBatch& batch, PointRow* rows, Body* bodies, doubl
   Bodies j = load(bodies, batch.ends.j);
   const V3 n = get(batch.normal);
   const V friction = get(batch.friction);
-  constexpr int most_points = 4;
   V3 last[most_points];
   for (int k = 0; k < batch.count; ++k) {
     last[k] = accelerate(rows[k].impulse, all(beta));
@@ -211,19 +210,17 @@ Change sweep_points(const PointBatch& batch, PointRow* rows, Body* bodies, doubl
     const V3 p = get(rows[k].impulse.impulse);
     const V3 change = p - last[k];
     const V normal_mass = get(rows[k].normal_mass);
-    set(rows[k].impulse.change, change);
     step += dot(change, change) / normal_mass;
     size += dot(p, p) / normal_mass;
   }
   return total(step, size);
 }
 
-/// The inverse mass and inertia stay: they do not change, so that their direction is 0.
-void accelerate(Body& body, Body& last, Body& direction, double beta) {
-  const V step = whole(body) - whole(last);
-  whole(body) += all(beta) * whole(direction);
-  whole(direction) = all(beta) * whole(direction) + step;
-  whole(last) = whole(body);
+/// The inverse mass and inertia stay: they are those of the last.
+void accelerate(Body& body, Body& last, double beta) {
+  const V now = whole(body);
+  whole(body) = now + all(beta) * (now - whole(last));
+  whole(last) = now;
 }
 
 void push_balls(const BallBatch& batch, Body* bodies) {
@@ -248,31 +245,43 @@ V parting(const V& gap, const V& cap, double share, const V& normal_mass) {
   return above_zero(part < cap ? part : cap) * normal_mass;
 }
 
-void part_balls(const BallBatch& batch, const Lane& flown, const Lane& cap, double share, Body* bodies) {
+/// The deepest overlap of the lanes, in units of the cap.
+double deepest(const V& gap, const V& cap) {
+  const V depth = above_zero(cap > 0 ? -gap / cap : all(0));
+  double deepest = 0;
+  for (int l = 0; l < width; ++l) deepest = depth[l] > deepest ? depth[l] : deepest;
+  return deepest;
+}
+
+double part_balls(const BallParting& batch, double share, Body* bodies) {
   Bodies i = load(bodies, batch.ends.i);
   Bodies j = load(bodies, batch.ends.j);
   const V3 n = get(batch.normal);
-  const V gap = get(flown) + dot(n, j.velocity - i.velocity);
-  const V3 p = parting(gap, get(cap), share, get(batch.normal_mass)) * n;
+  const V gap = get(batch.flown) + dot(n, j.velocity - i.velocity);
+  const V3 p = parting(gap, get(batch.cap), share, get(batch.normal_mass)) * n;
   i.velocity = i.velocity - i.inverse_mass * p;
   j.velocity = j.velocity + j.inverse_mass * p;
   store(i, bodies, batch.ends.i);
   store(j, bodies, batch.ends.j);
+  return deepest(gap, get(batch.cap));
 }
 
-void part_points(const PointBatch& batch, const PointRow* rows, const Lane* flown, const Lane& cap,
-                 double share, Body* bodies) {
+double part_points(const PointBatch& batch, const PointRow* rows, const Lane* flown, const Lane& cap,
+                   double share, Body* bodies) {
   Bodies i = load(bodies, batch.ends.i);
   Bodies j = load(bodies, batch.ends.j);
   const V3 n = get(batch.normal);
+  V least = all(0);
   for (int k = 0; k < batch.count; ++k) {
     const PointRow& row = rows[k];
     const V3 moved = j.velocity + cross(j.spin, get(row.arm_j)) - i.velocity - cross(i.spin, get(row.arm_i));
     const V gap = get(flown[k]) + dot(n, moved);
     push_point(batch, row, parting(gap, get(cap), share, get(row.normal_mass)) * n, i, j);
+    least = gap < least ? gap : least;
   }
   store(i, bodies, batch.ends.i);
   store(j, bodies, batch.ends.j);
+  return deepest(least, get(cap));
 }
 
 }  // namespace

@@ -10,6 +10,7 @@
 namespace scree::lanes {
 
 inline constexpr int width = 8;
+inline constexpr int most_points = 4;  ///< of a contact
 
 /// A number of each contact.
 struct alignas(64) Lane {
@@ -33,9 +34,8 @@ struct Ends {
 };
 
 struct LaneImpulse {
-  LaneVec impulse;    ///< of ContactRow
-  LaneVec direction;  ///< conjugate direction (N s)
-  LaneVec change;     ///< in the last sweep (N s)
+  LaneVec impulse;  ///< of ContactRow
+  LaneVec last;     ///< before the last sweep (N s)
 };
 
 /// Eight contacts of balls with balls or with bodies that are not free and do not turn: of the lever arms
@@ -67,6 +67,17 @@ struct PointRow {
   LaneImpulse impulse;
 };
 
+/// What the position correction knows of a BallBatch, side by side: it is gone over again and again.
+struct BallParting {
+  Ends ends;
+  LaneVec normal;
+  Lane normal_mass;
+  Lane flown;  ///< gap without displacements (m)
+  Lane cap;    ///< most that one visit parts (m)
+  std::int64_t
+      apart;  ///< a bit for each lane whose gap at the end is not told by the flight from the midpoint
+};
+
 /// Of a batch: ImpulseChange.
 struct Change {
   double step, size;
@@ -74,20 +85,20 @@ struct Change {
 
 /// Each works on one batch; batches of one colour may be worked on at once.
 struct Kernels {
-  /// One visit. Going on by beta in the direction of the sweeps before, which the bodies have done already,
+  /// One visit. Going on by beta of what the last sweep has changed, which the bodies have done already,
   /// waits for it. The local law is that of coulomb_update() and natural_map().
   Change (*sweep_balls)(BallBatch&, Body* bodies, double beta);
   Change (*sweep_points)(const PointBatch&, PointRow* rows, Body* bodies, double beta, int block_sweeps);
-  /// Goes on in the direction, which takes in what has changed since the last time.
-  void (*accelerate)(Body& body, Body& last, Body& direction, double beta);
+  /// Goes on by beta of what has changed since the last time.
+  void (*accelerate)(Body& body, Body& last, double beta);
   /// Gives the bodies what the impulses are.
   void (*push_balls)(const BallBatch&, Body* bodies);
   void (*push_points)(const PointBatch&, const PointRow* rows, Body* bodies);
   /// Parts what overlaps: by a share of the overlap, but at most by the cap (m). `flown`: gap of each point
-  /// without displacements (m).
-  void (*part_balls)(const BallBatch&, const Lane& flown, const Lane& cap, double share, Body* bodies);
-  void (*part_points)(const PointBatch&, const PointRow* rows, const Lane* flown, const Lane& cap,
-                      double share, Body* bodies);
+  /// without displacements (m). Returns the deepest overlap met, in units of the cap.
+  double (*part_balls)(const BallParting&, double share, Body* bodies);
+  double (*part_points)(const PointBatch&, const PointRow* rows, const Lane* flown, const Lane& cap,
+                        double share, Body* bodies);
 };
 
 /// Those that this processor can run, the widest last. All give the same bits.

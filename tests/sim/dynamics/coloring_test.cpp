@@ -12,7 +12,7 @@ namespace scree {
 namespace {
 
 Coloring color(const std::vector<std::pair<int, int>>& pairs, const std::vector<Mobility>& mobility) {
-  std::vector<Manifold> manifolds(pairs.size());
+  std::vector<ManifoldHeader> manifolds(pairs.size());
   for (std::size_t k = 0; k < pairs.size(); ++k) {
     manifolds[k].i = pairs[k].first;
     manifolds[k].j = pairs[k].second;

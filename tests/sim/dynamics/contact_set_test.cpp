@@ -1,6 +1,8 @@
 // Impulses remembered from substep to substep: each finds its own point again.
 #include "sim/dynamics/contact_set.hpp"
 
+#include "narrowphase/narrow_phase.hpp"
+
 #include <gtest/gtest.h>
 
 #include <utility>
@@ -32,40 +34,40 @@ class Memory : public testing::Test {
   const std::size_t unloaded = 5;  // the cap of (1, 3)
 
   void SetUp() override {
+    detail::ManifoldChunk list;
+    for (const Manifold& m : manifolds) list.append(m);
     ContactSet set;
-    const auto n = static_cast<std::int64_t>(manifolds.size());
-    set.contacts.resize(n);
-    set.rows.resize(2 * n);
-    for (std::int64_t c = 0; c < n; ++c) {
-      const Manifold& m =
-          manifolds[static_cast<std::size_t>(n - 1 - c)];  // colours have an order of their own
-      Contact& contact = set.contacts.view()[c];
-      contact.i = m.i;
-      contact.j = m.j;
-      contact.manifold = static_cast<std::int32_t>(n - 1 - c);
-      contact.count = m.count;
-      contact.first_row = 2 * c;
-      for (int k = 0; k < m.count; ++k) {
-        const bool loaded = static_cast<std::size_t>(n - 1 - c) != unloaded;
-        set.rows.view()[2 * c + k].impulse = loaded ? mark(m, k) : Vec3(Vec3::Zero());
+    set.rows.resize(static_cast<std::int64_t>(list.points.size()));
+    for (std::size_t n = 0; n < manifolds.size(); ++n) {
+      for (int k = 0; k < manifolds[n].count; ++k) {
+        set.rows.view()[list.headers[n].first_point + k].impulse =
+            n != unloaded ? mark(manifolds[n], k) : Vec3(Vec3::Zero());
       }
     }
-    memory.remember({manifolds.data(), n}, set, 4);
+    memory.remember({.headers = {list.headers.data(), static_cast<std::int64_t>(list.headers.size())},
+                     .points = {list.points.data(), static_cast<std::int64_t>(list.points.size())}},
+                    set, 4);
   }
 };
+
+bool recall(const ImpulseMemory& memory, const Manifold& m, Vec3* impulses) {
+  const ManifoldHeader header{
+      .i = m.i, .j = m.j, .part = m.part, .count = m.count, .first_point = 0, .normal = m.normal};
+  return memory.recall(header, m.points, impulses);
+}
 
 TEST_F(Memory, EveryPointFindsItsOwn) {
   for (std::size_t n = 0; n < manifolds.size(); ++n) {
     Vec3 impulses[Manifold::max_points];
     const Manifold& m = manifolds[n];
-    EXPECT_EQ(memory.recall(m, impulses), n != unloaded) << n;
+    EXPECT_EQ(recall(memory, m, impulses), n != unloaded) << n;
     for (int k = 0; k < m.count && n != unloaded; ++k) EXPECT_EQ(impulses[k], mark(m, k)) << n;
   }
 }
 
 TEST_F(Memory, ANewPointOfALoadedPartHasNoneAndDoesNotBounce) {
   Vec3 impulses[Manifold::max_points];
-  EXPECT_TRUE(memory.recall(manifold(1, 3, 0, {9, 2}), impulses));
+  EXPECT_TRUE(recall(memory, manifold(1, 3, 0, {9, 2}), impulses));
   EXPECT_EQ(impulses[0], Vec3(0, 0, 0));
   EXPECT_EQ(impulses[1], mark(manifolds[4], 0));
 }
@@ -74,14 +76,14 @@ TEST_F(Memory, PairsAndPartsThatWereNotInContactHaveNone) {
   Vec3 impulses[Manifold::max_points];
   for (const Manifold& m :
        {manifold(0, 1, 1, {5}), manifold(1, 2, 0, {1}), manifold(1, 3, 2, {1}), manifold(3, 3, 0, {1})}) {
-    EXPECT_FALSE(memory.recall(m, impulses));
+    EXPECT_FALSE(recall(memory, m, impulses));
     EXPECT_EQ(impulses[0], Vec3(0, 0, 0));
   }
 }
 
 TEST(FreshMemory, KnowsNothing) {
   Vec3 impulses[Manifold::max_points];
-  EXPECT_FALSE(ImpulseMemory().recall(manifold(0, 1, 0, {0}), impulses));
+  EXPECT_FALSE(recall(ImpulseMemory(), manifold(0, 1, 0, {0}), impulses));
 }
 
 }  // namespace

@@ -38,7 +38,6 @@ struct Scene {
     contact.count = static_cast<std::int32_t>(arms_i.size());
     contact.first_row = static_cast<std::int64_t>(rows.size());
     contact.normal = normal;
-    contact.impulse.setZero();
     contact.friction = friction;
     contacts.push_back(contact);
     for (std::size_t k = 0; k < arms_i.size(); ++k) {

@@ -173,7 +173,7 @@ TEST(ResolvedScene, WritesDefaultsOut) {
           "material: glass}]\n")
           .resolved;
   for (const char* part :
-       {"name: test\n", "gravity: [0, 0, 0]\n", "time: {end: 1, step: 0.1, substeps: 1}\n",
+       {"name: test\n", "gravity: [0, 0, 0]\n", "time: {end: 1, step: 0.1, substeps: auto}\n",
         "  glass: {density: 1000, restitution: 0, friction: 0}\n",
         "at: [0, 0, 0], orientation: [1, 0, 0, 0], velocity: [0, 0, 0], spin: [0, 0, 0], fixed: false",
         "broadphase: {method: hierarchical_grid, levels: auto}\n", "restitution_threshold: auto",

@@ -1,0 +1,28 @@
+// What the narrow phase tests: the pairs of the PCS, and each plane with the bodies near it.
+#pragma once
+
+#include "broadphase/broad_phase.hpp"
+#include "core/array.hpp"
+#include "core/bodies.hpp"
+
+#include <cstdint>
+#include <vector>
+
+namespace scree {
+
+class Candidates {
+ public:
+  /// The pairs of which one is free, and of each plane with the free bodies that may come as near to it as
+  /// margin[plane] + margin[body] (m): each once, ordered by (i, j), whatever the order of the PCS. Pairs
+  /// with planes in the PCS are left out: boxes are too coarse for them. The view is valid until the next
+  /// call.
+  ConstView<Pair> list(const ConstBodyView& bodies, ConstView<Pair> pcs, ConstView<double> margin);
+
+ private:
+  std::vector<std::int32_t> planes_;
+  Array<std::int32_t, Host> counts_;   // of the pairs of each first body
+  Array<std::int64_t, Host> offsets_;  // where they begin
+  Array<Pair, Host> pairs_;
+};
+
+}  // namespace scree

@@ -1,0 +1,96 @@
+// The candidates against a double loop.
+#include "narrowphase/candidates.hpp"
+
+#include "core/parallel.hpp"
+#include "core/rng.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <utility>
+
+namespace scree {
+namespace {
+
+constexpr std::int32_t count = 120;
+
+/// Balls of all mobilities, with planes first, in the middle and last.
+Bodies<Host> crowd() {
+  BodyTable table;
+  for (std::int32_t k = 0; k < count; ++k) {
+    Random random(3, static_cast<std::uint64_t>(k));
+    const bool plane = k == 0 || k == count / 2 || k == count - 1;
+    const double x = random.uniform(-1, 1);
+    const double y = random.uniform(-1, 1);
+    table.position.push_back(plane ? Vec3(Vec3::Zero()) : Vec3(x, y, random.uniform(-1, 1)));
+    table.orientation.push_back(rotation_of(Vec3(0.3 * k, 0.2, 0)));
+    table.velocity.push_back(Vec3::Zero());
+    table.spin.push_back(Vec3::Zero());
+    table.size.push_back(Vec3::Constant(random.uniform(0.05, 0.3)));
+    table.inverse_mass.push_back(plane ? 0 : 1);
+    table.inverse_inertia.push_back(Vec3::Zero());
+    table.shape.push_back(plane ? Shape::plane : Shape::sphere);
+    table.mobility.push_back(plane || k % 7 == 1 ? Mobility::fixed
+                             : k % 11 == 2       ? Mobility::absent
+                             : k % 5 == 3        ? Mobility::prescribed
+                                                 : Mobility::free);
+    table.material.push_back(0);
+    table.id.push_back(k);
+  }
+  Bodies<Host> bodies;
+  copy_bodies(bodies, table);
+  return bodies;
+}
+
+TEST(Candidates, AreThePcsAndThePlanesInOrder) {
+  const Bodies<Host> bodies = crowd();
+  const ConstBodyView b = view_of(bodies);
+  Array<double, Host> margin(count);
+  parallel::fill("margin", margin, 0.02);
+  // A PCS that knows planes too, in an order of its own, fixed pairs included.
+  std::vector<Pair> pcs;
+  for (std::int32_t d = count - 1; d > 0; --d) {
+    for (std::int32_t i = 0; i + d < count; ++i) {
+      const std::int32_t j = i + d;
+      if (b.mobility[i] == Mobility::absent || b.mobility[j] == Mobility::absent) continue;
+      if ((i * j) % 3 != 0) pcs.push_back({i, j});
+    }
+  }
+  std::vector<std::pair<std::int32_t, std::int32_t>> expected;
+  int near = 0;
+  for (std::int32_t i = 0; i < count; ++i) {
+    for (std::int32_t j = i + 1; j < count; ++j) {
+      if (b.mobility[i] != Mobility::free && b.mobility[j] != Mobility::free) continue;
+      const bool plane_i = b.shape[i] == Shape::plane;
+      if (!plane_i && b.shape[j] != Shape::plane) {
+        const bool absent = b.mobility[i] == Mobility::absent || b.mobility[j] == Mobility::absent;
+        if (!absent && (i * j) % 3 != 0) expected.emplace_back(i, j);
+        continue;
+      }
+      const std::int32_t plane = plane_i ? i : j;
+      const std::int32_t body = plane_i ? j : i;
+      const Vec3 up = b.orientation[plane] * Vec3::UnitZ();
+      if (up.dot(b.position[body]) - b.size[body].x() > 0.04) continue;
+      expected.emplace_back(i, j);
+      ++near;
+    }
+  }
+  ASSERT_GT(near, 20);
+  Candidates candidates;
+  for (int again = 0; again < 2; ++again) {
+    const auto found =
+        candidates.list(b, {pcs.data(), static_cast<std::int64_t>(pcs.size())}, std::as_const(margin).view());
+    ASSERT_EQ(found.size(), static_cast<std::int64_t>(expected.size()));
+    for (std::int64_t k = 0; k < found.size(); ++k)
+      ASSERT_EQ(std::pair(found[k].i, found[k].j), expected[static_cast<std::size_t>(k)]);
+  }
+}
+
+TEST(Candidates, OfNothingAreNone) {
+  Bodies<Host> bodies;
+  Array<double, Host> margin;
+  EXPECT_EQ(Candidates().list(view_of(std::as_const(bodies)), {}, std::as_const(margin).view()).size(), 0);
+}
+
+}  // namespace
+}  // namespace scree
