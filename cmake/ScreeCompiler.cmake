@@ -29,7 +29,7 @@ endif()
 
 # Every target of scree: warnings are errors; Eigen keeps its types free of alignment beyond that of their
 # scalars, so that host and device passes agree on every layout; no fused multiply-add behind our back, so that
-# host and device round alike.
+# host and device round alike; no errno, so that a square root is one instruction.
 add_library(scree_options INTERFACE)
 target_include_directories(scree_options INTERFACE ${CMAKE_SOURCE_DIR})
 target_compile_definitions(scree_options INTERFACE
@@ -37,7 +37,7 @@ target_compile_definitions(scree_options INTERFACE
   SCREE_WITH_CUDA=$<BOOL:${SCREE_CUDA}>)
 set(warnings -Wall -Wextra -Wpedantic -Wshadow -Werror)
 target_compile_options(scree_options INTERFACE
-  $<$<COMPILE_LANGUAGE:CXX>:${warnings} -ffp-contract=off>)
+  $<$<COMPILE_LANGUAGE:CXX>:${warnings} -ffp-contract=off -fno-math-errno>)
 if(SCREE_SANITIZE)
   # Not `null`: Debian's Thrust 1.17 binds a reference to *nullptr for empty ranges (reference.h:330). Nor the warning:
   # with sanitizers g++ gives it for initialised variables too, as its manual says.
@@ -54,7 +54,7 @@ target_link_libraries(scree_parallel_options INTERFACE scree_options)
 if(SCREE_CUDA)
   target_compile_options(scree_parallel_options INTERFACE
     $<$<COMPILE_LANGUAGE:CUDA>:-std=c++20 --expt-relaxed-constexpr -diag-suppress=20012 --fmad=false -t2
-      -Xcompiler=-Wall,-Wextra,-Wshadow,-Werror,-ffp-contract=off>)
+      -Xcompiler=-Wall,-Wextra,-Wshadow,-Werror,-ffp-contract=off,-fno-math-errno>)
   target_link_libraries(scree_parallel_options INTERFACE CUDA::cudart_static)
 else()
   target_compile_definitions(scree_parallel_options INTERFACE

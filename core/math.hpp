@@ -17,11 +17,15 @@ using Quat = Eigen::Quaterniond;  ///< unit; rotates body-frame vectors into the
 
 inline constexpr double pi = 3.14159265358979323846;
 
-/// The rotation by the vector `angle` (rad), exact for any length: sin(x)/x by its series near 0.
+/// The rotation by the vector `angle` (rad), exact for any length: by its series near 0.
 SCREE_HD inline Quat rotation_of(const Vec3& angle) {
-  const double half_angle = 0.5 * angle.norm();
-  const double s =
-      half_angle < 1e-4 ? 0.5 - half_angle * half_angle / 12.0 : 0.5 * sin(half_angle) / half_angle;
+  const double square = 0.25 * angle.squaredNorm();  // of half the angle
+  if (square < 1e-8) {
+    const Vec3 v = (0.5 - square / 12.0) * angle;
+    return Quat(1.0 - 0.5 * square, v.x(), v.y(), v.z());
+  }
+  const double half_angle = sqrt(square);
+  const double s = 0.5 * sin(half_angle) / half_angle;
   return Quat(cos(half_angle), s * angle.x(), s * angle.y(), s * angle.z());
 }
 

@@ -2,6 +2,8 @@
 // Lengths are relative to a body's smallest_size, so that a scene in mm and in m gives the same motion.
 #pragma once
 
+#include <limits>
+
 namespace scree::tolerance {
 
 /// Gap under which a contact counts as closed (of smallest_size). Contacts rest inside this shell instead of
@@ -68,6 +70,14 @@ inline constexpr double heap_change = 3e-3;
 /// points, and solving them takes long. Larger: held contacts gain more, before their island is scaled down.
 inline constexpr double parting_speed = 1e-5;
 
+/// Speed along a contact (of that before the substep) under which what slid sticks; over what the tolerance
+/// of the response leaves.
+inline constexpr double sticking_slip = 1e-6;
+static_assert(sticking_slip > response_change);
+/// Share of a substep under which it is not cut where a contact comes to stick: the distance that it goes
+/// wrong by is that share of half the way slid in it. Smaller: more substeps.
+inline constexpr double least_cut = 1e-4;
+
 /// Energy that the impulses of an island may gain before they are scaled down, as a share of half p.W p: what
 /// the tolerance of the response leaves.
 inline constexpr double response_gain = 1e-10;
@@ -89,6 +99,9 @@ inline constexpr double search_advance = 0.1;
 /// Turn of a free body in one step of its splitting (rad); what turns further goes in several. Larger: less
 /// accurate, faster.
 inline constexpr double split_turn = 0.5;
+/// Turn of a free body in one step (rad) whose cube is rounding: it turns about its mean spin.
+inline constexpr double hardly_a_turn = 5e-6;
+static_assert(hardly_a_turn * hardly_a_turn * hardly_a_turn < std::numeric_limits<double>::epsilon());
 /// The same of the turn that restores its energy afterwards; beyond it the splitting has failed, and nothing
 /// is restored.
 inline constexpr double energy_turn = 0.1;

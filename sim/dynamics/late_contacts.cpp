@@ -27,7 +27,7 @@ struct MarkFlights {
     const double step = stage.problem.step;
     const double seen = std::max(0.5 * step, struck.time_of(m.i, m.j));
     contact.lead = seen - 0.5 * step;
-    if (contact.loaded || !would_push_apart(m, seen)) return;
+    if (contact.loaded || !would_push_apart(m, contact.size, seen)) return;
     PairFlight pair = stage.pair_of(m.i, m.j, 1.5 * step);
     pair.slowest[m.part] = 0;
     const Meeting meeting = next_meeting(pair, std::max(stage.clock[m.i], stage.clock[m.j]));
@@ -35,15 +35,23 @@ struct MarkFlights {
                      (meeting.time > step && fastest_approach(pair) > stage.slowest_bounce(m.i, m.j));
   }
 
-  bool would_push_apart(const ManifoldHeader& m, double seen) const {
+  bool would_push_apart(const ManifoldHeader& m, double size, double seen) const {
+    const double left = 1.5 * stage.problem.step - seen;
+    const ContactPoint* points = manifolds.points_of(m);
+    // A point nearer than its size to a body moves at most twice as fast as its surface may.
+    const double fastest = 2 * (stage.top_speed[m.i] + stage.top_speed[m.j]) +
+                           stage.problem.step * stage.parameters.gravity.norm();
+    const auto may_close = [&](const ContactPoint& point) {
+      return point.gap > 0 && (point.gap > size || point.gap < left * fastest);
+    };
+    if (std::none_of(points, points + m.count, may_close)) return false;
     const BodyInstant i = struck.at(m.i, seen);
     const BodyInstant j = struck.at(m.j, seen);
     bool pushes = false;
     for (int k = 0; k < m.count; ++k) {
-      const ContactPoint& point = manifolds.points_of(m)[k];
-      const double closing = closing_speed(m.normal, point.position, i, j);
-      if (closing <= 0 || closing * (1.5 * stage.problem.step - seen) <= point.gap) continue;
-      if (point.gap <= 0) return false;  // touches: no impact is to come
+      const double closing = closing_speed(m.normal, points[k].position, i, j);
+      if (closing <= 0 || closing * left <= points[k].gap) continue;
+      if (points[k].gap <= 0) return false;  // touches: no impact is to come
       pushes = true;
     }
     return pushes;

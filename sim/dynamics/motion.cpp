@@ -16,22 +16,14 @@ struct Translate {
   }
 };
 
+/// Returns the drift of the body's energy (J).
 struct Rotate {
   BodyView bodies;
   double dt;
   RotationOrder order;
-  SCREE_HD void operator()(std::int64_t k) const {
-    if (bodies.mobility[k] != Mobility::free) return;
-    rotate_freely(bodies.orientation[k], bodies.spin[k], bodies.inverse_inertia[k], dt, order);
-  }
-};
-
-struct RotationalEnergy {
-  ConstBodyView bodies;
   SCREE_HD double operator()(std::int64_t k) const {
-    const Vec3& inverse_inertia = bodies.inverse_inertia[k];
-    if (has_equal_moments(inverse_inertia)) return 0;  // does not drift
-    return rotational_energy(bodies.orientation[k], bodies.spin[k], inverse_inertia);
+    if (bodies.mobility[k] != Mobility::free) return 0;
+    return rotate_freely(bodies.orientation[k], bodies.spin[k], bodies.inverse_inertia[k], dt, order);
   }
 };
 
@@ -140,14 +132,9 @@ double advance(Bodies<Host>& bodies, double dt, const ResponseParameters& parame
   parallel::for_each<Host>("motion.translate", n, Translate{views, dt});
   if (!parameters.rotation) return 0;
   const Rotate rotate{views, dt, parameters.accurate ? RotationOrder::fourth : RotationOrder::second};
-  if (!parameters.gyroscopic) {
-    parallel::for_each<Host>("motion.rotate", n, rotate);
-    return 0;
-  }
-  const RotationalEnergy energy{view_of(std::as_const(bodies))};
-  const double before = parallel::sum<double, Host>("motion.energy", n, energy);
+  if (parameters.gyroscopic) return parallel::sum<double, Host>("motion.rotate", n, rotate);
   parallel::for_each<Host>("motion.rotate", n, rotate);
-  return parallel::sum<double, Host>("motion.energy", n, energy) - before;
+  return 0;
 }
 
 void contact_margins(const Bodies<Host>& bodies, double dt, double slack,

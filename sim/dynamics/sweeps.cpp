@@ -126,8 +126,6 @@ bool Sweeps::run(const SweepPlan& plan, int most, std::int64_t& count) {
     last_step = total.step;
   }
   lanes::store_impulses(*batches_, stage_->rows, stage_->change);
-  parallel::for_each<Host>("response.velocities", stage_->solver.size(),
-                           StoreVelocities{*stage_, bodies_.view()});
   return converged;
 }
 

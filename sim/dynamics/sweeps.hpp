@@ -69,7 +69,7 @@ class Sweeps {
   void set_velocities();
 
   /// From there on, until they converge, but at most so often. The last sweep stands as it is, so that every
-  /// impulse ends inside its cone. `count` goes up with each sweep.
+  /// impulse ends inside its cone. The velocities are for set_velocities(). `count` goes up with each sweep.
   bool run(const SweepPlan& plan, int most, std::int64_t& count);
 
  private:

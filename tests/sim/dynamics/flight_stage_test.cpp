@@ -10,7 +10,7 @@ namespace {
 
 constexpr std::int32_t count = 60;
 
-/// Balls and boxes that nearly touch, and a plane; at speeds up to 0.1 mm/s to 3 m/s.
+/// Balls and boxes that nearly touch, and a plane; at 0.1 mm/s to 3 m/s.
 BodyTable crowd(std::uint64_t seed) {
   BodyTable table;
   for (std::int32_t k = 0; k < count; ++k) {
