@@ -53,6 +53,7 @@ struct Penetration {
 /// What the loops of the run did, since t = 0; those that hit their bound are counted, never silent.
 struct Counters {
   std::int64_t substeps = 0;
+  std::int64_t cuts = 0;           ///< of substeps, where a contact that slid came to stick
   std::int64_t sweeps = 0;         ///< over the contacts
   std::int64_t direct = 0;         ///< islands solved by Newton's method
   std::int64_t direct_failed = 0;  ///< islands that were not, and were left to the sweeps

@@ -102,6 +102,29 @@ struct MovingState {
 }  // namespace
 
 struct Simulation::Parts {
+  /// What the first half of a substep changes.
+  struct Restart {
+    MovingState state;
+    Ledger ledger;
+    std::int64_t impacts = 0, unfinished_impacts = 0;
+    std::vector<Vec3> contact_impulse;
+
+    void save(const Parts& parts) {
+      state.save(parts.bodies);
+      ledger = parts.ledger;
+      impacts = parts.counters.impacts;
+      unfinished_impacts = parts.counters.unfinished_impacts;
+      contact_impulse = parts.contact_impulse;
+    }
+    void restore(Parts& parts) const {
+      state.restore(parts.bodies);
+      parts.ledger = ledger;
+      parts.counters.impacts = impacts;
+      parts.counters.unfinished_impacts = unfinished_impacts;
+      parts.contact_impulse = contact_impulse;
+    }
+  };
+
   Scene scene;
   TimeGrid grid;
   Presence presence;
@@ -124,6 +147,7 @@ struct Simulation::Parts {
   double last_step = 0;     // its length
   double last_substep = 0;  // likewise; scales the remembered impulses
   MovingState start;        // of the last step
+  Restart before;           // of the last substep, in the accurate mode
   std::vector<Quat> first_orientation;
   std::vector<Vec3> contact_impulse;  // on each body that is not free, over the last step
   Array<double, Host> contact_margin;
@@ -235,21 +259,42 @@ struct Simulation::Parts {
     return kept_pairs.covering(bodies, contact_margin, 0, parameters);
   }
 
-  /// Moreau's midpoint step: free flight to the midpoint, impacts on the way, contacts there, impulses, free
-  /// flight to the end. `done`: how much of the step went before (s).
+  /// One substep; in the accurate mode in parts that end where contacts come to stick.
   void substep(double h, double done) {
-    const double start_time = grid.time(step) + done;
-    const double reach = grid.length(step + 1) - done + h;
+    constexpr int most_cuts = 16;
+    const double end = done + h;
+    for (int cuts = 0; done < end;) {
+      double part = end - done;
+      if (parameters.accurate) before.save(*this);
+      Manifolds manifolds = fly_and_respond(part, done);
+      for (; response.slip_end() < 1 && cuts < most_cuts; ++cuts) {
+        before.restore(*this);
+        part *= response.slip_end();
+        manifolds = fly_and_respond(part, done);
+        ++counters.cuts;
+      }
+      fly_on(manifolds, part, done);
+      done = part < end - done ? done + part : end;
+    }
+  }
+
+  /// Moreau's midpoint step. Its first half: free flight to the midpoint, impacts on the way, contacts there,
+  /// impulses. `done`: how much of the step went before (s).
+  Manifolds fly_and_respond(double h, double done) {
     struck.clear();
     forces.start_substep(bodies);
-    timed_fly(start_time + 0.5 * h, 0.5 * h);
-    resolve_impacts(h, 0, reach);
-    const Manifolds manifolds = find_contacts(h, reach);
+    timed_fly(grid.time(step) + done + 0.5 * h, 0.5 * h);
+    resolve_impacts(h, 0, reach_from(h, done));
+    const Manifolds manifolds = find_contacts(h, reach_from(h, done));
     respond(manifolds, h);
-    // The response has changed the second half of the flight.
-    resolve_impacts(h, 0.5 * h, reach);
+    return manifolds;
+  }
+
+  /// And its second: impacts on the way, since the response has changed it, and free flight to the end.
+  void fly_on(const Manifolds& manifolds, double h, double done) {
+    resolve_impacts(h, 0.5 * h, reach_from(h, done));
     if (!impacts.impacts().empty()) load_solver_bodies(bodies, solver);
-    fly(start_time + h, 0.5 * h);
+    fly(grid.time(step) + done + h, 0.5 * h);
     ledger.work += forces.work(bodies);
     ledger = ledger + corrector.correct(h, parameters, view_of(bodies), solver, contacts);
     memory.remember(manifolds, contacts, bodies.count());
@@ -258,6 +303,9 @@ struct Simulation::Parts {
     }
     last_substep = h;
   }
+
+  /// Time from a substep to the end of its step, and as long again as the substep (s).
+  double reach_from(double h, double done) const { return grid.length(step + 1) - done + h; }
 
   void respond(const Manifolds& manifolds, double h) {
     const timing::Region region("response");

@@ -141,6 +141,44 @@ struct LoadResidual {
   }
 };
 
+/// When a loaded contact that slides comes to stick, as a share of the substep; 1 if it does not. Friction
+/// that slid all the while would be larger by a factor k than the one that stops it: the sliding speed of its
+/// points would go from before to before + (free - before) - k free.
+struct SlipEnd {
+  SolveStage stage;
+  SCREE_HD double operator()(std::int64_t c) const {
+    const Contact& contact = stage.contacts[c];
+    if (!contact.loaded || contact.flying) return 1;
+    double before = 0;
+    double free = 0;
+    double after = 0;
+    double friction = 0;
+    double most_friction = 0;
+    for (int k = 0; k < contact.count; ++k) {
+      const ContactRow& row = stage.rows[contact.first_row + k];
+      const Vec3 slip = along(contact, stage.velocity_before(contact, row));
+      const double speed = slip.norm();
+      if (speed > 0) {
+        free += stage.free_velocity_of(contact, row).dot(slip) / speed;
+        friction -= row.impulse.dot(slip) / speed;
+      }
+      before += speed;
+      after += along(contact, stage.velocity_after(contact, row)).norm();
+      most_friction += contact.friction * row.impulse.dot(contact.normal);
+    }
+    if (friction <= 0 || after > tolerance::sticking_slip * before) return 1;
+    const double share = before / (before + (most_friction / friction - 1) * free);
+    return share > tolerance::least_cut && share < 1 - tolerance::least_cut ? share : 1;
+  }
+  SCREE_HD static Vec3 along(const Contact& contact, const Vec3& v) {
+    return v - v.dot(contact.normal) * contact.normal;
+  }
+};
+struct MinusSlipEnd {
+  SlipEnd end;
+  SCREE_HD double operator()(std::int64_t c) const { return -end(c); }
+};
+
 /// Sweeps after which what has not converged creeps. Warm-started contacts take one or two.
 constexpr int sweeps_before_direct = 10;
 
@@ -176,6 +214,7 @@ Ledger ResponseSolver::solve(const Manifolds& manifolds, double step, const Resp
                          .step = step};
   parallel::for_each<Host>("response.kick", solver.size(), Kick{stage, parameters});
   Ledger ledger;
+  slip_end_ = 1;
   if (n > 0) {
     parallel::for_each<Host>("response.rows", n,
                              PrepareRows{stage, tolerance::parting_speed * step * parameters.gravity.norm()});
@@ -185,6 +224,7 @@ Ledger ResponseSolver::solve(const Manifolds& manifolds, double step, const Resp
     const int first = plan.direct ? std::min(plan.most, sweeps_before_direct) : plan.most;
     bool converged = sweep(first);
     if (parameters.accurate || (!converged && first < plan.most)) {
+      sweeps_.set_velocities();
       islands_.find(set.contacts.view(), solver.view());
       outcome_.resize(islands_.count());
       parallel::for_each<Host>(
@@ -220,6 +260,8 @@ Ledger ResponseSolver::solve(const Manifolds& manifolds, double step, const Resp
       }
     }
     ledger = accounts.ledger;
+    if (parameters.accurate && parameters.friction && !set.is_heap())
+      slip_end_ = -parallel::max<double, Host>("response.slip", n, MinusSlipEnd{{stage}}, -1.0);
   }
   if (parameters.torque.size() > 0) {
     ledger.work +=

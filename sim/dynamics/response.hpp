@@ -18,6 +18,10 @@ class ResponseSolver {
   Ledger solve(const Manifolds& manifolds, double step, const ResponseParameters& parameters, BodyView bodies,
                Array<SolverBody, Host>& solver, ContactSet& set, Counters& counters);
 
+  /// When the first contact that slid came to stick, as a share of the last substep; 1 if none did. For the
+  /// accurate mode, and not for heaps, in which something always does.
+  double slip_end() const { return slip_end_; }
+
  private:
   /// True if no island is left to the sweeps.
   bool count_outcomes(Counters& counters) const;
@@ -28,6 +32,7 @@ class ResponseSolver {
   Array<double, Host> loss_;                     // of each contact (J)
   Islands islands_;
   Array<DirectOutcome, Host> outcome_;  // of each island
+  double slip_end_ = 1;
 };
 
 }  // namespace scree

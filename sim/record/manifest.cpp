@@ -66,6 +66,7 @@ Json json_of(const CrosscheckStats& c) {
 
 Json json_of(const Counters& c) {
   return {{"substeps", c.substeps},
+          {"cuts", c.cuts},
           {"sweeps", c.sweeps},
           {"direct", c.direct},
           {"direct_failed", c.direct_failed},

@@ -176,6 +176,52 @@ int number_solved(int problems, double largest_friction) {
   return solved;
 }
 
+TEST(NaturalResidual, IsWhatTheMapChangesAndNextToNothingAtASolution) {
+  for (std::uint64_t item = 0; item < 200; ++item) {
+    Scene scene = random_scene(item, 0.5);
+    Random random(31, item);
+    const ImpulseChange at_random = [&] {
+      Scene other = scene;
+      for (ContactRow& row : other.rows) row.impulse = random_vector(random, 1);
+      ImpulseChange residual;
+      Real step = 0;
+      Real size = 0;
+      for (const Contact& c : other.contacts) {
+        const SolverBody& i = other.bodies[Scene::at(c.i)];
+        const SolverBody& j = other.bodies[Scene::at(c.j)];
+        const auto first = static_cast<std::size_t>(c.first_row);
+        residual = residual + natural_residual(c, &other.rows[first], i, j);
+        // A step of the row's masses along -u, then the nearest impulse in the cone for the normal part it
+        // has.
+        for (std::size_t r = first; r < first + static_cast<std::size_t>(c.count); ++r) {
+          const ContactRow& row = other.rows[r];
+          const RealVec n = c.normal.cast<Real>();
+          const RealVec p = row.impulse.cast<Real>();
+          const RealVec u =
+              (j.velocity + j.spin.cross(row.arm_j) - i.velocity - i.spin.cross(row.arm_i)).cast<Real>();
+          const Real pn = std::max<Real>(0, p.dot(n) - (u.dot(n) - Real(row.target)) * Real(row.normal_mass));
+          RealVec pt = (p - p.dot(n) * n) - Real(row.tangent_mass) * (u - u.dot(n) * n);
+          const Real most = Real(c.friction) * pn;
+          if (pt.norm() > most) pt *= most / pt.norm();
+          step += (pn * n + pt - p).squaredNorm() / Real(row.normal_mass);
+          size += p.squaredNorm() / Real(row.normal_mass);
+        }
+      }
+      EXPECT_NEAR(residual.step, static_cast<double>(step), 1e-12 * residual.step) << item;
+      EXPECT_NEAR(residual.size, static_cast<double>(size), 1e-12 * residual.size) << item;
+      return residual;
+    }();
+    EXPECT_FALSE(at_random.within(0.01));
+    if (scene.solve() != DirectOutcome::solved) continue;
+    ImpulseChange left;
+    for (const Contact& c : scene.contacts) {
+      left = left + natural_residual(c, &scene.rows[static_cast<std::size_t>(c.first_row)],
+                                     scene.bodies[Scene::at(c.i)], scene.bodies[Scene::at(c.j)]);
+    }
+    EXPECT_TRUE(left.within(tolerance)) << item;
+  }
+}
+
 TEST(Direct, ObeysTheLawsOfContact) {
   EXPECT_GT(number_solved(1000, 0.2), 950);
   // Where friction couples strongly with the normals, slips take more passes than there are.

@@ -46,6 +46,46 @@ TEST(Simulation, SameBitsForAnyNumberOfThreads) {
   EXPECT_EQ(one, hash_after(scene, 50, one_thread));
 }
 
+TEST(Simulation, SameBitsForAnyNumberOfThreadsWhereIslandsAreSolvedDirectly) {
+  const Scene scene = scene_of(R"(
+gravity: [0, 0, -9.81]
+time: {end: 0.1, step: 0.005}
+response: {mode: accurate}
+materials: {a: {density: 1000, friction: 0.5}}
+bodies:
+  - {plane: {normal: [0, 0, 1], offset: 0}, material: a}
+  - {box: {size: 0.1}, at: [0, 0, 0.05], repeat: {count: [4, 4, 5], spacing: [0.2, 0.2, 0.1]}, material: a}
+  - {box: {size: 0.1}, at: [0, 0, 0.55], mass: 5000, repeat: {count: [4, 4, 1], spacing: [0.2, 0.2, 0.1]}, material: a}
+)");
+  Simulation one(scene, one_thread);
+  run_to_end(one);
+  EXPECT_GT(one.observe().counters.direct, 0);
+  for (const int threads : {2, 4, 1}) {
+    EXPECT_EQ(one.state_hash(), hash_after(scene, 1000, {SpaceChoice::host, threads})) << threads;
+  }
+}
+
+TEST(Simulation, WhatSlidesSticksAtItsInstantWhateverTheStep) {
+  // A cube at 2 m/s with mu = 0.4 stops after v^2 / (2 mu g).
+  for (const double step : {0.05, 0.02, 0.003}) {
+    Simulation simulation = simulation_of(fmt::format(R"(
+gravity: [0, 0, -9.81]
+time: {{end: 0.6, step: {}}}
+response: {{mode: accurate}}
+materials: {{a: {{density: 1000, friction: 0.4}}}}
+bodies:
+  - {{plane: {{normal: [0, 0, 1], offset: 0}}, material: a}}
+  - {{box: {{size: 1}}, at: [0, 0, 0.5], velocity: [1.6, 1.2, 0], material: a}}
+)",
+                                                      step));
+    run_to_end(simulation);
+    const Vec3 end = simulation.body(1).position - Vec3(0, 0, 0.5);
+    EXPECT_LT((end - 4 / (2 * 0.4 * 9.81) * Vec3(0.8, 0.6, 0)).norm(), 1e-13) << step;
+    EXPECT_GE(simulation.observe().counters.cuts, 1);
+    EXPECT_LE(simulation.observe().counters.cuts, 3);
+  }
+}
+
 TEST(Simulation, SameBitsForAnyBroadPhase) {
   const std::uint64_t grid = hash_after(scene_of(heap), 50, one_thread);
   for (const char* method : {"uniform_grid", "brute_force"}) {
