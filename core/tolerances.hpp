@@ -70,13 +70,15 @@ inline constexpr double heap_change = 3e-3;
 /// points, and solving them takes long. Larger: held contacts gain more, before their island is scaled down.
 inline constexpr double parting_speed = 1e-5;
 
-/// Speed along a contact (of that before the substep) under which what slid sticks; over what the tolerance
-/// of the response leaves.
-inline constexpr double sticking_slip = 1e-6;
-static_assert(sticking_slip > response_change);
+/// Speed along a contact (of that before the substep) under which what slid may have come to stick: on a
+/// slope, the energy that sticking would gain is taken out of the impulses and leaves some of it.
+inline constexpr double sticking_slip = 0.1;
 /// Share of a substep under which it is not cut where a contact comes to stick: the distance that it goes
 /// wrong by is that share of half the way slid in it. Smaller: more substeps.
 inline constexpr double least_cut = 1e-4;
+/// Way along a contact in a substep (of smallest_size) under which it is at rest for that. Smaller: rounding
+/// is cut too.
+inline constexpr double least_slide = 1e-9;
 
 /// Energy that the impulses of an island may gain before they are scaled down, as a share of half p.W p: what
 /// the tolerance of the response leaves.

@@ -259,23 +259,32 @@ struct Simulation::Parts {
     return kept_pairs.covering(bodies, contact_margin, 0, parameters);
   }
 
-  /// One substep; in the accurate mode in parts that end where contacts come to stick.
+  /// One substep; in the accurate mode in parts that end where contacts come to stick. What stops otherwise,
+  /// by a blow and not by friction, does so no sooner in a shorter part: then cuts do not help, and there are
+  /// none.
   void substep(double h, double done) {
     constexpr int most_cuts = 16;
+    constexpr double helps = 0.25;  // of what the cut before it found too long
     const double end = done + h;
-    for (int cuts = 0; done < end;) {
+    int cuts = 0;
+    bool cuts_help = parameters.accurate;
+    while (done < end) {
       double part = end - done;
-      if (parameters.accurate) before.save(*this);
+      if (cuts_help) before.save(*this);
       Manifolds manifolds = fly_and_respond(part, done);
-      for (; response.slip_end() < 1 && cuts < most_cuts; ++cuts) {
+      double last = HUGE_VAL;
+      while (cuts_help && response.slip_end() < 1) {
+        const double too_long = 1 - response.slip_end();
+        cuts_help = too_long < helps * last && ++cuts <= most_cuts;
+        part = cuts_help ? response.slip_end() * part : end - done;
+        last = too_long;
         before.restore(*this);
-        part *= response.slip_end();
         manifolds = fly_and_respond(part, done);
-        ++counters.cuts;
       }
       fly_on(manifolds, part, done);
       done = part < end - done ? done + part : end;
     }
+    counters.cuts += cuts;
   }
 
   /// Moreau's midpoint step. Its first half: free flight to the midpoint, impacts on the way, contacts there,

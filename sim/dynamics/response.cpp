@@ -166,7 +166,8 @@ struct SlipEnd {
       after += along(contact, stage.velocity_after(contact, row)).norm();
       most_friction += contact.friction * row.impulse.dot(contact.normal);
     }
-    if (friction <= 0 || after > tolerance::sticking_slip * before) return 1;
+    const bool slides = before * stage.step > contact.count * tolerance::least_slide * contact.size;
+    if (!slides || after > tolerance::sticking_slip * before || !(free * friction > 0)) return 1;
     const double share = before / (before + (most_friction / friction - 1) * free);
     return share > tolerance::least_cut && share < 1 - tolerance::least_cut ? share : 1;
   }
