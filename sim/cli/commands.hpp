@@ -2,6 +2,7 @@
 #pragma once
 
 #include "sim/scene/scene.hpp"
+#include "sim/scene/variations.hpp"
 #include "sim/simulation.hpp"
 
 #include <filesystem>
@@ -26,12 +27,24 @@ int run(const RunArguments& arguments);
 struct VerifyArguments {
   std::vector<std::filesystem::path> paths;
   std::vector<Override> overrides;
-  SimulationOptions simulation;  ///< of each scene
-  std::filesystem::path json;    ///< empty: none
-  std::string label;             ///< only scenes with this label; empty: all but the long ones
-  bool all = false;              ///< whatever the label
+  std::vector<Variation> variations;  ///< each scene runs with every combination
+  SimulationOptions simulation;       ///< of each run
+  std::filesystem::path json;         ///< empty: none
+  std::string label;                  ///< only scenes with this label; empty: all but the long ones
+  bool all = false;                   ///< whatever the label
 };
 int verify(const VerifyArguments& arguments);
+
+struct StudyArguments {
+  std::filesystem::path scene;
+  std::filesystem::path output;  ///< empty: output/NAME-study
+  std::vector<Override> overrides;
+  std::vector<Variation> variations;
+  SimulationOptions simulation;  ///< of each run
+  int repeats = 3;               ///< of each timing
+  bool overwrite = false;
+};
+int study(const StudyArguments& arguments);
 
 struct PlanArguments {
   std::filesystem::path scene;

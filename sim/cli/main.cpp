@@ -84,18 +84,48 @@ CLI::App* add_plan(CLI::App& app, PlanArguments& arguments, bool& schema, bool& 
   return command;
 }
 
+void add_variations(CLI::App& command, std::vector<Variation>& variations) {
+  const auto take = [&variations](const std::vector<std::string>& texts) {
+    for (const std::string& text : texts) variations.push_back(parse_variation(text));
+    return true;
+  };
+  command
+      .add_option("--vary", CLI::callback_t(take),
+                  "Try each of these values, with all combinations, e.g. response.mode=default,accurate")
+      ->type_name("KEY=V1,V2,...")
+      ->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+}
+
 CLI::App* add_verify(CLI::App& app, VerifyArguments& arguments) {
   CLI::App* command = app.add_subcommand("verify", "Run every scene that has checks; writes no run folder");
   command->add_option("paths", arguments.paths, "Scene files, or folders to search")
       ->required()
       ->type_name("PATH");
   add_overrides(*command, arguments.overrides);
+  add_variations(*command, arguments.variations);
   add_simulation(*command, arguments.simulation,
                  "Threads for each scene (default: 1, and as many scenes as cores)");
   command->add_option("--json", arguments.json, "Write the table there too")->type_name("FILE");
   CLI::Option* label =
       command->add_option("--label", arguments.label, "Only scenes with this label")->type_name("LABEL");
   command->add_flag("--all", arguments.all, "Scenes labelled long too")->excludes(label);
+  return command;
+}
+
+CLI::App* add_study(CLI::App& app, StudyArguments& arguments) {
+  CLI::App* command = app.add_subcommand(
+      "study", "Speed against error: run a scene with checks in all combinations of settings");
+  command->add_option("scene", arguments.scene, "Scene file, with checks")->required()->type_name("SCENE");
+  add_variations(*command, arguments.variations);
+  add_overrides(*command, arguments.overrides);
+  command->add_option("-o,--output", arguments.output, "Folder instead of output/NAME-study")
+      ->type_name("DIR");
+  add_simulation(*command, arguments.simulation, "Threads for each run (default: 1)");
+  command->add_option("--repeats", arguments.repeats, "Runs of which each time is the median (default: 3)")
+      ->check(CLI::Validator(CLI::PositiveNumber).description(""))
+      ->type_name("N");
+  command->add_flag("--overwrite", arguments.overwrite, "Replace an earlier study in the folder");
   return command;
 }
 
@@ -111,16 +141,19 @@ int main(int argc, char** argv) {
   RunArguments run_arguments;
   PlanArguments plan_arguments;
   VerifyArguments verify_arguments;
+  StudyArguments study_arguments;
   bool schema = false, reference = false;
   const CLI::App* run_command = add_run(app, run_arguments);
   const CLI::App* plan_command = add_plan(app, plan_arguments, schema, reference);
   const CLI::App* verify_command = add_verify(app, verify_arguments);
+  const CLI::App* study_command = add_study(app, study_arguments);
   app.add_subcommand("info", "Say what this program is and what it finds on this machine");
 
   try {
     app.parse(argc, argv);
     if (run_command->parsed()) return run(run_arguments);
     if (verify_command->parsed()) return verify(verify_arguments);
+    if (study_command->parsed()) return study(study_arguments);
     if (plan_command->parsed())
       return schema ? print_schema() : reference ? print_reference() : plan(plan_arguments);
     return info();

@@ -4,7 +4,7 @@
 #include "sim/cli/check_table.hpp"
 #include "sim/cli/commands.hpp"
 #include "sim/cli/process_pool.hpp"
-#include "sim/cli/recorder.hpp"
+#include "sim/cli/trial.hpp"
 #include "sim/record/build_info.hpp"
 #include "sim/record/files.hpp"
 #include "sim/record/outcome.hpp"
@@ -53,23 +53,21 @@ std::string reason_to_leave_out(const Scene& scene, const VerifyArguments& argum
   return scene.label == "long" ? "is labelled long (--label long or --all runs it)" : "";
 }
 
-std::vector<CheckResult> run_checks(const Scene& scene, const SimulationOptions& options) {
-  Simulation simulation(scene, options);
-  Checks checks(scene, TimeGrid(scene.time));
-  const Probe probe = probe_of(simulation);
-  checks.record(0, probe);
-  while (!simulation.finished()) {
-    simulation.step();
-    checks.record(simulation.steps(), probe);
-  }
-  return checks.results(simulation.observe().energy_scale);
-}
+/// A scene, and the settings to run it with.
+struct Job {
+  fs::path file;
+  std::vector<Override> settings;
+
+  SceneOutcome outcome() const { return {.scene = file.string(), .settings = describe(settings)}; }
+};
 
 /// In a child process: never throws.
-SceneOutcome verify_scene(const fs::path& file, const VerifyArguments& arguments) {
-  SceneOutcome outcome{.scene = file.string()};
+SceneOutcome verify_scene(const Job& job, const VerifyArguments& arguments) {
+  SceneOutcome outcome = job.outcome();
   try {
-    const Scene scene = read_scene(file, arguments.overrides);
+    std::vector<Override> overrides = arguments.overrides;
+    overrides.insert(overrides.end(), job.settings.begin(), job.settings.end());
+    const Scene scene = read_scene(job.file, overrides);
     outcome.left_out = reason_to_leave_out(scene, arguments);
     if (!outcome.left_out.empty()) return outcome;
     outcome.checks = run_checks(scene, arguments.simulation);
@@ -84,42 +82,65 @@ SceneOutcome verify_scene(const fs::path& file, const VerifyArguments& arguments
   return outcome;
 }
 
-SceneOutcome outcome_of(const fs::path& file, const ProcessResult& result) {
-  SceneOutcome outcome{.scene = file.string(), .status = status_run_failed, .message = result.death};
+SceneOutcome outcome_of(const Job& job, const ProcessResult& result) {
+  SceneOutcome outcome = job.outcome();
+  outcome.status = status_run_failed;
+  outcome.message = result.death;
   if (result.death.empty()) outcome = outcome_from_json(result.text);
   outcome.wall = result.wall;
   return outcome;
 }
 
+std::string title(const SceneOutcome& outcome) {
+  return outcome.scene + (outcome.settings.empty() ? "" : "  " + outcome.settings);
+}
+
 void print_outcome(const SceneOutcome& outcome) {
   if (!outcome.left_out.empty()) {
-    fmt::print("{}  left out: {}\n", outcome.scene, outcome.left_out);
+    fmt::print("{}  left out: {}\n", title(outcome), outcome.left_out);
   } else if (!outcome.message.empty()) {
-    fmt::print("{}  FAIL: {}\n", outcome.scene, outcome.message);
+    fmt::print("{}  FAIL: {}\n", title(outcome), outcome.message);
   } else {
-    fmt::print("{}  {:.3g} s\n", outcome.scene, outcome.wall);
+    fmt::print("{}  {:.3g} s\n", title(outcome), outcome.wall);
   }
   for (const std::string& line : check_lines(outcome.checks)) fmt::print("{}\n", line);
   std::fflush(stdout);
 }
 
+/// A line for each settings, if they vary: what passed, and how long it took in all.
+void print_matrix(const std::vector<SceneOutcome>& outcomes) {
+  const auto groups = by_settings(outcomes);
+  if (groups.size() < 2) return;
+  fmt::print("\n{:>8}  {:>8}  {:>10}  settings\n", "passed", "failed", "s");
+  for (const std::vector<SceneOutcome>& group : groups) {
+    double wall = 0;
+    for (const SceneOutcome& outcome : group) wall += outcome.wall;
+    const Tally tally = tally_of(group);
+    fmt::print("{:>8}  {:>8}  {:>10.3g}  {}\n", tally.passed, tally.failed, wall, group.front().settings);
+  }
+}
+
 }  // namespace
 
 int verify(const VerifyArguments& arguments) {
-  const std::vector<fs::path> scenes = scenes_under(arguments.paths);
+  std::vector<Job> jobs;
+  for (const fs::path& file : scenes_under(arguments.paths)) {
+    for (const auto& settings : combinations(arguments.variations)) jobs.push_back({file, settings});
+  }
+  const auto job = [&jobs](int k) -> const Job& { return jobs[static_cast<std::size_t>(k)]; };
   const int threads = std::max(arguments.simulation.threads, 1);
   const int at_once = std::max(static_cast<int>(machine_info().cores) / threads, 1);
 
   std::vector<SceneOutcome> outcomes;
   fmt::print("{}\n", check_header());
   in_processes(
-      static_cast<int>(scenes.size()), at_once,
-      [&](int k) { return to_json(verify_scene(scenes[static_cast<std::size_t>(k)], arguments)); },
+      static_cast<int>(jobs.size()), at_once, [&](int k) { return to_json(verify_scene(job(k), arguments)); },
       [&](int k, const ProcessResult& result) {
-        outcomes.push_back(outcome_of(scenes[static_cast<std::size_t>(k)], result));
+        outcomes.push_back(outcome_of(job(k), result));
         print_outcome(outcomes.back());
       });
 
+  print_matrix(outcomes);
   const Tally tally = tally_of(outcomes);
   const std::string left_out =
       tally.left_out == 0 ? "" : fmt::format(", scenes left out: {}", tally.left_out);

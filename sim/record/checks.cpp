@@ -121,6 +121,7 @@ CheckResult Checks::judge(const Watch& watch, double energy_scale) {
                      .tolerance = {},
                      .measured = nan,
                      .margin = nan,
+                     .error = nan,
                      .verdict = Verdict::not_evaluated,
                      .problem = {}};
   if (!watch.within_run) {
@@ -157,6 +158,9 @@ CheckResult Checks::judge(const Watch& watch, double energy_scale) {
   if (check.below) limit(*check.below - result.measured);
   if (check.above) limit(result.measured - *check.above);
   result.margin = margin;
+  result.error = check.expect  ? std::abs(result.measured - *check.expect)
+                 : check.below ? std::abs(result.measured)
+                               : std::max(*check.above - result.measured, 0.0);
   result.verdict = passed ? Verdict::passed : Verdict::failed;
   return result;
 }

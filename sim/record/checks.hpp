@@ -30,6 +30,9 @@ struct CheckResult {
   std::optional<double> tolerance = {};  ///< absolute, in the unit of `measured`
   double measured = 0;                   ///< NaN if not evaluated
   double margin = 0;  ///< to the nearest limit, in the unit of `measured`; negative: beyond it
+  /// How far from ideal, in the unit of `measured`: from what is expected; if that is only `below`, from 0;
+  /// if only `above`, what is missing. NaN if not evaluated.
+  double error = 0;
   Verdict verdict = Verdict::not_evaluated;
   std::string problem = {};  ///< why it could not be evaluated
 };

@@ -20,6 +20,7 @@ Json json_of(const CheckResult& result) {
   Json json = {{"check", result.check}, {"measured", result.measured}, {"expected", result.expected}};
   if (result.tolerance) json["tolerance"] = *result.tolerance;
   json["margin"] = result.margin;
+  json["error"] = result.error;
   json["verdict"] = verdict_words[static_cast<std::size_t>(result.verdict)];
   if (!result.problem.empty()) json["problem"] = result.problem;
   return json;
@@ -32,6 +33,7 @@ CheckResult check_result_from(const Json& json) {
   if (json.contains("tolerance")) result.tolerance = number_or_nan(json["tolerance"]);
   result.measured = number_or_nan(json.at("measured"));
   result.margin = number_or_nan(json.at("margin"));
+  result.error = number_or_nan(json.at("error"));
   for (std::size_t k = 0; k < verdict_words.size(); ++k) {
     if (json.at("verdict") == verdict_words[k]) result.verdict = static_cast<Verdict>(k);
   }

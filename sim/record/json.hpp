@@ -9,7 +9,7 @@ namespace scree {
 
 using Json = nlohmann::ordered_json;  ///< keeps keys in the order in which they are written
 
-/// Keys check, measured, expected, tolerance, margin, verdict, problem. NaN is written as null.
+/// Keys check, measured, expected, tolerance, margin, error, verdict, problem. NaN is written as null.
 Json json_of(const CheckResult& result);
 CheckResult check_result_from(const Json& json);
 

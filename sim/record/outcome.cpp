@@ -11,6 +11,7 @@ namespace {
 
 Json json_of(const SceneOutcome& outcome) {
   Json json = {{"scene", outcome.scene}, {"status", outcome.status}, {"wall_s", outcome.wall}};
+  if (!outcome.settings.empty()) json["settings"] = outcome.settings;
   if (!outcome.message.empty()) json["message"] = outcome.message;
   if (!outcome.left_out.empty()) json["left_out"] = outcome.left_out;
   json["checks"] = Json::array();
@@ -30,6 +31,7 @@ std::string to_json(const SceneOutcome& outcome) { return json_of(outcome).dump(
 SceneOutcome outcome_from_json(const std::string& text) try {
   const Json json = Json::parse(text);
   SceneOutcome outcome{.scene = json.at("scene"),
+                       .settings = json.value("settings", ""),
                        .status = json.at("status"),
                        .message = json.value("message", ""),
                        .left_out = json.value("left_out", ""),
@@ -51,6 +53,20 @@ Tally tally_of(const std::vector<SceneOutcome>& outcomes) {
     if (!outcome.left_out.empty()) ++tally.left_out;
   }
   return tally;
+}
+
+std::vector<std::vector<SceneOutcome>> by_settings(const std::vector<SceneOutcome>& outcomes) {
+  std::vector<std::vector<SceneOutcome>> groups;
+  for (const SceneOutcome& outcome : outcomes) {
+    const auto same = [&](const auto& group) { return group.front().settings == outcome.settings; };
+    const auto group = std::ranges::find_if(groups, same);
+    if (group == groups.end()) {
+      groups.push_back({outcome});
+    } else {
+      group->push_back(outcome);
+    }
+  }
+  return groups;
 }
 
 std::string to_json(const std::vector<SceneOutcome>& outcomes) {

@@ -18,7 +18,8 @@ enum ExitStatus {
 };
 
 struct SceneOutcome {
-  std::string scene;  ///< path, as found
+  std::string scene;          ///< path, as found
+  std::string settings = {};  ///< that this run varied, in words
   int status = status_done;
   std::string message = {};   ///< of the error, if one ended it
   std::string left_out = {};  ///< why it was not run; empty if it was
@@ -40,6 +41,9 @@ struct Tally {
   int left_out = 0;  ///< scenes
 };
 Tally tally_of(const std::vector<SceneOutcome>& outcomes);
+
+/// Those of each settings apart, in the order in which they first come.
+std::vector<std::vector<SceneOutcome>> by_settings(const std::vector<SceneOutcome>& outcomes);
 
 /// The table of `scree verify` for other programs to read.
 std::string to_json(const std::vector<SceneOutcome>& outcomes);

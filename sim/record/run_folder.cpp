@@ -23,14 +23,22 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::string_view lock_name = ".lock";
-constexpr std::array<std::string_view, 7> file_names = {
-    "manifest.json", "scene.yaml", "metrics.csv", "timing.csv", "final.csv", "movie.mp4", "log.txt"};
+constexpr std::array<std::string_view, 9> file_names = {"manifest.json", "scene.yaml", "metrics.csv",
+                                                        "timing.csv",    "final.csv",  "movie.mp4",
+                                                        "log.txt",       "study.csv",  "study.json"};
 
-/// Whether a run wrote this entry of its folder: a final name, or the part of one that did not get that far.
+/// Of a study: error_1.gp, error_1.svg, error_1.png, ...
+bool is_plot(std::string_view name) {
+  return name.starts_with("error_") &&
+         (name.ends_with(".gp") || name.ends_with(".svg") || name.ends_with(".png"));
+}
+
+/// Whether a run or a study wrote this entry of its folder: a final name, or the part of one that did not get
+/// that far.
 bool is_written_by_a_run(const fs::path& entry) {
   std::string name = entry.filename().string();
   if (name.ends_with(".part")) name.resize(name.size() - std::strlen(".part"));
-  return std::ranges::find(file_names, name) != file_names.end() || name == "frames";
+  return std::ranges::find(file_names, name) != file_names.end() || name == "frames" || is_plot(name);
 }
 
 bool is_frame(const fs::path& entry) {

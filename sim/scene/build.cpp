@@ -181,8 +181,17 @@ class Builder {
             "over", *check.node,
             fmt::format("must end at the end, {} s, or before, not at {} s", end, (*check.over)[1]));
       if (measure.body >= 0) require_presence(measure.body, check);
-      scene.checks.push_back(check);
+      scene.checks.push_back(in_mode(check, entry_.response.mode));
     }
+  }
+
+  static Check in_mode(const CheckEntry& entry, ResponseMode mode) {
+    Check check = entry;
+    if (!check.in_default_mode || mode != ResponseMode::standard) return check;
+    for (std::optional<double>* limit : {&check.tolerance, &check.relative, &check.below, &check.above}) {
+      if (limit->has_value()) *limit = check.in_default_mode;
+    }
+    return check;
   }
 
   /// Of the body that a check is about, at all times that it asks for.

@@ -139,6 +139,9 @@ Codec<CheckEntry> check_section() {
                  "of `expect`, as a share"),
           key<T>("below", &T::below, optional(number()), optionally, "the measure must be less"),
           key<T>("above", &T::above, optional(number()), optionally, "the measure must be more"),
+          key<T>("in_default_mode", &T::in_default_mode, optional(number()), optionally,
+                 "takes the place of `tolerance`, `relative`, `below` or `above` where response.mode is "
+                 "default"),
       },
       check_check);
 }

@@ -171,6 +171,10 @@ void check_check(const CheckEntry& check, const Node& node, Reader& reader) {
     reader.fail_at("expect", node, "needs tolerance or relative");
   for (const char* key : {"tolerance", "relative"})
     if (!check.expect && node.find(key)) reader.fail_at(key, node, "needs expect");
+  if (check.in_default_mode && given({"tolerance", "relative", "below", "above"}, node) != 1)
+    reader.fail_at("in_default_mode", node, "needs exactly one of tolerance, relative, below, above");
+  if ((check.tolerance || check.relative) && check.in_default_mode.value_or(0) < 0)
+    reader.fail_at("in_default_mode", node, "must be >= 0 in place of tolerance or relative");
   if (check.over && check.reduce == Reduce::none) reader.fail_at("over", node, "needs reduce");
   if (!check.over && check.reduce != Reduce::none) reader.fail_at("reduce", node, "needs over");
   if (check.over && (*check.over)[0] > (*check.over)[1])

@@ -160,6 +160,7 @@ struct Check {
   std::optional<double> relative;
   std::optional<double> below;
   std::optional<double> above;
+  std::optional<double> in_default_mode;  ///< in place of the one of tolerance, relative, below, above given
   SourceMark mark;
 };
 

@@ -306,6 +306,20 @@ TEST_F(VerifyTest, LongScenesAreLeftOutUnlessAsked) {
   EXPECT_EQ(table()["passed"], 1);
 }
 
+TEST_F(VerifyTest, VariesSettingsAndCountsThemApart) {
+  add("a.yaml", falling_ball(good_check));
+  add("b.yaml", falling_ball("checks: [{measure: energy.total, below: -1e9, in_default_mode: 1e9}]\n"));
+  const Finished run = verify({"--vary", "response.mode=default,accurate", "--vary", "time.substeps=1,2"});
+  EXPECT_EQ(run.status, 1);
+  EXPECT_TRUE(contains(run.out, "6 passed, 2 failed")) << run.out;
+  EXPECT_TRUE(contains(run.out, "response.mode=default time.substeps=2\n")) << run.out;
+  ASSERT_EQ(table()["scenes"].size(), 8u);
+  EXPECT_EQ(table()["scenes"][7]["settings"], "response.mode=accurate time.substeps=2");
+  EXPECT_EQ(table()["scenes"][7]["status"], 1);
+  EXPECT_EQ(table()["scenes"][5]["status"], 0);
+  EXPECT_EQ(verify({"--vary", "time.step"}).status, 2);
+}
+
 TEST_F(VerifyTest, NoScenesAreAnErrorNotAPass) {
   fs::create_directories(folder_ / "scenes");
   EXPECT_EQ(verify().status, 2);
@@ -355,11 +369,32 @@ checks:
   EXPECT_TRUE(contains(run.out, "2 passed, 0 failed")) << run.out;
 }
 
+TEST_F(ProgramTest, StudyTriesEveryCombinationAndDrawsIt) {
+  // With substeps of a third of the step the ball falls as exactly; without gravity it is off.
+  write_text(folder_ / "fall.yaml", falling_ball(good_check));
+  const std::vector<std::string> command = {
+      "study", "fall.yaml", "--vary", "time.substeps=1,3", "--vary", "gravity=[[0, 0, -10], [0, 0, 0]]"};
+  const Finished run = scree_in(folder_, command);
+  EXPECT_EQ(run.status, 0) << run.out << run.error;
+  EXPECT_TRUE(contains(run.out, "4 combinations")) << run.out;
+  EXPECT_TRUE(contains(run.out, "time to reach")) << run.out;
+  const std::vector<std::string> files = files_below(folder_ / "output/fall-study");
+  EXPECT_EQ(std::vector<std::string>(files.begin(), files.begin() + 3),
+            (std::vector<std::string>{"error_1.gp", "error_1.png", "error_1.svg"}));
+  const Json study = Json::parse(text_of(folder_ / "output/fall-study/study.json"));
+  ASSERT_EQ(study["points"].size(), 4u);
+  EXPECT_GT(study["points"][1]["checks"][0]["error"].get<double>(), 0.01);
+  EXPECT_GT(study["points"][3]["wall_s_per_simulated_s"].get<double>(), 0);
+  EXPECT_EQ(scree_in(folder_, command).status, 2);  // an earlier study is there
+  EXPECT_EQ(scree_in(folder_, {"study", "fall.yaml"}).status, 2);
+  EXPECT_EQ(scree_in(folder_, {"study", "fall.yaml", "--vary", "gravitty=1"}).status, 2);
+}
+
 TEST_F(ProgramTest, InfoAndHelp) {
   const Finished info = scree_in(folder_, {"info"});
   EXPECT_EQ(info.status, 0);
   EXPECT_TRUE(contains(info.out, "commit")) << info.out;
-  for (const char* command : {"run", "verify", "plan", "info"}) {
+  for (const char* command : {"run", "verify", "study", "plan", "info"}) {
     const Finished help = scree_in(folder_, {command, "--help"});
     EXPECT_EQ(help.status, 0);
     EXPECT_TRUE(help.out.size() > 50) << help.out;

@@ -74,6 +74,20 @@ TEST(Checks, AtIsTheNearestStepAndTheEndByDefault) {
   EXPECT_EQ(result_of(at_end, values).measured, 40);
 }
 
+TEST(Checks, TheErrorIsHowFarFromIdeal) {
+  Check check = check_at(3);
+  EXPECT_EQ(result_of(check, {10, 20, 30, -40}).error, 40);  // of a bound alone: from 0
+  check.expect = -45;
+  check.tolerance = 1;
+  EXPECT_EQ(result_of(check, {10, 20, 30, -40}).error, 5);
+  check.expect.reset();
+  check.below.reset();
+  check.above = -30;
+  EXPECT_EQ(result_of(check, {10, 20, 30, -40}).error, 10);
+  EXPECT_EQ(result_of(check, {10, 20, 30, 40}).error, 0);
+  EXPECT_TRUE(std::isnan(result_of(check, {10, 20, 30, nan}).error));
+}
+
 TEST(Checks, EachReductionOfAHandMadeHistory) {
   const std::vector<double> values = {99, 2, -1, 4, 3, 99};  // steps 1 to 4 count
   const auto reduced = [&](Reduce reduce, double level = 0) {

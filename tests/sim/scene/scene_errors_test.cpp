@@ -59,6 +59,8 @@ constexpr BadScene bad_scenes[] = {
     {"region_open", 8, 17, "regions.exit.to: is missing; it must be a list of 3 numbers (m)"},
     {"region_name", 8, 11, "regions.the exit: must be a name: a letter or _"},
     {"check_expects_nothing", 8, 5, "checks[0]: expects nothing; it needs expect, below or above"},
+    {"check_mode_limit", 8, 66,
+     "checks[0].in_default_mode: needs exactly one of tolerance, relative, below, above"},
     {"check_no_tolerance", 8, 37, "checks[0].expect: needs tolerance or relative"},
     {"check_tolerance_alone", 8, 50, "checks[0].tolerance: needs expect"},
     {"check_over_no_reduce", 8, 35, "checks[0].over: needs reduce"},

@@ -1,0 +1,180 @@
+// scree study: a scene in every combination of some settings, its errors and its speed; tables, plots, and
+// the settings that no others beat.
+#include "sim/record/study.hpp"
+
+#include "core/error.hpp"
+#include "sim/cli/commands.hpp"
+#include "sim/cli/process_pool.hpp"
+#include "sim/cli/trial.hpp"
+#include "sim/record/build_info.hpp"
+#include "sim/record/files.hpp"
+#include "sim/record/outcome.hpp"
+#include "sim/record/run_folder.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cmath>
+#include <cstdio>
+#include <cstring>
+#include <limits>
+#include <spawn.h>
+#include <sys/wait.h>
+
+extern char** environ;
+
+namespace scree::cli {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+std::vector<Override> with(const std::vector<Override>& settings, const StudyArguments& arguments) {
+  std::vector<Override> all = arguments.overrides;
+  all.insert(all.end(), settings.begin(), settings.end());
+  return all;
+}
+
+/// In a child process: never throws.
+SceneOutcome find_errors(const std::vector<Override>& settings, const StudyArguments& arguments) {
+  SceneOutcome outcome{.scene = arguments.scene.string()};
+  try {
+    outcome.checks = run_checks(read_scene(arguments.scene, with(settings, arguments)), arguments.simulation);
+  } catch (const std::exception& error) {
+    outcome.message = error.what();
+  }
+  return outcome;
+}
+
+/// Likewise; the median over the repeats, by `wall` (s per simulated second).
+SceneOutcome find_cost(const std::vector<Override>& settings, const StudyArguments& arguments) {
+  SceneOutcome outcome{.scene = arguments.scene.string()};
+  try {
+    const Scene scene = read_scene(arguments.scene, with(settings, arguments));
+    std::vector<double> times;
+    for (int k = 0; k < arguments.repeats; ++k) times.push_back(time_steps(scene, arguments.simulation));
+    std::ranges::nth_element(times, times.begin() + std::ssize(times) / 2);
+    outcome.wall = times[times.size() / 2] / scene.time.end;
+  } catch (const std::exception& error) {
+    outcome.message = error.what();
+  }
+  return outcome;
+}
+
+SceneOutcome reported(const ProcessResult& result) {
+  if (result.death.empty()) return outcome_from_json(result.text);
+  return {.scene = "", .message = result.death};
+}
+
+/// Errors of several combinations at once, then the time of each by itself.
+Study carry_out(const StudyArguments& arguments, int at_once) {
+  Study study{.scene = arguments.scene.stem().string(), .variations = arguments.variations, .points = {}};
+  for (const auto& settings : combinations(arguments.variations)) study.points.push_back({settings});
+  const int count = static_cast<int>(study.points.size());
+  const auto point = [&study](int k) -> StudyPoint& { return study.points[static_cast<std::size_t>(k)]; };
+  fmt::print("{} combinations; errors, {} at a time:\n", count, at_once);
+  in_processes(
+      count, at_once, [&](int k) { return to_json(find_errors(point(k).settings, arguments)); },
+      [&](int k, const ProcessResult& result) {
+        const SceneOutcome outcome = reported(result);
+        point(k).checks = outcome.checks;
+        point(k).problem = outcome.message;
+        fmt::print("  {}  {}\n", describe(point(k).settings),
+                   outcome.message.empty() ? fmt::format("{:.3g} s", result.wall) : outcome.message);
+        std::fflush(stdout);
+      });
+  fmt::print("times, one at a time, median of {}:\n", arguments.repeats);
+  in_processes(
+      count, 1,
+      [&](int k) {
+        return point(k).problem.empty() ? to_json(find_cost(point(k).settings, arguments))
+                                        : to_json(SceneOutcome{.scene = ""});
+      },
+      [&](int k, const ProcessResult& result) {
+        const SceneOutcome outcome = reported(result);
+        if (point(k).problem.empty()) point(k).problem = outcome.message;
+        point(k).cost = point(k).problem.empty() ? outcome.wall : std::numeric_limits<double>::quiet_NaN();
+      });
+  return study;
+}
+
+void print_check(const Study& study, std::size_t check) {
+  fmt::print("\nerror of {}\n  {:>10}  {:>12}  settings (* on the front)\n", study.checks()[check], "error",
+             "s per sim. s");
+  const std::vector<std::size_t> front = pareto_front(study, check);
+  for (std::size_t k = 0; k < study.points.size(); ++k) {
+    const StudyPoint& point = study.points[k];
+    const bool best = std::ranges::find(front, k) != front.end();
+    fmt::print("{} {:>10}  {:>12}  {}\n", best ? '*' : ' ',
+               std::isfinite(point.error(check)) ? fmt::format("{:.2e}", point.error(check)) : "outside",
+               std::isfinite(point.cost) ? fmt::format("{:.4g}", point.cost) : "-", describe(point.settings));
+  }
+  for (const Curve& curve : curves_of(study)) {
+    const double order = fitted_order(study, curve, check);
+    if (std::isfinite(order)) {
+      fmt::print("  order in {}: {:.2f}  {}\n", study.variations.front().key, order, curve.settings);
+    }
+  }
+  for (const Reached& reached : cheapest_to(study, check)) {
+    const StudyPoint& point = study.points[reached.point];
+    fmt::print("  time to reach {:g}: {:.4g} s per simulated second, {}\n", reached.error, point.cost,
+               describe(point.settings));
+  }
+}
+
+/// False if there is no gnuplot. Throws RunError if it fails.
+bool run_gnuplot(const fs::path& folder, const std::string& script) {
+  std::string place;  // in gnuplot's quotes, where two of them are one
+  for (const char c : folder.string()) place += c == '\'' ? std::string("''") : std::string(1, c);
+  std::string program = "gnuplot", option = "-e", change = fmt::format("cd '{}'", place), file = script;
+  char* const arguments[] = {program.data(), option.data(), change.data(), file.data(), nullptr};
+  pid_t child = 0;
+  const int error = posix_spawnp(&child, arguments[0], nullptr, nullptr, arguments, environ);
+  if (error == ENOENT) return false;
+  if (error != 0) throw RunError(fmt::format("cannot start gnuplot: {}", std::strerror(error)));
+  int status = 0;
+  while (waitpid(child, &status, 0) < 0 && errno == EINTR) continue;
+  if (!WIFEXITED(status) || WEXITSTATUS(status) != 0)
+    throw RunError(fmt::format("gnuplot could not draw {}", (folder / script).string()));
+  return true;
+}
+
+void draw(const Study& study, const RunFolder& folder) {
+  bool drawn = true;
+  for (std::size_t k = 0; k < study.checks().size(); ++k) {
+    if (pareto_front(study, k).empty()) continue;
+    const std::string name = fmt::format("error_{}", k + 1);
+    write_file(folder / (name + ".gp").c_str(), plot_script(study, k, name));
+    drawn = drawn && run_gnuplot(folder.path(), name + ".gp");
+  }
+  if (!drawn) fmt::print("No plots: gnuplot is not installed. Their scripts are in the folder.\n");
+}
+
+}  // namespace
+
+int study(const StudyArguments& arguments) {
+  if (arguments.variations.empty()) throw InputError("study: nothing varies; give --vary KEY=V1,V2,...");
+  std::string name;
+  // Every combination is read before the first one runs: bad input writes nothing.
+  for (const auto& settings : combinations(arguments.variations)) {
+    const Scene scene = read_scene(arguments.scene, with(settings, arguments));
+    if (scene.checks.empty())
+      throw InputError(
+          fmt::format("{}: has no checks, so that nothing says what its error is", arguments.scene.string()));
+    name = scene.name;
+  }
+  const RunFolder folder(arguments.output.empty() ? "output/" + name + "-study" : arguments.output.string(),
+                         arguments.overwrite);
+  const int threads = std::max(arguments.simulation.threads, 1);
+  const int at_once = std::max(static_cast<int>(machine_info().cores) / threads, 1);
+  const Study result = carry_out(arguments, at_once);
+  for (std::size_t k = 0; k < result.checks().size(); ++k) print_check(result, k);
+  write_file(folder / "study.csv", to_csv(result));
+  write_file(folder / "study.json", to_json(result));
+  draw(result, folder);
+  fmt::print("\nstudy: {}/\n", folder.path().string());
+  return result.checks().empty() ? status_run_failed : status_done;
+}
+
+}  // namespace scree::cli

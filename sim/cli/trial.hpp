@@ -1,0 +1,17 @@
+// One run of a scene for its checks or its time alone: no folder, no pictures.
+#pragma once
+
+#include "sim/record/checks.hpp"
+#include "sim/simulation.hpp"
+
+#include <vector>
+
+namespace scree::cli {
+
+/// Throws what a run may.
+std::vector<CheckResult> run_checks(const Scene& scene, const SimulationOptions& options);
+
+/// Wall time of all steps, with nothing measured on the way (s).
+double time_steps(const Scene& scene, const SimulationOptions& options);
+
+}  // namespace scree::cli
