@@ -229,10 +229,10 @@ thread, and rows measured earlier of PhysX, Jolt and Box3D, marked so.
 ## 6. Where scree is not good, and why
 - **Heavy on light beyond 1e6:1** in the default mode: impulses are solved to 1e-10 of their size, and that much of a heavy body's is a lot
   to a light one. 1e9:1 needs `response: {mode: accurate, tolerance: 1e-15}` ([scene](../configs/validation/accurate/thousand_to_one.yaml)).
-- **A heavy ball on a bed of touching small ones**: 50 mm on 64 balls of 1 mm, 1e6:1, sinks in by a fifth of a small radius, and the direct
-  solver gives up on most steps: friction couples so strongly with the normals there that the slips' fixed point does not converge.
+- **A heavy ball on a bed of touching small ones** ([scene](../configs/bench/ball_on_bed.yaml), 1e6:1): it sinks in by a fifth of a small
+  radius within half a second, and the direct solver gives up on most steps: friction couples so strongly with the normals there that the slips' fixed point does not converge.
 - **Falling heaps** are solved to 3e-3 in each substep, not to the end: the heap comes to rest within 0.3 % of the converged height.
-- **One body**: a step costs 2 to 7 microseconds, in Bullet and ODE 1 to 4, at larger errors.
+- **One body**: a step costs 2 to 7 microseconds, in Bullet 1 to 6 and in ODE 1 to 9, at larger errors.
 - **Position correction** of boxes that rock books up to 1e-4 of the energy at 1/240 s.
 - **Chaotic scenes** have no error of a trajectory; what can be compared are balances and ensembles, and the latter are not here yet.
 """

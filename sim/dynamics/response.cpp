@@ -141,9 +141,9 @@ struct LoadResidual {
   }
 };
 
-/// When a loaded contact that slides comes to stick, as a share of the substep; 1 if it does not. Friction
-/// that slid all the while would be larger by a factor k than the one that stops it: the sliding speed of its
-/// points would go from before to before + (free - before) - k free.
+/// When a loaded contact that slides comes to stick, as a share of the substep; 1 if it does not. Had it slid
+/// all the while, friction would be k times the one that holds it at the end (k < 0 where that is upward, on
+/// a slope), and the sliding speed of its points would go from before to free - k free (docs/decisions/0015).
 struct SlipEnd {
   SolveStage stage;
   SCREE_HD double operator()(std::int64_t c) const {
