@@ -20,7 +20,7 @@ ARROWS = {
     "sim/inspection.hpp": ["core/"],
     "sim/scene/": ["core/", "broadphase/settings.hpp", "narrowphase/settings.hpp", "sim/observation.hpp",
                    "sim/scene/"],
-    "sim/model.": ["core/", "sim/scene/", "sim/dynamics/restitution.hpp", "sim/model.hpp"],
+    "sim/model.": ["core/", "broadphase/", "sim/scene/", "sim/dynamics/restitution.hpp", "sim/model.hpp"],
     "sim/applied_forces.": ["core/", "sim/scene/", "sim/dynamics/", "sim/applied_forces.hpp"],
     "sim/pair_finder.": ["core/", "broadphase/", "narrowphase/candidates.hpp", "sim/dynamics/", "sim/inspection.hpp",
                          "sim/pair_finder.hpp"],
@@ -28,7 +28,7 @@ ARROWS = {
     "sim/measurement.": ["core/", "narrowphase/contact.hpp", "sim/dynamics/", "sim/observation.hpp",
                          "sim/measurement.hpp"],
     "sim/dynamics/": ["core/", "narrowphase/", "sim/observation.hpp", "sim/scene/scene.hpp", "sim/dynamics/"],
-    "sim/record/": ["core/", "sim/observation.hpp", "sim/scene/", "sim/simulation.hpp", "sim/record/"],
+    "sim/record/": ["core/", "sim/model.hpp", "sim/observation.hpp", "sim/scene/", "sim/simulation.hpp", "sim/record/"],
     "sim/simulation.hpp": ["core/", "sim/inspection.hpp", "sim/observation.hpp", "sim/scene/"],
     "sim/simulation.cpp": ["core/", "broadphase/", "narrowphase/", "sim/observation.hpp", "sim/applied_forces.hpp",
                            "sim/measurement.hpp",
@@ -45,7 +45,7 @@ FOLDERS = ["core", "broadphase", "narrowphase", "sim", "render", "bench", "tests
 LIBRARIES = {
     "yaml-cpp": r"yaml-cpp/", "libccd": r"ccd/", "OpenGL and OSMesa": r"(GL|EGL)/", "libpng": r"png\.h",
     "FreeType": r"ft2build\.h",
-    "CLI11": r"CLI/", "nlohmann-json": r"nlohmann/", "xxHash": r"xxhash\.h",
+    "CLI11": r"CLI/", "Boost": r"boost/", "nlohmann-json": r"nlohmann/", "xxHash": r"xxhash\.h",
 }
 THRUST_HEADERS = ["core/parallel.hpp", "core/space_policy.hpp"]
 THRUST = re.compile(r"(thrust|cub|cuda)/")

@@ -28,8 +28,10 @@ void measure_totals(const Totals& totals, const EnergyBaseline& baseline, const 
   out.potential = totals.potential - totals.mass * gravity.dot(reference);
   out.momentum = totals.momentum;
   out.angular_momentum = totals.angular_momentum;
-  out.speed_rms =
-      totals.count > 0 ? std::sqrt(totals.speed_squared / static_cast<double>(totals.count)) : 0.0;
+  const auto count = static_cast<double>(totals.count);
+  out.centre = reference + totals.first_moment / totals.mass;
+  out.speed_rms = totals.count > 0 ? std::sqrt(totals.speed_squared / count) : 0.0;
+  out.speed_kurtosis = count * totals.speed_fourth / (totals.speed_squared * totals.speed_squared);
   out.energy_scale = baseline.scale();
   const Ledger& l = out.ledger;
   const double change =

@@ -1,16 +1,23 @@
 #include "sim/model.hpp"
 
+#include "broadphase/bounds.hpp"
+#include "broadphase/grid_plan.hpp"
 #include "core/tolerances.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <utility>
+#include <vector>
 
 namespace scree {
 
 namespace {
 
-Feature choose(const std::optional<bool>& asked, bool needed, const char* why_needed, const char* why_not) {
-  if (asked) return {*asked, "the scene says so"};
-  return {needed, needed ? why_needed : why_not};
+Feature choose(const char* name, const std::optional<bool>& asked, bool needed, const char* why_needed,
+               const char* why_not) {
+  if (asked) return {name, *asked, "the scene says so"};
+  return {name, needed, needed ? why_needed : why_not};
 }
 
 template <class Predicate>
@@ -21,6 +28,38 @@ bool any_free_body(const BodyTable& bodies, Predicate predicate) {
   return false;
 }
 
+/// Widths of the cells of each level (m), for the bodies as they start and without margins.
+std::vector<double> cell_widths(const Scene& scene) {
+  Bodies<Host> bodies;
+  copy_bodies(bodies, scene.bodies);
+  Array<double, Host> margin;
+  margin.resize(bodies.count());
+  std::ranges::fill(margin.view(), 0.0);
+  Array<Aabb, Host> bounds;
+  bounds.resize(bodies.count());
+  compute_bounds<Host>(view_of(std::as_const(bodies)), margin.view(), Vec3::Zero(), bounds.view());
+  const Census census = take_census<Host>(std::as_const(bounds).view());
+  const SizeHistogram sizes = count_sizes<Host>(std::as_const(bounds).view(), census);
+  std::vector<double> widths;
+  for (const GridLevel& level : plan_grid(census, sizes, scene.broadphase.levels).levels)
+    widths.push_back(level.cell);
+  return widths;
+}
+
+Feature plan_levels(const Scene& scene) {
+  constexpr const char* name = "levels";
+  if (scene.broadphase.method != BroadPhaseMethod::hierarchical_grid)
+    return {name, false, "the broad phase is another"};
+  const std::vector<double> widths = cell_widths(scene);
+  if (widths.empty()) return {name, false, "planes alone"};
+  const char* why = scene.broadphase.levels > 0 ? ", as the scene says" : "";
+  if (widths.size() == 1)
+    return {name, false, fmt::format("one grid serves all sizes, cells of {:.3g} m{}", widths[0], why)};
+  return {name, true,
+          fmt::format("{} grids for the sizes, cells of {:.3g} to {:.3g} m{}", widths.size(), widths.front(),
+                      widths.back(), why)};
+}
+
 }  // namespace
 
 ModelPlan plan_model(const Scene& scene) {
@@ -29,25 +68,37 @@ ModelPlan plan_model(const Scene& scene) {
                        [field](const ContactLaw& law) { return law.*field > 0; });
   };
   const BodyTable& bodies = scene.bodies;
-  ModelPlan plan;
-  plan.friction = choose(scene.model.friction, any_law(&ContactLaw::friction), "some pair has friction",
-                         "no pair has friction");
-  plan.restitution = choose(scene.model.restitution, any_law(&ContactLaw::restitution), "some pair bounces",
-                            "no pair bounces");
   const bool any_box = any_free_body(bodies, [&](std::size_t k) { return bodies.shape[k] == Shape::box; });
   const bool any_spin =
       std::any_of(bodies.spin.begin(), bodies.spin.end(), [](const Vec3& w) { return !w.isZero(0); });
-  plan.rotation = choose(scene.model.rotation, any_box || any_spin || plan.friction.on,
-                         any_box    ? "boxes turn"
-                         : any_spin ? "some body spins"
-                                    : "friction turns spheres",
-                         "spheres without friction or spin never turn");
+  const bool any_torque = std::any_of(scene.forces.begin(), scene.forces.end(),
+                                      [](const AppliedForce& force) { return !force.torque.isZero(0); });
   const bool any_unequal =
       any_free_body(bodies, [&](std::size_t k) { return !has_equal_moments(bodies.inverse_inertia[k]); });
-  plan.gyroscopic = {plan.rotation.on && any_unequal,
-                     any_unequal ? "some box is no cube" : "only spheres and cubes move freely"};
-  plan.continuous =
-      choose(scene.model.continuous, true, "in substeps where some body is fast for the sizes", "");
+  ModelPlan plan{
+      .friction = choose("friction", scene.model.friction, any_law(&ContactLaw::friction),
+                         "some pair has friction", "no pair has friction"),
+      .restitution = choose("restitution", scene.model.restitution, any_law(&ContactLaw::restitution),
+                            "some pair bounces", "no pair bounces"),
+      .rotation = {},
+      .gyroscopic = {},
+      .continuous = choose("continuous", scene.model.continuous, true,
+                           "in substeps where some body is fast for the sizes", ""),
+      .gravity = {"gravity", !scene.gravity.isZero(0),
+                  scene.gravity.isZero(0) ? "none" : "bodies have weight"},
+      .levels = plan_levels(scene),
+      .restitution_threshold = {}};
+  plan.rotation =
+      choose("rotation", scene.model.rotation, any_box || any_spin || any_torque || plan.friction.on,
+             any_box      ? "boxes turn"
+             : any_spin   ? "some body spins"
+             : any_torque ? "a torque acts"
+                          : "friction turns spheres",
+             "spheres without friction, spin or torque never turn");
+  plan.gyroscopic = {"gyroscopic", plan.rotation.on && any_unequal,
+                     !any_unequal       ? "only spheres and cubes move freely"
+                     : plan.rotation.on ? "some box is no cube"
+                                        : "nothing turns"};
   const double step = scene.time.step / scene.time.substeps.value_or(1);
   const double threshold = scene.response.mode == ResponseMode::accurate
                                ? tolerance::accurate_restitution_threshold

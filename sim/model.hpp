@@ -5,23 +5,31 @@
 #include "sim/scene/scene.hpp"
 
 #include <string>
+#include <vector>
 
 namespace scree {
 
 /// One feature of the model: computed or left out, and why.
 struct Feature {
-  bool on = true;
+  const char* name;
+  bool on;
   std::string reason;
 };
 
-/// Leaving a feature out where its reason holds changes no result.
+/// Leaving a feature out where its reason holds changes no result (docs/accuracy.md has what each saves).
 struct ModelPlan {
   Feature friction;     ///< tangential impulses
   Feature restitution;  ///< impacts that bounce
   Feature rotation;     ///< orientations
   Feature gyroscopic;   ///< free rotation of bodies with unequal moments of inertia
   Feature continuous;   ///< impacts at their own time between bodies that would go deep in a substep
+  Feature gravity;      ///< weight, and potential energy
+  Feature levels;       ///< of the hierarchical grid: more than one
   RestitutionThreshold restitution_threshold;
+
+  std::vector<Feature> features() const {
+    return {rotation, gyroscopic, friction, restitution, continuous, gravity, levels};
+  }
 };
 
 ModelPlan plan_model(const Scene& scene);

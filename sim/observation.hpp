@@ -48,6 +48,11 @@ struct Penetration {
   double p99 = 0;
   double relative_max = 0;
   double relative_mean = 0;
+
+  static Penetration unknown() {
+    constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+    return {nan, nan, nan, nan, nan};
+  }
 };
 
 /// What the loops of the run did, since t = 0; those that hit their bound are counted, never silent.
@@ -57,7 +62,9 @@ struct Counters {
   std::int64_t sweeps = 0;         ///< over the contacts
   std::int64_t direct = 0;         ///< islands solved by Newton's method
   std::int64_t direct_failed = 0;  ///< islands that were not, and were left to the sweeps
-  double residual = 0;             ///< natural residual left by the response at worst, in the accurate mode
+  std::int64_t patient = 0;        ///< of those that neither had solved, solved by it with more patience
+  std::int64_t patient_failed = 0;
+  double residual = 0;       ///< natural residual left by the response at worst, in the accurate mode
   std::int64_t scaled = 0;   ///< islands whose impulses were scaled down, since they would have gained energy
   std::int64_t impacts = 0;  ///< that bounced
   std::int64_t unconverged = 0;  ///< substeps that used all sweeps; raise response.iterations
@@ -86,6 +93,7 @@ struct Observation {
   double unexplained = 0;   ///< |energy change that the ledger does not explain| / energy_scale
   Vec3 momentum = Vec3::Zero();
   Vec3 angular_momentum = Vec3::Zero();  ///< about the origin
+  Vec3 centre = Vec3::Zero();            ///< of mass, of the free bodies (m); NaN if there are none
   Counters counters;
   Penetration penetration;
   double gap_mean = 0;        ///< mean |gap| of loaded contact points (m)
@@ -94,6 +102,7 @@ struct Observation {
   std::int64_t bodies = 0;    ///< that are there
   double speed_max = 0;       ///< of the free bodies (m/s)
   double speed_rms = 0;
+  double speed_kurtosis = 0;         ///< mean v^4 / (mean v^2)^2; NaN at rest
   double coordination_mean = 0;      ///< loaded contacts per free body, counted for each of its two
   std::vector<RegionState> regions;  ///< in the order of the scene
 

@@ -163,6 +163,7 @@ struct Simulation::Parts {
   std::vector<RegionContents> contents_before;  // and one step earlier
   Observation observation;
   bool observed = false;
+  bool overlaps_observed = false;
 
   Parts(const Scene& s, const SimulationOptions& options)
       : scene(s),
@@ -373,7 +374,7 @@ struct Simulation::Parts {
     come_and_go();
     contents_before = std::exchange(contents, region_contents());
     last_step = dt;
-    observed = false;
+    observed = overlaps_observed = false;
   }
 
   /// Bodies whose time has come or is over.
@@ -384,6 +385,32 @@ struct Simulation::Parts {
     baseline.exchange(change.first_potential);
     baseline.extend(totals_of(bodies, parameters.gravity, origin));
     kept_pairs.forget();
+  }
+
+  void observe_bodies(double time) {
+    Observation& o = observation;
+    o.time = time;
+    o.step = step;
+    o.ledger = ledger;
+    o.exchange = exchange;
+    o.bodies = presence.count();
+    o.counters = counters;
+    const Totals totals = totals_of(bodies, parameters.gravity, origin);
+    measure_totals(totals, baseline, parameters.gravity, origin, o);
+    o.speed_max = largest_speed(bodies);
+    measure_regions(scene.regions, contents, contents_before, last_step, o.regions);
+    measure_contacts(contacts, totals.count, o);
+    o.penetration = Penetration::unknown();
+    o.pairs = -1;
+    observed = true;
+  }
+
+  void observe_overlaps() {
+    const ConstView<Pair> pairs = pairs_now();
+    observation.pairs = kept_pairs.size();
+    measure_penetration(end_narrow_phase.find(view_of(std::as_const(bodies)), pairs, contact_margin.view()),
+                        view_of(std::as_const(bodies)), observation.penetration);
+    overlaps_observed = true;
   }
 
   std::string non_finite_body() const {
@@ -482,29 +509,12 @@ GridOccupancy Simulation::grid_occupancy() {
   return parts_->kept_pairs.grid_occupancy();
 }
 
-const Observation& Simulation::observe() {
+const Observation& Simulation::observe(bool overlaps) {
   Parts& p = *parts_;
-  if (p.observed) return p.observation;
   const timing::Region region("observation");
-  Observation& o = p.observation;
-  o.time = time();
-  o.step = p.step;
-  o.ledger = p.ledger;
-  o.exchange = p.exchange;
-  o.bodies = p.presence.count();
-  o.counters = p.counters;
-  const Totals totals = totals_of(p.bodies, p.parameters.gravity, p.origin);
-  measure_totals(totals, p.baseline, p.parameters.gravity, p.origin, o);
-  o.speed_max = largest_speed(p.bodies);
-  measure_regions(p.scene.regions, p.contents, p.contents_before, p.last_step, o.regions);
-  measure_contacts(p.contacts, totals.count, o);
-  const ConstView<Pair> pairs = p.pairs_now();
-  o.pairs = p.kept_pairs.size();
-  measure_penetration(
-      p.end_narrow_phase.find(view_of(std::as_const(p.bodies)), pairs, p.contact_margin.view()),
-      view_of(std::as_const(p.bodies)), o.penetration);
-  p.observed = true;
-  return o;
+  if (!p.observed) p.observe_bodies(time());
+  if (overlaps && !p.overlaps_observed) p.observe_overlaps();
+  return p.observation;
 }
 
 }  // namespace scree

@@ -48,8 +48,9 @@ class Simulation {
   /// The grid behind pairs().
   GridOccupancy grid_occupancy();
 
-  /// Computed when asked for; costs a narrow phase for the penetration.
-  const Observation& observe();
+  /// Computed when asked for. `overlaps`: the penetration and the pairs too, which cost a narrow phase;
+  /// without them those are NaN and -1.
+  const Observation& observe(bool overlaps = true);
 
  private:
   struct Parts;

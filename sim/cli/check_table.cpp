@@ -9,8 +9,13 @@ namespace scree::cli {
 namespace {
 
 /// In the order of Verdict.
-constexpr std::array<const char*, 3> verdict_words = {"pass", "FAIL", "ERROR"};
+constexpr std::array<const char*, 4> verdict_words = {"pass", "FAIL", "ERROR", "seeds"};
 constexpr const char* row = "  {:<5}  {:<48}  {:>16}  {:>24}  {:>10}  {:>10}";
+
+std::string words_of_measured(const CheckResult& check) {
+  if (!check.half_width) return fmt::format("{:.10g}", check.measured);
+  return fmt::format("{:.6g} +-{:.2g}", check.measured, *check.half_width);
+}
 
 }  // namespace
 
@@ -26,8 +31,7 @@ std::vector<std::string> check_lines(const std::vector<CheckResult>& checks) {
       lines.push_back(fmt::format("  {:<5}  {:<48}  {}", verdict, check.check, check.problem));
       continue;
     }
-    lines.push_back(fmt::format(row, verdict, check.check, fmt::format("{:.10g}", check.measured),
-                                check.expected,
+    lines.push_back(fmt::format(row, verdict, check.check, words_of_measured(check), check.expected,
                                 check.tolerance ? fmt::format("{:.3g}", *check.tolerance) : "-",
                                 fmt::format("{:.3g}", check.margin)));
   }

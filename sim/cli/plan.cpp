@@ -91,21 +91,17 @@ void print_difficulty(const Scene& scene) {
 }
 
 void print_model(const ModelPlan& plan) {
-  const auto feature = [](const char* name, const Feature& f) {
-    print_row("", fmt::format("{:<12} {:<4} {}", name, f.on ? "on" : "off", f.reason));
-  };
   print_row("model", "");
-  feature("rotation", plan.rotation);
-  feature("gyroscopic", plan.gyroscopic);
-  feature("friction", plan.friction);
-  feature("restitution", plan.restitution);
-  feature("continuous", plan.continuous);
+  for (const Feature& f : plan.features())
+    print_row("", fmt::format("{:<12} {:<4} {}", f.name, f.on ? "on" : "off", f.reason));
   if (plan.restitution.on) {
     const RestitutionThreshold& threshold = plan.restitution_threshold;
-    print_row(
-        "", threshold.any > 0
-                ? fmt::format("contacts bounce that close faster than {:.4g} m/s", threshold.any)
-                : fmt::format("contacts bounce that close faster than (1 - e) {:.4g} m/s", threshold.lossy));
+    print_row("",
+              threshold.any > 0
+                  ? fmt::format("contacts bounce that close faster than {:.4g} m/s", threshold.any)
+              : threshold.lossy > 0
+                  ? fmt::format("contacts bounce that close faster than (1 - e) {:.4g} m/s", threshold.lossy)
+                  : "every contact bounces, however slow");
   }
 }
 

@@ -5,8 +5,9 @@
 namespace scree::cli {
 
 Probe probe_of(Simulation& simulation) {
-  return {.observe = [&simulation]() -> const Observation& { return simulation.observe(); },
-          .body = [&simulation](std::int32_t id) { return simulation.body(id); }};
+  return {
+      .observe = [&simulation](bool overlaps) -> const Observation& { return simulation.observe(overlaps); },
+      .body = [&simulation](std::int32_t id) { return simulation.body(id); }};
 }
 
 Recorder::Recorder(const Scene& scene, const RunFolder& folder, Console& console, bool draw)
@@ -21,7 +22,7 @@ void Recorder::write_rows(Simulation& simulation) {
   const Probe probe = probe_of(simulation);
   metrics_.write_row(probe);
   timing_.write_rows(simulation.time());
-  newest_ = probe.observe();
+  newest_ = probe.observe(true);
   last_row_ = newest_.step;
   worst_penetration_ = std::max(worst_penetration_, newest_.penetration.max);
 }

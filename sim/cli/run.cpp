@@ -67,7 +67,11 @@ void say_summary(const Scene& scene, const RunSummary& summary, const RunFolder&
     const auto passed = std::ranges::count(summary.checks, Verdict::passed, &CheckResult::verdict);
     console.say(check_header());
     for (const std::string& line : check_lines(summary.checks)) console.say(line);
-    console.say(fmt::format("{} passed, {} failed", passed, std::ssize(summary.checks) - passed));
+    const auto failed = std::ranges::count_if(summary.checks, is_failure, &CheckResult::verdict);
+    const std::ptrdiff_t of_seeds = std::ssize(summary.checks) - passed - failed;
+    console.say(fmt::format(
+        "{} passed, {} failed{}", passed, failed,
+        of_seeds > 0 ? fmt::format(", {} told by many seeds alone: scree verify", of_seeds) : ""));
   }
   if (summary.frames > 0) {
     console.say(fmt::format("pictures: {} frames in {}{}", summary.frames, folder.frames().string(),
@@ -119,7 +123,9 @@ int run(const RunArguments& arguments) {
   write_file(folder / "scene.yaml", scene.resolved);
   Recorder recorder(scene, folder, console, arguments.draw && scene.render.enabled);
 
-  RunSummary summary{.space = simulation.space_name(), .steps_total = simulation.steps_total()};
+  RunSummary summary{.space = simulation.space_name(),
+                     .model = plan_model(scene).features(),
+                     .steps_total = simulation.steps_total()};
   attempt(summary, console, [&] { advance(simulation, recorder, console, grid.nearest(end), end); });
   if (summary.status.empty()) {
     summary.status = simulation.steps() < grid.nearest(end) ? "interrupted" : "done";

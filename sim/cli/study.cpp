@@ -40,7 +40,8 @@ std::vector<Override> with(const std::vector<Override>& settings, const StudyArg
 SceneOutcome find_errors(const std::vector<Override>& settings, const StudyArguments& arguments) {
   SceneOutcome outcome{.scene = arguments.scene.string()};
   try {
-    outcome.checks = run_checks(read_scene(arguments.scene, with(settings, arguments)), arguments.simulation);
+    const std::vector<Override> overrides = with(settings, arguments);
+    outcome.checks = run_checks(read_scene(arguments.scene, overrides), overrides, arguments.simulation);
   } catch (const std::exception& error) {
     outcome.message = error.what();
   }

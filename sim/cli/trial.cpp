@@ -6,7 +6,9 @@
 
 namespace scree::cli {
 
-std::vector<CheckResult> run_checks(const Scene& scene, const SimulationOptions& options) {
+namespace {
+
+std::vector<CheckResult> run_once(const Scene& scene, const SimulationOptions& options) {
   Simulation simulation(scene, options);
   Checks checks(scene, TimeGrid(scene.time));
   const Probe probe = probe_of(simulation);
@@ -15,7 +17,21 @@ std::vector<CheckResult> run_checks(const Scene& scene, const SimulationOptions&
     simulation.step();
     checks.record(simulation.steps(), probe);
   }
-  return checks.results(simulation.observe().energy_scale);
+  return checks.results(simulation.observe(false).energy_scale);
+}
+
+}  // namespace
+
+std::vector<CheckResult> run_checks(const Scene& scene, const std::vector<Override>& overrides,
+                                    const SimulationOptions& options) {
+  if (scene.seeds == 1) return run_once(scene, options);
+  std::vector<std::vector<CheckResult>> runs;
+  for (int k = 0; k < scene.seeds; ++k) {
+    std::vector<Override> of_seed = overrides;
+    of_seed.push_back({"seed", std::to_string(scene.seed + static_cast<std::uint64_t>(k))});
+    runs.push_back(run_once(read_scene(scene.source, of_seed), options));
+  }
+  return pooled(scene.checks, runs);
 }
 
 double time_steps(const Scene& scene, const SimulationOptions& options) {

@@ -8,8 +8,11 @@
 
 namespace scree::cli {
 
-/// Throws what a run may.
-std::vector<CheckResult> run_checks(const Scene& scene, const SimulationOptions& options);
+/// The checks of a scene, of all its seeds together. `scene` was read with the
+/// `overrides`. Throws what
+/// a run may.
+std::vector<CheckResult> run_checks(const Scene& scene, const std::vector<Override>& overrides,
+                                    const SimulationOptions& options);
 
 /// Wall time of all steps, with nothing measured on the way (s).
 double time_steps(const Scene& scene, const SimulationOptions& options);

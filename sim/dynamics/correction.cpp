@@ -68,8 +68,8 @@ struct PositionCorrector::FlyPoints {
   Stage stage;
   ConstView<lanes::Members> members;
   ConstView<lanes::PointBatch> batches;
-  View<lanes::Lane> caps;  ///< of each batch
-  View<lanes::Lane> gaps;  ///< of each of its points
+  View<lanes::Lane> caps;            ///< of each batch
+  View<lanes::PointParting> points;  ///< of each of its points
   double operator()(std::int64_t b) const {
     const lanes::PointBatch& batch = batches[b];
     double deepest = 0;
@@ -77,7 +77,9 @@ struct PositionCorrector::FlyPoints {
       const std::int32_t c = members[b].contact[l];
       caps[b].at[l] = c == lanes::none ? 0.0 : tolerance::correction_cap * stage.contacts[c].size;
       for (int k = 0; k < batch.count; ++k) {
-        double& gap = gaps[batch.first_row + k].at[l];
+        lanes::PointParting& point = points[batch.first_row + k];
+        double& gap = point.flown.at[l];
+        point.pushed.at[l] = 0;
         gap = c == lanes::none ? 0.0 : stage.flown_gap(stage.contacts[c], stage.rows[members[b].row[l] + k]);
         deepest = fmax(deepest, -gap);
       }
@@ -95,7 +97,7 @@ struct PositionCorrector::Reset {
 };
 
 struct PositionCorrector::PartBalls {
-  ConstView<lanes::BallParting> partings;
+  View<lanes::BallParting> partings;
   lanes::Body* displacement;
   double* deepest;  ///< overlap that a batch had, in units of the cap
   void operator()(std::int64_t b) const {
@@ -106,12 +108,13 @@ struct PositionCorrector::PartBalls {
 struct PositionCorrector::PartPoints {
   ConstView<lanes::PointBatch> batches;
   ConstView<lanes::PointRow> rows;
-  ConstView<lanes::Lane> gaps, caps;
+  View<lanes::PointParting> points;
+  ConstView<lanes::Lane> caps;
   lanes::Body* displacement;
   double* deepest;
   void operator()(std::int64_t b) const {
     const std::int64_t first = batches[b].first_row;
-    deepest[b] = lanes::kernels().part_points(batches[b], &rows[first], &gaps[first], caps[b],
+    deepest[b] = lanes::kernels().part_points(batches[b], &rows[first], &points[first], caps[b],
                                               tolerance::correction_share, displacement);
   }
 };
@@ -157,12 +160,12 @@ Ledger PositionCorrector::correct(double step, const ResponseParameters& paramet
   if (set.contacts.empty()) return {};
   lanes::Batches& batches = set.batches;
   displacement_.resize(solver.size() + 1);
-  point_gaps_.resize(batches.rows.size());
+  points_.resize(batches.rows.size());
   caps_.resize(batches.points.size());
   const Stage stage{bodies, solver.view(), set.contacts.view(), set.rows.view(), displacement_.view(), step};
   const FlyBalls fly_balls{stage, batches.ball_members.view(), batches.partings.view()};
   const FlyPoints fly_points{stage, batches.point_members.view(), batches.points.view(), caps_.view(),
-                             point_gaps_.view()};
+                             points_.view()};
   const double deepest =
       fmax(parallel::max<double, Host>("correction.gaps", batches.balls.size(), fly_balls, 0.0),
            parallel::max<double, Host>("correction.gaps", batches.points.size(), fly_points, 0.0));
@@ -170,14 +173,14 @@ Ledger PositionCorrector::correct(double step, const ResponseParameters& paramet
   parallel::for_each<Host>("correction.reset", displacement_.size(), Reset{stage});
   const std::int64_t balls = batches.balls.size();
   deepest_.resize(balls + batches.points.size());
-  // Few cost nothing; in a heap of single points what is left is for the next substeps.
-  const int most = set.is_heap() && !set.shares_loads() ? 6 : 24;
+  // Few cost nothing; in a heap what is left is for the next substeps.
+  const int most = !set.is_heap() ? 100 : set.shares_loads() ? 24 : 6;
   bool corrected = false;
   for (int sweep = 0; sweep < most && !corrected; ++sweep) {
     lanes::for_each_color("correction.sweep", batches,
                           PartBalls{batches.partings.view(), displacement_.data(), deepest_.data()},
-                          PartPoints{batches.points.view(), batches.rows.view(), point_gaps_.view(),
-                                     caps_.view(), displacement_.data(), deepest_.data() + balls});
+                          PartPoints{batches.points.view(), batches.rows.view(), points_.view(), caps_.view(),
+                                     displacement_.data(), deepest_.data() + balls});
     const double overlap = tolerance::correction_cap *
                            parallel::max<double, Host>("correction.deepest", deepest_.size(),
                                                        LoadDepth{std::as_const(deepest_).view()}, 0.0);

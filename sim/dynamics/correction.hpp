@@ -28,9 +28,9 @@ class PositionCorrector {
   struct PartPoints;
   struct LoadDepth;
   struct Apply;
-  Array<lanes::Body, Host> displacement_;  // and that of nobody
-  Array<lanes::Lane, Host> caps_;          // of each batch of points
-  Array<lanes::Lane, Host> point_gaps_;    // and of these
+  Array<lanes::Body, Host> displacement_;    // and that of nobody
+  Array<lanes::Lane, Host> caps_;            // of each batch of points
+  Array<lanes::PointParting, Host> points_;  // of these
   double overlap_ = 0;
   Array<double, Host> deepest_;  // overlap in the last sweep, in units of the cap; balls first
 };

@@ -13,6 +13,8 @@ struct DirectLimits {
 };
 /// Beyond these, sweeps are cheaper.
 inline constexpr DirectLimits quick_limits{.passes = 16, .products = 4e5, .products_in_all = 2e7};
+/// Where sweeps have not got there.
+inline constexpr DirectLimits patient_limits{.passes = 40, .products = 1e7, .products_in_all = 1e8};
 /// Where a solution is worth its time.
 inline constexpr DirectLimits thorough_limits{.passes = 300, .products = 1e8, .products_in_all = 1e11};
 

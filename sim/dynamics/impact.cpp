@@ -9,9 +9,12 @@ namespace scree {
 
 namespace {
 
-SolverBody solver_body(const FlightStage& stage, std::int32_t body, const BodyInstant& at) {
+/// Without friction nothing turns a ball, and no rounding may.
+SolverBody solver_body(const FlightStage& stage, std::int32_t body, const BodyInstant& at, double friction) {
+  const bool turns = friction > 0 || stage.bodies.shape[body] != Shape::sphere;
   return {at.velocity, at.spin, stage.bodies.inverse_mass[body],
-          world_inverse_inertia(at.solid.orientation, stage.bodies.inverse_inertia[body])};
+          turns ? world_inverse_inertia(at.solid.orientation, stage.bodies.inverse_inertia[body])
+                : Mat3(Mat3::Zero())};
 }
 
 void solve(ContactRow* rows, const RowCoupling* couplings, int count, const Vec3& normal, double friction,
@@ -87,8 +90,10 @@ bool resolve_impact(const FlightStage& stage, std::int32_t i, std::int32_t j, co
                                                            smallest_size(flight_j.shape, flight_j.size));
   Manifold m;
   if (!contact_at(at_i, flight_i.shape, at_j, flight_j.shape, meeting.part, touching, m)) return false;
-  SolverBody a = solver_body(stage, i, at_i);
-  SolverBody b = solver_body(stage, j, at_j);
+  const PairLaw& law = stage.problem.laws.between(i, j);
+  const double friction = stage.parameters.friction ? law.friction : 0.0;
+  SolverBody a = solver_body(stage, i, at_i, friction);
+  SolverBody b = solver_body(stage, j, at_j, friction);
   ContactRow rows[Manifold::max_points];
   RowCoupling couplings[Manifold::max_points];
   Vec3 before[Manifold::max_points];
@@ -107,13 +112,11 @@ bool resolve_impact(const FlightStage& stage, std::int32_t i, std::int32_t j, co
     ++count;
   }
   if (count == 0) return false;
-  const PairLaw& law = stage.problem.laws.between(i, j);
   const bool bounces = fastest > stage.slowest_bounce(i, j) &&
                        !stage.problem.memory.is_loaded(i, j, meeting.part) &&
                        std::max(stage.hits[i], stage.hits[j]) < most_bounces;
   const double restitution = bounces ? law.restitution : 0.0;
   for (int k = 0; k < count; ++k) rows[k].target = -restitution * before[k].dot(m.normal);
-  const double friction = stage.parameters.friction ? law.friction : 0.0;
   solve(rows, couplings, count, m.normal, friction, a, b);
   keep_from_gaining(rows, before, count, a, b);
   impact = {.i = i, .j = j, .impulse = Vec3::Zero(), .point = middle / count};

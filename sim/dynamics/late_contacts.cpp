@@ -47,10 +47,12 @@ struct MarkFlights {
     if (std::none_of(points, points + m.count, may_close)) return false;
     const BodyInstant i = struck.at(m.i, seen);
     const BodyInstant j = struck.at(m.j, seen);
+    // The row takes the midpoint's spin; what tumbles has another one when it is seen.
+    constexpr double nearly = 0.75;
     bool pushes = false;
     for (int k = 0; k < m.count; ++k) {
       const double closing = closing_speed(m.normal, points[k].position, i, j);
-      if (closing <= 0 || closing * left <= points[k].gap) continue;
+      if (closing <= 0 || closing * left <= nearly * points[k].gap) continue;
       if (points[k].gap <= 0) return false;  // touches: no impact is to come
       pushes = true;
     }

@@ -52,7 +52,9 @@ struct Totals {
   double mass = 0;
   Vec3 momentum = Vec3::Zero();
   Vec3 angular_momentum = Vec3::Zero();  ///< about the origin
+  Vec3 first_moment = Vec3::Zero();      ///< sum of m (x - reference)
   double speed_squared = 0;
+  double speed_fourth = 0;
   std::int64_t count = 0;
 
   SCREE_HD friend Totals operator+(const Totals& a, const Totals& b) {
@@ -62,7 +64,9 @@ struct Totals {
             a.mass + b.mass,
             a.momentum + b.momentum,
             a.angular_momentum + b.angular_momentum,
+            a.first_moment + b.first_moment,
             a.speed_squared + b.speed_squared,
+            a.speed_fourth + b.speed_fourth,
             a.count + b.count};
   }
 };
@@ -82,7 +86,9 @@ SCREE_HD inline Totals totals_of_body(const ConstBodyView& bodies, std::int64_t 
   t.momentum = mass * v;
   t.angular_momentum =
       mass * x.cross(v) + spin_momentum(bodies.orientation[k], bodies.spin[k], bodies.inverse_inertia[k]);
+  t.first_moment = mass * (x - reference);
   t.speed_squared = v.squaredNorm();
+  t.speed_fourth = t.speed_squared * t.speed_squared;
   t.count = 1;
   return t;
 }

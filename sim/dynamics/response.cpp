@@ -113,6 +113,7 @@ struct SolveIsland {
   const Islands* islands;
   double tolerance;
   bool accurate;
+  DirectLimits limits;
   View<DirectOutcome> outcome;
   void operator()(std::int64_t island) const {
     const IslandProblem problem{.contacts = stage.contacts,
@@ -124,7 +125,7 @@ struct SolveIsland {
                                 .island = island};
     outcome[island] = (accurate ? natural_residual(problem) : change_of(island)).within(tolerance)
                           ? DirectOutcome::not_needed
-                          : solve_directly(problem, tolerance, accurate ? thorough_limits : quick_limits);
+                          : solve_directly(problem, tolerance, limits);
   }
   ImpulseChange change_of(std::int64_t island) const {
     ImpulseChange change;
@@ -180,16 +181,20 @@ struct MinusSlipEnd {
   SCREE_HD double operator()(std::int64_t c) const { return -end(c); }
 };
 
+/// Large islands that creep are worth a long direct solution, if these succeed in the scene: then warm starts
+/// keep what was found. Where everything tumbles they do not.
+bool pays_patience(const Counters& counters) { return counters.patient_failed <= 4 + counters.patient; }
+
 /// Sweeps after which what has not converged creeps. Warm-started contacts take one or two.
 constexpr int sweeps_before_direct = 10;
 
 }  // namespace
 
-bool ResponseSolver::count_outcomes(Counters& counters) const {
+bool ResponseSolver::count_outcomes(std::int64_t& solved, std::int64_t& failed) const {
   bool all_solved = true;
   for (const DirectOutcome outcome : outcome_.view()) {
-    counters.direct += outcome == DirectOutcome::solved;
-    counters.direct_failed += outcome == DirectOutcome::failed;
+    solved += outcome == DirectOutcome::solved;
+    failed += outcome == DirectOutcome::failed;
     all_solved = all_solved && (outcome == DirectOutcome::solved || outcome == DirectOutcome::not_needed);
   }
   return all_solved;
@@ -225,17 +230,23 @@ Ledger ResponseSolver::solve(const Manifolds& manifolds, double step, const Resp
     const int first = plan.direct ? std::min(plan.most, sweeps_before_direct) : plan.most;
     bool converged = sweep(first);
     if (parameters.accurate || (!converged && first < plan.most)) {
-      sweeps_.set_velocities();
       islands_.find(set.contacts.view(), solver.view());
       outcome_.resize(islands_.count());
-      parallel::for_each<Host>(
-          "response.islands", islands_.count(),
-          SolveIsland{stage, &islands_, plan.tolerance, parameters.accurate, outcome_.view()});
-      converged = count_outcomes(counters);
-      sweeps_.take_impulses();
+      const auto solve_islands = [&](const DirectLimits& limits, std::int64_t& solved, std::int64_t& failed) {
+        sweeps_.set_velocities();
+        parallel::for_each<Host>(
+            "response.islands", islands_.count(),
+            SolveIsland{stage, &islands_, plan.tolerance, parameters.accurate, limits, outcome_.view()});
+        converged = count_outcomes(solved, failed);
+        sweeps_.take_impulses();
+      };
+      solve_islands(parameters.accurate ? thorough_limits : quick_limits, counters.direct,
+                    counters.direct_failed);
       if (!converged) {
         sweeps_.set_velocities();
         converged = sweep(std::max(plan.most - first, sweeps_before_direct));
+        if (!converged && !parameters.accurate && pays_patience(counters))
+          solve_islands(patient_limits, counters.patient, counters.patient_failed);
       }
     }
     if (!converged) ++counters.unconverged;

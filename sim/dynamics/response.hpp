@@ -23,8 +23,8 @@ class ResponseSolver {
   double slip_end() const { return slip_end_; }
 
  private:
-  /// True if no island is left to the sweeps.
-  bool count_outcomes(Counters& counters) const;
+  /// Adds to `solved` and `failed`; true if no island is left to the sweeps.
+  bool count_outcomes(std::int64_t& solved, std::int64_t& failed) const;
 
   Array<ImpulseChange, Host> change_;  // per contact, of the last sweep
   Sweeps sweeps_;

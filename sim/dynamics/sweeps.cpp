@@ -23,16 +23,16 @@ struct PushPoints {
 };
 
 struct SweepBalls {
+  decltype(lanes::SweepKernels::balls) kernel;
   View<lanes::BallBatch> batches;
   View<lanes::Body> bodies;
   double beta;
   lanes::Change* change;
-  void operator()(std::int64_t b) const {
-    change[b] = lanes::kernels().sweep_balls(batches[b], bodies.data(), beta);
-  }
+  void operator()(std::int64_t b) const { change[b] = kernel(batches[b], bodies.data(), beta); }
 };
 
 struct SweepPoints {
+  decltype(lanes::SweepKernels::points) kernel;
   ConstView<lanes::PointBatch> batches;
   View<lanes::PointRow> rows;
   View<lanes::Body> bodies;
@@ -40,8 +40,7 @@ struct SweepPoints {
   int block_sweeps;
   lanes::Change* change;
   void operator()(std::int64_t b) const {
-    change[b] = lanes::kernels().sweep_points(batches[b], &rows[batches[b].first_row], bodies.data(), beta,
-                                              block_sweeps);
+    change[b] = kernel(batches[b], &rows[batches[b].first_row], bodies.data(), beta, block_sweeps);
   }
 };
 
@@ -108,15 +107,17 @@ bool Sweeps::run(const SweepPlan& plan, int most, std::int64_t& count) {
   bool converged = false;
   double last_step = 0;
   double beta = 0;
+  const lanes::SweepKernels& kernels = plan.smooth ? lanes::kernels().smooth : lanes::kernels().rough;
   for (int sweep = 1; sweep <= most && !converged; ++sweep) {
     if (sweep > 1) {
       parallel::for_each<Host>("response.accelerate", bodies_.size(),
                                Accelerate{bodies_.data(), last_.data(), beta});
     }
-    lanes::for_each_color("response.sweep", *batches_,
-                          SweepBalls{batches_->balls.view(), bodies_.view(), beta, change_.data()},
-                          SweepPoints{batches_->points.view(), batches_->rows.view(), bodies_.view(), beta,
-                                      plan.block_sweeps, change_.data() + batches_->balls.size()});
+    lanes::for_each_color(
+        "response.sweep", *batches_,
+        SweepBalls{kernels.balls, batches_->balls.view(), bodies_.view(), beta, change_.data()},
+        SweepPoints{kernels.points, batches_->points.view(), batches_->rows.view(), bodies_.view(), beta,
+                    plan.block_sweeps, change_.data() + batches_->balls.size()});
     ++count;
     const auto total =
         parallel::sum<ImpulseChange, Host>("response.change", change_.size(), LoadChange{change_.view()});

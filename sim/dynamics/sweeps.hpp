@@ -18,6 +18,7 @@ struct SweepPlan {
   int block_sweeps;  ///< over the points of a contact at each visit
   double tolerance;  ///< change of the impulses in one sweep (of their size) at which they have converged
   bool direct;       ///< islands on which sweeps creep are for the direct solver
+  bool smooth;       ///< no contact has friction: no tangents
 };
 
 /// Few contacts are solved to the tolerance whatever it takes, since they cost nothing. Of a heap each visit
@@ -35,7 +36,8 @@ inline SweepPlan plan_sweeps(const ResponseParameters& parameters, const Contact
       .most = 0,
       .block_sweeps = heap ? 1 : 4,
       .tolerance = heap && !parameters.accurate ? tolerance::heap_change : tolerance::response_change,
-      .direct = !heap};
+      .direct = !heap,
+      .smooth = !parameters.friction};
   const std::int64_t points = std::max<std::int64_t>(set.rows.size(), 1);
   plan.most = static_cast<int>(std::clamp(visits / (plan.block_sweeps * points), fewest, most));
   if (parameters.block_sweeps > 0) plan.block_sweeps = parameters.block_sweeps;

@@ -4,8 +4,10 @@
 
 #include <algorithm>
 #include <array>
+#include <boost/math/distributions/students_t.hpp>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 namespace scree {
 
@@ -43,11 +45,59 @@ double allowance(const Check& check, double unit) {
   return std::max(check.tolerance.value_or(0), check.relative.value_or(0) * unit);
 }
 
+/// Sets margin, error and verdict by what was measured, within its interval if it has one.
+void decide(const Check& check, CheckResult& result) {
+  double margin = std::numeric_limits<double>::infinity();
+  bool passed = true;
+  const double half_width = result.half_width.value_or(0);
+  if (check.expect) {
+    margin = *result.tolerance - std::abs(result.measured - *check.expect) - half_width;
+    passed = margin >= 0;
+  }
+  const auto limit = [&](double slack) {
+    margin = std::min(margin, slack - half_width);
+    passed = passed && slack > half_width;
+  };
+  if (check.below) limit(*check.below - result.measured);
+  if (check.above) limit(result.measured - *check.above);
+  result.margin = margin;
+  result.error = check.expect  ? std::abs(result.measured - *check.expect)
+                 : check.below ? std::abs(result.measured)
+                               : std::max(*check.above - result.measured, 0.0);
+  result.verdict = passed ? Verdict::passed : Verdict::failed;
+}
+
+/// Half the width of the interval that holds the mean of what the values are drawn from, by Student's t.
+double half_width_of_mean(const std::vector<double>& values, double mean, double confidence) {
+  const auto n = static_cast<double>(values.size());
+  double squares = 0;
+  for (const double value : values) squares += (value - mean) * (value - mean);
+  const boost::math::students_t distribution(n - 1);
+  return boost::math::quantile(distribution, 0.5 * (1 + confidence)) * std::sqrt(squares / (n * (n - 1)));
+}
+
+/// Of the runs, as the mean that they are samples of.
+CheckResult pooled_mean(const Check& check, const std::vector<CheckResult>& runs) {
+  std::vector<double> values;
+  double tolerance = 0;
+  for (const CheckResult& run : runs) {
+    values.push_back(run.measured);
+    tolerance += run.tolerance.value_or(0);
+  }
+  const auto n = static_cast<double>(runs.size());
+  CheckResult result = runs.front();
+  result.measured = std::accumulate(values.begin(), values.end(), 0.0) / n;
+  if (result.tolerance) result.tolerance = tolerance / n;
+  result.half_width = half_width_of_mean(values, result.measured, *check.confidence);
+  decide(check, result);
+  return result;
+}
+
 }  // namespace
 
 double Probe::value(const Measure& measure) const {
   static const Observation none;
-  return evaluate(measure, measure.body >= 0 ? none : observe(), body);
+  return evaluate(measure, measure.body >= 0 ? none : observe(is_of_overlaps(measure)), body);
 }
 
 void Series::add(double time, double value) {
@@ -144,25 +194,28 @@ CheckResult Checks::judge(const Watch& watch, double energy_scale) {
     unit = check.reduce == Reduce::drift ? 1 : energy_scale;
   }
 
-  double margin = std::numeric_limits<double>::infinity();
-  bool passed = true;
-  if (check.expect) {
-    result.tolerance = allowance(check, unit);
-    margin = *result.tolerance - std::abs(result.measured - *check.expect);
-    passed = margin >= 0;
-  }
-  const auto limit = [&](double slack) {
-    margin = std::min(margin, slack);
-    passed = passed && slack > 0;
-  };
-  if (check.below) limit(*check.below - result.measured);
-  if (check.above) limit(result.measured - *check.above);
-  result.margin = margin;
-  result.error = check.expect  ? std::abs(result.measured - *check.expect)
-                 : check.below ? std::abs(result.measured)
-                               : std::max(*check.above - result.measured, 0.0);
-  result.verdict = passed ? Verdict::passed : Verdict::failed;
+  if (check.expect) result.tolerance = allowance(check, unit);
+  decide(check, result);
+  if (check.confidence) result.verdict = Verdict::of_seeds;
   return result;
+}
+
+std::vector<CheckResult> pooled(const std::vector<Check>& checks,
+                                const std::vector<std::vector<CheckResult>>& runs) {
+  std::vector<CheckResult> results;
+  for (std::size_t c = 0; c < checks.size(); ++c) {
+    std::vector<CheckResult> of_check;
+    for (const auto& run : runs) of_check.push_back(run[c]);
+    const auto silent = std::ranges::find(of_check, Verdict::not_evaluated, &CheckResult::verdict);
+    if (silent != of_check.end()) {
+      results.push_back(*silent);
+    } else if (checks[c].confidence) {
+      results.push_back(pooled_mean(checks[c], of_check));
+    } else {
+      results.push_back(*std::ranges::min_element(of_check, {}, &CheckResult::margin));
+    }
+  }
+  return results;
 }
 
 }  // namespace scree

@@ -13,22 +13,29 @@
 
 namespace scree {
 
-/// Access to the present state. What is not asked for is not computed: an observation costs a narrow phase.
+/// Access to the present state. What is not asked for is not computed: `overlaps` cost a narrow phase.
 struct Probe {
-  std::function<const Observation&()> observe;
+  std::function<const Observation&(bool overlaps)> observe;
   std::function<BodyState(std::int32_t)> body;
 
   double value(const Measure& measure) const;
 };
 
-enum class Verdict { passed, failed, not_evaluated };
+/// of_seeds: a single run cannot tell; see pooled().
+enum class Verdict { passed, failed, not_evaluated, of_seeds };
+
+/// What could not be evaluated has not passed.
+inline bool is_failure(Verdict verdict) {
+  return verdict == Verdict::failed || verdict == Verdict::not_evaluated;
+}
 
 /// How one check came out.
 struct CheckResult {
-  std::string check;                     ///< in words: "max of penetration.max over 1 to 6"
-  std::string expected;                  ///< in words: "1.428571", "below 1e-05"
-  std::optional<double> tolerance = {};  ///< absolute, in the unit of `measured`
-  double measured = 0;                   ///< NaN if not evaluated
+  std::string check;                      ///< in words: "max of penetration.max over 1 to 6"
+  std::string expected;                   ///< in words: "1.428571", "below 1e-05"
+  std::optional<double> tolerance = {};   ///< absolute, in the unit of `measured`
+  double measured = 0;                    ///< NaN if not evaluated
+  std::optional<double> half_width = {};  ///< of the confidence interval about `measured`
   double margin = 0;  ///< to the nearest limit, in the unit of `measured`; negative: beyond it
   /// How far from ideal, in the unit of `measured`: from what is expected; if that is only `below`, from 0;
   /// if only `above`, what is missing. NaN if not evaluated.
@@ -85,5 +92,11 @@ class Checks {
   TimeGrid grid_;
   std::vector<Watch> watches_;
 };
+
+/// The results of an ensemble's runs, each of all checks, as one: of a check with a confidence the mean of
+/// the runs and its interval by Student's t, of others the run with the least margin; where some run could
+/// not evaluate a check, that.
+std::vector<CheckResult> pooled(const std::vector<Check>& checks,
+                                const std::vector<std::vector<CheckResult>>& runs);
 
 }  // namespace scree

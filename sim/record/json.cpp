@@ -8,7 +8,7 @@ namespace scree {
 namespace {
 
 /// In the order of Verdict.
-constexpr std::array<const char*, 3> verdict_words = {"passed", "failed", "not evaluated"};
+constexpr std::array<const char*, 4> verdict_words = {"passed", "failed", "not evaluated", "of seeds"};
 
 double number_or_nan(const Json& json) {
   return json.is_null() ? std::numeric_limits<double>::quiet_NaN() : json.get<double>();
@@ -19,6 +19,7 @@ double number_or_nan(const Json& json) {
 Json json_of(const CheckResult& result) {
   Json json = {{"check", result.check}, {"measured", result.measured}, {"expected", result.expected}};
   if (result.tolerance) json["tolerance"] = *result.tolerance;
+  if (result.half_width) json["half_width"] = *result.half_width;
   json["margin"] = result.margin;
   json["error"] = result.error;
   json["verdict"] = verdict_words[static_cast<std::size_t>(result.verdict)];
@@ -32,6 +33,7 @@ CheckResult check_result_from(const Json& json) {
   result.expected = json.at("expected");
   if (json.contains("tolerance")) result.tolerance = number_or_nan(json["tolerance"]);
   result.measured = number_or_nan(json.at("measured"));
+  if (json.contains("half_width")) result.half_width = number_or_nan(json["half_width"]);
   result.margin = number_or_nan(json.at("margin"));
   result.error = number_or_nan(json.at("error"));
   for (std::size_t k = 0; k < verdict_words.size(); ++k) {

@@ -32,6 +32,7 @@ Json json_of(const Observation& o) {
             {"exchange", o.exchange.energy}}},
           {"momentum", json_of(o.momentum)},
           {"angular_momentum", json_of(o.angular_momentum)},
+          {"centre", json_of(o.centre)},
           {"penetration",
            {{"max", o.penetration.max},
             {"mean", o.penetration.mean},
@@ -42,7 +43,7 @@ Json json_of(const Observation& o) {
           {"contacts", o.contacts},
           {"pairs", o.pairs},
           {"bodies", o.bodies},
-          {"speed", {{"max", o.speed_max}, {"rms", o.speed_rms}}},
+          {"speed", {{"max", o.speed_max}, {"rms", o.speed_rms}, {"kurtosis", o.speed_kurtosis}}},
           {"coordination_mean", o.coordination_mean}};
 }
 
@@ -70,6 +71,8 @@ Json json_of(const Counters& c) {
           {"sweeps", c.sweeps},
           {"direct", c.direct},
           {"direct_failed", c.direct_failed},
+          {"patient", c.patient},
+          {"patient_failed", c.patient_failed},
           {"residual", c.residual},
           {"scaled", c.scaled},
           {"impacts", c.impacts},
@@ -88,6 +91,12 @@ Json machine() {
   Json json = {{"cpu", info.cpu}, {"cores", info.cores}};
   const DeviceInfo gpu = device_info();
   if (gpu.available) json["gpu"] = gpu.name;
+  return json;
+}
+
+Json json_of(const std::vector<Feature>& model) {
+  Json json = Json::object();
+  for (const Feature& feature : model) json[feature.name] = {{"on", feature.on}, {"reason", feature.reason}};
   return json;
 }
 
@@ -118,6 +127,7 @@ std::string manifest_of(const Scene& scene, const RunSummary& run) {
   json["machine"] = machine();
   json["space"] = run.space;
   json["precision"] = "double";
+  json["model"] = json_of(run.model);
   json["steps"] = run.steps;
   json["steps_total"] = run.steps_total;
   json["time"] = run.time;

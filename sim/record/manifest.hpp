@@ -1,6 +1,7 @@
 // manifest.json: what made this folder, on what, and how it came out.
 #pragma once
 
+#include "sim/model.hpp"
 #include "sim/record/checks.hpp"
 
 #include <cstdint>
@@ -13,6 +14,7 @@ struct RunSummary {
   std::string status = {};  ///< done, failed, interrupted
   std::string error = {};   ///< why it failed
   std::string space = {};   ///< where the broad phase ran
+  std::vector<Feature> model = {};
   std::int64_t steps = 0;
   std::int64_t steps_total = 0;
   double time = 0;        ///< s

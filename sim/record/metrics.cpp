@@ -57,7 +57,7 @@ MetricsFile::MetricsFile(const Scene& scene, const std::filesystem::path& file) 
 }
 
 void MetricsFile::write_row(const Probe& probe) {
-  const Observation& now = probe.observe();
+  const Observation& now = probe.observe(true);
   std::string row = fmt::format("{},{}", now.time, now.step);
   for (const Measure& measure : measures_)
     fmt::format_to(std::back_inserter(row), ",{}", probe.value(measure));

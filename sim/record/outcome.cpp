@@ -22,7 +22,7 @@ Json json_of(const SceneOutcome& outcome) {
 }  // namespace
 
 int status_of(const std::vector<CheckResult>& checks) {
-  const bool passed = std::ranges::all_of(checks, [](auto& c) { return c.verdict == Verdict::passed; });
+  const bool passed = std::ranges::none_of(checks, is_failure, &CheckResult::verdict);
   return passed ? status_done : status_check_failed;
 }
 
@@ -47,7 +47,8 @@ Tally tally_of(const std::vector<SceneOutcome>& outcomes) {
   Tally tally;
   for (const SceneOutcome& outcome : outcomes) {
     for (const CheckResult& check : outcome.checks) {
-      ++(check.verdict == Verdict::passed ? tally.passed : tally.failed);
+      tally.passed += check.verdict == Verdict::passed;
+      tally.failed += is_failure(check.verdict);
     }
     if (!outcome.message.empty()) ++tally.failed;
     if (!outcome.left_out.empty()) ++tally.left_out;

@@ -180,6 +180,8 @@ class Builder {
         reader_.fail_at(
             "over", *check.node,
             fmt::format("must end at the end, {} s, or before, not at {} s", end, (*check.over)[1]));
+      if (check.confidence && entry_.seeds < 2)
+        reader_.fail_at("confidence", *check.node, "needs seeds: 2 or more, at the top of the scene");
       if (measure.body >= 0) require_presence(measure.body, check);
       scene.checks.push_back(in_mode(check, entry_.response.mode));
     }
@@ -244,6 +246,7 @@ Scene build_scene(SceneEntry entry, const std::filesystem::path& source, Reader&
   scene.label = entry.label;
   scene.source = source;
   scene.seed = entry.seed;
+  scene.seeds = entry.seeds;
   scene.gravity = entry.gravity;
   scene.time = entry.time;
   scene.regions = entry.regions;

@@ -142,6 +142,9 @@ Codec<CheckEntry> check_section() {
           key<T>("in_default_mode", &T::in_default_mode, optional(number()), optionally,
                  "takes the place of `tolerance`, `relative`, `below` or `above` where response.mode is "
                  "default"),
+          key<T>("confidence", &T::confidence, optional(number(between(0, 1))), optionally,
+                 "of the mean over the `seeds`: the whole interval that holds it with this probability "
+                 "(Student's t) must lie within the limits; without it every seed must by itself"),
       },
       check_check);
 }
@@ -159,6 +162,8 @@ const Codec<SceneEntry>& scene_codec() {
           key<T>("label", &T::label, identifier(), optionally,
                  "`long` scenes are left out of verify unless asked for"),
           key<T>("seed", &T::seed, seed_integer(), optionally, "every random choice follows from it"),
+          key<T>("seeds", &T::seeds, integer(between(1, 1000)), optionally,
+                 "runs, with seed, seed + 1, ..., that verify and study judge together; run makes the first"),
           key<T>("gravity", &T::gravity, vector("m/s^2"), optionally, "acceleration of free bodies"),
           key<T>("time", &T::time, time_section(), required, "length and step of the run"),
           key<T>("materials", &T::materials, named(material_section(), most_names), required,

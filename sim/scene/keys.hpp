@@ -116,6 +116,7 @@ struct SceneEntry {
   std::string name;
   std::string label;
   std::uint64_t seed = 0;
+  int seeds = 1;
   Vec3 gravity = Vec3::Zero();
   TimeSettings time;
   std::vector<MaterialEntry> materials;

@@ -148,6 +148,7 @@ const std::vector<MeasureInfo>& measure_table() {
       {K::momentum, "momentum", S::run, true, "kg m/s", "of the free bodies"},
       {K::angular_momentum, "angular_momentum", S::run, true, "kg m^2/s",
        "of the free bodies, about the origin"},
+      {K::centre, "centre", S::run, true, "m", "of mass, of the free bodies"},
       {K::penetration_max, "penetration.max", S::run, false, "m", "deepest overlap of all pairs"},
       {K::penetration_mean, "penetration.mean", S::run, false, "m", "mean over overlapping pairs"},
       {K::penetration_p99, "penetration.p99", S::run, false, "m", "99th percentile over overlapping pairs"},
@@ -161,6 +162,10 @@ const std::vector<MeasureInfo>& measure_table() {
       {K::bodies_count, "bodies.count", S::run, false, "", "bodies that are there"},
       {K::speed_max, "speed.max", S::run, false, "m/s", "of the free bodies"},
       {K::speed_rms, "speed.rms", S::run, false, "m/s", "of the free bodies"},
+      {K::speed_kurtosis, "speed.kurtosis", S::run, false, "",
+       "mean v^4 / (mean v^2)^2 of the free bodies: 1 if all are equally fast, 5/3 in a gas at equilibrium"},
+      {K::impacts_count, "impacts.count", S::run, false, "",
+       "impacts that bounced, or met inside a step, since the start"},
       {K::coordination_mean, "coordination.mean", S::run, false, "",
        "loaded contacts per free body, counted for each of its two"},
       {K::region_count, "count", S::region, false, "", "free bodies whose centre lies in the closed box"},
@@ -170,6 +175,13 @@ const std::vector<MeasureInfo>& measure_table() {
        "over steps a to b is the mass gained since the step before a / the time since then"},
   };
   return table;
+}
+
+bool is_of_overlaps(const Measure& measure) {
+  const MeasureKind kind = measure.kind;
+  const bool penetration =
+      kind >= MeasureKind::penetration_max && kind <= MeasureKind::penetration_relative_mean;
+  return penetration || kind == MeasureKind::pairs_count;
 }
 
 bool is_measure_word(std::string_view name) {
@@ -227,6 +239,8 @@ double evaluate(const Measure& measure, const Observation& observation,
       return part_of(o.momentum, measure.component);
     case MeasureKind::angular_momentum:
       return part_of(o.angular_momentum, measure.component);
+    case MeasureKind::centre:
+      return part_of(o.centre, measure.component);
     case MeasureKind::penetration_max:
       return o.penetration.max;
     case MeasureKind::penetration_mean:
@@ -249,6 +263,10 @@ double evaluate(const Measure& measure, const Observation& observation,
       return o.speed_max;
     case MeasureKind::speed_rms:
       return o.speed_rms;
+    case MeasureKind::speed_kurtosis:
+      return o.speed_kurtosis;
+    case MeasureKind::impacts_count:
+      return static_cast<double>(o.counters.impacts);
     case MeasureKind::coordination_mean:
       return o.coordination_mean;
     case MeasureKind::region_count:

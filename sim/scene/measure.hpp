@@ -34,6 +34,7 @@ enum class MeasureKind {
   dissipated_correction,
   momentum,
   angular_momentum,
+  centre,
   penetration_max,
   penetration_mean,
   penetration_p99,
@@ -45,6 +46,8 @@ enum class MeasureKind {
   bodies_count,
   speed_max,
   speed_rms,
+  speed_kurtosis,
+  impacts_count,
   coordination_mean,
   // Of a region; see RegionState.
   region_count,
@@ -73,6 +76,9 @@ struct MeasureInfo {
   std::string_view help;
 };
 const std::vector<MeasureInfo>& measure_table();
+
+/// Whether it is of overlaps, or of pairs: a narrow phase is needed to know it.
+bool is_of_overlaps(const Measure& measure);
 
 /// True for the first words of measures that are of no body (energy, region ...): no body may be called so.
 bool is_measure_word(std::string_view name);

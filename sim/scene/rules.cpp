@@ -175,6 +175,8 @@ void check_check(const CheckEntry& check, const Node& node, Reader& reader) {
     reader.fail_at("in_default_mode", node, "needs exactly one of tolerance, relative, below, above");
   if ((check.tolerance || check.relative) && check.in_default_mode.value_or(0) < 0)
     reader.fail_at("in_default_mode", node, "must be >= 0 in place of tolerance or relative");
+  if (check.confidence && (*check.confidence <= 0 || *check.confidence >= 1))
+    reader.fail_at("confidence", node, "must be between 0 and 1, neither of them");
   if (check.over && check.reduce == Reduce::none) reader.fail_at("over", node, "needs reduce");
   if (!check.over && check.reduce != Reduce::none) reader.fail_at("reduce", node, "needs over");
   if (check.over && (*check.over)[0] > (*check.over)[1])

@@ -161,6 +161,7 @@ struct Check {
   std::optional<double> below;
   std::optional<double> above;
   std::optional<double> in_default_mode;  ///< in place of the one of tolerance, relative, below, above given
+  std::optional<double> confidence;       ///< of the mean over the seeds; absent: every seed by itself
   SourceMark mark;
 };
 
@@ -169,6 +170,7 @@ struct Scene {
   std::string label;             ///< `long` scenes are left out of verify unless asked
   std::filesystem::path source;  ///< the file it was read from
   std::uint64_t seed = 0;
+  int seeds = 1;                ///< runs of the ensemble that the checks are judged by: seed, seed + 1, ...
   Vec3 gravity = Vec3::Zero();  ///< m/s^2
   TimeSettings time;
   std::vector<Material> materials;

@@ -58,6 +58,7 @@ struct LoadBalls {
     BallBatch& batch = batches[b];
     BallParting& parting = partings[b];
     parting.apart = 0;
+    parting.pushed = {};
     for (int l = 0; l < width; ++l) {
       const std::int32_t c = members[b].contact[l];
       from.put_ends(batch.ends, l, c);

@@ -52,10 +52,12 @@ void set(LaneVec& lanes, const V3& value) {
           xz * a.x + yz * a.y + get(m[2]) * a.z};
 }
 
-/// The square of numbers turned about its diagonal: pairs, then fours, then halves change places.
+/// Squares of `size` numbers, side by side, each turned about its diagonal: pairs, then fours, then halves
+/// change places.
+template <int size>
 [[gnu::always_inline]] inline void transpose(V* rows) {
   const auto exchange = [rows](int distance, auto low, auto high) {
-    for (int k = 0; k < width; ++k) {
+    for (int k = 0; k < size; ++k) {
       if ((k & distance) != 0) continue;
       const V a = rows[k];
       const V b = rows[k + distance];
@@ -69,9 +71,11 @@ void set(LaneVec& lanes, const V3& value) {
   exchange(
       2, [](V a, V b) { return __builtin_shufflevector(a, b, 0, 1, 8, 9, 4, 5, 12, 13); },
       [](V a, V b) { return __builtin_shufflevector(a, b, 2, 3, 10, 11, 6, 7, 14, 15); });
-  exchange(
-      4, [](V a, V b) { return __builtin_shufflevector(a, b, 0, 1, 2, 3, 8, 9, 10, 11); },
-      [](V a, V b) { return __builtin_shufflevector(a, b, 4, 5, 6, 7, 12, 13, 14, 15); });
+  if constexpr (size > 4) {
+    exchange(
+        4, [](V a, V b) { return __builtin_shufflevector(a, b, 0, 1, 2, 3, 8, 9, 10, 11); },
+        [](V a, V b) { return __builtin_shufflevector(a, b, 4, 5, 6, 7, 12, 13, 14, 15); });
+  }
 }
 
 /// One body of each contact: its numbers in the order of Body.
@@ -90,17 +94,53 @@ const V& whole(const Body& body) { return reinterpret_cast<const V&>(body); }
 [[gnu::always_inline]] inline Bodies load(const Body* bodies, const std::int32_t* at) {
   V rows[width];
   for (int l = 0; l < width; ++l) rows[l] = whole(bodies[at[l]]);
-  transpose(rows);
+  transpose<width>(rows);
   return {{rows[0], rows[1], rows[2]}, rows[3], {rows[4], rows[5], rows[6]}, rows[7]};
 }
 
 [[gnu::always_inline]] inline void store(const Bodies& from, Body* bodies, const std::int32_t* at) {
   V rows[width] = {from.velocity.x, from.velocity.y, from.velocity.z, from.inverse_mass,
                    from.spin.x,     from.spin.y,     from.spin.z,     from.inverse_inertia};
-  transpose(rows);
+  transpose<width>(rows);
   for (int l = 0; l < width; ++l) {
     if (bodies[at[l]].inverse_mass > 0) whole(bodies[at[l]]) = rows[l];
   }
+}
+
+/// Of each body the half that does not turn.
+struct Centres {
+  V3 velocity;
+  V inverse_mass;
+};
+constexpr int half = width / 2;
+using Half [[gnu::vector_size(sizeof(Lane) / 2), gnu::may_alias]] = double;
+Half& linear_half(Body& body) { return reinterpret_cast<Half&>(body); }
+const Half& linear_half(const Body& body) { return reinterpret_cast<const Half&>(body); }
+
+[[gnu::always_inline]] inline Centres load_centres(const Body* bodies, const std::int32_t* at) {
+  V rows[half];
+  for (int l = 0; l < half; ++l) {
+    rows[l] = __builtin_shufflevector(linear_half(bodies[at[l]]), linear_half(bodies[at[l + half]]), 0, 1, 2,
+                                      3, 4, 5, 6, 7);
+  }
+  transpose<half>(rows);
+  return {{rows[0], rows[1], rows[2]}, rows[3]};
+}
+
+[[gnu::always_inline]] inline void store(const Centres& from, Body* bodies, const std::int32_t* at) {
+  V rows[half] = {from.velocity.x, from.velocity.y, from.velocity.z, from.inverse_mass};
+  transpose<half>(rows);
+  for (int l = 0; l < half; ++l) {
+    Body& low = bodies[at[l]];
+    Body& high = bodies[at[l + half]];
+    if (low.inverse_mass > 0) linear_half(low) = __builtin_shufflevector(rows[l], rows[l], 0, 1, 2, 3);
+    if (high.inverse_mass > 0) linear_half(high) = __builtin_shufflevector(rows[l], rows[l], 4, 5, 6, 7);
+  }
+}
+
+[[gnu::always_inline]] inline void push(const V3& p, Centres& i, Centres& j) {
+  i.velocity = i.velocity - i.inverse_mass * p;
+  j.velocity = j.velocity + j.inverse_mass * p;
 }
 
 /// Goes on by beta of what the last sweep has changed.
@@ -131,7 +171,7 @@ Change total(const V& step, const V& size) {
                                              Bodies& j) {
   i.velocity = i.velocity - i.inverse_mass * p;
   j.velocity = j.velocity + j.inverse_mass * p;
-  const V3 turn = cross(n, p);
+  const V3 turn = where(get(batch.friction) > 0, cross(n, p), V3{});  // no rounding turns smooth balls
   i.spin = i.spin - (i.inverse_inertia * get(batch.arm_i)) * turn;
   j.spin = j.spin + (j.inverse_inertia * get(batch.arm_j)) * turn;
 }
@@ -164,10 +204,28 @@ Change sweep_balls(BallBatch& batch, Body* bodies, double beta) {
   return total(dot(change, change) / normal_mass, dot(p, p) / normal_mass);
 }
 
+Change sweep_smooth_balls(BallBatch& batch, Body* bodies, double beta) {
+  Centres i = load_centres(bodies, batch.ends.i);
+  Centres j = load_centres(bodies, batch.ends.j);
+  const V3 n = get(batch.normal);
+  const V normal_mass = get(batch.normal_mass);
+  const V3 last = accelerate(batch.impulse, all(beta));
+  const V un = dot(j.velocity - i.velocity, n);
+  const V3 p = above_zero(dot(last, n) - (un - get(batch.target)) * normal_mass) * n;
+  const V3 change = p - last;
+  set(batch.impulse.impulse, p);
+  push(change, i, j);
+  store(i, bodies, batch.ends.i);
+  store(j, bodies, batch.ends.j);
+  return total(dot(change, change) / normal_mass, dot(p, p) / normal_mass);
+}
+
 /// coulomb_update(), given the relative velocity u.
+template <bool rough>
 [[gnu::always_inline]] inline V3 update(const PointRow& row, const V3& n, const V& friction, const V3& p,
                                         const V3& u) {
   const V target = get(row.target);
+  if constexpr (!rough) return above_zero(dot(p, n) - (dot(u, n) - target) * get(row.normal_mass)) * n;
   const V3 sticking = p - times(row.stick, u - target * n);
   const V pn_sticking = dot(sticking, n);
   const V3 pt_sticking = sticking - pn_sticking * n;
@@ -181,6 +239,7 @@ Change sweep_balls(BallBatch& batch, Body* bodies, double beta) {
   return where(sticks, sticking, on_disc(pn, pt, n, friction));
 }
 
+template <bool rough>
 Change sweep_points(const PointBatch& batch, PointRow* rows, Body* bodies, double beta, int block_sweeps) {
   Bodies i = load(bodies, batch.ends.i);
   Bodies j = load(bodies, batch.ends.j);
@@ -197,7 +256,7 @@ Change sweep_points(const PointBatch& batch, PointRow* rows, Body* bodies, doubl
       PointRow& row = rows[k];
       const V3 u = j.velocity + cross(j.spin, get(row.arm_j)) - i.velocity - cross(i.spin, get(row.arm_i));
       const V3 old = get(row.impulse.impulse);
-      const V3 p = update(row, n, friction, old, u);
+      const V3 p = update<rough>(row, n, friction, old, u);
       set(row.impulse.impulse, p);
       push_point(batch, row, p - old, i, j);
     }
@@ -239,10 +298,14 @@ void push_points(const PointBatch& batch, const PointRow* rows, Body* bodies) {
   store(j, bodies, batch.ends.j);
 }
 
-/// Normal impulse that parts by a share of the overlap (kg m).
-V parting(const V& gap, const V& cap, double share, const V& normal_mass) {
+/// What more a point pushes that has pushed so much (kg m), to close in on a gap of 0 by a share. Where
+/// others have opened the gap since, it takes back what it did: so bodies part as little as they must.
+V parting(const V& gap, const V& cap, double share, const V& normal_mass, Lane& pushed) {
   const V part = -share * gap;
-  return above_zero(part < cap ? part : cap) * normal_mass;
+  const V before = get(pushed);
+  const V after = above_zero(before + (part < cap ? part : cap) * normal_mass);
+  set(pushed, after);
+  return after - before;
 }
 
 /// The deepest overlap of the lanes, in units of the cap.
@@ -253,20 +316,18 @@ double deepest(const V& gap, const V& cap) {
   return deepest;
 }
 
-double part_balls(const BallParting& batch, double share, Body* bodies) {
-  Bodies i = load(bodies, batch.ends.i);
-  Bodies j = load(bodies, batch.ends.j);
+double part_balls(BallParting& batch, double share, Body* bodies) {
+  Centres i = load_centres(bodies, batch.ends.i);
+  Centres j = load_centres(bodies, batch.ends.j);
   const V3 n = get(batch.normal);
   const V gap = get(batch.flown) + dot(n, j.velocity - i.velocity);
-  const V3 p = parting(gap, get(batch.cap), share, get(batch.normal_mass)) * n;
-  i.velocity = i.velocity - i.inverse_mass * p;
-  j.velocity = j.velocity + j.inverse_mass * p;
+  push(parting(gap, get(batch.cap), share, get(batch.normal_mass), batch.pushed) * n, i, j);
   store(i, bodies, batch.ends.i);
   store(j, bodies, batch.ends.j);
   return deepest(gap, get(batch.cap));
 }
 
-double part_points(const PointBatch& batch, const PointRow* rows, const Lane* flown, const Lane& cap,
+double part_points(const PointBatch& batch, const PointRow* rows, PointParting* points, const Lane& cap,
                    double share, Body* bodies) {
   Bodies i = load(bodies, batch.ends.i);
   Bodies j = load(bodies, batch.ends.j);
@@ -275,8 +336,8 @@ double part_points(const PointBatch& batch, const PointRow* rows, const Lane* fl
   for (int k = 0; k < batch.count; ++k) {
     const PointRow& row = rows[k];
     const V3 moved = j.velocity + cross(j.spin, get(row.arm_j)) - i.velocity - cross(i.spin, get(row.arm_i));
-    const V gap = get(flown[k]) + dot(n, moved);
-    push_point(batch, row, parting(gap, get(cap), share, get(row.normal_mass)) * n, i, j);
+    const V gap = get(points[k].flown) + dot(n, moved);
+    push_point(batch, row, parting(gap, get(cap), share, get(row.normal_mass), points[k].pushed) * n, i, j);
     least = gap < least ? gap : least;
   }
   store(i, bodies, batch.ends.i);
@@ -286,7 +347,12 @@ double part_points(const PointBatch& batch, const PointRow* rows, const Lane* fl
 
 }  // namespace
 
-extern const Kernels kernels = {sweep_balls, sweep_points, accelerate, push_balls,
-                                push_points, part_balls,   part_points};
+extern const Kernels kernels = {.rough = {sweep_balls, sweep_points<true>},
+                                .smooth = {sweep_smooth_balls, sweep_points<false>},
+                                .accelerate = accelerate,
+                                .push_balls = push_balls,
+                                .push_points = push_points,
+                                .part_balls = part_balls,
+                                .part_points = part_points};
 
 }  // namespace scree::lanes::SCREE_LANES

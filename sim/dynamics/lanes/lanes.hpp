@@ -72,10 +72,17 @@ struct BallParting {
   Ends ends;
   LaneVec normal;
   Lane normal_mass;
-  Lane flown;  ///< gap without displacements (m)
-  Lane cap;    ///< most that one visit parts (m)
+  Lane flown;   ///< gap without displacements (m)
+  Lane pushed;  ///< impulse so far (kg m)
+  Lane cap;     ///< most that one visit parts (m)
   std::int64_t
       apart;  ///< a bit for each lane whose gap at the end is not told by the flight from the midpoint
+};
+
+/// And of one point of each contact of a PointBatch.
+struct PointParting {
+  Lane flown;
+  Lane pushed;
 };
 
 /// Of a batch: ImpulseChange.
@@ -83,21 +90,26 @@ struct Change {
   double step, size;
 };
 
+/// One visit. Going on by beta of what the last sweep has changed, which the bodies have done already, waits
+/// for it. The local law is that of coulomb_update() and natural_map().
+struct SweepKernels {
+  Change (*balls)(BallBatch&, Body* bodies, double beta);
+  Change (*points)(const PointBatch&, PointRow* rows, Body* bodies, double beta, int block_sweeps);
+};
+
 /// Each works on one batch; batches of one colour may be worked on at once.
 struct Kernels {
-  /// One visit. Going on by beta of what the last sweep has changed, which the bodies have done already,
-  /// waits for it. The local law is that of coulomb_update() and natural_map().
-  Change (*sweep_balls)(BallBatch&, Body* bodies, double beta);
-  Change (*sweep_points)(const PointBatch&, PointRow* rows, Body* bodies, double beta, int block_sweeps);
+  SweepKernels rough;   ///< any friction
+  SweepKernels smooth;  ///< no friction in any contact: the same bits where balls do not spin
   /// Goes on by beta of what has changed since the last time.
   void (*accelerate)(Body& body, Body& last, double beta);
   /// Gives the bodies what the impulses are.
   void (*push_balls)(const BallBatch&, Body* bodies);
   void (*push_points)(const PointBatch&, const PointRow* rows, Body* bodies);
-  /// Parts what overlaps: by a share of the overlap, but at most by the cap (m). `flown`: gap of each point
-  /// without displacements (m). Returns the deepest overlap met, in units of the cap.
-  double (*part_balls)(const BallParting&, double share, Body* bodies);
-  double (*part_points)(const PointBatch&, const PointRow* rows, const Lane* flown, const Lane& cap,
+  /// Parts what overlaps: by a share of the overlap, but at most by the cap (m). Returns the deepest overlap
+  /// met, in units of the cap.
+  double (*part_balls)(BallParting&, double share, Body* bodies);
+  double (*part_points)(const PointBatch&, const PointRow* rows, PointParting* points, const Lane& cap,
                         double share, Body* bodies);
 };
 

@@ -306,6 +306,29 @@ TEST_F(VerifyTest, LongScenesAreLeftOutUnlessAsked) {
   EXPECT_EQ(table()["passed"], 1);
 }
 
+/// Balls thrown to random places: their centre is 5 m high, give or take 5 / sqrt(3 * 20) m, and of 12 seeds
+/// the mean a twelfth of that squared; so the interval is some 0.8 m wide.
+TEST_F(VerifyTest, JudgesEnsemblesByTheirMeanAndRunsOfOneSeedNot) {
+  const auto ensemble = [](const std::string& tolerance) {
+    return "format: 1\nseeds: 12\ntime: {end: 0.01, step: 0.01}\nmaterials: {glass: {}}\nrender: "
+           "false\nbodies:\n"
+           "  - {sphere: {radius: 0.01}, scatter: {count: 20, from: [0, 0, 0], to: [10, 10, 10]}, material: "
+           "glass}\n"
+           "checks:\n  - {measure: centre.z, at: 0, expect: 5, tolerance: " +
+           tolerance + ", confidence: 0.95}\n  - {measure: bodies.count, expect: 20, tolerance: 0}\n";
+  };
+  add("a.yaml", ensemble("1.5"));
+  const Finished run = verify();
+  EXPECT_EQ(run.status, 0) << run.out;
+  EXPECT_TRUE(contains(run.out, "+-")) << run.out;
+  EXPECT_TRUE(contains(run.out, "2 passed, 0 failed")) << run.out;
+  add("a.yaml", ensemble("0.1"));
+  EXPECT_EQ(verify().status, 1) << "so few seeds do not tell so much";
+  const Finished one = scree_in(folder_, {"run", "scenes/a.yaml"});
+  EXPECT_EQ(one.status, 0) << one.out;
+  EXPECT_TRUE(contains(one.out, "1 passed, 0 failed, 1 told by many seeds alone")) << one.out;
+}
+
 TEST_F(VerifyTest, VariesSettingsAndCountsThemApart) {
   add("a.yaml", falling_ball(good_check));
   add("b.yaml", falling_ball("checks: [{measure: energy.total, below: -1e9, in_default_mode: 1e9}]\n"));

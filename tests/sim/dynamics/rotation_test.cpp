@@ -45,6 +45,27 @@ Vec3 body_spin_after(double t, int steps, RotationOrder order) {
   return q.conjugate() * spin;
 }
 
+/// What a cube is spared: the splitting of a body a hair from one converges to the turn at constant spin.
+TEST(Rotation, OfACubeIsWhatTheSplittingConvergesTo) {
+  const Vec3 cube = Vec3::Constant(240);
+  const Vec3 hair = cube.cwiseProduct(Vec3(1, 1 + 1e-15, 1 - 1e-15));
+  ASSERT_FALSE(has_equal_moments(hair));
+  const auto turned = [](const Vec3& inverse_inertia, int steps, RotationOrder order) {
+    Quat q(0.5, 0.1, -0.7, 0.2);
+    q.normalize();
+    Vec3 spin(1.5, 4.0, -2.0);
+    for (int k = 0; k < steps; ++k) rotate_freely(q, spin, inverse_inertia, 1.0 / steps, order);
+    return q;
+  };
+  const Quat exact = turned(cube, 1, RotationOrder::second);
+  const auto error = [&](int steps, RotationOrder order) {
+    return exact.angularDistance(turned(hair, steps, order));
+  };
+  EXPECT_NEAR(std::log2(error(100, RotationOrder::second) / error(200, RotationOrder::second)), 2, 0.05);
+  EXPECT_NEAR(std::log2(error(20, RotationOrder::fourth) / error(40, RotationOrder::fourth)), 4, 0.1);
+  EXPECT_LT(error(2000, RotationOrder::fourth), 1e-12);
+}
+
 TEST(Rotation, ConvergesToEulersEquationsWithItsOrder) {
   const Long3 exact = euler_rk4({1.5L, 4.0L, -2.0L}, {inertia.x(), inertia.y(), inertia.z()}, 2.0L, 40000);
   const Vec3 reference(static_cast<double>(exact[0]), static_cast<double>(exact[1]),

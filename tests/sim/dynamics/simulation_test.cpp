@@ -151,32 +151,6 @@ bodies:
   EXPECT_GT(o.ledger.work, o.total() - first);
 }
 
-TEST(Simulation, FeaturesThatCannotMatterChangeNothing) {
-  const std::string spheres = R"(
-gravity: [0, 0, -9.81]
-time: {end: 0.4, step: 0.005}
-materials: {a: {density: 1000}}
-bodies:
-  - {plane: {normal: [0, 0, 1], offset: 0}, material: a}
-  - {sphere: {radius: 0.06}, at: [0, 0, 0.1], repeat: {count: [4, 4, 3], spacing: [0.125, 0.125, 0.125], jitter: 0.002}, material: a}
-)";
-  const Scene lean = scene_of(spheres);
-  const ModelPlan plan = plan_model(lean);
-  EXPECT_FALSE(plan.friction.on);
-  EXPECT_FALSE(plan.restitution.on);
-  EXPECT_FALSE(plan.rotation.on);
-  EXPECT_FALSE(plan.gyroscopic.on);
-  const Scene full = scene_of(spheres + "model: {rotation: on, friction: on, restitution: on}\n");
-  const BodyTable a = state_after(lean, 80);
-  const BodyTable b = state_after(full, 80);
-  EXPECT_EQ(a.position, b.position);
-  EXPECT_EQ(a.velocity, b.velocity);
-  for (std::size_t k = 0; k < a.orientation.size(); ++k) {
-    // Rounding of torques that are zero, over 80 steps.
-    EXPECT_LT(a.orientation[k].angularDistance(b.orientation[k]), 1e-13);
-  }
-}
-
 TEST(Simulation, StepsAreCutFinerWhileOverlapsAreLarge) {
   // Two balls in one another by a fifth of their radius.
   const std::string balls = R"(

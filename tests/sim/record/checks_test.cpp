@@ -24,7 +24,7 @@ std::vector<CheckResult> results_of(const std::vector<Check>& checks, const std:
   Checks evaluated(scene, TimeGrid(scene.time));
   Observation observation;
   BodyState body = {};
-  const Probe probe{.observe = [&]() -> const Observation& { return observation; },
+  const Probe probe{.observe = [&](bool) -> const Observation& { return observation; },
                     .body =
                         [&](std::int32_t id) {
                           EXPECT_EQ(id, 3);
@@ -200,7 +200,7 @@ TEST(Checks, AskOnlyForWhatTheyNeed) {
   std::set<std::int64_t> observed, asked_for_body;
   std::int64_t step = 0;
   const Observation nothing;
-  const Probe probe{.observe = [&]() -> const Observation& {
+  const Probe probe{.observe = [&](bool) -> const Observation& {
                       observed.insert(step);
                       return nothing;
                     },
@@ -212,6 +212,47 @@ TEST(Checks, AskOnlyForWhatTheyNeed) {
   for (; step <= 4; ++step) checks.record(step, probe);
   EXPECT_EQ(observed, (std::set<std::int64_t>{1, 2, 4}));
   EXPECT_EQ(asked_for_body, (std::set<std::int64_t>{4}));
+}
+
+/// Steps of 1 s at whose end ball.position.x is each seed's value.
+std::vector<CheckResult> pooled_over(const Check& check, const std::vector<double>& values) {
+  std::vector<std::vector<CheckResult>> runs;
+  for (const double value : values) runs.push_back({result_of(check, {0, value})});
+  return pooled({check}, runs);
+}
+
+TEST(Checks, TheMeanOfTheSeedsIsJudgedByItsInterval) {
+  Check check = check_of("ball.position.x");
+  check.expect = 10;
+  check.tolerance = 1;
+  check.confidence = 0.95;
+  EXPECT_EQ(result_of(check, {0, 10}).verdict, Verdict::of_seeds) << "one run tells nothing";
+  EXPECT_FALSE(is_failure(Verdict::of_seeds));
+  // Mean 10.5, s = 0.5; of four values t(0.975, 3) = 3.18245 (tables).
+  const CheckResult result = pooled_over(check, {10, 10, 11, 11}).at(0);
+  EXPECT_EQ(result.measured, 10.5);
+  const double half_width = 3.182446305284263 * std::sqrt(1.0 / 3.0) / 2;
+  EXPECT_NEAR(*result.half_width, half_width, 1e-12);
+  EXPECT_NEAR(result.margin, 1 - 0.5 - half_width, 1e-12);
+  EXPECT_EQ(result.error, 0.5);
+  EXPECT_EQ(result.verdict, Verdict::failed) << "the mean is within the tolerance, its interval is not";
+  check.tolerance = 1.5;
+  EXPECT_EQ(pooled_over(check, {10, 10, 11, 11}).at(0).verdict, Verdict::passed);
+  Check below = check_of("ball.position.x");
+  below.below = 11;
+  below.confidence = 0.95;
+  EXPECT_EQ(pooled_over(below, {10, 10, 11, 11}).at(0).verdict, Verdict::failed);
+  EXPECT_EQ(pooled_over(below, {10, 10, 10.1, 10.1}).at(0).verdict, Verdict::passed);
+}
+
+TEST(Checks, WithoutAConfidenceTheWorstSeedCounts) {
+  Check check = check_of("ball.position.x");
+  check.expect = 10;
+  check.tolerance = 1;
+  EXPECT_EQ(pooled_over(check, {10, 10.5, 9.9}).at(0).measured, 10.5);
+  EXPECT_EQ(pooled_over(check, {10, 10.5, 9.9}).at(0).verdict, Verdict::passed);
+  EXPECT_EQ(pooled_over(check, {10, 12, 9.9}).at(0).verdict, Verdict::failed);
+  EXPECT_EQ(pooled_over(check, {10, nan, 12}).at(0).verdict, Verdict::not_evaluated);
 }
 
 TEST(Checks, SayInWordsWhatTheyAsk) {

@@ -47,7 +47,7 @@ TEST(Metrics, RowsReadBackToTheSameDoubles) {
   now.kinetic_linear = 0.1 + 0.2;
   now.penetration.max = 1e-300;
   now.contacts = 12;
-  const Probe probe{.observe = [&]() -> const Observation& { return now; },
+  const Probe probe{.observe = [&](bool) -> const Observation& { return now; },
                     .body =
                         [](std::int32_t id) {
                           BodyState body = {};

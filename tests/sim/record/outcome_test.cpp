@@ -19,6 +19,7 @@ SceneOutcome sample() {
        .expected = "1",
        .tolerance = 0.1,
        .measured = 1.0 / 3,
+       .half_width = 0.25,
        .margin = -0.5,
        .verdict = Verdict::failed},
       {.check = "y",
@@ -39,6 +40,8 @@ TEST(Outcome, SurvivesTheWayThroughJson) {
   EXPECT_EQ(got.wall, sent.wall);
   ASSERT_EQ(got.checks.size(), sent.checks.size());
   EXPECT_EQ(got.checks[0].measured, 1.0 / 3);
+  EXPECT_EQ(got.checks[0].half_width, 0.25);
+  EXPECT_FALSE(got.checks[1].half_width.has_value());
   EXPECT_EQ(got.checks[0].tolerance, 0.1);
   EXPECT_EQ(got.checks[0].verdict, Verdict::failed);
   EXPECT_TRUE(std::isnan(got.checks[1].measured));

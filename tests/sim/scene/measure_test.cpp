@@ -37,6 +37,9 @@ Observation numbered() {
   o.bodies = 520;
   o.speed_max = 521;
   o.speed_rms = 522;
+  o.speed_kurtosis = 530;
+  o.counters.impacts = 531;
+  o.centre = {2, 3, 6};
   o.coordination_mean = 523;
   o.regions = {{524, 525, 526}, {527, 528, 529}};
   return o;
@@ -87,6 +90,10 @@ TEST(Measure, EachNameHasItsValue) {
       {"bodies.count", 520},
       {"speed.max", 521},
       {"speed.rms", 522},
+      {"speed.kurtosis", 530},
+      {"impacts.count", 531},
+      {"centre.y", 3},
+      {"centre.norm", 7},
       {"coordination.mean", 523},
       {"region.entry.count", 524},
       {"region.exit.count", 527},

@@ -61,6 +61,8 @@ constexpr BadScene bad_scenes[] = {
     {"check_expects_nothing", 8, 5, "checks[0]: expects nothing; it needs expect, below or above"},
     {"check_mode_limit", 8, 66,
      "checks[0].in_default_mode: needs exactly one of tolerance, relative, below, above"},
+    {"check_one_seed", 8, 51, "checks[0].confidence: needs seeds: 2 or more, at the top of the scene"},
+    {"check_certain", 9, 51, "checks[0].confidence: must be between 0 and 1, neither of them"},
     {"check_no_tolerance", 8, 37, "checks[0].expect: needs tolerance or relative"},
     {"check_tolerance_alone", 8, 50, "checks[0].tolerance: needs expect"},
     {"check_over_no_reduce", 8, 35, "checks[0].over: needs reduce"},
