@@ -11,14 +11,18 @@ namespace {
 static_assert(sizeof(btScalar) == sizeof(double));
 
 /// The first values are Bullet's own defaults. Tuned: overlaps of any depth are parted without velocity,
-/// every approach bounces, and contacts do not act at a distance; a ball then keeps its energy.
+/// every approach bounces, and contacts do not act at a distance; a ball then keeps its energy. Without erp
+/// overlaps stay as they are. Wide: contacts are found all at once and kept however far a body slides, which
+/// else loses them now and then and falls for a step.
 struct BulletSetting {
   int iterations = 10;
   bool continuous = false;                 // continuous detection for small fast bodies
   double restitution_threshold = 0.2;      // m/s
   double split_impulse_threshold = -0.04;  // m; deeper overlaps are parted without velocity
-  double contact_distance = 0.02;          // m
+  double contact_distance = 0.02;          // up to which contacts are kept, of the smaller body's radius
   double warm_start = 0.85;                // share of the last impulses
+  double erp = 0.2;                        // share of an overlap that is to vanish in a step
+  bool all_plane_contacts = false;         // of a body on a plane at once, else one more in each step
 };
 
 const std::map<std::string, BulletSetting> settings = {
@@ -31,6 +35,9 @@ const std::map<std::string, BulletSetting> settings = {
       .split_impulse_threshold = 0,
       .contact_distance = 0.0005,
       .warm_start = 1}},
+    {"no-erp", {.restitution_threshold = 0, .contact_distance = 0.0005, .erp = 0}},
+    {"no-erp-wide", {.contact_distance = 0.5, .erp = 0, .all_plane_contacts = true}},
+    {"no-erp-wide-200", {.iterations = 200, .contact_distance = 0.5, .erp = 0, .all_plane_contacts = true}},
 };
 
 btVector3 to_bullet(const Vec3& v) { return {v.x(), v.y(), v.z()}; }
@@ -61,7 +68,8 @@ std::unique_ptr<btCollisionShape> shape_of(const BodyTable& bodies, std::size_t 
 
 class BulletEngine : public Engine {
  public:
-  BulletEngine(const BulletSetting& setting, const Scene& scene, double step) : scene_(scene), step_(step) {
+  BulletEngine(const BulletSetting& setting, const Scene& scene, double step)
+      : scene_(scene), step_(step), forces_(constant_forces(scene, "Bullet")) {
     gCalculateCombinedFrictionCallback = friction_of;
     gCalculateCombinedRestitutionCallback = restitution_of;
     world_.setGravity(to_bullet(scene.gravity));
@@ -70,11 +78,20 @@ class BulletEngine : public Engine {
     solver.m_restitutionVelocityThreshold = setting.restitution_threshold;
     solver.m_splitImpulsePenetrationThreshold = setting.split_impulse_threshold;
     solver.m_warmstartingFactor = setting.warm_start;
+    solver.m_erp2 = setting.erp;
+    if (setting.all_plane_contacts) configuration_.setPlaneConvexMultipointIterations();
     gContactBreakingThreshold = setting.contact_distance;
     for (std::size_t k = 0; k < scene.bodies.position.size(); ++k) add_body(k, setting.continuous);
   }
 
-  void step() override { world_.stepSimulation(step_, 0); }
+  void step() override {
+    for (const AppliedForce& load : forces_)
+      for (std::int32_t k = load.on.first; k < load.on.first + load.on.count; ++k) {
+        bodies_[k]->applyCentralForce(to_bullet(load.force));
+        bodies_[k]->applyTorque(to_bullet(load.torque));
+      }
+    world_.stepSimulation(step_, 0);
+  }
 
   void read(BodyTable& bodies) const override {
     for (std::size_t k = 0; k < bodies_.size(); ++k) {
@@ -115,6 +132,7 @@ class BulletEngine : public Engine {
 
   const Scene& scene_;
   double step_;
+  const std::vector<AppliedForce>& forces_;
   std::vector<std::unique_ptr<btCollisionShape>> shapes_;
   std::vector<std::unique_ptr<btRigidBody>> bodies_;  // in the order of the scene
   btDefaultCollisionConfiguration configuration_;

@@ -13,4 +13,11 @@ std::unique_ptr<Engine> make_engine(const std::string& engine, const std::string
   return maker->second(setting, scene, step);
 }
 
+const std::vector<AppliedForce>& constant_forces(const Scene& scene, const std::string& engine) {
+  for (const AppliedForce& load : scene.forces)
+    if (load.during.from > 0 || load.during.until < scene.time.end)
+      throw InputError(engine + " is given forces alone that act all the time");
+  return scene.forces;
+}
+
 }  // namespace scree::bench

@@ -8,6 +8,7 @@
 #include <map>
 #include <memory>
 #include <string>
+#include <vector>
 
 namespace scree::bench {
 
@@ -39,6 +40,10 @@ const Setting& find_setting(const std::map<std::string, Setting>& settings, cons
 inline InputError refused_by(const std::string& engine) {
   return InputError(engine + " is given spheres, boxes and planes alone, free or fixed");
 }
+
+/// The scene's forces, which an engine has to be given again for every step. Throws InputError where one
+/// comes or goes.
+const std::vector<AppliedForce>& constant_forces(const Scene& scene, const std::string& engine);
 
 // One file each.
 std::unique_ptr<Engine> make_bullet(const std::string& setting, const Scene& scene, double step);

@@ -42,11 +42,12 @@ Judge::Judge(const Scene& scene)
       pair_finder_(make_pair_finder({}, false, Vec3::Zero())),
       narrow_phase_(NarrowPhaseSettings{}) {
   first_energy_ = energy_of(scene.bodies, gravity_).total();
-  see(scene.bodies);
+  see(scene.bodies, 0);
 }
 
-void Judge::see(const BodyTable& state) {
+void Judge::see(const BodyTable& state, double time) {
   findings_.newest = state;
+  findings_.time = time;
   measure_energy(state);
   measure_penetration_of(state);
   const Vec3 travel = state.position.back() - first_place_;
@@ -71,7 +72,11 @@ void Judge::measure_penetration_of(const BodyTable& state) {
   const ConstBodyView views = view_of(std::as_const(bodies));
   const ConstView<Pair> pairs =
       candidates_.list(views, pair_finder_->find(bodies, margin), std::as_const(margin).view());
-  measure_penetration(narrow_phase_.find(views, pairs, margin.view()), views, findings_.penetration);
+  const Manifolds found = narrow_phase_.find(views, pairs, margin.view());
+  measure_penetration(found, views, findings_.penetration);
+  findings_.squared_penetration = 0;
+  for (const ContactPoint& point : found.points)
+    findings_.squared_penetration += std::pow(std::min(point.gap, 0.0), 2);
   findings_.worst_penetration = std::max(findings_.worst_penetration, findings_.penetration.max);
 }
 

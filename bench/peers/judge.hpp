@@ -14,10 +14,12 @@ namespace scree::bench {
 
 struct Findings {
   BodyTable newest;                ///< the state seen last
+  double time = 0;                 ///< its own (s)
   double spin_energy = 0;          ///< part of K in the newest state (J)
   double energy_change = 0;        ///< of K + U of the free bodies, from the first state to the newest (J)
   double worst_energy_change = 0;  ///< the largest of either sign, as an amount
   Penetration penetration;         ///< in the newest state, true geometry
+  double squared_penetration = 0;  ///< sum over its contact points (m^2); a sphere's pairs have one each
   double worst_penetration = 0;    ///< of all states (m)
   double rms_speed = 0;            ///< sqrt(2 K / mass), spin included, in the newest state (m/s)
   double worst_drift = 0;          ///< of the last body from its start, at right angles to gravity (m)
@@ -27,7 +29,7 @@ struct Findings {
 class Judge {
  public:
   explicit Judge(const Scene& scene);
-  void see(const BodyTable& state);
+  void see(const BodyTable& state, double time);
   const Findings& findings() const { return findings_; }
 
  private:

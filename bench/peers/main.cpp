@@ -21,61 +21,67 @@ namespace scree::bench {
 namespace {
 
 struct Arguments {
-  std::string scenes = SCREE_SOURCE_DIR "/configs/bench";
+  std::string scenes = SCREE_SOURCE_DIR "/configs";
   std::string name;
   std::string engine;
   std::string setting = "default";
   double step = 1.0 / 240;  // s
 };
 
-struct Cost {
-  double median = 0;  ///< of a step, over the samples that count (s)
-  double total = 0;   ///< of all steps (s)
+struct Outcome {
+  double median = 0;           ///< time of a step, over the samples that count (s)
+  double total = 0;            ///< of all steps (s)
+  std::vector<double> errors;  ///< in the order of the measures
 };
 
-/// Steps to the scene's end; `judge` sees what the case wants it to see.
-Cost run_case(const Case& wanted, const Scene& scene, double step, Engine& engine, Judge& judge) {
+/// Steps to the scene's end; a judge sees what the case wants to be seen.
+Outcome run_case(const Case& wanted, const Scene& scene, double step, Engine& engine) {
   const auto steps = std::lround(scene.time.end / step);
   if (std::abs(static_cast<double>(steps) * step - scene.time.end) > 1e-9 * scene.time.end)
     throw InputError("--step: must divide the scene's end");
   const auto per_sample = std::max(std::lround(wanted.watch_every / step), 1L);
   BodyTable state = scene.bodies;
+  Judge judge(scene);
+  Errors errors(wanted, scene);
   std::vector<double> samples;
-  Cost cost;
+  Outcome outcome;
   for (long done = 0; done < steps;) {
     const long stop = std::min(done + per_sample, steps);
     const double start = now(CLOCK_PROCESS_CPUTIME_ID);
     for (long k = done; k < stop; ++k) engine.step();
     const double elapsed = now(CLOCK_PROCESS_CPUTIME_ID) - start;
-    cost.total += elapsed;
+    outcome.total += elapsed;
     const double half = 0.5 * step;  // times are sums of steps
     if (static_cast<double>(done) * step > wanted.timed_from - half)
       samples.push_back(elapsed / static_cast<double>(stop - done));
     done = stop;
     if (static_cast<double>(done) * step < wanted.watch_from - half) continue;
     engine.read(state);
-    judge.see(state);
+    judge.see(state, static_cast<double>(done) * step);
+    errors.see(judge.findings());
   }
   std::nth_element(samples.begin(), samples.begin() + std::ssize(samples) / 2, samples.end());
-  cost.median = samples[samples.size() / 2];
-  return cost;
+  outcome.median = samples[samples.size() / 2];
+  outcome.errors = errors.values();
+  return outcome;
 }
 
 int run(const Arguments& arguments) {
   const Case& wanted = find_case(arguments.name);
-  const Scene scene = read_scene(arguments.scenes + "/" + wanted.name + ".yaml");
-  Judge judge(scene);
+  const Scene scene = read_scene(arguments.scenes + "/" + wanted.folder + "/" + wanted.name + ".yaml");
   const auto engine = make_engine(arguments.engine, arguments.setting, scene, arguments.step);
-  const Cost cost = run_case(wanted, scene, arguments.step, *engine, judge);
+  const Outcome outcome = run_case(wanted, scene, arguments.step, *engine);
 
   nlohmann::ordered_json line = {{"case", wanted.name},
                                  {"engine", arguments.engine},
                                  {"setting", arguments.setting},
                                  {"step", arguments.step},
-                                 {"us_per_step", 1e6 * cost.median},
-                                 {"ms_per_second", 1e3 * cost.total / scene.time.end}};
-  for (const Measure& measure : wanted.measures) {
-    line["errors"][measure.name] = measure.error(scene, judge.findings());
+                                 {"us_per_step", 1e6 * outcome.median},
+                                 {"ms_per_second", 1e3 * outcome.total / scene.time.end},
+                                 {"cpu_s", outcome.total}};
+  for (std::size_t k = 0; k < wanted.measures.size(); ++k) {
+    const Measure& measure = wanted.measures[k];
+    line["errors"][measure.name] = outcome.errors[k];
     line["units"][measure.name] = measure.unit;
   }
   std::printf("%s\n", line.dump().c_str());
@@ -88,11 +94,11 @@ int run(const Arguments& arguments) {
 int main(int argc, char** argv) {
   scree::bench::Arguments arguments;
   CLI::App program("One case in one engine: errors and costs as a line of JSON");
-  program.add_option("--case", arguments.name, "the scene NAME.yaml")->required();
+  program.add_option("--case", arguments.name, "its name, that of its scene, too")->required();
   program.add_option("--engine", arguments.engine, "bullet, ode or scree")->required();
   program.add_option("--setting", arguments.setting, "of the engine; for scree a list of key=value");
   program.add_option("--step", arguments.step, "s")->check(CLI::PositiveNumber);
-  program.add_option("--scenes", arguments.scenes, "folder of the scenes");
+  program.add_option("--scenes", arguments.scenes, "folder that has the cases' folders of scenes");
   CLI11_PARSE(program, argc, argv);
   try {
     return scree::bench::run(arguments);

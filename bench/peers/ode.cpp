@@ -11,14 +11,21 @@ namespace {
 
 static_assert(sizeof(dReal) == sizeof(double));
 
+/// ODE has no cone of friction. Its pyramid lies as ODE likes, or with an axis along the slip, where its
+/// friction has the size and the direction of the cone's.
 struct OdeSetting {
-  int iterations;  // of the quick step; 0: the direct step, a pivoting solver
+  int iterations;           // of the quick step; 0: the direct step, a pivoting solver
+  double erp = 0.2;         // share of an overlap that is to vanish in a step, by velocity
+  bool along_slip = false;  // how the pyramids lie
 };
 
 const std::map<std::string, OdeSetting> settings = {
     {"quick-10", {10}},
     {"quick-50", {50}},
     {"direct", {0}},
+    {"direct-no-erp", {.iterations = 0, .erp = 0}},
+    {"quick-10-slip", {.iterations = 10, .erp = 0, .along_slip = true}},
+    {"direct-slip", {.iterations = 0, .erp = 0, .along_slip = true}},
 };
 
 struct Destroy {
@@ -43,13 +50,19 @@ Vec3 from_ode(const dReal* v) { return {v[0], v[1], v[2]}; }
 class OdeEngine : public Engine {
  public:
   OdeEngine(const OdeSetting& setting, const Scene& scene, double step)
-      : scene_(scene), setting_(setting), step_(step) {
+      : scene_(scene), setting_(setting), step_(step), forces_(constant_forces(scene, "ODE")) {
     dWorldSetGravity(world_.get(), scene.gravity.x(), scene.gravity.y(), scene.gravity.z());
+    dWorldSetERP(world_.get(), setting.erp);
     if (setting.iterations > 0) dWorldSetQuickStepNumIterations(world_.get(), setting.iterations);
     for (std::size_t k = 0; k < scene.bodies.position.size(); ++k) add_body(k);
   }
 
   void step() override {
+    for (const AppliedForce& load : forces_)
+      for (std::int32_t k = load.on.first; k < load.on.first + load.on.count; ++k) {
+        dBodyAddForce(bodies_[k], load.force.x(), load.force.y(), load.force.z());
+        dBodyAddTorque(bodies_[k], load.torque.x(), load.torque.y(), load.torque.z());
+      }
     dSpaceCollide(space_.get(), this, [](void* engine, dGeomID a, dGeomID b) {
       static_cast<OdeEngine*>(engine)->add_contacts(a, b);
     });
@@ -115,6 +128,26 @@ class OdeEngine : public Engine {
     dGeomSetQuaternion(geometry, turn);
   }
 
+  /// Of a body's point after the step, if nothing touched it.
+  Vec3 velocity_to_come(dBodyID body, const dReal* point) const {
+    if (!body) return Vec3::Zero();
+    dVector3 now;
+    dBodyGetPointVel(body, point[0], point[1], point[2], now);
+    dMass mass;
+    dBodyGetMass(body, &mass);
+    return from_ode(now) + step_ * (from_ode(dBodyGetForce(body)) / mass.mass + scene_.gravity);
+  }
+
+  void align_friction(dContact& contact, dBodyID first, dBodyID second) const {
+    const Vec3 normal = from_ode(contact.geom.normal);
+    const Vec3 velocity =
+        velocity_to_come(first, contact.geom.pos) - velocity_to_come(second, contact.geom.pos);
+    const Vec3 slip = velocity - velocity.dot(normal) * normal;
+    if (slip.norm() < 1e-9) return;  // m/s; it sticks, and one direction is as good as another
+    contact.surface.mode |= dContactFDir1;
+    Eigen::Map<Vec3>(contact.fdir1) = slip.normalized();
+  }
+
   void add_contacts(dGeomID a, dGeomID b) {
     const dBodyID first = dGeomGetBody(a), second = dGeomGetBody(b);
     if (!first && !second) return;
@@ -129,6 +162,7 @@ class OdeEngine : public Engine {
     contact.surface.bounce = law.restitution;
     for (int k = 0; k < count; ++k) {
       contact.geom = found[k];
+      if (setting_.along_slip) align_friction(contact, first, second);
       dJointAttach(dJointCreateContact(world_.get(), contacts_.get(), &contact), first, second);
     }
   }
@@ -136,6 +170,7 @@ class OdeEngine : public Engine {
   const Scene& scene_;
   OdeSetting setting_;
   double step_;
+  const std::vector<AppliedForce>& forces_;
   Owned<dWorldID> world_{create_world()};                // with the bodies
   Owned<dSpaceID> space_{dHashSpaceCreate(nullptr)};     // with the geometries
   Owned<dJointGroupID> contacts_{dJointGroupCreate(0)};  // of one step

@@ -79,6 +79,18 @@ TEST_P(Peers, SlideAsTheFrictionOfThePairSays) {
   EXPECT_NEAR(end.velocity[1].x(), 4 - 0.3 * 9.81 * 0.25, 0.01);
 }
 
+TEST_P(Peers, GiveWayToAForceAndATorqueAllTheTime) {
+  const int steps = 128;
+  const BodyTable end = state_after(
+      "  - {sphere: {radius: 0.5}, name: a, at: [0, 0, 9], mass: 2, material: a}\n"
+      "forces:\n"
+      "  - {on: a, force: [6, -8, 0], torque: [0, 0, 3]}\n",
+      steps);
+  const double time = steps * step;
+  EXPECT_NEAR((end.velocity[0] - Vec3(3, -4, -9.81) * time).norm(), 0, 1e-12);
+  EXPECT_NEAR((end.spin[0] - Vec3(0, 0, 3 / (0.4 * 2 * 0.25)) * time).norm(), 0, 1e-12);
+}
+
 TEST_P(Peers, RefuseASettingThatTheyDoNotKnow) {
   const Scene scene = scene_of("  - {sphere: {radius: 1}, material: a}\n");
   for (const char* setting : {"no.such.setting=1", "none"})
@@ -91,9 +103,25 @@ std::string name_of(const testing::TestParamInfo<Entrant>& entrant) {
   return name;
 }
 
+TEST(Engines, RefuseAForceThatEnds) {
+  const Scene scene = parse_scene(R"(
+format: 1
+time: {end: 1, step: 0.01}
+materials: {a: {}}
+bodies:
+  - {sphere: {radius: 1}, name: a, material: a}
+forces:
+  - {on: a, force: [1, 0, 0], until: 0.5}
+)",
+                                  "ends.yaml");
+  EXPECT_THROW(make_engine("bullet", "default", scene, step), InputError);
+  EXPECT_THROW(make_engine("ode", "direct", scene, step), InputError);
+}
+
 INSTANTIATE_TEST_SUITE_P(Engines, Peers,
                          testing::Values(Entrant{"bullet", "default"}, Entrant{"bullet", "tuned"},
-                                         Entrant{"ode", "quick-10"}, Entrant{"ode", "direct"},
+                                         Entrant{"bullet", "no-erp"}, Entrant{"ode", "quick-10"},
+                                         Entrant{"ode", "direct"}, Entrant{"ode", "direct-slip"},
                                          Entrant{"scree", "default"}),
                          name_of);
 
@@ -116,7 +144,7 @@ bodies:
   moved.position[2] = Vec3(0.3, 0, 0.8);  // 0.5 from the first: 0.25 in it
   moved.velocity[2] = Vec3(0, 3, 0);
   moved.spin[2] = Vec3(0, 0, 4);
-  judge.see(moved);
+  judge.see(moved, 0.5);
   const Findings& f = judge.findings();
   const double angular = 0.5 * (0.4 * 2 * 0.0625) * 16;
   const double kinetic = 0.5 * 2 * 9 + angular;
@@ -125,13 +153,48 @@ bodies:
   EXPECT_NEAR(f.worst_energy_change, std::abs(f.energy_change), 1e-12);
   EXPECT_NEAR(f.rms_speed, std::sqrt(2 * kinetic / 4), 1e-12);
   EXPECT_NEAR(f.worst_penetration, 0.25, 1e-12);
+  EXPECT_NEAR(f.squared_penetration, 0.01 + 0.0625, 1e-12);
+  EXPECT_EQ(f.time, 0.5);
   EXPECT_NEAR(f.penetration.relative_max, 1, 1e-12);
   EXPECT_NEAR(f.penetration.relative_mean, (0.2 + 1) / 2, 1e-12);
   EXPECT_EQ(f.newest.position[2], moved.position[2]);
-  judge.see(scene.bodies);
+  judge.see(scene.bodies, 1);
   EXPECT_NEAR(judge.findings().worst_drift, 0.3, 1e-12);
   EXPECT_EQ(judge.findings().energy_change, 0);
   EXPECT_EQ(judge.findings().penetration.max, 0);
+}
+
+TEST(Errors, AreMeansOfAllStatesOrOfTheNewest) {
+  const auto square = [](const Scene&, const Findings& f) { return f.time * f.time; };
+  const Case two = {"two", 0, 0, 0, {{"mean", "", square, true}, {"newest", "", square}}};
+  const Scene scene;
+  Errors errors(two, scene);
+  Findings findings;
+  for (const double time : {1, 3, 4}) {
+    findings.time = time;
+    errors.see(findings);
+  }
+  EXPECT_NEAR(errors.values()[0], 26.0 / 3, 1e-12);
+  EXPECT_EQ(errors.values()[1], 16);
+}
+
+/// The published error of the engines that friction pyramids hold in place, and none of the formula's motion.
+TEST(Errors, OfTheRollingCaseAreAsPublished) {
+  const Case& rolling = find_case("rolling");
+  const Scene scene = read_scene(SCREE_SOURCE_DIR "/configs/validation/simbenchmark/rolling.yaml");
+  Findings at_rest, moving;
+  at_rest.newest = moving.newest = scene.bodies;
+  Errors of_rest(rolling, scene), of_motion(rolling, scene);
+  for (int k = 0; k < 4000; ++k) {
+    at_rest.time = moving.time = 0.001 * k;
+    const Vec3 along = moving.time * Vec3(0.5, std::sqrt(0.75), 0);
+    moving.newest.velocity[1] = 0.7385 * along;
+    moving.newest.velocity[2] = 0.2110 * along;
+    of_rest.see(at_rest);
+    of_motion.see(moving);
+  }
+  EXPECT_NEAR(of_rest.values()[0], 3.14497, 1e-5);
+  EXPECT_NEAR(of_motion.values()[0], 0, 1e-20);
 }
 
 }  // namespace
