@@ -195,21 +195,47 @@ bool ResponseSolver::count_outcomes(Counters& counters) const {
   return all_solved;
 }
 
+bool ResponseSolver::find_impulses(SolveStage stage, const ResponseParameters& parameters, ContactSet& set,
+                                   Counters& counters) {
+  const SweepPlan plan = plan_sweeps(parameters, set);
+  change_.resize(plan.direct ? set.contacts.size() : 0);
+  stage.change = change_.view();
+  sweeps_.load(stage, set.coloring, set.batches);
+  sweeps_.set_velocities();
+  const auto sweep = [&](int most) { return sweeps_.run(plan, most, counters.sweeps); };
+  const int first = plan.direct ? std::min(plan.most, sweeps_before_direct) : plan.most;
+  bool converged = sweep(first);
+  if (parameters.accurate || (!converged && first < plan.most)) {
+    sweeps_.set_velocities();
+    islands_.find(set.contacts.view(), stage.solver);
+    outcome_.resize(islands_.count());
+    parallel::for_each<Host>(
+        "response.islands", islands_.count(),
+        SolveIsland{stage, &islands_, plan.tolerance, parameters.accurate, outcome_.view()});
+    converged = count_outcomes(counters);
+    sweeps_.take_impulses();
+    if (!converged) {
+      sweeps_.set_velocities();
+      converged = sweep(std::max(plan.most - first, sweeps_before_direct));
+    }
+  }
+  sweeps_.set_velocities();
+  return converged;
+}
+
 Ledger ResponseSolver::solve(const Manifolds& manifolds, double step, const ResponseParameters& parameters,
                              BodyView bodies, Array<SolverBody, Host>& solver, ContactSet& set,
                              Counters& counters) {
   const std::int64_t n = set.contacts.size();
   free_velocity_.resize(solver.size());
   free_spin_.resize(solver.size());
-  const SweepPlan plan = plan_sweeps(parameters, set);
-  change_.resize(plan.direct ? n : 0);
   const SolveStage stage{.manifolds = manifolds,
                          .bodies = bodies,
                          .solver = solver.view(),
                          .contacts = set.contacts.view(),
                          .rows = set.rows.view(),
                          .couplings = set.couplings.view(),
-                         .change = change_.view(),
+                         .change = {},
                          .free_velocity = free_velocity_.view(),
                          .free_spin = free_spin_.view(),
                          .step = step};
@@ -219,27 +245,7 @@ Ledger ResponseSolver::solve(const Manifolds& manifolds, double step, const Resp
   if (n > 0) {
     parallel::for_each<Host>("response.rows", n,
                              PrepareRows{stage, tolerance::parting_speed * step * parameters.gravity.norm()});
-    sweeps_.load(stage, set.coloring, set.batches);
-    sweeps_.set_velocities();
-    const auto sweep = [&](int most) { return sweeps_.run(plan, most, counters.sweeps); };
-    const int first = plan.direct ? std::min(plan.most, sweeps_before_direct) : plan.most;
-    bool converged = sweep(first);
-    if (parameters.accurate || (!converged && first < plan.most)) {
-      sweeps_.set_velocities();
-      islands_.find(set.contacts.view(), solver.view());
-      outcome_.resize(islands_.count());
-      parallel::for_each<Host>(
-          "response.islands", islands_.count(),
-          SolveIsland{stage, &islands_, plan.tolerance, parameters.accurate, outcome_.view()});
-      converged = count_outcomes(counters);
-      sweeps_.take_impulses();
-      if (!converged) {
-        sweeps_.set_velocities();
-        converged = sweep(std::max(plan.most - first, sweeps_before_direct));
-      }
-    }
-    if (!converged) ++counters.unconverged;
-    sweeps_.set_velocities();
+    if (!find_impulses(stage, parameters, set, counters)) ++counters.unconverged;
     if (parameters.accurate) {
       const auto left = parallel::sum<ImpulseChange, Host>("response.residual", n, LoadResidual{stage});
       if (left.size > 0) counters.residual = std::max(counters.residual, std::sqrt(left.step / left.size));
