@@ -9,7 +9,7 @@ namespace scree::bench {
 namespace {
 
 /// Accelerated projected gradient descent (Mazhar, Heyn, Negrut and Tasora 2015, "Using Nesterov's method to
-/// accelerate multibody dynamics with friction and contact", algorithm 1), on
+/// accelerate multibody dynamics with friction and contact"), on
 ///   min x.W x / 2 + (q + s n).x, x in K,
 /// at given slips s = mu |u_t|, which follow by fixed-point iteration (Acary, Cadoux, Lemarechal and Malick
 /// 2011, "A formulation of the linear discrete Coulomb friction problem via convex optimization"), each time

@@ -3,7 +3,7 @@
 //   u + mu |u_t| n is in the dual of K, r is in K, and the two are at right angles,
 // K the product of the points' Coulomb cones |r_t| <= mu r_n (De Saxce and Feng 1998, "The bipotential
 // method"; Acary, Bremond and Huber 2018, "On solving contact problems with Coulomb friction: formulations
-// and numerical comparisons", section 2).
+// and numerical comparisons").
 #pragma once
 
 #include "core/math.hpp"

@@ -8,7 +8,7 @@ namespace scree::bench {
 /// Velocities, relative to the natural residual of no impulses at all: what closes or slips in the problem.
 struct Residual {
   /// Root mean square over the points of |r - P_K(r - rho (u + mu |u_t| n))| / rho, the natural map of De
-  /// Saxce's form (Acary, Bremond and Huber 2018, section 3), with 1 / rho the largest eigenvalue of the
+  /// Saxce's form (Acary, Bremond and Huber 2018), with 1 / rho the largest eigenvalue of the
   /// point's block of W. So heavy and light contacts weigh alike, and units do not matter. They divide by the
   /// norm of q instead, to which contacts that stay open add much.
   double natural;
