@@ -22,6 +22,9 @@ inline constexpr double pair_skin = 0.1;
 /// Safety factor on the distance that a body can travel in a step, for what impacts add to its speed.
 inline constexpr double travel_factor = 1.05;
 
+/// Accuracy of the least loaded contact, relative to its impulse, under which the contacts of a substep are
+/// not judged together but island by island.
+inline constexpr double least_load_accuracy = 1e-6;
 /// Share of an overlap that one visit of the position correction removes. 1 can collapse a pile, 0.5 takes
 /// three times as many sweeps.
 inline constexpr double correction_share = 0.8;

@@ -5,6 +5,7 @@
 #include "core/tolerances.hpp"
 #include "narrowphase/narrow_phase.hpp"
 #include "sim/applied_forces.hpp"
+#include "sim/contact_problem.hpp"
 #include "sim/dynamics/contact_set.hpp"
 #include "sim/dynamics/correction.hpp"
 #include "sim/dynamics/impact_solver.hpp"
@@ -502,6 +503,12 @@ std::vector<ContactForce> Simulation::contact_forces() const {
   for (const Impact& impact : p.struck)
     forces.push_back({impact.i, impact.j, impact.impulse / p.last_substep, impact.point});
   return forces;
+}
+
+ContactProblem Simulation::contact_problem() const {
+  const ResponseSolver& response = parts_->response;
+  return contact_problem_of(parts_->contacts, parts_->solver.view(), response.free_velocity(),
+                            response.free_spin());
 }
 
 GridOccupancy Simulation::grid_occupancy() {

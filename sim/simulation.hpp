@@ -45,6 +45,8 @@ class Simulation {
   std::vector<BodyPair> pairs();
   /// The contacts of the last substep that carried a force.
   std::vector<ContactForce> contact_forces() const;
+  /// What the response had to solve in the last substep, and its answer; empty before the first step.
+  ContactProblem contact_problem() const;
   /// The grid behind pairs().
   GridOccupancy grid_occupancy();
 

@@ -185,6 +185,19 @@ struct MinusSlipEnd {
 /// keep what was found. Where everything tumbles they do not.
 bool pays_patience(const Counters& counters) { return counters.patient_failed <= 4 + counters.patient; }
 
+/// Whether some contacts carry so little beside others that to solve all together to the tolerance leaves
+/// them unsolved: then each island is looked at by itself. Empty where nobody asks.
+bool loads_differ(ConstView<ImpulseChange> change, double tolerance) {
+  double least = HUGE_VAL;
+  double all = 0;
+  for (const ImpulseChange& contact : change) {
+    if (contact.size > 0) least = std::min(least, contact.size);
+    all += contact.size;
+  }
+  constexpr double accuracy = tolerance::least_load_accuracy;
+  return tolerance * tolerance * all > accuracy * accuracy * least;
+}
+
 /// Sweeps after which what has not converged creeps. Warm-started contacts take one or two.
 constexpr int sweeps_before_direct = 10;
 
@@ -200,21 +213,54 @@ bool ResponseSolver::count_outcomes(std::int64_t& solved, std::int64_t& failed) 
   return all_solved;
 }
 
+bool ResponseSolver::find_impulses(SolveStage stage, const ResponseParameters& parameters, ContactSet& set,
+                                   Counters& counters) {
+  const SweepPlan plan = plan_sweeps(parameters, set);
+  change_.resize(plan.direct ? set.contacts.size() : 0);
+  stage.change = change_.view();
+  sweeps_.load(stage, set.coloring, set.batches);
+  sweeps_.set_velocities();
+  const auto sweep = [&](int most) { return sweeps_.run(plan, most, counters.sweeps); };
+  const auto solve_islands = [&](const DirectLimits& limits, std::int64_t& solved, std::int64_t& failed) {
+    sweeps_.set_velocities();
+    parallel::for_each<Host>(
+        "response.islands", islands_.count(),
+        SolveIsland{stage, &islands_, plan.tolerance, parameters.accurate, limits, outcome_.view()});
+    sweeps_.take_impulses();
+    return count_outcomes(solved, failed);
+  };
+  const int first = plan.direct ? std::min(plan.most, sweeps_before_direct) : plan.most;
+  bool converged = sweep(first);
+  if (parameters.accurate || (!converged && first < plan.most) ||
+      (converged && loads_differ(std::as_const(change_).view(), plan.tolerance))) {
+    islands_.find(set.contacts.view(), stage.solver);
+    outcome_.resize(islands_.count());
+    converged = solve_islands(parameters.accurate ? thorough_limits : quick_limits, counters.direct,
+                              counters.direct_failed);
+    if (!converged) {
+      sweeps_.set_velocities();
+      converged = sweep(std::max(plan.most - first, sweeps_before_direct));
+      if (!converged && !parameters.accurate && pays_patience(counters))
+        converged = solve_islands(patient_limits, counters.patient, counters.patient_failed);
+    }
+  }
+  sweeps_.set_velocities();
+  return converged;
+}
+
 Ledger ResponseSolver::solve(const Manifolds& manifolds, double step, const ResponseParameters& parameters,
                              BodyView bodies, Array<SolverBody, Host>& solver, ContactSet& set,
                              Counters& counters) {
   const std::int64_t n = set.contacts.size();
   free_velocity_.resize(solver.size());
   free_spin_.resize(solver.size());
-  const SweepPlan plan = plan_sweeps(parameters, set);
-  change_.resize(plan.direct ? n : 0);
   const SolveStage stage{.manifolds = manifolds,
                          .bodies = bodies,
                          .solver = solver.view(),
                          .contacts = set.contacts.view(),
                          .rows = set.rows.view(),
                          .couplings = set.couplings.view(),
-                         .change = change_.view(),
+                         .change = {},
                          .free_velocity = free_velocity_.view(),
                          .free_spin = free_spin_.view(),
                          .step = step};
@@ -224,33 +270,7 @@ Ledger ResponseSolver::solve(const Manifolds& manifolds, double step, const Resp
   if (n > 0) {
     parallel::for_each<Host>("response.rows", n,
                              PrepareRows{stage, tolerance::parting_speed * step * parameters.gravity.norm()});
-    sweeps_.load(stage, set.coloring, set.batches);
-    sweeps_.set_velocities();
-    const auto sweep = [&](int most) { return sweeps_.run(plan, most, counters.sweeps); };
-    const int first = plan.direct ? std::min(plan.most, sweeps_before_direct) : plan.most;
-    bool converged = sweep(first);
-    if (parameters.accurate || (!converged && first < plan.most)) {
-      islands_.find(set.contacts.view(), solver.view());
-      outcome_.resize(islands_.count());
-      const auto solve_islands = [&](const DirectLimits& limits, std::int64_t& solved, std::int64_t& failed) {
-        sweeps_.set_velocities();
-        parallel::for_each<Host>(
-            "response.islands", islands_.count(),
-            SolveIsland{stage, &islands_, plan.tolerance, parameters.accurate, limits, outcome_.view()});
-        converged = count_outcomes(solved, failed);
-        sweeps_.take_impulses();
-      };
-      solve_islands(parameters.accurate ? thorough_limits : quick_limits, counters.direct,
-                    counters.direct_failed);
-      if (!converged) {
-        sweeps_.set_velocities();
-        converged = sweep(std::max(plan.most - first, sweeps_before_direct));
-        if (!converged && !parameters.accurate && pays_patience(counters))
-          solve_islands(patient_limits, counters.patient, counters.patient_failed);
-      }
-    }
-    if (!converged) ++counters.unconverged;
-    sweeps_.set_velocities();
+    if (!find_impulses(stage, parameters, set, counters)) ++counters.unconverged;
     if (parameters.accurate) {
       const auto left = parallel::sum<ImpulseChange, Host>("response.residual", n, LoadResidual{stage});
       if (left.size > 0) counters.residual = std::max(counters.residual, std::sqrt(left.step / left.size));

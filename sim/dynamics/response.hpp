@@ -18,6 +18,16 @@ class ResponseSolver {
   Ledger solve(const Manifolds& manifolds, double step, const ResponseParameters& parameters, BodyView bodies,
                Array<SolverBody, Host>& solver, ContactSet& set, Counters& counters);
 
+  /// The part of solve() that finds the impulses: of rows that are prepared, from the impulses that they
+  /// have, as far as `parameters` ask. Sets the velocities of the solver's bodies too; `stage.change` is set
+  /// here. False if they have not converged.
+  bool find_impulses(SolveStage stage, const ResponseParameters& parameters, ContactSet& set,
+                     Counters& counters);
+
+  /// Of each body in the last substep as it would be without contacts (m/s, rad/s).
+  ConstView<Vec3> free_velocity() const { return free_velocity_.view(); }
+  ConstView<Vec3> free_spin() const { return free_spin_.view(); }
+
   /// When the first contact that slid came to stick, as a share of the last substep; 1 if none did. For the
   /// accurate mode, and not for heaps, in which something always does.
   double slip_end() const { return slip_end_; }
