@@ -127,8 +127,12 @@ class SweepsAlone : public Solver {
   PointVectors solve(double budget) override {
     replay_.reset();
     const int count = static_cast<int>(budget);
-    const SweepPlan plan{
-        .least = count, .most = count, .block_sweeps = block_sweeps_, .tolerance = 0, .direct = false};
+    const SweepPlan plan{.least = count,
+                         .most = count,
+                         .block_sweeps = block_sweeps_,
+                         .tolerance = 0,
+                         .direct = false,
+                         .smooth = false};
     std::int64_t done = 0;
     sweeps_.load(replay_.stage(), replay_.set().coloring, replay_.set().batches);
     sweeps_.set_velocities();

@@ -240,11 +240,17 @@ TEST(Solvers, AllFindASolution) {
   EXPECT_THROW(make_solver("oracle", scene, problem), InputError);
 }
 
-TEST(Solvers, TheResponseReplaysARunToTheLastBit) {
+/// To the last bit where one compiler makes the rows of both; nvcc's host code rounds W's inverse in its own
+/// way.
+TEST(Solvers, TheResponseReplaysARun) {
   const ContactProblem scene = problem_of(std::string(heap) + "response: {warm_start: false}\n");
   const Problem problem = assemble(scene);
-  EXPECT_EQ(make_solver("scree-default", scene, problem)->solve(tolerance::response_change),
-            impulses_of(scene));
+  const PointVectors replayed =
+      make_solver("scree-default", scene, problem)->solve(tolerance::response_change);
+  const PointVectors run = impulses_of(scene);
+  ASSERT_EQ(replayed.size(), run.size());
+  for (std::size_t k = 0; k < run.size(); ++k)
+    EXPECT_LT((replayed[k] - run[k]).norm(), 1e-7 * (1 + run[k].norm())) << k;
 }
 
 }  // namespace
