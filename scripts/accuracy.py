@@ -298,8 +298,8 @@ def study_section():
 
 
 TAIL = """## 6. Beside other engines
-[The table of bench/peers](../bench/results/epyc-2-cores/peers.md) has nine cases, and SimBenchmark's four, in scree, Bullet and ODE,
-run here by one judge on one thread, and rows measured earlier of PhysX, Jolt and Box3D, marked so.
+[The table of bench/peers](../bench/results/epyc-2-cores/peers.md) has nine cases in scree, Bullet and ODE, run here by one judge on one
+thread (SimBenchmark's four, section 2, are cases of it too), and rows measured earlier of PhysX, Jolt and Box3D, marked so.
 
 ## 7. Solvers alone
 [The table of bench/solvers](../bench/results/epyc-2-cores/solvers.md) takes the contact problems (W, q, mu) out of eleven scenes and gives each to scree's
