@@ -150,16 +150,20 @@ def measure_study(program, name):
 def draw_beside(folder, plot, case):
     """Other engines' points in a study's plot: those of the table of bench/peers, whose first error is the study's."""
     script = (folder / f"{plot}.gp").read_text()
-    points = []
+    points, here = [], set()
     for line in open(ROOT / PEERS_TABLE):
         cells = [cell.strip() for cell in line.strip().strip("|").split("|")]
         if line.startswith("## "):
             inside = line.split()[1] == case
         elif line.startswith("| ") and inside and cells[0] not in ("engine", "scree") and cells[-2]:
+            engine = cells[0].split()[0]
+            if not cells[0].endswith("*"):
+                here.add(engine)  # what was measured earlier as well is not drawn twice
+            elif engine in here:
+                continue
             points.append((float(cells[-2]) / 1e3, float(cells[3]), f"{cells[0]}, {cells[1]}, {cells[2]} s"))
     block = "$others << END\n" + "".join(f'{cost} {error} "{words}"\n' for cost, error, words in points) + "END\n"
     script = block + script.replace("set yrange [", f"set yrange [:{10 ** math.ceil(math.log10(max(p[1] for p in points)))}]\n#", 1)
-    script = script.replace(" with steps lw 9", " with steps lw 9", 1)
     script = re.sub(r"^plot (.*)$", r"plot $others using 1:2 with points pt 2 ps 1 lw 3 lc rgb '#444444' title 'others', "
                     r"$others using 1:2:3 with labels offset 0,0.8 font ',9' notitle, \1", script, flags=re.M)
     (folder / f"{plot}.gp").write_text(script)
