@@ -181,9 +181,9 @@ struct MinusSlipEnd {
   SCREE_HD double operator()(std::int64_t c) const { return -end(c); }
 };
 
-/// Large islands that creep are worth a long direct solution, if these succeed in the scene: then warm starts
-/// keep what was found. Where everything tumbles they do not.
-bool pays_patience(const Counters& counters) { return counters.patient_failed <= 4 + counters.patient; }
+/// Large islands that creep are worth a long direct solution, if nearly all succeed in the scene: then warm
+/// starts keep what was found. Where everything tumbles they do not.
+bool pays_patience(const Counters& counters) { return 4 * counters.patient_failed <= 8 + counters.patient; }
 
 /// Whether some contacts carry so little beside others that to solve all together to the tolerance leaves
 /// them unsolved: then each island is looked at by itself. Empty where nobody asks.
