@@ -25,6 +25,11 @@ inline constexpr double travel_factor = 1.05;
 /// Accuracy of the least loaded contact, relative to its impulse, under which the contacts of a substep are
 /// not judged together but island by island.
 inline constexpr double least_load_accuracy = 1e-6;
+
+/// Share of its gap that a point must be seen to close in the rest of a substep to count as one that meets
+/// there: its row takes the midpoint's spin, and what tumbles has another one when it is seen.
+inline constexpr double likely_closing = 0.75;
+
 /// Share of an overlap that one visit of the position correction removes. 1 can collapse a pile, 0.5 takes
 /// three times as many sweeps.
 inline constexpr double correction_share = 0.8;

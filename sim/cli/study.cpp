@@ -48,15 +48,12 @@ SceneOutcome find_errors(const std::vector<Override>& settings, const StudyArgum
   return outcome;
 }
 
-/// Likewise; the median over the repeats, by `wall` (s per simulated second).
+/// Likewise; by `wall` (s per simulated second).
 SceneOutcome find_cost(const std::vector<Override>& settings, const StudyArguments& arguments) {
   SceneOutcome outcome{.scene = arguments.scene.string()};
   try {
     const Scene scene = read_scene(arguments.scene, with(settings, arguments));
-    std::vector<double> times;
-    for (int k = 0; k < arguments.repeats; ++k) times.push_back(time_steps(scene, arguments.simulation));
-    std::ranges::nth_element(times, times.begin() + std::ssize(times) / 2);
-    outcome.wall = times[times.size() / 2] / scene.time.end;
+    outcome.wall = time_steps(scene, arguments.simulation) / scene.time.end;
   } catch (const std::exception& error) {
     outcome.message = error.what();
   }
@@ -68,7 +65,14 @@ SceneOutcome reported(const ProcessResult& result) {
   return {.scene = "", .message = result.death};
 }
 
-/// Errors of several combinations at once, then the time of each by itself.
+double median(std::vector<double> values) {
+  const auto middle = values.begin() + std::ssize(values) / 2;
+  std::ranges::nth_element(values, middle);
+  return *middle;
+}
+
+/// Errors of several combinations at once, then the time of each by itself: all once, then all again, so that
+/// a machine that slows down slows all alike.
 Study carry_out(const StudyArguments& arguments, int at_once) {
   Study study{.scene = arguments.scene.stem().string(), .variations = arguments.variations, .points = {}};
   for (const auto& settings : combinations(arguments.variations)) study.points.push_back({settings});
@@ -86,17 +90,23 @@ Study carry_out(const StudyArguments& arguments, int at_once) {
         std::fflush(stdout);
       });
   fmt::print("times, one at a time, median of {}:\n", arguments.repeats);
+  std::vector<std::vector<double>> times(study.points.size());
   in_processes(
-      count, 1,
-      [&](int k) {
-        return point(k).problem.empty() ? to_json(find_cost(point(k).settings, arguments))
-                                        : to_json(SceneOutcome{.scene = ""});
+      count * arguments.repeats, 1,
+      [&](int run) {
+        const StudyPoint& of = point(run % count);
+        return to_json(of.problem.empty() ? find_cost(of.settings, arguments) : SceneOutcome{.scene = ""});
       },
-      [&](int k, const ProcessResult& result) {
+      [&](int run, const ProcessResult& result) {
+        const int k = run % count;
         const SceneOutcome outcome = reported(result);
         if (point(k).problem.empty()) point(k).problem = outcome.message;
-        point(k).cost = point(k).problem.empty() ? outcome.wall : std::numeric_limits<double>::quiet_NaN();
+        times[static_cast<std::size_t>(k)].push_back(outcome.wall);
       });
+  for (int k = 0; k < count; ++k) {
+    point(k).cost = point(k).problem.empty() ? median(times[static_cast<std::size_t>(k)])
+                                             : std::numeric_limits<double>::quiet_NaN();
+  }
   return study;
 }
 

@@ -8,9 +8,8 @@
 
 namespace scree::cli {
 
-/// The checks of a scene, of all its seeds together. `scene` was read with the
-/// `overrides`. Throws what
-/// a run may.
+/// The checks of a scene that was read with the `overrides`, of all its seeds together. Throws what a run
+/// may.
 std::vector<CheckResult> run_checks(const Scene& scene, const std::vector<Override>& overrides,
                                     const SimulationOptions& options);
 

@@ -1,6 +1,7 @@
 #include "sim/dynamics/late_contacts.hpp"
 
 #include "core/parallel.hpp"
+#include "core/tolerances.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -47,12 +48,10 @@ struct MarkFlights {
     if (std::none_of(points, points + m.count, may_close)) return false;
     const BodyInstant i = struck.at(m.i, seen);
     const BodyInstant j = struck.at(m.j, seen);
-    // The row takes the midpoint's spin; what tumbles has another one when it is seen.
-    constexpr double nearly = 0.75;
     bool pushes = false;
     for (int k = 0; k < m.count; ++k) {
       const double closing = closing_speed(m.normal, points[k].position, i, j);
-      if (closing <= 0 || closing * left <= nearly * points[k].gap) continue;
+      if (closing <= 0 || closing * left <= tolerance::likely_closing * points[k].gap) continue;
       if (points[k].gap <= 0) return false;  // touches: no impact is to come
       pushes = true;
     }

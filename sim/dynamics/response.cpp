@@ -182,8 +182,12 @@ struct MinusSlipEnd {
 };
 
 /// Large islands that creep are worth a long direct solution, if nearly all succeed in the scene: then warm
-/// starts keep what was found. Where everything tumbles they do not.
-bool pays_patience(const Counters& counters) { return 4 * counters.patient_failed <= 8 + counters.patient; }
+/// starts keep what was found. Where everything tumbles they do not (docs/decisions/0017).
+bool pays_patience(const Counters& counters) {
+  constexpr std::int64_t failures_to_start = 2;
+  constexpr std::int64_t solved_per_failure = 4;
+  return counters.patient_failed <= failures_to_start + counters.patient / solved_per_failure;
+}
 
 /// Whether some contacts carry so little beside others that to solve all together to the tolerance leaves
 /// them unsolved: then each island is looked at by itself. Empty where nobody asks.

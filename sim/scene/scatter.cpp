@@ -88,6 +88,17 @@ class CellGrid {
   std::vector<Link> links_;
 };
 
+/// Whether it is a tube that does not reach into the box, by the bounds of its cylinder: what is outside a
+/// tube passes it by, and so nothing is scattered beside one that does.
+bool is_apart(const BodyTable& bodies, std::size_t tube, const ScatterEntry& box) {
+  if (bodies.shape[tube] != Shape::tube) return false;
+  const Vec3 axis = bodies.orientation[tube] * Vec3::UnitZ();
+  const auto across = (1 - axis.array().square()).cwiseMax(0).sqrt();
+  const Vec3 half = bodies.size[tube].z() * axis.cwiseAbs() + bodies.size[tube].x() * across.matrix();
+  const Vec3& at = bodies.position[tube];
+  return (at - half - box.to).maxCoeff() >= 0 || (box.from - at - half).maxCoeff() >= 0;
+}
+
 }  // namespace
 
 double distance_to(const BodyTable& bodies, std::size_t b, const Vec3& point) {
@@ -114,7 +125,7 @@ std::int64_t scatter(BodyTable& bodies, std::int64_t first, std::int64_t count, 
                    [&](std::int32_t a, std::int32_t b) { return radius(a) > radius(b); });
 
   CellGrid grid(box.from, box.to, count);
-  std::vector<std::int32_t> planes;
+  std::vector<std::int32_t> walls;
   const auto insert = [&](std::int32_t b) {
     const Vec3& at = bodies.position[static_cast<std::size_t>(b)];
     grid.insert(b, at.array() - radius(b), at.array() + radius(b));
@@ -122,8 +133,8 @@ std::int64_t scatter(BodyTable& bodies, std::int64_t first, std::int64_t count, 
   const double reach = radius(order.front());
   for (const std::int32_t b : obstacles) {
     const auto o = static_cast<std::size_t>(b);
-    if (bodies.shape[o] == Shape::plane) {
-      planes.push_back(b);
+    if (bodies.shape[o] == Shape::plane || bodies.shape[o] == Shape::tube) {
+      if (!is_apart(bodies, o, box)) walls.push_back(b);
     } else if ((bodies.position[o].cwiseMax(box.from).cwiseMin(box.to) - bodies.position[o]).norm() <=
                reach + radius(b)) {
       insert(b);
@@ -142,7 +153,7 @@ std::int64_t scatter(BodyTable& bodies, std::int64_t first, std::int64_t count, 
     bool placed = false;
     for (int tries = 0; tries < most_tries && !placed; ++tries) {
       for (int k = 0; k < 3; ++k) at[k] = random.uniform(box.from[k], box.to[k]);
-      placed = std::all_of(planes.begin(), planes.end(), clear) &&
+      placed = std::all_of(walls.begin(), walls.end(), clear) &&
                grid.all_of(at.array() - r, at.array() + r, clear);
     }
     if (!placed) return fitted;

@@ -184,6 +184,14 @@ Change total(const V& step, const V& size) {
   j.spin = j.spin + times(batch.inertia_j, cross(get(row.arm_j), p));
 }
 
+/// Sets the impulses p; what that changes.
+[[gnu::always_inline]] inline Change keep(BallBatch& batch, const V3& p, const V3& last) {
+  const V3 change = p - last;
+  const V normal_mass = get(batch.normal_mass);
+  set(batch.impulse.impulse, p);
+  return total(dot(change, change) / normal_mass, dot(p, p) / normal_mass);
+}
+
 Change sweep_balls(BallBatch& batch, Body* bodies, double beta) {
   Bodies i = load(bodies, batch.ends.i);
   Bodies j = load(bodies, batch.ends.j);
@@ -196,28 +204,23 @@ Change sweep_balls(BallBatch& batch, Body* bodies, double beta) {
   const V pn = above_zero(pn_old - (un - get(batch.target)) * normal_mass);
   const V3 pt = last - pn_old * n - get(batch.tangent_mass) * (u - un * n);
   const V3 p = on_disc(pn, pt, n, get(batch.friction));
-  const V3 change = p - last;
-  set(batch.impulse.impulse, p);
-  push_ball(batch, n, change, i, j);
+  push_ball(batch, n, p - last, i, j);
   store(i, bodies, batch.ends.i);
   store(j, bodies, batch.ends.j);
-  return total(dot(change, change) / normal_mass, dot(p, p) / normal_mass);
+  return keep(batch, p, last);
 }
 
 Change sweep_smooth_balls(BallBatch& batch, Body* bodies, double beta) {
   Centres i = load_centres(bodies, batch.ends.i);
   Centres j = load_centres(bodies, batch.ends.j);
   const V3 n = get(batch.normal);
-  const V normal_mass = get(batch.normal_mass);
   const V3 last = accelerate(batch.impulse, all(beta));
   const V un = dot(j.velocity - i.velocity, n);
-  const V3 p = above_zero(dot(last, n) - (un - get(batch.target)) * normal_mass) * n;
-  const V3 change = p - last;
-  set(batch.impulse.impulse, p);
-  push(change, i, j);
+  const V3 p = above_zero(dot(last, n) - (un - get(batch.target)) * get(batch.normal_mass)) * n;
+  push(p - last, i, j);
   store(i, bodies, batch.ends.i);
   store(j, bodies, batch.ends.j);
-  return total(dot(change, change) / normal_mass, dot(p, p) / normal_mass);
+  return keep(batch, p, last);
 }
 
 /// coulomb_update(), given the relative velocity u.

@@ -327,6 +327,19 @@ TEST(SceneBodies, ScatterStaysInsideATube) {
   }
 }
 
+TEST(SceneBodies, ScatterPassesATubeThatIsElsewhere) {
+  const auto beside = [](const std::string& tube) {
+    return scene_of("  - {tube: {radius: 1, length: 4}, fixed: true, material: glass, " + tube +
+                    "}\n  - {sphere: {radius: 0.1}, material: glass, scatter: {count: 50, from: [1, -1, -1], "
+                    "to: [3, 1, 1]}}\n");
+  };
+  EXPECT_EQ(beside("at: [-0.001, 0, 0]").bodies.position.size(), 51U);
+  EXPECT_EQ(beside("at: [-1.5, 0, 0], rotate: {axis: [0, 1, 0], degrees: 30}").bodies.position.size(), 51U);
+  const Scene held = beside("at: [-0.5, 0, 0], rotate: {axis: [0, 1, 0], degrees: 90}");
+  for (std::size_t k = 1; k < held.bodies.position.size(); ++k)
+    EXPECT_LE(held.bodies.position[k].x(), 1.4 + 1e-12);
+}
+
 // A fifth of the 100,000 items that may take 15 s: sanitizers need five times as long.
 TEST(SceneBodies, TwentyThousandItemsLoadInFifteenSeconds) {
   std::string bodies;

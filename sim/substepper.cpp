@@ -1,0 +1,250 @@
+#include "sim/substepper.hpp"
+
+#include "core/timing.hpp"
+#include "core/tolerances.hpp"
+#include "sim/contact_problem.hpp"
+#include "sim/model.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace scree {
+
+namespace {
+
+ResponseParameters parameters_of(const Scene& scene) {
+  const ModelPlan plan = plan_model(scene);
+  return {.gravity = scene.gravity,
+          .acceleration = {},
+          .torque = {},
+          .friction = plan.friction.on,
+          .restitution = plan.restitution.on,
+          .rotation = plan.rotation.on,
+          .gyroscopic = plan.gyroscopic.on,
+          .continuous = plan.continuous.on,
+          .warm_start = scene.response.warm_start,
+          .accurate = scene.response.mode == ResponseMode::accurate,
+          .iterations = scene.response.iterations.value_or(0),
+          .block_sweeps = scene.response.block_sweeps.value_or(0),
+          .tolerance = scene.response.tolerance.value_or(0),
+          .restitution_threshold = plan.restitution_threshold};
+}
+
+std::vector<PairLaw> table_of(const Scene& scene) {
+  std::vector<PairLaw> table;
+  for (const ContactLaw& law : scene.laws) table.push_back({law.restitution, law.friction});
+  return table;
+}
+
+}  // namespace
+
+void Substepper::Restart::save(const Substepper& now) {
+  state.save(now.bodies);
+  ledger = now.ledger;
+  impacts = now.counters.impacts;
+  unfinished_impacts = now.counters.unfinished_impacts;
+  contact_impulse = now.contact_impulse_;
+}
+
+void Substepper::Restart::restore(Substepper& now) const {
+  state.restore(now.bodies);
+  now.ledger = ledger;
+  now.counters.impacts = impacts;
+  now.counters.unfinished_impacts = unfinished_impacts;
+  now.contact_impulse_ = contact_impulse;
+}
+
+Substepper::Substepper(const Scene& scene, const TimeGrid& grid, bool on_device, const Vec3& origin)
+    : grid_(grid),
+      parameters_(parameters_of(scene)),
+      materials_(static_cast<std::int64_t>(scene.materials.size())),
+      forces_(scene, grid),
+      kept_pairs_(scene.broadphase, on_device, origin),
+      narrow_phase_(scene.narrowphase) {
+  copy_bodies(bodies, scene.bodies);
+  copy(paths, prescribed_paths(scene));
+  copy(laws_, table_of(scene));
+  contact_impulse_.assign(scene.bodies.position.size(), Vec3::Zero());
+}
+
+void Substepper::start_step(std::int64_t step) {
+  step_ = step;
+  std::fill(contact_impulse_.begin(), contact_impulse_.end(), Vec3(Vec3::Zero()));
+  forces_.act(step, bodies, parameters_);
+}
+
+// What stops by a blow and not by friction does so no sooner in a shorter part: then cuts do not help, and
+// there are none.
+void Substepper::substep(double h, double done) {
+  constexpr int most_cuts = 16;
+  constexpr double helps = 0.25;  // of what the cut before it found too long
+  const double end = done + h;
+  int cuts = 0;
+  bool cuts_help = parameters_.accurate;
+  while (done < end) {
+    double part = end - done;
+    if (cuts_help) before_.save(*this);
+    Manifolds manifolds = fly_and_respond(part, done);
+    double last = HUGE_VAL;
+    while (cuts_help && response_.slip_end() < 1) {
+      const double too_long = 1 - response_.slip_end();
+      cuts_help = too_long < helps * last && ++cuts <= most_cuts;
+      part = cuts_help ? response_.slip_end() * part : end - done;
+      last = too_long;
+      before_.restore(*this);
+      manifolds = fly_and_respond(part, done);
+    }
+    fly_on(manifolds, part, done);
+    done = part < end - done ? done + part : end;
+  }
+  counters.cuts += cuts;
+}
+
+/// Moreau's midpoint step. Its first half: free flight to the midpoint, impacts on the way, contacts there,
+/// impulses. `done`: how much of the step went before (s).
+Manifolds Substepper::fly_and_respond(double h, double done) {
+  struck_.clear();
+  forces_.start_substep(bodies);
+  {
+    const timing::Region region("integration");
+    fly(grid_.time(step_) + done + 0.5 * h, 0.5 * h);
+  }
+  resolve_impacts(h, 0, reach_from(h, done));
+  const Manifolds manifolds = find_contacts(h, reach_from(h, done));
+  respond(manifolds, h);
+  return manifolds;
+}
+
+/// And its second: impacts on the way, since the response has changed it, and free flight to the end.
+void Substepper::fly_on(const Manifolds& manifolds, double h, double done) {
+  resolve_impacts(h, 0.5 * h, reach_from(h, done));
+  if (!impacts_.impacts().empty()) load_solver_bodies(bodies, solver_);
+  fly(grid_.time(step_) + done + h, 0.5 * h);
+  ledger.work += forces_.work(bodies);
+  ledger = ledger + corrector_.correct(h, parameters_, view_of(bodies), solver_, contacts_);
+  memory_.remember(manifolds, contacts_, bodies.count());
+  for (const Contact& c : std::as_const(contacts_.contacts).view()) {
+    if (c.free_ends < 2) add_impulse_on_driven_bodies(c.i, c.j, contacts_.impulse_of(c));
+  }
+  last_substep_ = h;
+}
+
+/// Time from a substep to the end of its step, and as long again as the substep (s).
+double Substepper::reach_from(double h, double done) const { return grid_.length(step_ + 1) - done + h; }
+
+/// Moves every body to the time given, dt later than it is.
+void Substepper::fly(double time, double dt) {
+  ledger.integration += advance(bodies, dt, parameters_);
+  place_prescribed(paths, time, bodies);
+}
+
+/// Impacts of the flight of a substep from `problem.from` on. `reach`: to the end of the step (s).
+void Substepper::resolve_impacts(double h, double from, double reach) {
+  constexpr int most_attempts = 8;
+  // The flight is never more than half a substep away from the midpoint.
+  const auto set_margins = [&] {
+    contact_margins(bodies, 0.5 * h, tolerance::contact_slack, parameters_, contact_margin_);
+  };
+  set_margins();
+  for (int attempt = 1;; ++attempt) {
+    const ConstView<Pair> pairs = kept_pairs_.covering(bodies, contact_margin_, reach, parameters_);
+    const timing::Region region("impacts");
+    const Ledger moved = impacts_.resolve(impact_problem(pairs, h, from), parameters_, view_of(bodies));
+    if (impacts_.impacts().empty()) return;
+    // What was struck may have left the boxes: others that it can meet now are not among the pairs.
+    set_margins();
+    if (attempt == most_attempts || kept_pairs_.cover(bodies, contact_margin_)) {
+      ledger = ledger + moved;
+      break;
+    }
+    kept_pairs_.add_travel(bodies, contact_margin_);
+    impacts_.undo(view_of(bodies));
+  }
+  counters.impacts += static_cast<std::int64_t>(impacts_.impacts().size());
+  if (impacts_.hit_bound()) ++counters.unfinished_impacts;
+  for (const Impact& impact : impacts_.impacts()) {
+    add_impulse_on_driven_bodies(impact.i, impact.j, impact.impulse);
+    struck_.push_back(impact);
+  }
+}
+
+/// That may close by the next midpoint. `reach`: to the end of the step (s).
+Manifolds Substepper::find_contacts(double h, double reach) {
+  contact_margins(bodies, h, tolerance::contact_slack, parameters_, contact_margin_);
+  const ConstView<Pair> pairs = kept_pairs_.covering(bodies, contact_margin_, reach, parameters_);
+  counters.pcs_made = kept_pairs_.times_made();
+  const timing::Region region("narrowphase");
+  const Manifolds manifolds =
+      narrow_phase_.find(view_of(std::as_const(bodies)), pairs, contact_margin_.view(),
+                         impacts_.late_bodies(impact_problem(pairs, h, 0), parameters_, view_of(bodies)));
+  counters.narrowphase += narrow_phase_.stats();
+  return manifolds;
+}
+
+void Substepper::respond(const Manifolds& manifolds, double h) {
+  const timing::Region region("response");
+  load_solver_bodies(bodies, solver_);
+  color_contacts(manifolds.headers, std::as_const(bodies.mobility).view(), contacts_.coloring);
+  const double scale = last_substep_ > 0 ? h / last_substep_ : 1.0;
+  prepare_contacts(manifolds, contact_laws(), memory_, scale, parameters_, contacts_);
+  impacts_.mark_flights(impact_problem({}, h, 0), parameters_, manifolds, view_of(bodies), contacts_);
+  ledger = ledger + response_.solve(manifolds, h, parameters_, view_of(bodies), solver_, contacts_, counters);
+  ledger = ledger + impacts_.shift_late(impact_problem({}, h, 0), parameters_, view_of(bodies), contacts_);
+}
+
+ConstView<Pair> Substepper::pairs_now() {
+  contact_margins(bodies, 0, tolerance::contact_slack, parameters_, contact_margin_);
+  return kept_pairs_.covering(bodies, contact_margin_, 0, parameters_);
+}
+
+ImpactProblem Substepper::impact_problem(ConstView<Pair> pairs, double h, double from) const {
+  return {.pairs = pairs,
+          .laws = contact_laws(),
+          .memory = memory_,
+          .step = h,
+          .from = from,
+          .bounces = from == 0};
+}
+
+ContactLaws Substepper::contact_laws() const {
+  return {bodies.shape.view(),    bodies.size.view(), bodies.mobility.view(),
+          bodies.material.view(), laws_.view(),       materials_};
+}
+
+/// The impulse of j, and reversed of i.
+void Substepper::add_impulse_on_driven_bodies(std::int32_t i, std::int32_t j, const Vec3& impulse) {
+  const ConstView<Mobility> mobility = std::as_const(bodies.mobility).view();
+  if (mobility[i] != Mobility::free) contact_impulse_[static_cast<std::size_t>(i)] -= impulse;
+  if (mobility[j] != Mobility::free) contact_impulse_[static_cast<std::size_t>(j)] += impulse;
+}
+
+std::vector<ContactForce> Substepper::contact_forces() const {
+  const ConstView<Contact> contacts = contacts_.contacts.view();
+  const ConstView<ContactRow> rows = contacts_.rows.view();
+  const ConstBodyView views = view_of(bodies);
+  std::vector<ContactForce> forces;
+  for (std::int64_t c = 0; c < contacts.size(); ++c) {
+    const Contact& contact = contacts[c];
+    const Vec3 impulse = contacts_.impulse_of(contact);
+    if (impulse.isZero(0)) continue;
+    // From the body that moves freely: the centre of a plane is nowhere near.
+    const bool from_j = views.mobility[contact.j] == Mobility::free;
+    Vec3 arm = Vec3::Zero();
+    for (int k = 0; k < contact.count; ++k) {
+      const ContactRow& row = rows[contact.first_row + k];
+      arm += (from_j ? row.arm_j : row.arm_i) / contact.count;
+    }
+    forces.push_back({contact.i, contact.j, impulse / last_substep_,
+                      views.position[from_j ? contact.j : contact.i] + arm});
+  }
+  for (const Impact& impact : struck_)
+    forces.push_back({impact.i, impact.j, impact.impulse / last_substep_, impact.point});
+  return forces;
+}
+
+ContactProblem Substepper::contact_problem() const {
+  return contact_problem_of(contacts_, solver_.view(), response_.free_velocity(), response_.free_spin());
+}
+
+}  // namespace scree
