@@ -9,24 +9,30 @@ namespace {
 
 /// Body i against all that follow it. Absent boxes are empty and overlap nothing.
 struct AllSearch {
-  static constexpr const char* count_label = "broadphase.brute_force.count";
-  static constexpr const char* fill_label = "broadphase.brute_force.fill";
+  static constexpr const char* label = "broadphase.brute_force";
+  using Object = Boxed;
+  using Candidate = Boxed;
+  struct Item {
+    Boxed object;
+    std::uint32_t next;
+  };
 
   std::int64_t items;
   ConstView<Aabb> bounds;
   ConstView<Mobility> mobility;
+  int parts = 1;
 
-  template <class Hit>
-  SCREE_HD std::uint32_t operator()(std::int64_t i, Hit& hit) const {
-    const Aabb box = bounds[i];
-    const bool fixed = mobility[i] == Mobility::fixed;
-    for (std::int64_t j = i + 1; j < items; ++j) {
-      if (overlap(box, bounds[j]) && !(fixed && mobility[j] == Mobility::fixed)) {
-        hit({static_cast<std::int32_t>(i), static_cast<std::int32_t>(j)});
-      }
-    }
-    return static_cast<std::uint32_t>(items - i - 1);
+  SCREE_HD Item item(std::int64_t i) const {
+    return {candidate(static_cast<std::uint32_t>(i)), static_cast<std::uint32_t>(i) + 1};
   }
+  SCREE_HD Run run(const Item& item, int, int r) const {
+    return r == 0 ? Run{item.next, static_cast<std::uint32_t>(items)} : Run{};
+  }
+  SCREE_HD Boxed candidate(std::uint32_t k) const {
+    return boxed(bounds[k], static_cast<std::int32_t>(k), mobility[k]);
+  }
+  SCREE_HD bool meets(const Boxed& a, int, const Boxed& b) const { return may_collide(a, b); }
+  SCREE_HD Pair match(const Boxed& a, const Boxed& b) const { return {a.body(), b.body()}; }
 };
 
 template <class Space>

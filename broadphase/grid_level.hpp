@@ -44,7 +44,6 @@ struct GridLevel {
   std::uint32_t base;      ///< first cell of the level in the table of all levels
   std::int32_t begin;      ///< its objects in the sorted order: from begin to before end
   std::int32_t end;
-  std::uint32_t upward;  ///< bit l: its objects search level l, whose cells are wider
 
   /// Number of the cell that holds a coordinate. Monotone and clamped, so what is at most a cell's width
   /// apart is at most one number apart.
@@ -77,12 +76,12 @@ struct GridLevel {
   /// Place in the table of the cell numbered (x, y, z), within 0 to last.
   SCREE_HD std::uint32_t address(std::int32_t x, std::int32_t y, std::int32_t z) const {
     const auto ux = static_cast<std::uint32_t>(x);
+    if (!hashed) return base + row * (rows_below_y(y) + rows_below_z(z)) + ux;
     const auto uy = static_cast<std::uint32_t>(y);
     const auto uz = static_cast<std::uint32_t>(z);
-    const std::uint32_t brick_x = hashed ? ux / brick_row : 0;
-    const std::uint32_t slot = slot_of(brick_x, uy / brick_width, uz / brick_width);
+    const std::uint32_t slot = slot_of(ux / brick_row, uy / brick_width, uz / brick_width);
     const std::uint32_t row_in_brick = uz % brick_width * brick_width + uy % brick_width;
-    return base + (slot * brick_rows + row_in_brick) * row + ux - brick_x * brick_row;
+    return base + (slot * brick_rows + row_in_brick) * brick_row + ux % brick_row;
   }
 
   /// Number of the last cell, `end` at most, that stands in one run with cell x of the same row.
@@ -94,9 +93,17 @@ struct GridLevel {
   SCREE_HD std::uint32_t cells() const { return slots * brick_rows * row; }
 
  private:
+  // In a dense table the rows before a cell are those of its y and those of its z.
+  SCREE_HD std::uint32_t rows_below_y(std::int32_t y) const {
+    const auto u = static_cast<std::uint32_t>(y);
+    return u / brick_width * brick_rows + u % brick_width;
+  }
+  SCREE_HD std::uint32_t rows_below_z(std::int32_t z) const {
+    const auto u = static_cast<std::uint32_t>(z);
+    return u / brick_width * bricks_y * brick_rows + u % brick_width * brick_width;
+  }
   // A multiplicative hash of the three numbers, then murmur3's finaliser (Appleby 2011).
   SCREE_HD std::uint32_t slot_of(std::uint32_t x, std::uint32_t y, std::uint32_t z) const {
-    if (!hashed) return z * bricks_y + y;
     std::uint32_t h = x * 0x9E3779B1u + y * 0x85EBCA77u + z * 0xC2B2AE3Du;
     h = (h ^ (h >> 16)) * 0x85EBCA6Bu;
     h = (h ^ (h >> 13)) * 0xC2B2AE35u;

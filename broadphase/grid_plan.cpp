@@ -25,6 +25,10 @@ constexpr double fill_share = 0.3;
 // A dense table has at most this many cells per object of its level, beside a floor that any level may have.
 constexpr double dense_cells_per_object = 4;
 constexpr double dense_cells_floor = 4096;
+// The cells of a sparse level may be so much wider than its objects that a dense table holds them: where the
+// objects are all in one place after all, that costs seven times the tests, of which there are few
+// (fill_share), and saves half of the rows.
+constexpr double widest_sparse = 1.9;
 // A hashed table has this many, rounded up to a power of two, and no table more than largest_table.
 constexpr double hashed_cells_per_object = 2;
 constexpr double largest_table = 0x1p28;
@@ -163,7 +167,13 @@ std::vector<Group> choose(const CostModel& model, std::vector<Group> groups, int
   return groups;
 }
 
-void lay_out(GridLevel& level, const Census& census, double objects) {
+void set_cell(GridLevel& level, double cell) {
+  level.cell = cell * (1 + cell_slack);
+  level.inverse_cell = 1 / level.cell;
+}
+
+/// Cells of a dense table. Sets the first and last cells in use.
+double lay_out_dense(GridLevel& level, const Census& census) {
   double columns[3];
   for (int a = 0; a < 3; ++a) {
     level.first[a] = 0;
@@ -171,19 +181,35 @@ void lay_out(GridLevel& level, const Census& census, double objects) {
     level.last[a] = level.cell_of(static_cast<double>(next_above(census.hi[a])), a);
     columns[a] = a == 0 ? level.last[a] + 1.0 : std::floor(level.last[a] / double{brick_width}) + 1.0;
   }
-  const double dense = columns[0] * columns[1] * columns[2] * brick_rows;
-  level.hashed = dense > std::min(largest_table, dense_cells_per_object * objects + dense_cells_floor);
-  if (level.hashed) {
-    const double bricks = hashed_cells_per_object * objects / (brick_row * brick_rows);
-    const double most = largest_table / (brick_row * brick_rows);
-    level.row = brick_row;
-    level.bricks_y = 0;
-    level.slots = std::bit_ceil(static_cast<std::uint32_t>(std::min(std::ceil(bricks), most)));
-  } else {
-    level.row = static_cast<std::uint32_t>(level.last[0] + 1);
-    level.bricks_y = static_cast<std::uint32_t>(columns[1]);
-    level.slots = static_cast<std::uint32_t>(columns[1] * columns[2]);
+  const double slots = columns[1] * columns[2];
+  level.row = static_cast<std::uint32_t>(level.last[0] + 1);
+  level.bricks_y = static_cast<std::uint32_t>(columns[1]);
+  level.slots = static_cast<std::uint32_t>(std::min(slots, largest_table));
+  return columns[0] * slots * brick_rows;
+}
+
+void lay_out(GridLevel& level, const Census& census, double objects) {
+  const double most = std::min(largest_table, dense_cells_per_object * objects + dense_cells_floor);
+  set_cell(level, level.largest);
+  const double cells = lay_out_dense(level, census);
+  level.hashed = cells > most;
+  if (level.hashed && cells <= most * widest_sparse * widest_sparse * widest_sparse) {
+    // The bricks at the border are not full: their share depends on the width.
+    for (double wider = std::cbrt(cells / most); level.hashed && wider <= widest_sparse; wider *= 1.02) {
+      set_cell(level, wider * level.largest);
+      level.hashed = lay_out_dense(level, census) > most;
+    }
+    if (level.hashed) {
+      set_cell(level, level.largest);
+      lay_out_dense(level, census);
+    }
   }
+  if (!level.hashed) return;
+  const double bricks = hashed_cells_per_object * objects / (brick_row * brick_rows);
+  level.row = brick_row;
+  level.bricks_y = 0;
+  level.slots = std::bit_ceil(
+      static_cast<std::uint32_t>(std::min(std::ceil(bricks), largest_table / (brick_row * brick_rows))));
 }
 
 void choose_directions(GridPlan& plan, const CostModel& model, const std::vector<Group>& groups) {
@@ -191,9 +217,9 @@ void choose_directions(GridPlan& plan, const CostModel& model, const std::vector
   for (std::size_t j = 0; j < groups.size(); ++j) {
     for (std::size_t i = 0; i < j; ++i) {
       if (model.up(groups[i], groups[j], occupancy[j]) <= model.down(groups[j], groups[i], occupancy[i])) {
-        plan.levels[i].upward |= 1u << j;
+        plan.ascents.push_back({static_cast<int>(i), static_cast<int>(j), plan.searches(plan.ascents)});
       } else {
-        plan.descents.push_back({static_cast<int>(j), static_cast<int>(i)});
+        plan.descents.push_back({static_cast<int>(j), static_cast<int>(i), plan.searches(plan.descents)});
       }
     }
   }
@@ -210,8 +236,6 @@ GridPlan plan_grid(const Census& census, const SizeHistogram& sizes, int forced)
   for (const Group& group : groups) {
     GridLevel level{};
     level.largest = group.cell;
-    level.cell = group.cell * (1 + cell_slack);
-    level.inverse_cell = 1 / level.cell;
     level.base = plan.cells;
     level.begin = begin;
     level.end = begin += static_cast<std::int32_t>(group.count);

@@ -11,16 +11,25 @@ namespace scree {
 
 inline constexpr int max_grid_levels = 8;
 
-/// Two levels whose pairs are found from the upper one: each of its objects searches the lower.
-struct Descent {
+/// Two levels whose pairs are found by the objects of one, which search the other.
+struct LevelPair {
   int from;
   int to;
+  std::int64_t first;  ///< number of its first search: those of a list of such pairs are numbered on
 };
 
 struct GridPlan {
-  std::vector<GridLevel> levels;  ///< by growing cells; empty if there are no objects
-  std::vector<Descent> descents;  ///< all other pairs of levels are in GridLevel::upward
-  std::uint32_t cells = 0;        ///< of all tables
+  std::vector<GridLevel> levels;    ///< by growing cells; empty if there are no objects
+  std::vector<LevelPair> ascents;   ///< to wider cells
+  std::vector<LevelPair> descents;  ///< to narrower ones; every two levels are in one of the lists
+  std::uint32_t cells = 0;          ///< of all tables
+
+  /// Searches of a list.
+  std::int64_t searches(const std::vector<LevelPair>& pairs) const {
+    if (pairs.empty()) return 0;
+    const GridLevel& from = levels[static_cast<std::size_t>(pairs.back().from)];
+    return pairs.back().first + (from.end - from.begin);
+  }
 };
 
 /// `forced`: number of levels, or 0 to choose it. There are no more levels than octaves with objects in them,

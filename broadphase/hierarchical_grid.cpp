@@ -6,6 +6,7 @@
 #include "broadphase/pair_list.hpp"
 #include "core/parallel.hpp"
 
+#include <algorithm>
 #include <bit>
 #include <vector>
 
@@ -36,14 +37,12 @@ struct GatherObject {
   ConstView<Aabb> bounds;
   ConstView<Mobility> mobility;
   ConstView<std::int32_t> body;
-  View<GridObject> objects;
+  View<Corner> lo, hi;
   SCREE_HD void operator()(std::int64_t k) const {
     const std::int32_t i = body[k];
-    const Aabb box = bounds[i];
-    objects[k] = {{box.lo[0], box.lo[1], box.lo[2]},
-                  i,
-                  {box.hi[0], box.hi[1], box.hi[2]},
-                  mobility[i] == Mobility::fixed ? 1 : 0};
+    const Boxed object = boxed(bounds[i], i, mobility[i]);
+    lo[k] = object.lo;
+    hi[k] = object.hi;
   }
 };
 
@@ -59,7 +58,7 @@ struct EndRun {
 
 struct CountQueryItems {
   GridView grid;
-  const DescentView* descents;
+  const LevelPair* descents;
   View<std::uint32_t> items;
   SCREE_HD void operator()(std::int64_t q) const {
     const Query query = make_query(grid, descents, q);
@@ -91,7 +90,8 @@ class HierarchicalGrid final : public BroadPhase<Space> {
     plan_ = plan_grid(census, count_sizes<Space>(bounds, census), forced_levels_);
     stats_.levels = static_cast<int>(plan_.levels.size());
     if (plan_.levels.empty()) return;
-    objects_.resize(census.present);
+    lo_.resize(census.present);
+    hi_.resize(census.present);
     copy(levels_, plan_.levels);
     key_.resize(bounds.size());
     body_.resize(bounds.size());
@@ -104,49 +104,53 @@ class HierarchicalGrid final : public BroadPhase<Space> {
 
   /// Start and end of each cell's run, and the objects themselves in cell order.
   void construct(ConstView<Aabb> bounds, ConstView<Mobility> mobility) {
-    parallel::for_each<Space>("broadphase.construct.gather", objects_.size(),
-                              GatherObject{bounds, mobility, body_.view(), objects_.view()});
+    parallel::for_each<Space>("broadphase.construct.gather", lo_.size(),
+                              GatherObject{bounds, mobility, body_.view(), lo_.view(), hi_.view()});
     starts_.resize(std::int64_t{plan_.cells} + 1);
     parallel::fill("broadphase.construct.clear", starts_, 0u);
-    parallel::for_each<Space>("broadphase.construct.ends", objects_.size(),
-                              EndRun{key_.view(), objects_.size(), starts_.view()});
+    parallel::for_each<Space>("broadphase.construct.ends", lo_.size(),
+                              EndRun{key_.view(), lo_.size(), starts_.view()});
     parallel::running_max("broadphase.construct.starts", starts_);
   }
 
   /// Each object against its own level and the others.
   ConstView<Pair> traverse() {
-    const GridView grid{levels_.data(), stats_.levels, objects_.data(), starts_.data()};
-    return pairs_.collect(stats_, NearSearch{grid, objects_.size()}, wide_search(grid));
+    GridView grid{{}, false, lo_.data(), hi_.data(), starts_.data()};
+    std::ranges::copy(plan_.levels, grid.levels);
+    grid.any_hashed = std::ranges::any_of(plan_.levels, &GridLevel::hashed);
+    return pairs_.collect(stats_, OwnSearch(grid, lo_.size()), up_search(grid), wide_search(grid));
+  }
+
+  UpSearch up_search(const GridView& grid) {
+    const std::int64_t searches = plan_.searches(plan_.ascents);
+    if (searches > 0) copy(ascents_, plan_.ascents);
+    return {{grid, searches, (grid.any_hashed ? 2 : 1) * UpSearch::parts_of_row}, ascents_.data()};
   }
 
   /// The searches of large objects among small ones, cut into items of like cost.
   WideSearch wide_search(const GridView& grid) {
-    std::vector<DescentView> descents;
-    std::int64_t queries = 0;
-    for (const Descent& descent : plan_.descents) {
-      const GridLevel& from = plan_.levels[static_cast<std::size_t>(descent.from)];
-      descents.push_back({descent.from, descent.to, queries});
-      queries += from.end - from.begin;
-    }
-    if (queries == 0) return {grid, 0, nullptr, nullptr, 0};
-    copy(descents_, descents);
+    const std::int64_t queries = plan_.searches(plan_.descents);
+    WideSearch search{{grid, 0, Query::parts}, nullptr, nullptr, queries};
+    if (queries == 0) return search;
+    copy(descents_, plan_.descents);
     query_items_.resize(queries);
     parallel::for_each<Space>("broadphase.traverse.queries", queries,
                               CountQueryItems{grid, descents_.data(), query_items_.view()});
-    const std::int64_t items =
-        parallel::exclusive_scan<Space>("broadphase.traverse.items", query_items_, first_item_);
-    return {grid, items, descents_.data(), first_item_.data(), queries};
+    search.items = parallel::exclusive_scan<Space>("broadphase.traverse.items", query_items_, first_item_);
+    search.descents = descents_.data();
+    search.first_item = first_item_.data();
+    return search;
   }
 
   int forced_levels_;
   BroadPhaseStats stats_;
   GridPlan plan_;
   Array<GridLevel, Space> levels_;
-  Array<std::uint32_t, Space> key_;   ///< cell of each object
-  Array<std::int32_t, Space> body_;   ///< its number
-  Array<GridObject, Space> objects_;  ///< in cell order
+  Array<std::uint32_t, Space> key_;  ///< cell of each object
+  Array<std::int32_t, Space> body_;  ///< its number
+  Array<Corner, Space> lo_, hi_;     ///< of the objects, in cell order
   Array<std::uint32_t, Space> starts_;
-  Array<DescentView, Space> descents_;
+  Array<LevelPair, Space> ascents_, descents_;
   Array<std::uint32_t, Space> query_items_;
   Array<std::int64_t, Space> first_item_;
   PairList<Space> pairs_;

@@ -46,8 +46,14 @@ struct KeyOfBox {
 
 /// Each object against all 27 cells around it; a pair is reported by the body with the lower number.
 struct FullStencil {
-  static constexpr const char* count_label = "broadphase.uniform_grid.count";
-  static constexpr const char* fill_label = "broadphase.uniform_grid.fill";
+  static constexpr const char* label = "broadphase.uniform_grid.search";
+  using Object = Boxed;
+  using Candidate = Boxed;
+  struct Item {
+    Boxed object;
+    std::int64_t cell[3];
+    bool absent;
+  };
 
   std::int64_t items;
   UniformCells cells;
@@ -55,41 +61,33 @@ struct FullStencil {
   ConstView<Mobility> mobility;
   ConstView<std::uint64_t> key;
   ConstView<std::int32_t> body;
+  int parts = 2;
 
-  template <class Hit>
-  SCREE_HD std::uint32_t operator()(std::int64_t k, Hit& hit) const {
-    if (key[k] == UniformCells::absent) return 0;
-    const Aabb box = bounds[body[k]];
-    const std::int64_t x = cells.cell_of(box, 0);
-    const std::int64_t y = cells.cell_of(box, 1);
-    const std::int64_t z = cells.cell_of(box, 2);
-    const std::int64_t x_end = x < UniformCells::last ? x + 1 : x;
-    std::uint32_t tests = 0;
-    for (std::int64_t row_z = z > 0 ? z - 1 : 0; row_z <= z + 1 && row_z <= UniformCells::last; ++row_z) {
-      for (std::int64_t row_y = y > 0 ? y - 1 : 0; row_y <= y + 1 && row_y <= UniformCells::last; ++row_y) {
-        tests += test_row(UniformCells::key_of(x > 0 ? x - 1 : 0, row_y, row_z),
-                          UniformCells::key_of(x_end, row_y, row_z), body[k], hit);
-      }
-    }
-    return tests;
+  SCREE_HD Item item(std::int64_t k) const {
+    Item item{candidate(static_cast<std::uint32_t>(k)), {0, 0, 0}, key[k] == UniformCells::absent};
+    for (int a = 0; a < 3 && !item.absent; ++a) item.cell[a] = cells.cell_of(item.object.box(), a);
+    return item;
   }
+  SCREE_HD Run run(const Item& item, int part, int r) const {
+    constexpr std::int64_t last = UniformCells::last;
+    const int row = part * runs_at_once + r;
+    const std::int64_t y = item.cell[1] + row % 3 - 1;
+    const std::int64_t z = item.cell[2] + row / 3 - 1;
+    if (item.absent || row >= 9 || y < 0 || y > last || z < 0 || z > last) return {};
+    const std::int64_t x = item.cell[0];
+    return {lower_bound(UniformCells::key_of(x > 0 ? x - 1 : 0, y, z)),
+            lower_bound(UniformCells::key_of(x < last ? x + 1 : x, y, z) + 1)};
+  }
+  SCREE_HD Boxed candidate(std::uint32_t k) const {
+    return boxed(bounds[body[k]], body[k], mobility[body[k]]);
+  }
+  SCREE_HD bool meets(const Boxed& a, int, const Boxed& b) const {
+    return a.body() < b.body() && may_collide(a, b);
+  }
+  SCREE_HD Pair match(const Boxed& a, const Boxed& b) const { return {a.body(), b.body()}; }
 
  private:
-  template <class Hit>
-  SCREE_HD std::uint32_t test_row(std::uint64_t first, std::uint64_t last, std::int32_t i, Hit& hit) const {
-    const Aabb box = bounds[i];
-    std::uint32_t tests = 0;
-    for (std::int64_t k = lower_bound(first); k < key.size() && key[k] <= last; ++k) {
-      const std::int32_t j = body[k];
-      if (j <= i) continue;
-      ++tests;
-      const bool both_fixed = mobility[i] == Mobility::fixed && mobility[j] == Mobility::fixed;
-      if (overlap(box, bounds[j]) && !both_fixed) hit({i, j});
-    }
-    return tests;
-  }
-
-  SCREE_HD std::int64_t lower_bound(std::uint64_t value) const {
+  SCREE_HD std::uint32_t lower_bound(std::uint64_t value) const {
     std::int64_t lo = 0;
     std::int64_t hi = key.size();
     while (lo < hi) {
@@ -100,7 +98,7 @@ struct FullStencil {
         hi = middle;
       }
     }
-    return lo;
+    return static_cast<std::uint32_t>(lo);
   }
 };
 

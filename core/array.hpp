@@ -69,6 +69,8 @@ class Array {
   T* data() { return data_; }
   const T* data() const { return data_; }
   std::int64_t size() const { return size_; }
+  /// Elements that there is storage for.
+  std::int64_t capacity() const { return capacity_; }
   bool empty() const { return size_ == 0; }
   View<T> view() { return {data_, size_}; }
   ConstView<T> view() const { return {data_, size_}; }

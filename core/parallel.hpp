@@ -1,8 +1,10 @@
 // Labelled parallel calls in either space. Sums have a fixed tree, so results do not depend on the number of
-// threads. With space_policy.hpp one of the two headers that reach Thrust: for parallel libraries alone.
+// threads. Its own headers, space_policy.hpp and space_matches.hpp, and it reach Thrust: for parallel
+// libraries alone.
 #pragma once
 
 #include "core/array.hpp"
+#include "core/space_matches.hpp"
 #include "core/space_policy.hpp"
 #include "core/timing.hpp"
 

@@ -1,5 +1,5 @@
-// How Thrust is asked to run in each space, and the primitives that Thrust cannot say. With parallel.hpp one
-// of the two headers that reach Thrust and CUB: include parallel.hpp instead, in parallel libraries alone.
+// How Thrust is asked to run in each space, and the primitives that Thrust cannot say. With parallel.hpp and
+// space_matches.hpp the headers for parallel libraries alone: include parallel.hpp instead.
 #pragma once
 
 #include "core/space.hpp"
@@ -14,7 +14,6 @@
 #include <vector>
 
 #if SCREE_WITH_CUDA
-#include <cub/device/device_histogram.cuh>
 #include <cub/device/device_radix_sort.cuh>
 #include <thrust/system/cuda/execution_policy.h>
 #endif
@@ -82,13 +81,35 @@ void sort_pairs(Device, Key*& keys, Value*& values, Key*& spare_keys, Value*& sp
   spare_values = value_buffer.Alternate();
 }
 
+/// Each block counts in shared memory; lanes with the same sample add once, since often all samples are
+/// alike.
+template <class Samples>
+__global__ void __launch_bounds__(256)
+    count_samples(Samples samples, std::int64_t n, int bins, std::uint32_t* counts) {
+  extern __shared__ std::uint32_t in_block[];
+  for (int b = static_cast<int>(threadIdx.x); b < bins; b += 256) in_block[b] = 0;
+  __syncthreads();
+  const unsigned lane = threadIdx.x % 32;
+  const std::int64_t stride = std::int64_t{gridDim.x} * 256;
+  for (std::int64_t warp = std::int64_t{blockIdx.x} * 256 + threadIdx.x - lane; warp < n; warp += stride) {
+    const std::int64_t i = warp + lane;
+    const int bin = i < n ? static_cast<int>(samples[i]) : -1;
+    const unsigned alike = __match_any_sync(0xffffffffu, bin);
+    const bool first = (alike & ((1u << lane) - 1)) == 0;
+    if (first && bin >= 0 && bin < bins) atomicAdd(&in_block[bin], static_cast<unsigned>(__popc(alike)));
+  }
+  __syncthreads();
+  for (int b = static_cast<int>(threadIdx.x); b < bins; b += 256)
+    if (in_block[b] > 0) atomicAdd(&counts[b], in_block[b]);
+}
+
 template <class Samples>
 void histogram(Device, Samples samples, std::int64_t n, int bins, std::uint32_t* counts) {
-  std::size_t bytes = 0;
-  cub::DeviceHistogram::HistogramEven(nullptr, bytes, samples, counts, bins + 1, 0, bins, n);
-  void* scratch = Device::allocate(bytes);
-  cub::DeviceHistogram::HistogramEven(scratch, bytes, samples, counts, bins + 1, 0, bins, n);
-  Device::deallocate(scratch);
+  constexpr std::int64_t most_blocks = 2048;  // more would add to the same counters more often
+  const std::size_t bytes = static_cast<std::size_t>(bins) * sizeof(std::uint32_t);
+  cudaMemsetAsync(counts, 0, bytes);
+  const std::int64_t blocks = std::min((n + 255) / 256, most_blocks);
+  if (blocks > 0) count_samples<<<static_cast<unsigned>(blocks), 256, bytes>>>(samples, n, bins, counts);
 }
 
 #endif

@@ -254,9 +254,10 @@ def ensemble_section():
              "| scene | check | expected | default | accurate |", "|---|---|---|---|---|"]
     rows = {}
     for scene in kept("verify")["scenes"] + kept("granular")["scenes"]:
-        if "box_box=ccd_gjk" in scene["settings"]:
+        settings = scene.get("settings", "")
+        if "box_box=ccd_gjk" in settings:
             continue
-        mode = "accurate" if "mode=accurate" in scene["settings"] else "default"
+        mode = "accurate" if "mode=accurate" in settings else "default"
         for check in scene["checks"]:
             if "half_width" in check:
                 rows.setdefault((scene["scene"], check["check"], check["expected"]), {})[mode] = check

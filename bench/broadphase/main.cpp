@@ -3,8 +3,10 @@
 //
 //   scree_bench_broadphase [--set A,B,C] [--n 1000000,16000000] [--space host|cuda] [--levels L]
 //                          [--method hierarchical_grid|uniform_grid|brute_force] [--check METHOD]
+//                          [--stages yes]
 //
-// Two calls to warm up, then the median of nine. --check compares count and checksum of the pairs with those
+// Two calls to warm up, then the median of nine, each with the boxes in another random order; the checksum of
+// the pairs is that of the data set's own order. --check compares count and checksum of the pairs with those
 // of another method; exit status 1 if they differ.
 #include "bench/broadphase/data_sets.hpp"
 #include "bench/options.hpp"
@@ -15,6 +17,7 @@
 #include <chrono>
 #include <cstdio>
 #include <map>
+#include <random>
 #include <string>
 #include <vector>
 
@@ -53,22 +56,37 @@ std::uint64_t checksum(ConstView<Pair> pairs) {
                                                 std::uint64_t{0}, thrust::plus<std::uint64_t>());
 }
 
-/// Sorted times of find() in ms.
+/// Sorted times of find() in ms, each of the same boxes in another random order.
 template <class Space>
-std::vector<double> measure(BroadPhase<Space>& broad_phase, ConstView<Aabb> bounds,
+std::vector<double> measure(BroadPhase<Space>& broad_phase, std::vector<Aabb> boxes,
                             ConstView<Mobility> mobility) {
   using Clock = std::chrono::steady_clock;
+  std::mt19937_64 random(1);
+  Array<Aabb, Space> bounds;
   std::vector<double> times;
   for (int k = 0; k < warm_ups + repeats; ++k) {
+    std::ranges::shuffle(boxes, random);
+    copy(bounds, boxes);
     Space::synchronize();
     const Clock::time_point start = Clock::now();
-    broad_phase.find(bounds, mobility);
+    broad_phase.find(bounds.view(), mobility);
     Space::synchronize();
     if (k >= warm_ups)
       times.push_back(std::chrono::duration<double, std::milli>(Clock::now() - start).count());
   }
   std::sort(times.begin(), times.end());
   return times;
+}
+
+/// Of one more call, the time of each parallel call in it; on Device each then waits for its end.
+template <class Space>
+void print_stages(BroadPhase<Space>& broad_phase, ConstView<Aabb> bounds, ConstView<Mobility> mobility) {
+  timing::reset();
+  timing::time_calls(true);
+  broad_phase.find(bounds, mobility);
+  timing::time_calls(false);
+  for (const timing::Entry& call : timing::calls())
+    std::printf("       %-40s %10.3f ms\n", call.label.c_str(), 1e3 * call.seconds);
 }
 
 /// Prints a row of the table; false if the check failed.
@@ -78,16 +96,19 @@ bool run(const std::string& set, std::int64_t n, const Options& options) {
                                        .levels = std::stoi(options.at("--levels"))};
   Array<Aabb, Space> bounds;
   Array<Mobility, Space> mobility;
-  copy(bounds, make_data_set(set, n));
+  const std::vector<Aabb> boxes = make_data_set(set, n);
   copy(mobility, std::vector<Mobility>(static_cast<std::size_t>(n), Mobility::free));
   const auto broad_phase = make_broad_phase<Space>(settings);
-  const std::vector<double> times = measure<Space>(*broad_phase, bounds.view(), mobility.view());
+  const std::vector<double> times = measure<Space>(*broad_phase, boxes, mobility.view());
+  copy(bounds, boxes);
+  const std::uint64_t sum = checksum<Space>(broad_phase->find(bounds.view(), mobility.view()));
   const BroadPhaseStats stats = broad_phase->stats();
-  std::printf("%-4s %10lld %-18s %-5s %6d %12lld %7.2f %10.3f %10.3f %10.3f %10.2f", set.c_str(),
+  std::printf("%-4s %10lld %-18s %-5s %6d %12lld %7.2f %10.3f %10.3f %10.3f %10.2f  %016llx", set.c_str(),
               static_cast<long long>(n), options.at("--method").c_str(), Space::name, stats.levels,
               static_cast<long long>(stats.pairs),
               static_cast<double>(stats.candidates) / static_cast<double>(n), times[repeats / 2],
-              times.front(), times.back(), 1e6 * times[repeats / 2] / static_cast<double>(n));
+              times.front(), times.back(), 1e6 * times[repeats / 2] / static_cast<double>(n),
+              static_cast<unsigned long long>(sum));
   bool agrees = true;
   if (!options.at("--check").empty()) {
     const auto other = make_broad_phase<Space>({.method = method_of(options.at("--check"))});
@@ -97,6 +118,7 @@ bool run(const std::string& set, std::int64_t n, const Options& options) {
     std::printf("  %s %s", agrees ? "agrees with" : "DIFFERS from", options.at("--check").c_str());
   }
   std::printf("\n");
+  if (options.at("--stages") == "yes") print_stages<Space>(*broad_phase, bounds.view(), mobility.view());
   return agrees;
 }
 
@@ -121,10 +143,11 @@ int run_all(int argc, char** argv) {
                                  {"--method", "hierarchical_grid"},
                                  {"--space", Host::name},
                                  {"--levels", "0"},
-                                 {"--check", ""}});
+                                 {"--check", ""},
+                                 {"--stages", "no"}});
   std::printf(
       "set           n method             space levels        pairs tests/n  median ms     min ms     max ms "
-      " ns/object\n");
+      " ns/object  checksum\n");
   bool agrees = true;
   for (const std::string& set : split(options.at("--set"))) {
     for (const std::string& n : split(options.at("--n"))) {

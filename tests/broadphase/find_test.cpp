@@ -69,10 +69,10 @@ TYPED_TEST(Find, GiantsAmongMany) {
   }
 }
 
-// Large bodies that each touch some of the small ones: what is searched from above, row by row, dense and
-// hashed.
+// Large bodies that each touch some of the small ones: what is searched from above, row by row, dense, dense
+// with wider cells, and hashed.
 TYPED_TEST(Find, FiftyToOne) {
-  for (const double side : {40.0, 4000.0}) {
+  for (const double side : {25.0, 40.0, 4000.0}) {
     Boxes boxes = equal_cloud(4000, side, 0.5);
     for (const Aabb& large : equal_cloud(12, side, 25, 9)) boxes.push_back(large);
     expect_definition<TypeParam>(boxes);

@@ -208,12 +208,8 @@ TEST(GridPlan, LevelsHoldEveryBodyOnceAndFitIt) {
 TEST(GridPlan, EachPairOfLevelsIsSearchedFromOneSide) {
   const GridPlan plan = plan_of(mixed_scene(), 5);
   std::vector<std::pair<int, int>> searched;
-  for (const Descent& descent : plan.descents) searched.emplace_back(descent.to, descent.from);
-  for (int i = 0; i < 5; ++i) {
-    for (int j = 0; j < 32; ++j) {
-      if (plan.levels[static_cast<std::size_t>(i)].upward >> j & 1) searched.emplace_back(i, j);
-    }
-  }
+  for (const LevelPair& descent : plan.descents) searched.emplace_back(descent.to, descent.from);
+  for (const LevelPair& ascent : plan.ascents) searched.emplace_back(ascent.from, ascent.to);
   std::sort(searched.begin(), searched.end());
   std::vector<std::pair<int, int>> all;
   for (int i = 0; i < 5; ++i) {
@@ -229,6 +225,19 @@ TEST(GridPlan, ALoneGiantGetsItsOwnLevelAndSearchesDownward) {
   ASSERT_EQ(plan.levels.size(), 2u);
   ASSERT_EQ(plan.descents.size(), 1u);
   EXPECT_EQ(plan.levels[1].end - plan.levels[1].begin, 1);
+}
+
+TEST(GridPlan, ASparseLevelGetsWiderCellsAndADenseTable) {
+  const GridPlan natural = plan_of(equal_cloud(5000, 20, 0.5));
+  EXPECT_FALSE(natural.levels[0].hashed);
+  EXPECT_NEAR(natural.levels[0].cell, 1.0, 1e-3);
+  const GridPlan sparse = plan_of(equal_cloud(5000, 38, 0.5));
+  EXPECT_FALSE(sparse.levels[0].hashed);
+  EXPECT_GT(sparse.levels[0].cell, 1.05);
+  EXPECT_LE(sparse.levels[0].cell, 2);
+  const GridPlan sparser = plan_of(equal_cloud(5000, 200, 0.5));
+  EXPECT_TRUE(sparser.levels[0].hashed);
+  EXPECT_NEAR(sparser.levels[0].cell, 1.0, 1e-3);
 }
 
 TEST(GridPlan, AnOutlierOnlyChangesTheTable) {
