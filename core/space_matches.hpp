@@ -9,7 +9,6 @@
 
 #include <algorithm>
 #include <cstdint>
-#include <tuple>
 #include <vector>
 
 #if SCREE_WITH_CUDA
@@ -51,60 +50,86 @@ class MatchFinder;
 template <class Match>
 class MatchFinder<Host, Match> {
  public:
-  /// `reserve(n)` is called once, before `out` is made to hold n matches.
+  /// Counts first, then calls `reserve(n)` before `out` is made to hold n matches: no memory is asked for
+  /// that it refuses.
   template <class Reserve, class... Search>
   MatchTotals find(Array<Match, Host>& out, const Reserve& reserve, const Search&... searches) {
     MatchTotals totals;
-    used_ = 0;
-    (append(searches, totals), ...);
+    chunks_.clear();
+    (count(searches, totals), ...);
     reserve(totals.matches);
     out.resize(totals.matches);
-    Match* to = out.data();
-    for (std::size_t k = 0; k < used_; ++k) to = std::copy(chunks_[k].begin(), chunks_[k].end(), to);
+    const Chunk* chunks = chunks_.data();
+    (fill(searches, chunks, out.data()), ...);
     return totals;
   }
 
  private:
-  static constexpr std::int64_t chunk = 2048;  // items
+  static constexpr std::int64_t chunk_items = 2048;
+
+  struct Chunk {
+    std::int64_t matches = 0;
+    std::int64_t tests = 0;
+    std::int64_t place = 0;  ///< of its first match
+  };
 
   template <class Search>
-  void append(const Search& search, MatchTotals& totals) {
+  void count(const Search& search, MatchTotals& totals) {
     const timing::Call<Host> call(Search::label);
-    const std::int64_t chunks = (search.items + chunk - 1) / chunk;
-    const std::size_t first = used_;
-    used_ += static_cast<std::size_t>(chunks);
-    if (chunks_.size() < used_) chunks_.resize(used_);
-    tests_.assign(static_cast<std::size_t>(chunks), 0);
-    const auto work = [&](std::int64_t c) {
-      const auto at = static_cast<std::size_t>(c);
-      tests_[at] = search_chunk(search, c * chunk, chunks_[first + at]);
-    };
+    const std::size_t first = chunks_.size();
+    chunks_.resize(first + static_cast<std::size_t>(chunks_of(search)));
+    for_each_chunk(search, [&](std::int64_t c) {
+      Chunk& chunk = chunks_[first + static_cast<std::size_t>(c)];
+      chunk.tests = search_chunk(search, c, [&chunk](const auto&) { ++chunk.matches; });
+    });
+    for (std::size_t c = first; c < chunks_.size(); ++c) {
+      chunks_[c].place = totals.matches;
+      totals.matches += chunks_[c].matches;
+      totals.tests += chunks_[c].tests;
+    }
+  }
+
+  /// Moves `chunks` on to those of the next search.
+  template <class Search>
+  void fill(const Search& search, const Chunk*& chunks, Match* out) {
+    const timing::Call<Host> call(Search::label);
+    for_each_chunk(search, [&](std::int64_t c) {
+      if (chunks[c].matches == 0) return;
+      Match* to = out + chunks[c].place;
+      search_chunk(search, c, [&to](const auto& make) { *to++ = make(); });
+    });
+    chunks += chunks_of(search);
+  }
+
+  template <class Search>
+  static std::int64_t chunks_of(const Search& search) {
+    return (search.items + chunk_items - 1) / chunk_items;
+  }
+
+  template <class Search, class Work>
+  static void for_each_chunk(const Search& search, const Work& work) {
+    const std::int64_t chunks = chunks_of(search);
     if (chunks == 1) {
-      work(0);
+      work(0);  // without waking a thread
     } else {
       tbb::parallel_for(std::int64_t{0}, chunks, work);
     }
-    for (std::size_t c = first; c < used_; ++c) {
-      totals.matches += static_cast<std::int64_t>(chunks_[c].size());
-      totals.tests += tests_[c - first];
-    }
   }
 
-  template <class Search>
-  static std::int64_t search_chunk(const Search& search, std::int64_t begin, std::vector<Match>& found) {
-    found.clear();
+  /// Calls found(make) for each match, make() gives it. Returns the number of tests.
+  template <class Search, class Found>
+  static std::int64_t search_chunk(const Search& search, std::int64_t chunk, const Found& found) {
     std::int64_t tests = 0;
-    const std::int64_t end = std::min(begin + chunk, search.items);
-    for (std::int64_t first = begin; first < end; first += items_at_once) {
-      const std::int64_t last = std::min(first + items_at_once, end);
+    const std::int64_t end = std::min((chunk + 1) * chunk_items, search.items);
+    for (std::int64_t block = chunk * chunk_items; block < end; block += items_at_once)
       for (int part = 0; part < search.parts; ++part)
-        for (std::int64_t i = first; i < last; ++i) tests += search_item(search, i, part, found);
-    }
+        for (std::int64_t i = block; i < std::min(block + items_at_once, end); ++i)
+          tests += search_item(search, i, part, found);
     return tests;
   }
 
-  template <class Search>
-  static std::int64_t search_item(const Search& search, std::int64_t i, int part, std::vector<Match>& found) {
+  template <class Search, class Found>
+  static std::int64_t search_item(const Search& search, std::int64_t i, int part, const Found& found) {
     std::int64_t tests = 0;
     const auto item = search.item(i);
     for (int r = 0; r < runs_at_once; ++r) {
@@ -113,15 +138,13 @@ class MatchFinder<Host, Match> {
       for (std::uint32_t k = run.begin; k < run.end; ++k) {
         const auto candidate = search.candidate(k);
         if (search.meets(item.object, part * runs_at_once + r, candidate))
-          found.push_back(search.match(item.object, candidate));
+          found([&] { return search.match(item.object, candidate); });
       }
     }
     return tests;
   }
 
-  std::vector<std::vector<Match>> chunks_;
-  std::size_t used_ = 0;
-  std::vector<std::int64_t> tests_;
+  std::vector<Chunk> chunks_;
 };
 
 #if SCREE_WITH_CUDA
