@@ -172,7 +172,8 @@ void set_cell(GridLevel& level, double cell) {
   level.inverse_cell = 1 / level.cell;
 }
 
-/// Cells of a dense table. Sets the first and last cells in use.
+/// Sets the cells in use and the layout of a dense table, which it may prove too large for; returns its
+/// cells.
 double lay_out_dense(GridLevel& level, const Census& census) {
   double columns[3];
   for (int a = 0; a < 3; ++a) {

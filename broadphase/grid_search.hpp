@@ -18,7 +18,7 @@ struct GridView {
   // warp's loads of 16 bytes do as well.
   const Corner* lo;
   const Corner* hi;
-  const std::uint32_t* starts;  ///< of each cell in `objects`, one past the last cell included
+  const std::uint32_t* starts;  ///< of each cell among the objects, one past the last cell included
 
   SCREE_HD Boxed object(std::int64_t k) const { return {lo[k], hi[k]}; }
 

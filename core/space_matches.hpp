@@ -292,7 +292,7 @@ __device__ Word search_items(const Search& search, std::int64_t first, Stage& st
       length += run[u].end - run[u].begin;
     }
     tests += length;
-    // Those of all lanes are, if none has very many: then the lanes take turns.
+    // Those of all 32 lanes are too, unless one has over 2^26: then the lanes take turns.
     const bool in_turns = __any_sync(all_lanes, length > (1u << 26));
     for (unsigned turn = 0; turn < (in_turns ? 32u : 1u); ++turn)
       do_tasks(search, part * runs_at_once, run, !in_turns || turn == lane, stage, sink);
@@ -306,7 +306,7 @@ struct MatchSink {
   Match* to;
   Word room;
   Word count = 0;
-  // Since begin(), of the fewer than 2^32 tasks of a window.
+  // Since begin(), for the tasks of one window.
   Match* next = nullptr;
   std::uint32_t left = 0;
   std::uint32_t fresh = 0;

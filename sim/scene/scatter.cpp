@@ -93,8 +93,8 @@ class CellGrid {
 bool is_apart(const BodyTable& bodies, std::size_t tube, const ScatterEntry& box) {
   if (bodies.shape[tube] != Shape::tube) return false;
   const Vec3 axis = bodies.orientation[tube] * Vec3::UnitZ();
-  const auto across = (1 - axis.array().square()).cwiseMax(0).sqrt();
-  const Vec3 half = bodies.size[tube].z() * axis.cwiseAbs() + bodies.size[tube].x() * across.matrix();
+  const Vec3 across = (1 - axis.array().square()).cwiseMax(0).sqrt();  // share of the radius along each axis
+  const Vec3 half = bodies.size[tube].z() * axis.cwiseAbs() + bodies.size[tube].x() * across;
   const Vec3& at = bodies.position[tube];
   return (at - half - box.to).maxCoeff() >= 0 || (box.from - at - half).maxCoeff() >= 0;
 }
