@@ -7,11 +7,8 @@
 
 #include <cstdint>
 #include <memory>
-#include <vector>
 
 namespace scree {
-
-struct GridLevel;
 
 /// A closed axis-aligned box (m, relative to the local origin): boxes that only touch overlap.
 struct Aabb {
@@ -26,7 +23,8 @@ struct Pair {
 };
 
 struct BroadPhaseStats {
-  int levels = 0;               ///< grid levels in use
+  int levels = 0;               ///< grid levels in use; one of bricks, where they are
+  std::int64_t bricks = 0;      ///< that the space was cut into; 0 where the grid was searched as a whole
   std::int64_t candidates = 0;  ///< box tests made
   std::int64_t pairs = 0;       ///< pairs found
 };
@@ -45,8 +43,6 @@ class BroadPhase {
 
   /// About the last call of find().
   virtual const BroadPhaseStats& stats() const = 0;
-  /// The levels of the hierarchical grid in the last call of find(); null for methods without one.
-  virtual const std::vector<GridLevel>* grid_levels() const { return nullptr; }
 };
 
 template <class Space>

@@ -1,5 +1,6 @@
 #include "broadphase/hierarchical_grid.hpp"
 
+#include "broadphase/bricks.hpp"
 #include "broadphase/census.hpp"
 #include "broadphase/grid_plan.hpp"
 #include "broadphase/grid_search.hpp"
@@ -73,6 +74,8 @@ class HierarchicalGrid final : public BroadPhase<Space> {
 
   ConstView<Pair> find(ConstView<Aabb> bounds, ConstView<Mobility> mobility) override {
     stats_ = {};
+    if (forced_levels_ == 0)
+      if (const auto pairs = bricks_.find(bounds, mobility, stats_)) return *pairs;
     initialize(bounds);
     if (plan_.levels.empty()) return {};
     sort();
@@ -81,7 +84,6 @@ class HierarchicalGrid final : public BroadPhase<Space> {
   }
 
   const BroadPhaseStats& stats() const override { return stats_; }
-  const std::vector<GridLevel>* grid_levels() const override { return &plan_.levels; }
 
  private:
   /// Level and cell of each object.
@@ -144,6 +146,7 @@ class HierarchicalGrid final : public BroadPhase<Space> {
 
   int forced_levels_;
   BroadPhaseStats stats_;
+  Bricks<Space> bricks_;
   GridPlan plan_;
   Array<GridLevel, Space> levels_;
   Array<std::uint32_t, Space> key_;  ///< cell of each object

@@ -336,23 +336,32 @@ __device__ inline void store_state(Word* state, Word value) {
   asm volatile("st.relaxed.gpu.global.u64 [%0], %1;" ::"l"(state), "l"(value) : "memory");
 }
 
-/// Sum of what the tiles before this one have found; entered by one warp.
+/// Tells the tiles after this one what it has found, and returns what those before it have found; entered by
+/// one warp, which looks at 256 of them at once.
 __device__ inline Word found_before(Word* states, std::int64_t tile, Word found) {
+  constexpr int at_once = 8;
   const int lane = static_cast<int>(threadIdx.x % 32);
   if (lane == 0) store_state(states + tile, (tile == 0 ? tile_summed : tile_known) | found);
   Word sum = 0;
-  for (std::int64_t last = tile - 1; last >= 0; last -= 32) {
-    Word state = tile_summed;
-    if (last >= lane) {
-      do state = load_state(states + last - lane);
-      while (state < tile_known);
+  bool done = tile == 0;
+  for (std::int64_t last = tile - 1; !done; last -= 32 * at_once) {
+    Word state[at_once];
+#pragma unroll
+    for (int k = 0; k < at_once; ++k) {
+      const std::int64_t before = last - 32 * k - lane;
+      state[k] = before >= 0 ? load_state(states + before) : tile_summed;
     }
-    const unsigned summed = __ballot_sync(all_lanes, state >= tile_summed);
-    const int nearest = summed ? __ffs(static_cast<int>(summed)) - 1 : 31;
-    Word value = lane <= nearest ? state & tile_value : 0;
-    for (int d = 16; d > 0; d /= 2) value += __shfl_xor_sync(all_lanes, value, d);
-    sum += value;
-    if (summed) break;
+#pragma unroll
+    for (int k = 0; k < at_once; ++k) {
+      if (done) continue;
+      while (state[k] < tile_known) state[k] = load_state(states + last - 32 * k - lane);
+      const unsigned summed = __ballot_sync(all_lanes, state[k] >= tile_summed);
+      const int nearest = summed ? __ffs(static_cast<int>(summed)) - 1 : 31;
+      Word value = lane <= nearest ? state[k] & tile_value : 0;
+      for (int d = 16; d > 0; d /= 2) value += __shfl_xor_sync(all_lanes, value, d);
+      sum += value;
+      done = summed != 0;
+    }
   }
   if (lane == 0 && tile > 0) store_state(states + tile, tile_summed | (sum + found));
   return sum;

@@ -1,7 +1,7 @@
 #include "sim/pair_finder.hpp"
 
 #include "broadphase/bounds.hpp"
-#include "broadphase/grid_level.hpp"
+#include "broadphase/grid_plan.hpp"
 #include "core/error.hpp"
 #include "core/timing.hpp"
 
@@ -18,7 +18,7 @@ template <class Space>
 class PairFinderIn final : public PairFinder {
  public:
   PairFinderIn(const BroadPhaseSettings& settings, const Vec3& origin)
-      : broad_phase_(make_broad_phase<Space>(settings)), origin_(origin) {}
+      : settings_(settings), broad_phase_(make_broad_phase<Space>(settings)), origin_(origin) {}
 
   ConstView<Pair> find(const Bodies<Host>& bodies, const Array<double, Host>& margin) override {
     host_bounds_.resize(bodies.count());
@@ -41,12 +41,16 @@ class PairFinderIn final : public PairFinder {
 
   GridOccupancy grid_occupancy() const override {
     GridOccupancy grid;
-    const std::vector<GridLevel>* levels = broad_phase_->grid_levels();
-    if (levels == nullptr || levels->empty()) return grid;
-    for (const GridLevel& level : *levels) grid.width.push_back(level.cell);
-    for (const Aabb& box : host_bounds_.view()) {
-      grid.level.push_back(is_absent(box) ? 0 : level_of_extent(levels->data(), extent_of(box)));
-      if (!is_absent(box)) grid.cells.push_back(cell_around(box, *levels, grid.level.back()));
+    if (settings_.method != BroadPhaseMethod::hierarchical_grid) return grid;
+    const ConstView<Aabb> boxes = host_bounds_.view();
+    const Census census = take_census<Host>(boxes);
+    const std::vector<GridLevel> levels =
+        plan_grid(census, count_sizes<Host>(boxes, census), settings_.levels).levels;
+    if (levels.empty()) return grid;
+    for (const GridLevel& level : levels) grid.width.push_back(level.cell);
+    for (const Aabb& box : boxes) {
+      grid.level.push_back(is_absent(box) ? 0 : level_of_extent(levels.data(), extent_of(box)));
+      if (!is_absent(box)) grid.cells.push_back(cell_around(box, levels, grid.level.back()));
     }
     const auto key = [](const OccupiedCell& c) {
       return std::tuple(c.level, c.low.z(), c.low.y(), c.low.x());
@@ -67,6 +71,7 @@ class PairFinderIn final : public PairFinder {
     return cell;
   }
 
+  BroadPhaseSettings settings_;
   std::unique_ptr<BroadPhase<Space>> broad_phase_;
   Vec3 origin_;
   Array<Aabb, Host> host_bounds_;

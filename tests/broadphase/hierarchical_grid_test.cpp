@@ -42,9 +42,10 @@ TYPED_TEST(HierarchicalGrid, AgreesWithTheUniformGridAtSize) {
   }
 }
 
+// Of the grid: bricks, which only a GPU has, have an order of their own.
 TYPED_TEST(HierarchicalGrid, TheOrderIsThatOfTheHostWithOneThread) {
   const Boxes boxes = mixed_scene();
-  for (const int levels : {0, 1, 4}) {
+  for (const int levels : {1, 4}) {
     const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, 1);
     const PairSet expected = tbb::task_arena(1).execute([&] { return grid_pairs<Host>(boxes, levels); });
     EXPECT_TRUE(same_pairs(expected, grid_pairs<TypeParam>(boxes, levels)));

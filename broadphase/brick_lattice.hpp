@@ -1,0 +1,106 @@
+// Bricks: boxes of space that hold so few objects that one block of threads finds their pairs in its own
+// memory. Objects are copied into every brick that they overlap.
+//
+// Coordinates are numbers of a lattice with 2^14 points to a brick. One monotone function numbers them all,
+// so a box that overlaps another on floats does so on numbers, and where a number of one is less than one of
+// the other, so is the float: only equal numbers leave the answer to the floats. Nothing is rounded outward,
+// and no epsilon is needed anywhere.
+//
+// A pair belongs to the brick that holds the larger of both lower corners, axis by axis. That point lies in
+// both boxes if they overlap, so both were copied there; and it is in one brick alone.
+#pragma once
+
+#include "core/space.hpp"
+
+#include <cmath>
+#include <cstdint>
+
+namespace scree {
+
+inline constexpr int brick_bits = 14;
+inline constexpr std::int32_t brick_points = 1 << brick_bits;
+/// Coordinates within a brick: a brick's width below it, so that nothing narrower is cut off there, and its
+/// own.
+inline constexpr std::int32_t last_local = 2 * brick_points - 1;
+
+struct BrickLattice {
+  float origin[3];  ///< m
+  float points_per_m[3];
+  std::int32_t bricks[3];
+
+  /// Number of a coordinate, monotone. What lies outside of the lattice gets its first or last number.
+  SCREE_HD std::int32_t number_of(float coordinate, int axis) const {
+    constexpr float most = 0x1.fffffep30f;
+    const float number = fminf(fmaxf((coordinate - origin[axis]) * points_per_m[axis], 0.0f), most);
+    const auto whole = static_cast<std::int32_t>(number);
+    const std::int32_t last = bricks[axis] * brick_points - 1;
+    return whole < last ? whole : last;
+  }
+
+  SCREE_HD std::int64_t total() const { return std::int64_t{bricks[0]} * bricks[1] * bricks[2]; }
+  SCREE_HD std::uint32_t brick(std::int32_t x, std::int32_t y, std::int32_t z) const {
+    return static_cast<std::uint32_t>((z * bricks[1] + y) * bricks[0] + x);
+  }
+};
+
+/// A box in numbers of the lattice.
+struct LatticeBox {
+  std::int32_t lo[3];
+  std::int32_t hi[3];
+};
+
+/// Who an object is, and where its lower corner lies: what has to be known of a pair is the union of both.
+inline constexpr int owner_bits = 28;
+inline constexpr std::uint32_t body_mask = (1u << owner_bits) - 1;
+inline constexpr std::uint32_t not_fixed = 8u << owner_bits;
+SCREE_HD inline constexpr std::uint32_t begins_here(int axis) { return 1u << (owner_bits + axis); }
+
+/// An object as a brick sees it: for each axis the lower number in the lower half, and the last local number
+/// less the upper one in the upper half. Both have 15 bits, so that sums of two do not run over.
+struct alignas(16) Entry {
+  std::uint32_t axis[3];
+  std::uint32_t tag;  ///< body; begins_here for each axis; not_fixed
+
+  SCREE_HD std::int32_t lo(int a) const { return static_cast<std::int32_t>(axis[a] & 0xffffu); }
+  SCREE_HD std::int32_t hi(int a) const { return last_local - static_cast<std::int32_t>(axis[a] >> 16); }
+  SCREE_HD std::uint32_t body() const { return tag & body_mask; }
+};
+
+/// The entry of an object in the brick whose first numbers are `base`.
+SCREE_HD inline Entry entry_in(const LatticeBox& box, const std::int32_t base[3], std::uint32_t tag) {
+  Entry entry{{}, tag};
+  for (int a = 0; a < 3; ++a) {
+    const std::int32_t lo = box.lo[a] - base[a] + brick_points;
+    const std::int32_t hi = box.hi[a] - base[a] + brick_points;
+    if (lo >= brick_points) entry.tag |= begins_here(a);
+    entry.axis[a] = static_cast<std::uint32_t>(lo > 0 ? lo : 0) |
+                    static_cast<std::uint32_t>(last_local - (hi < last_local ? hi : last_local)) << 16;
+  }
+  return entry;
+}
+
+/// One object of a test, its halves exchanged, so that what has to be compared stands in one half.
+SCREE_HD inline Entry facing(const Entry& entry) {
+  Entry turned{{}, entry.tag};
+  for (int a = 0; a < 3; ++a) turned.axis[a] = entry.axis[a] << 16 | entry.axis[a] >> 16;
+  return turned;
+}
+
+// Half of a sum of numbers is last_local - hi + lo: its upper bit is set where lo is the larger one.
+inline constexpr std::uint32_t apart_bits = 0x80008000u;
+
+/// Whether a pair is this brick's and its numbers meet: where they do not, neither do the boxes.
+SCREE_HD inline bool may_meet(const Entry& turned, const Entry& other) {
+  const std::uint32_t apart =
+      (turned.axis[0] + other.axis[0]) | (turned.axis[1] + other.axis[1]) | (turned.axis[2] + other.axis[2]);
+  return (apart & apart_bits) == 0 && (turned.tag | other.tag) >= 15u << owner_bits;
+}
+/// Of such a pair, whether no numbers are equal, so that the boxes overlap as well.
+SCREE_HD inline bool meets_clearly(const Entry& turned, const Entry& other) {
+  constexpr std::uint32_t one = 0x00010001u;
+  const std::uint32_t apart = (turned.axis[0] + other.axis[0] + one) |
+                              (turned.axis[1] + other.axis[1] + one) | (turned.axis[2] + other.axis[2] + one);
+  return (apart & apart_bits) == 0;
+}
+
+}  // namespace scree

@@ -1,0 +1,272 @@
+// What bricks rest on: numbers that never part what overlaps, one owner for each pair, plans that fit; and
+// that Device uses them and finds the same pairs.
+#include "broadphase/bounds.hpp"
+#include "broadphase/brick_plan.hpp"
+#include "tests/broadphase/boxes.hpp"
+#include "tests/core/spaces.hpp"
+
+#include <gtest/gtest.h>
+
+#include <memory>
+
+namespace scree {
+namespace {
+
+using namespace test;
+
+/// Numbers coarse enough that many are equal.
+BrickLattice coarse_lattice() { return {{-3, -3, -3}, {9000, 7000, 5000}, {4, 3, 2}}; }
+
+LatticeBox in_numbers(const BrickLattice& lattice, const Aabb& box) {
+  LatticeBox numbers;
+  for (int a = 0; a < 3; ++a) {
+    numbers.lo[a] = lattice.number_of(box.lo[a], a);
+    numbers.hi[a] = lattice.number_of(box.hi[a], a);
+  }
+  return numbers;
+}
+
+/// Entries of a box in all bricks that it overlaps, by brick.
+std::vector<std::pair<std::uint32_t, Entry>> entries_of(const BrickLattice& lattice, const Aabb& box) {
+  const LatticeBox numbers = in_numbers(lattice, box);
+  std::vector<std::pair<std::uint32_t, Entry>> entries;
+  for (std::int32_t z = numbers.lo[2] >> brick_bits; z <= numbers.hi[2] >> brick_bits; ++z)
+    for (std::int32_t y = numbers.lo[1] >> brick_bits; y <= numbers.hi[1] >> brick_bits; ++y)
+      for (std::int32_t x = numbers.lo[0] >> brick_bits; x <= numbers.hi[0] >> brick_bits; ++x) {
+        const std::int32_t base[3] = {x << brick_bits, y << brick_bits, z << brick_bits};
+        entries.emplace_back(lattice.brick(x, y, z), entry_in(numbers, base, not_fixed));
+      }
+  return entries;
+}
+
+TEST(BrickLattice, NumbersAreMonotoneAndWithinTheLattice) {
+  const BrickLattice lattice = coarse_lattice();
+  for (int a = 0; a < 3; ++a) {
+    std::vector<float> at = {-FLT_MAX, FLT_MAX, -0.0f, 0.0f, -3, next_above(-3.0f), next_below(-3.0f), 1e30f};
+    for (int k = 0; k < 3000; ++k) {
+      Random random(1, static_cast<std::uint64_t>(k));
+      at.push_back(static_cast<float>(random.uniform(-10, 20)));
+      at.push_back(next_above(at.back()));
+    }
+    std::ranges::sort(at);
+    std::int32_t last = 0;
+    for (const float x : at) {
+      const std::int32_t number = lattice.number_of(x, a);
+      ASSERT_GE(number, last);
+      last = number;
+    }
+    EXPECT_EQ(last, lattice.bricks[a] * brick_points - 1);
+    EXPECT_EQ(lattice.number_of(-FLT_MAX, a), 0);
+  }
+}
+
+// Small and large boxes, inside and outside of the lattice, some on the same numbers.
+TEST(BrickLattice, EachPairHasOneOwnerWhichNeverErrs) {
+  const BrickLattice lattice = coarse_lattice();
+  int asked = 0;
+  int owned = 0;
+  for (int k = 0; k < 20000; ++k) {
+    Random random(2, static_cast<std::uint64_t>(k));
+    const auto any = [&] {
+      const double size = std::pow(10.0, random.uniform(-4, 1));
+      Aabb one;
+      for (int a = 0; a < 3; ++a) {
+        const double lo = std::round(random.uniform(-6, 6) * 4096) / 4096;
+        one.lo[a] = static_cast<float>(lo);
+        one.hi[a] = static_cast<float>(lo + size * random.uniform());
+      }
+      return one;
+    };
+    const Aabb first = any();
+    Aabb second = any();
+    for (int a = 0; a < 3 && random.uniform() < 0.5; ++a) {  // touching, or nearly
+      const float size = second.hi[a] - second.lo[a];
+      second.lo[a] = random.uniform() < 0.5 ? first.hi[a] : next_above(first.hi[a]);
+      second.hi[a] = second.lo[a] + size;
+    }
+    int owners = 0;
+    for (const auto& [brick, a] : entries_of(lattice, first)) {
+      for (const auto& [other_brick, b] : entries_of(lattice, second)) {
+        if (brick != other_brick || !may_meet(facing(a), b)) continue;
+        ++owners;
+        EXPECT_TRUE(may_meet(facing(b), a));
+        if (meets_clearly(facing(a), b)) {
+          EXPECT_TRUE(overlap(first, second)) << k;
+        } else {
+          ++asked;
+        }
+      }
+    }
+    EXPECT_LE(owners, 1) << k;
+    EXPECT_TRUE(owners == 1 || !overlap(first, second)) << k;
+    owned += owners;
+  }
+  EXPECT_GT(owned, 1000);
+  EXPECT_GT(asked, 100);
+}
+
+TEST(BrickLattice, TwoFixedObjectsAreNobodysPair) {
+  const std::int32_t base[3] = {0, 0, 0};
+  const LatticeBox box{{1, 1, 1}, {5, 5, 5}};
+  const Entry fixed = entry_in(box, base, 7);
+  const Entry free = entry_in(box, base, 8 | not_fixed);
+  EXPECT_FALSE(may_meet(facing(fixed), fixed));
+  EXPECT_TRUE(may_meet(facing(fixed), free));
+  EXPECT_TRUE(may_meet(facing(free), fixed));
+  EXPECT_EQ(free.body(), 8u);
+}
+
+// --- plans
+
+std::unique_ptr<BrickSample> sample_of(const Boxes& boxes) {
+  auto sample = std::make_unique<BrickSample>();
+  *sample = {};
+  const auto n = std::min<std::size_t>(boxes.size(), BrickSample::most);
+  std::ranges::fill(sample->lo, ~0u);
+  for (std::size_t k = 0; k < n; ++k) {
+    const Aabb& box = boxes[k * boxes.size() / n];
+    for (int a = 0; a < 3; ++a) {
+      sample->lo[a] = std::min(sample->lo[a], ordered_bits(box.lo[a]));
+      sample->hi[a] = std::max(sample->hi[a], ordered_bits(box.hi[a]));
+    }
+    ++sample->sizes[size_class(extent_of(box))];
+    sample->largest = std::max(sample->largest, std::bit_cast<std::uint32_t>(extent_of(box)));
+  }
+  for (std::size_t k = 0; k < n; ++k) {
+    const Aabb& box = boxes[k * boxes.size() / n];
+    int place = 0;
+    for (int a = 0; a < 3; ++a) {
+      const double lo = from_ordered_bits(sample->lo[a]);
+      const double share = (static_cast<double>(box.lo[a]) - lo) / (from_ordered_bits(sample->hi[a]) - lo);
+      place = place * BrickSample::width +
+              std::min(static_cast<int>(share * BrickSample::width), BrickSample::width - 1);
+    }
+    ++sample->places[place];
+  }
+  return sample;
+}
+
+std::optional<BrickPlan> plan_of(const Boxes& boxes) {
+  return plan_bricks(*sample_of(boxes), static_cast<std::int64_t>(boxes.size()));
+}
+
+/// Objects that overlap the fullest brick.
+std::int64_t fullest(const BrickPlan& plan, const Boxes& boxes) {
+  std::vector<std::int64_t> counts(static_cast<std::size_t>(plan.lattice.total()));
+  for (const Aabb& box : boxes)
+    for (const auto& [brick, entry] : entries_of(plan.lattice, box)) ++counts[brick];
+  return *std::ranges::max_element(counts);
+}
+
+TEST(BrickPlan, OrderedBitsOrderFloats) {
+  const float rising[] = {-FLT_MAX, -1, -1e-40f, -0.0f, 0.0f, 1e-40f, 1, FLT_MAX};
+  for (std::size_t k = 0; k + 1 < std::size(rising); ++k)
+    EXPECT_LT(ordered_bits(rising[k]), ordered_bits(rising[k + 1]));
+  for (const float x : rising) EXPECT_EQ(from_ordered_bits(ordered_bits(x)), x);
+}
+
+TEST(BrickPlan, EqualSizesHaveAStencilAndBricksThatHoldThem) {
+  const Boxes boxes = equal_cloud(100000, 47, 0.5);
+  const auto plan = plan_of(boxes);
+  ASSERT_TRUE(plan);
+  EXPECT_EQ(plan->method, BrickMethod::stencil);
+  EXPECT_GT(plan->lattice.total(), 50);
+  EXPECT_LE(fullest(*plan, boxes), std::int64_t{brick_objects});
+  EXPECT_GT(fullest(*plan, boxes), brick_objects / 2);
+  EXPECT_LE(plan->cells.total(), most_cells(plan->method));
+}
+
+TEST(BrickPlan, MixedSizesHaveRows) {
+  const Boxes boxes = log_cloud(100000, 47, 0.01, 1);
+  const auto plan = plan_of(boxes);
+  ASSERT_TRUE(plan);
+  EXPECT_EQ(plan->method, BrickMethod::rows);
+  EXPECT_LE(fullest(*plan, boxes), std::int64_t{brick_objects});
+  EXPECT_LE(plan->cells.total(), most_cells(plan->method));
+}
+
+TEST(BrickPlan, FewObjectsHaveOneBrick) {
+  const auto plan = plan_of(equal_cloud(300, 8, 0.5));
+  ASSERT_TRUE(plan);
+  EXPECT_EQ(plan->lattice.total(), 1);
+}
+
+TEST(BrickPlan, CellsHoldTheirNumbers) {
+  for (const Boxes& boxes : {equal_cloud(100000, 47, 0.5), log_cloud(100000, 47, 0.01, 1)}) {
+    const auto plan = plan_of(boxes);
+    ASSERT_TRUE(plan);
+    for (int a = 0; a < 3; ++a) {
+      for (std::int32_t number = 0; number <= last_local; ++number) {
+        ASSERT_LT(plan->cells.cell_of(number, a), plan->cells.count[a]);
+        if (plan->method == BrickMethod::stencil && a > 0 && number >= plan->reach[a])
+          ASSERT_LE(plan->cells.cell_of(number, a), plan->cells.cell_of(number - plan->reach[a], a) + 1);
+      }
+    }
+  }
+}
+
+TEST(BrickPlan, DeclinesWhatDoesNotSuit) {
+  EXPECT_FALSE(plan_of(Boxes(5000, ball(3, -2, 1, 0.5))));  // all at one point
+  EXPECT_FALSE(plan_of(equal_cloud(5000, 10, 0)));          // points
+  EXPECT_FALSE(plan_of(equal_cloud(20000, 2, 0.5)));        // all over each other
+  Boxes cluster = equal_cloud(50000, 1, 0.001);
+  for (const Aabb& far : equal_cloud(50000, 10000, 0.001, 5)) cluster.push_back(far);
+  EXPECT_FALSE(plan_of(cluster));  // nearly all in one place, the others anywhere
+}
+
+// --- on the GPU
+
+template <class Space>
+class Bricked : public test::InSpace<Space> {};
+TYPED_TEST_SUITE(Bricked, test::Spaces, test::SpaceName);
+
+template <class Space>
+void expect_bricks(const Boxes& boxes, const char* what) {
+  const auto grid = make_broad_phase<Space>({});
+  const std::vector<Mobility> mobility = all_free(boxes);
+  const PairSet first = found(*grid, boxes, mobility);
+  if constexpr (!std::is_same_v<Space, Host>) EXPECT_GT(grid->stats().bricks, 0) << what;
+  EXPECT_TRUE(same_pairs(first, found(*grid, boxes, mobility))) << what;
+  const PairSet expected = found<Space>({.method = BroadPhaseMethod::uniform_grid}, boxes, mobility);
+  EXPECT_TRUE(same_pairs(sorted(expected), sorted(first))) << what;
+}
+
+// Few go straight to their bricks, many by way of buckets.
+TYPED_TEST(Bricked, SuchScenesUseThemAndTwoRunsGiveTheSameBytes) {
+  for (const int n : {3000, 100000, 400000}) {
+    const double side = std::cbrt(n);
+    expect_bricks<TypeParam>(equal_cloud(n, side, 0.5), "equal");
+    expect_bricks<TypeParam>(log_cloud(n, side, 0.01, 1), "mixed");
+    Boxes giants = equal_cloud(n, side, 0.5);
+    for (const Aabb& giant : equal_cloud(20, side, side / 8, 5)) giants.push_back(giant);
+    giants.push_back(ball(0, 0, 0, 10 * side));
+    expect_bricks<TypeParam>(giants, "giants");
+    Boxes plate;
+    for (Aabb box : equal_cloud(n, 6 * side, 0.5)) {
+      box.lo[2] = -0.5;
+      box.hi[2] = 0.5;
+      plate.push_back(box);
+    }
+    expect_bricks<TypeParam>(plate, "plate");
+  }
+}
+
+// More pairs than a warp keeps in its memory: it searches again.
+TYPED_TEST(Bricked, ManyPairsToAnObject) {
+  const Boxes boxes = equal_cloud(30000, 20, 0.5);
+  EXPECT_TRUE(
+      same_pairs(sorted(found<TypeParam>({.method = BroadPhaseMethod::uniform_grid}, boxes, all_free(boxes))),
+                 sorted(found<TypeParam>({}, boxes, all_free(boxes)))));
+}
+
+// The sample does not see the crowd, and the grid does what bricks cannot.
+TYPED_TEST(Bricked, AHiddenCrowdIsLeftToTheGrid) {
+  Boxes boxes = equal_cloud(400000, 74, 0.5);
+  for (std::size_t k = 1; k < 20000; k += 2) boxes[k] = ball(1, 2, 3 + 1e-3 * static_cast<double>(k), 1e-3);
+  EXPECT_TRUE(
+      same_pairs(sorted(found<TypeParam>({.method = BroadPhaseMethod::uniform_grid}, boxes, all_free(boxes))),
+                 sorted(found<TypeParam>({}, boxes, all_free(boxes)))));
+}
+
+}  // namespace
+}  // namespace scree
