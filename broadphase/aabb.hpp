@@ -34,9 +34,10 @@ SCREE_HD inline bool is_proper(const Aabb& box) {
   return true;
 }
 
+/// All six at once: which one parts two boxes cannot be foreseen.
 SCREE_HD inline bool overlap(const Aabb& a, const Aabb& b) {
-  return a.lo[0] <= b.hi[0] && b.lo[0] <= a.hi[0] && a.lo[1] <= b.hi[1] && b.lo[1] <= a.hi[1] &&
-         a.lo[2] <= b.hi[2] && b.lo[2] <= a.hi[2];
+  return (a.lo[0] <= b.hi[0]) & (b.lo[0] <= a.hi[0]) & (a.lo[1] <= b.hi[1]) & (b.lo[1] <= a.hi[1]) &
+         (a.lo[2] <= b.hi[2]) & (b.lo[2] <= a.hi[2]);
 }
 
 /// Coordinate of the centre, to double rounding (m).
