@@ -19,10 +19,14 @@ SCREE_HD inline float next_below(float x) {
 }
 SCREE_HD inline float next_above(float x) { return -next_below(-x); }
 
-/// The largest float that is not over x, and the smallest that is not under it; NaN stays NaN.
+/// The largest float that is not over x, and the smallest that is not under it; NaN stays NaN. Without
+/// branches: whether the nearest float is over x cannot be foreseen.
 SCREE_HD inline float round_down(double x) {
   const auto nearest = static_cast<float>(x);
-  return static_cast<double>(nearest) > x ? next_below(nearest) : nearest;
+  const auto bits = std::bit_cast<std::uint32_t>(nearest);
+  const std::uint32_t over = static_cast<double>(nearest) > x ? 1 : 0;
+  const std::uint32_t sign = over << 31;  // under +0 comes what comes under -0
+  return std::bit_cast<float>(nearest > 0 ? bits - over : (bits | sign) + over);
 }
 SCREE_HD inline float round_up(double x) { return -round_down(-x); }
 

@@ -34,6 +34,13 @@ TEST(Rounding, IsOutwardAndTight) {
   }
   EXPECT_EQ(round_down(0.5), 0.5f);
   EXPECT_EQ(round_up(0.5), 0.5f);
+  EXPECT_EQ(round_down(1e-60), 0);
+  EXPECT_EQ(round_down(-1e-60), -1e-45f);
+  EXPECT_EQ(round_up(-1e-60), 0);
+  EXPECT_EQ(round_down(0.0), 0);
+  EXPECT_EQ(round_down(-0.0), 0);
+  EXPECT_EQ(round_down(-1e39), -infinity);
+  EXPECT_EQ(round_down(-HUGE_VAL), -infinity);
   EXPECT_EQ(round_down(1e39), FLT_MAX);
   EXPECT_EQ(round_up(1e39), infinity);
   EXPECT_TRUE(std::isnan(round_down(NAN)));
