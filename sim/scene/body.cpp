@@ -1,6 +1,7 @@
 // Closed forms of mass and inertia, and the draws of one body.
 #include "sim/scene/body.hpp"
 
+#include "core/random_orientation.hpp"
 #include "sim/scene/unit_quaternion.hpp"
 
 #include <cmath>
@@ -18,16 +19,6 @@ Vec3 place_of(const BodyEntry& entry, std::int64_t k, Random& random) {
   at += cell.cwiseProduct(repeat.spacing);
   for (int c = 0; c < 3; ++c) at[c] += random.uniform(-repeat.jitter, repeat.jitter);
   return at;
-}
-
-/// Uniform over all rotations (Shoemake 1992, "Uniform random rotations", Graphics Gems III).
-Quat random_orientation(Random& random) {
-  const double u = random.uniform();
-  const double a = 2 * pi * random.uniform();
-  const double b = 2 * pi * random.uniform();
-  const double s = std::sqrt(1 - u);
-  const double t = std::sqrt(u);
-  return Quat(t * std::cos(b), s * std::sin(a), s * std::cos(a), t * std::sin(b));
 }
 
 Quat orientation_of(const BodyEntry& entry, Random& random) {
