@@ -52,7 +52,7 @@ Pairs near_pairs(const std::vector<Aabb>& boxes, double tests_per_body) {
   }
   const double all = tests_per_body * static_cast<double>(boxes.size());
   BroadPhaseStats stats;
-  return find_pairs(cubes, static_cast<std::int64_t>(std::ceil(2 * all / most_timed)), stats);
+  return find_pairs(cubes, 1 + static_cast<std::int64_t>(2 * all / most_timed), stats);
 }
 
 Pairs random_pairs(std::int64_t bodies) {
@@ -158,6 +158,7 @@ struct Contestant {
 
  private:
   double time_per_test(const Pairs& pairs) const {
+    if (pairs.empty()) return 0;
     return nanoseconds([&] { volumes->count(pairs); }) / static_cast<double>(pairs.size());
   }
 };

@@ -91,6 +91,8 @@ int run_all(int argc, char** argv) {
                                        .overlaps_per_body = std::stod(options.at("--overlaps")),
                                        .margin = std::stod(options.at("--margin")),
                                        .rounds = std::stoi(options.at("--rounds"))};
+  if (settings.bodies < 2 || settings.rounds < 1 || !(settings.overlaps_per_body > 0 && settings.margin >= 0))
+    throw InputError("--n must be at least 2, --rounds 1, --overlaps over 0, --margin not under 0");
   bool good = true;
   for (const std::string& name : split(options.at("--family")))
     good = run(find_family(name), settings) && good;
