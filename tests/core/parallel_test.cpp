@@ -3,6 +3,7 @@
 #include "core/parallel.hpp"
 
 #include "core/rng.hpp"
+#include "core/space_atomic.hpp"
 #include "tests/core/spaces.hpp"
 
 #include <gtest/gtest.h>
@@ -48,6 +49,20 @@ struct Load {
   SCREE_HD std::int64_t operator()(std::int64_t i) const { return values[i]; }
 };
 
+// Two threads meet at each place; the second reads what the first has written.
+struct Meet {
+  std::int32_t* places;  // -1 at first
+  std::int64_t* written;
+  std::int64_t* sums;
+  std::int64_t count;
+  SCREE_HD void operator()(std::int64_t i) const {
+    const std::int64_t place = i % count;
+    written[i] = 3 * i + 1;
+    const std::int32_t other = exchange(&places[place], static_cast<std::int32_t>(i));
+    if (other >= 0) sums[place] = written[i] + written[other];
+  }
+};
+
 // Runs f with exactly this many threads allowed, on machines with fewer cores too.
 template <class F>
 auto with_threads(int threads, F f) {
@@ -78,6 +93,18 @@ TYPED_TEST(ParallelTest, FillSetsEveryValue) {
   copy(values, std::vector<std::int64_t>(1000, -1));
   parallel::fill("test.fill", values, std::int64_t{7});
   EXPECT_EQ(to_vector(values), std::vector<std::int64_t>(1000, 7));
+}
+
+TYPED_TEST(ParallelTest, ExchangeHandsOnWhatWasWrittenBefore) {
+  constexpr std::int64_t count = 100000;
+  Array<std::int32_t, TypeParam> places(count);
+  Array<std::int64_t, TypeParam> written(2 * count), sums(count);
+  parallel::fill("places", places, -1);
+  parallel::fill("sums", sums, std::int64_t{0});
+  parallel::for_each<TypeParam>("meet", 2 * count, Meet{places.data(), written.data(), sums.data(), count});
+  const std::vector<std::int64_t> all = to_vector(sums);
+  for (std::int64_t k = 0; k < count; ++k)
+    ASSERT_EQ(all[static_cast<std::size_t>(k)], 3 * (k + k + count) + 2);
 }
 
 TYPED_TEST(ParallelTest, SumAgreesWithLongDouble) {
