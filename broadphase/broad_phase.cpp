@@ -2,6 +2,8 @@
 
 #include "broadphase/brute_force.hpp"
 #include "broadphase/hierarchical_grid.hpp"
+#include "broadphase/lbvh.hpp"
+#include "broadphase/sweep_and_prune.hpp"
 #include "broadphase/uniform_grid.hpp"
 #include "core/error.hpp"
 
@@ -14,6 +16,10 @@ std::unique_ptr<BroadPhase<Space>> make_broad_phase(const BroadPhaseSettings& se
       return make_hierarchical_grid<Space>(settings.levels);
     case BroadPhaseMethod::uniform_grid:
       return make_uniform_grid<Space>();
+    case BroadPhaseMethod::sweep_and_prune:
+      return make_sweep_and_prune<Space>();
+    case BroadPhaseMethod::lbvh:
+      return make_lbvh<Space>();
     case BroadPhaseMethod::brute_force:
       return make_brute_force<Space>();
   }

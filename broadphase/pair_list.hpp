@@ -1,4 +1,4 @@
-// How every broad phase turns searches into a list of pairs.
+// How every broad phase makes its list of pairs.
 #pragma once
 
 #include "broadphase/aabb.hpp"
@@ -51,19 +51,27 @@ class PairList {
   /// Throws RunError if there is no memory for so many, before any is asked for.
   template <class... Search>
   ConstView<Pair> collect(BroadPhaseStats& stats, const Search&... searches) {
-    const auto reserve = [this](std::int64_t pairs) {
-      if (pairs <= pairs_.capacity()) return;
-      // The old pairs are freed before the new ones are allocated.
-      require_memory(pairs,
-                     Space::free_memory() + static_cast<std::size_t>(pairs_.capacity()) * sizeof(Pair));
-    };
-    const MatchTotals totals = finder_.find(pairs_, reserve, searches...);
+    const MatchTotals totals = finder_.find(
+        pairs_, [this](std::int64_t pairs) { require_room(pairs); }, searches...);
     stats.pairs = totals.matches;
     stats.candidates = totals.tests;
     return pairs_.view();
   }
 
+  /// For a method that finds pairs by itself: room for as many as it has counted. Throws as collect() does.
+  View<Pair> room_for(std::int64_t pairs) {
+    require_room(pairs);
+    pairs_.resize(pairs);
+    return pairs_.view();
+  }
+
  private:
+  void require_room(std::int64_t pairs) const {
+    if (pairs <= pairs_.capacity()) return;
+    // The old pairs are freed before the new ones are allocated.
+    require_memory(pairs, Space::free_memory() + static_cast<std::size_t>(pairs_.capacity()) * sizeof(Pair));
+  }
+
   MatchFinder<Space, Pair> finder_;
   Array<Pair, Space> pairs_;
 };

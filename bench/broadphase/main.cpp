@@ -2,8 +2,8 @@
 // included.
 //
 //   scree_bench_broadphase [--set A,B,C] [--n 1000000,16000000] [--space host|cuda] [--levels L]
-//                          [--method hierarchical_grid|uniform_grid|brute_force] [--check METHOD]
-//                          [--stages yes]
+//                          [--method hierarchical_grid|uniform_grid|sweep_and_prune|lbvh|brute_force]
+//                          [--check METHOD] [--stages yes]
 //
 // Two calls to warm up, then the median of nine, each with the boxes in another random order; the checksum of
 // the pairs is that of the data set's own order. --check compares count and checksum of the pairs with those
@@ -31,6 +31,8 @@ constexpr int repeats = 9;
 const std::map<std::string, BroadPhaseMethod> methods = {
     {"hierarchical_grid", BroadPhaseMethod::hierarchical_grid},
     {"uniform_grid", BroadPhaseMethod::uniform_grid},
+    {"sweep_and_prune", BroadPhaseMethod::sweep_and_prune},
+    {"lbvh", BroadPhaseMethod::lbvh},
     {"brute_force", BroadPhaseMethod::brute_force}};
 
 BroadPhaseMethod method_of(const std::string& name) {

@@ -111,6 +111,10 @@ std::string broad_phase_words(const BroadPhaseSettings& settings) {
       break;
     case BroadPhaseMethod::uniform_grid:
       return "uniform grid";
+    case BroadPhaseMethod::sweep_and_prune:
+      return "sweep and prune";
+    case BroadPhaseMethod::lbvh:
+      return "bounding volume hierarchy";
     case BroadPhaseMethod::brute_force:
       return "brute force";
   }

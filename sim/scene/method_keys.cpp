@@ -14,8 +14,9 @@ Codec<BroadPhaseMethod> broadphase_word() {
   using enum BroadPhaseMethod;
   return word<BroadPhaseMethod>({{"hierarchical_grid", hierarchical_grid},
                                  {"uniform_grid", uniform_grid},
-                                 {"brute_force", brute_force}},
-                                {"sweep_and_prune", "lbvh"});
+                                 {"sweep_and_prune", sweep_and_prune},
+                                 {"lbvh", lbvh},
+                                 {"brute_force", brute_force}});
 }
 
 Codec<BoxBoxMethod> box_box_word() {

@@ -110,7 +110,9 @@ inline ::testing::AssertionResult same_pairs(const PairSet& expected, const Pair
 inline std::vector<std::pair<std::string, BroadPhaseSettings>> every_method() {
   std::vector<std::pair<std::string, BroadPhaseSettings>> all = {
       {"brute force", {.method = BroadPhaseMethod::brute_force}},
-      {"uniform grid", {.method = BroadPhaseMethod::uniform_grid}}};
+      {"uniform grid", {.method = BroadPhaseMethod::uniform_grid}},
+      {"sweep and prune", {.method = BroadPhaseMethod::sweep_and_prune}},
+      {"bounding volume hierarchy", {.method = BroadPhaseMethod::lbvh}}};
   for (int levels = 0; levels <= 8; ++levels) {
     all.emplace_back("hierarchical grid, levels " + std::to_string(levels),
                      BroadPhaseSettings{.method = BroadPhaseMethod::hierarchical_grid, .levels = levels});

@@ -1,0 +1,152 @@
+#include "broadphase/sweep_and_prune.hpp"
+
+#include "broadphase/census.hpp"
+#include "broadphase/centre_scale.hpp"
+#include "broadphase/pair_list.hpp"
+
+#include <algorithm>
+#include <bit>
+
+namespace scree {
+
+namespace {
+
+/// Unsigned numbers in the order of the floats, to be sorted by their bits; 0 and -0 are one.
+SCREE_HD std::uint32_t ordered(float x) {
+  constexpr std::uint32_t sign = 0x80000000u;
+  const auto bits = std::bit_cast<std::uint32_t>(x + 0.0f);  // -0 becomes 0
+  return bits < sign ? bits | sign : ~bits;
+}
+
+/// Sums over the centres of their numbers, counted from the middle, and of the squares of these.
+struct Moments {
+  double first[3] = {0, 0, 0};
+  double second[3] = {0, 0, 0};
+
+  SCREE_HD Moments operator+(const Moments& other) const {
+    Moments sum = *this;
+    for (int a = 0; a < 3; ++a) {
+      sum.first[a] += other.first[a];
+      sum.second[a] += other.second[a];
+    }
+    return sum;
+  }
+};
+
+struct MomentsOfBox {
+  CentreScale scale;
+  ConstView<Aabb> bounds;
+  SCREE_HD Moments operator()(std::int64_t i) const {
+    Moments moments;
+    const Aabb box = bounds[i];
+    for (int a = 0; a < 3 && !is_absent(box); ++a) {
+      const double x = scale.number(centre_of(box, a)) - 0x1p20;
+      moments.first[a] = x;
+      moments.second[a] = x * x;
+    }
+    return moments;
+  }
+};
+
+/// The axis along which the centres vary most (Ericson 2005, Real-Time Collision Detection, section 7.5.2),
+/// on a scale on which outliers count for little.
+template <class Space>
+int sweep_axis(ConstView<Aabb> bounds, const Census& census) {
+  const auto sums = parallel::sum<Moments, Space>("broadphase.sweep_and_prune.axis", bounds.size(),
+                                                  MomentsOfBox{CentreScale(census), bounds});
+  double variance[3];
+  for (int a = 0; a < 3; ++a) {
+    const double mean = sums.first[a] / census.present;
+    variance[a] = sums.second[a] / census.present - mean * mean;
+  }
+  return static_cast<int>(std::max_element(variance, variance + 3) - variance);
+}
+
+/// What is absent begins at infinity: after all others.
+struct KeyOfBegin {
+  ConstView<Aabb> bounds;
+  int axis;
+  View<std::uint32_t> key;
+  View<std::int32_t> body;
+  SCREE_HD void operator()(std::int64_t i) const {
+    key[i] = ordered(bounds[i].lo[axis]);
+    body[i] = static_cast<std::int32_t>(i);
+  }
+};
+
+struct GatherBoxed {
+  ConstView<Aabb> bounds;
+  ConstView<Mobility> mobility;
+  ConstView<std::int32_t> body;
+  View<Boxed> sorted;
+  SCREE_HD void operator()(std::int64_t k) const {
+    sorted[k] = boxed(bounds[body[k]], body[k], mobility[body[k]]);
+  }
+};
+
+/// Each object against those that begin with it or after it, and not after its end.
+struct SweepSearch {
+  static constexpr const char* label = "broadphase.sweep_and_prune.search";
+  using Object = Boxed;
+  using Candidate = Boxed;
+  struct Item {
+    Boxed object;
+    Run run;
+  };
+
+  std::int64_t items;
+  int axis;
+  const std::uint32_t* key;
+  const Boxed* sorted;
+  int parts = 1;
+
+  SCREE_HD Item item(std::int64_t k) const {
+    const std::uint32_t* end = std::upper_bound(key + k, key + items, ordered(sorted[k].hi.at[axis]));
+    return {sorted[k], {static_cast<std::uint32_t>(k) + 1, static_cast<std::uint32_t>(end - key)}};
+  }
+  SCREE_HD Run run(const Item& item, int, int r) const { return r == 0 ? item.run : Run{}; }
+  SCREE_HD Boxed candidate(std::uint32_t k) const { return sorted[k]; }
+  SCREE_HD bool meets(const Boxed& a, int, const Boxed& b) const { return may_collide(a, b); }
+  SCREE_HD Pair match(const Boxed& a, const Boxed& b) const { return pair_of(a.body(), b.body()); }
+};
+
+template <class Space>
+class SweepAndPrune final : public BroadPhase<Space> {
+ public:
+  ConstView<Pair> find(ConstView<Aabb> bounds, ConstView<Mobility> mobility) override {
+    stats_ = {};
+    const Census census = take_census<Space>(bounds);
+    if (census.present == 0) return {};
+    const int axis = sweep_axis<Space>(bounds, census);
+    key_.resize(bounds.size());
+    body_.resize(bounds.size());
+    sorted_.resize(census.present);
+    parallel::for_each<Space>("broadphase.sweep_and_prune.keys", bounds.size(),
+                              KeyOfBegin{bounds, axis, key_.view(), body_.view()});
+    parallel::sort_by_key("broadphase.sweep_and_prune.sort", key_, body_);
+    parallel::for_each<Space>("broadphase.sweep_and_prune.gather", sorted_.size(),
+                              GatherBoxed{bounds, mobility, body_.view(), sorted_.view()});
+    return pairs_.collect(stats_, SweepSearch{sorted_.size(), axis, key_.data(), sorted_.data()});
+  }
+  const BroadPhaseStats& stats() const override { return stats_; }
+
+ private:
+  BroadPhaseStats stats_;
+  Array<std::uint32_t, Space> key_;  ///< where each object begins
+  Array<std::int32_t, Space> body_;
+  Array<Boxed, Space> sorted_;
+  PairList<Space> pairs_;
+};
+
+}  // namespace
+
+template <class Space>
+std::unique_ptr<BroadPhase<Space>> make_sweep_and_prune() {
+  return std::make_unique<SweepAndPrune<Space>>();
+}
+
+#define SCREE_INSTANTIATE(Space) template std::unique_ptr<BroadPhase<Space>> make_sweep_and_prune<Space>();
+SCREE_FOR_EACH_SPACE(SCREE_INSTANTIATE)
+#undef SCREE_INSTANTIATE
+
+}  // namespace scree
