@@ -227,13 +227,14 @@ void expect_bricks(const Boxes& boxes, const char* what) {
   const PairSet first = found(*grid, boxes, mobility);
   if constexpr (!std::is_same_v<Space, Host>) EXPECT_GT(grid->stats().bricks, 0) << what;
   EXPECT_TRUE(same_pairs(first, found(*grid, boxes, mobility))) << what;
-  const PairSet expected = found<Space>({.method = BroadPhaseMethod::uniform_grid}, boxes, mobility);
-  EXPECT_TRUE(same_pairs(sorted(expected), sorted(first))) << what;
+  // The grid, which is held to the definition where there are few (find_test.cpp).
+  EXPECT_TRUE(same_pairs(sorted(found<Space>({.levels = 4}, boxes, mobility)), sorted(first))) << what;
 }
 
 // Few go straight to their bricks, many by way of buckets.
 TYPED_TEST(Bricked, SuchScenesUseThemAndTwoRunsGiveTheSameBytes) {
-  for (const int n : {3000, 100000, 400000}) {
+  constexpr bool on_host = std::is_same_v<TypeParam, Host>;
+  for (const int n : on_host ? std::vector{3000} : std::vector{3000, 100000, 400000}) {
     const double side = std::cbrt(n);
     expect_bricks<TypeParam>(equal_cloud(n, side, 0.5), "equal");
     expect_bricks<TypeParam>(log_cloud(n, side, 0.01, 1), "mixed");
