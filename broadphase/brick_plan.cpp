@@ -1,7 +1,9 @@
 #include "broadphase/brick_plan.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
+#include <vector>
 
 namespace scree {
 
@@ -21,14 +23,21 @@ constexpr double usual_deviations = 1;
 constexpr double most_copies = 3;
 constexpr double fewest_objects = 32;  // of a brick, on average
 constexpr int most_rows = 8;
-constexpr double finest_stencil = 12;  // cells along a brick
+constexpr double finest_stencil = 9;  // cells along a brick
 constexpr double finest_row = 64;
+constexpr double stencil_runs = 5;
+constexpr double stencil_cells_tested = 11;  // of the volume of a cell's cube, half as wide along x
+
+/// Objects of one octave of sizes.
+struct Octave {
+  double share;  ///< of all objects
+  double size;   ///< mean (m)
+};
 
 /// What the plan uses of a sample.
 struct Summary {
+  std::vector<Octave> octaves;
   double present = 0;  ///< objects, of all
-  double mean = 0;     ///< of the sizes (m)
-  double square = 0;   ///< of their squares (m^2)
   double largest = 0;  ///< (m)
   double lo[3];        ///< (m)
   double length[3];
@@ -37,16 +46,16 @@ struct Summary {
 
   Summary(const BrickSample& sample, std::int64_t objects) {
     double seen = 0;
+    for (const std::uint32_t n : sample.sizes) seen += n;
     for (int bin = 0; bin < BrickSample::size_bins; ++bin) {
-      const double n = sample.sizes[bin];
-      const double size = class_end(bin) / (1 + 0.5 / classes_per_octave);
-      seen += n;
-      if (n == 0) continue;
-      mean += n * size;
-      square += n * size * size;
+      const double share = sample.sizes[bin] / seen;
+      if (bin % classes_per_octave == 0 && (octaves.empty() || octaves.back().share > 0))
+        octaves.push_back({0, 0});
+      octaves.back().share += share;
+      octaves.back().size += share * class_end(bin) / (1 + 0.5 / classes_per_octave);
     }
-    mean /= seen;
-    square /= seen;
+    if (octaves.back().share == 0) octaves.pop_back();
+    for (Octave& octave : octaves) octave.size /= octave.share;
     largest = std::bit_cast<float>(sample.largest);
     present = static_cast<double>(objects) * seen /
               static_cast<double>(std::min<std::int64_t>(objects, BrickSample::most));
@@ -68,75 +77,93 @@ struct Summary {
     densest = std::max(density, present / volume * (most - 3 * std::sqrt(most)) * places / seen);
   }
 
-  /// Bricks that the usual object stands in.
-  double copies(double width) const {
-    double product = 1;
-    for (const double l : length) product *= l > width ? 1 + mean / width : 1;
-    return product;
-  }
   double volume(double width) const {
     double product = 1;
     for (const double l : length) product *= std::min(l, width);
+    return product;
+  }
+  /// Bricks in which an object of this size stands.
+  double copies(double size, double width) const {
+    double product = 1;
+    for (const double l : length) product *= l > width ? 1 + std::min(size, l) / width : 1;
     return product;
   }
 };
 
 struct Choice {
   BrickMethod method;
-  int rows;      ///< along y and z, of method rows
-  double width;  ///< of a brick (m)
-  double cost;   ///< of an object
+  int rows;          ///< along y and z, of method rows
+  double width = 0;  ///< of a brick (m)
+  double cost = 0;   ///< of an object
 };
 
-/// Entries of an object in one brick.
-double entries_of(const Summary& all, const Choice& choice) {
-  if (choice.method == BrickMethod::stencil) return 1;
-  const double row = choice.width / choice.rows;
-  return 1 + 2 * all.mean / row + all.square / (row * row);
-}
+/// What a brick around the usual object has to do; expected values.
+struct Load {
+  double objects = 0;
+  double entries = 0;
+  double entry_squares = 0;  ///< sum over the objects: their variance, since objects are there by chance
+  double reach = 0;          ///< along x, of an entry (m)
+
+  Load(const Summary& all, const Choice& choice, double density) {
+    const double row = choice.width / choice.rows;
+    for (const Octave& octave : all.octaves) {
+      const double n =
+          density * all.volume(choice.width) * octave.share * all.copies(octave.size, choice.width);
+      const double within = std::min(octave.size, choice.width);
+      const double rows = std::min(1 + within / row, static_cast<double>(choice.rows));
+      const double of_object = choice.method == BrickMethod::stencil ? 1 : rows * rows;
+      objects += n;
+      entries += n * of_object;
+      entry_squares += n * of_object * of_object;
+      reach += n * of_object * within;
+    }
+    reach /= entries;
+  }
+};
 
 double usual_entries(BrickMethod method) { return round_entries * (method == BrickMethod::stencil ? 4 : 6); }
 
 bool fits(const Summary& all, const Choice& choice) {
-  const double entries = entries_of(all, choice);
-  // `most` of what there are `of_object` of for each object.
-  const auto within = [&](double density, double of_object, double deviations, double most) {
-    const double mean = density * all.volume(choice.width) * all.copies(choice.width) * of_object;
-    return mean + deviations * std::sqrt(mean * of_object) <= most;
-  };
-  if (choice.method == BrickMethod::stencil &&
-      (all.largest >= choice.width ||
-       std::pow(std::min(choice.width / all.largest, finest_stencil) + 1.2, 3) * 2 >
-           most_cells(choice.method)))
-    return false;
-  return within(all.densest, 1, spare_deviations, brick_objects) &&
-         within(all.densest, entries, spare_deviations, most_entries(choice.method)) &&
-         within(all.density, entries, usual_deviations, usual_entries(choice.method));
-}
-
-double stencil_cell(const Summary& all, double width) {
-  return std::max(all.largest, width / finest_stencil);
+  if (choice.method == BrickMethod::stencil && all.largest >= choice.width)
+    return true;  // no narrower one does
+  const Load worst(all, choice, all.densest);
+  const Load usual(all, choice, all.density);
+  return worst.objects + spare_deviations * std::sqrt(worst.objects) <= brick_objects &&
+         worst.entries + spare_deviations * std::sqrt(worst.entry_squares) <= most_entries(choice.method) &&
+         usual.entries + usual_deviations * std::sqrt(usual.entry_squares) <= usual_entries(choice.method);
 }
 
 double cost_of(const Summary& all, const Choice& choice) {
-  const double density = all.density * all.copies(choice.width);
+  const Load load(all, choice, all.density);
+  double tests;  // of an entry
+  double runs = 1;
   if (choice.method == BrickMethod::stencil) {
-    const double tests = density * std::pow(stencil_cell(all, choice.width), 3) * 11;
-    return all.copies(choice.width) * (object_cost + entry_cost + 5 * run_cost + tests);
+    const double cell = std::max(all.largest, choice.width / finest_stencil);
+    tests = load.entries / all.volume(choice.width) * std::pow(cell, 3) * stencil_cells_tested;
+    runs = stencil_runs;
+  } else {
+    tests = load.entries / (choice.rows * choice.rows * choice.width) * 1.25 * load.reach;
   }
-  const double entries = entries_of(all, choice);
-  const double row = choice.width / choice.rows;
-  const double tests = density * row * row * entries * all.mean * 1.25;
-  return all.copies(choice.width) * (object_cost + entries * (entry_cost + run_cost + tests));
+  const double cost = load.objects * object_cost + load.entries * (entry_cost + runs * run_cost + tests);
+  return cost / (all.density * all.volume(choice.width));
 }
 
-/// The widest bricks that fit, and what that costs; nothing if there are none.
+/// The widest bricks that fit, and what that costs; nothing if most objects would stand in too many of them.
 std::optional<Choice> widest(const Summary& all, BrickMethod method, int rows) {
-  Choice choice{method, rows, *std::max_element(all.length, all.length + 3), 0};
-  while (!fits(all, choice)) {
-    choice.width *= 0.98;
-    if (all.copies(choice.width) > most_copies) return {};
+  constexpr int halvings = 11;
+  Choice choice{method, rows};
+  const double longest = *std::max_element(all.length, all.length + 3);
+  double narrow = -14;  // octaves under the longest
+  double wide = 0;
+  for (int k = 0; k < halvings; ++k) {
+    const double octave = k == 0 ? 0 : (narrow + wide) / 2;
+    choice.width = longest * std::exp2(octave);
+    (fits(all, choice) ? narrow : wide) = octave;
   }
+  choice.width = longest * std::exp2(narrow);
+  const Load load(all, choice, all.density);
+  if (!fits(all, choice) || load.objects > most_copies * all.density * all.volume(choice.width)) return {};
+  if (method == BrickMethod::stencil && all.largest >= choice.width) return {};
   choice.cost = cost_of(all, choice);
   return choice;
 }
@@ -155,13 +182,14 @@ BrickCells stencil_cells(const BrickPlan& plan) {
 }
 
 BrickCells row_cells(const Summary& all, const Choice& choice) {
+  const double reach = Load(all, choice, all.density).reach;
   BrickCells cells{};
   for (int a = 0; a < 3; ++a) {
     const double most =
         std::min(finest_row, std::floor(most_cells(choice.method) / double(choice.rows * choice.rows)));
     cells.first[a] = brick_points;
     cells.count[a] =
-        a == 0 ? static_cast<std::int32_t>(std::clamp(2 * choice.width / all.mean, 1.0, most)) : choice.rows;
+        a == 0 ? static_cast<std::int32_t>(std::clamp(4 * choice.width / reach, 1.0, most)) : choice.rows;
     cells.factor[a] = static_cast<std::uint32_t>(cells.count[a]) << (16 - brick_bits);
   }
   return cells;
@@ -185,7 +213,7 @@ bool choose_buckets(BrickPlan& plan) {
 std::optional<BrickPlan> plan_bricks(const BrickSample& sample, std::int64_t objects) {
   if (sample.largest == 0 || objects > std::int64_t{body_mask}) return {};
   const Summary all(sample, objects);
-  std::optional<Choice> best = widest(all, BrickMethod::stencil, 0);
+  std::optional<Choice> best = widest(all, BrickMethod::stencil, 1);
   for (int rows = 1; rows <= most_rows; ++rows) {
     const std::optional<Choice> other = widest(all, BrickMethod::rows, rows);
     if (other && (!best || other->cost < best->cost)) best = other;

@@ -3,6 +3,7 @@
 #include "broadphase/census.hpp"
 #include "broadphase/centre_scale.hpp"
 #include "broadphase/pair_list.hpp"
+#include "broadphase/sorted_keys.hpp"
 
 #include <algorithm>
 #include <bit>
@@ -101,8 +102,8 @@ struct SweepSearch {
   int parts = 1;
 
   SCREE_HD Item item(std::int64_t k) const {
-    const std::uint32_t* end = std::upper_bound(key + k, key + items, ordered(sorted[k].hi.at[axis]));
-    return {sorted[k], {static_cast<std::uint32_t>(k) + 1, static_cast<std::uint32_t>(end - key)}};
+    const std::int64_t end = first_not_under(key, k, items, ordered(sorted[k].hi.at[axis]) + 1);
+    return {sorted[k], {static_cast<std::uint32_t>(k) + 1, static_cast<std::uint32_t>(end)}};
   }
   SCREE_HD Run run(const Item& item, int, int r) const { return r == 0 ? item.run : Run{}; }
   SCREE_HD Boxed candidate(std::uint32_t k) const { return sorted[k]; }

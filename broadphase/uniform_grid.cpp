@@ -2,6 +2,7 @@
 
 #include "broadphase/census.hpp"
 #include "broadphase/pair_list.hpp"
+#include "broadphase/sorted_keys.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -88,17 +89,7 @@ struct FullStencil {
 
  private:
   SCREE_HD std::uint32_t lower_bound(std::uint64_t value) const {
-    std::int64_t lo = 0;
-    std::int64_t hi = key.size();
-    while (lo < hi) {
-      const std::int64_t middle = lo + (hi - lo) / 2;
-      if (key[middle] < value) {
-        lo = middle + 1;
-      } else {
-        hi = middle;
-      }
-    }
-    return static_cast<std::uint32_t>(lo);
+    return static_cast<std::uint32_t>(first_not_under(key.data(), 0, key.size(), value));
   }
 };
 

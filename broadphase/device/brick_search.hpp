@@ -349,28 +349,28 @@ __device__ std::uint32_t search_entries(const BrickSearch<method>& search, const
   // Marks the tests with which runs start, of a window of tests. The last lane marks the end, so that what is
   // left of the last words goes to nobody.
   const auto mark = [&](std::uint32_t done) {
-    std::uint32_t from = first_test - done;  // before the window: large
-    const std::uint32_t word = from / 32;
+    auto from = static_cast<std::int32_t>(first_test - done);  // negative: before the window
+    const std::int32_t word = from >> 5;
     std::uint32_t bits[2] = {};  // of this word and the next one: further on there is hardly ever anything
     bool far = false;
 #pragma unroll
     for (int r = 0; r <= runs; ++r) {
       const std::uint32_t starts = r < runs ? used[r] : lane == 31 ? 1u : 0u;
-      const std::uint32_t bit = from - word * 32;
+      const auto bit = static_cast<std::uint32_t>(from - 32 * word);
       bits[0] |= __funnelshift_lc(0, starts, bit);
       bits[1] |= __funnelshift_lc(0, starts, bit - 32);
       far |= starts && bit >= 64;
-      if (r < runs) from += run[r].length;
+      if (r < runs) from += static_cast<std::int32_t>(run[r].length);
     }
-    if (bits[0] && word < 32) atomicOr(&stage.starts[word], bits[0]);
-    if (bits[1] && word + 1 < 32) atomicOr(&stage.starts[word + 1], bits[1]);
+    if (bits[0] && word >= 0 && word < 32) atomicOr(&stage.starts[word], bits[0]);
+    if (bits[1] && word >= -1 && word < 31) atomicOr(&stage.starts[word + 1], bits[1]);
     if (far) {
-      from = first_test - done;
+      from = static_cast<std::int32_t>(first_test - done);
       for (int r = 0; r <= runs; ++r) {
         const bool starts = r < runs ? used[r] > 0 : lane == 31;
-        if (starts && from - word * 32 >= 64 && from < window)
+        if (starts && from - 32 * word >= 64 && from >= 0 && from < static_cast<std::int32_t>(window))
           atomicOr(&stage.starts[from / 32], 1u << (from % 32));
-        if (r < runs) from += run[r].length;
+        if (r < runs) from += static_cast<std::int32_t>(run[r].length);
       }
     }
   };
