@@ -6,6 +6,7 @@
 #include <cstdlib>
 #include <cstring>
 #include <fstream>
+#include <malloc.h>
 #include <new>
 
 #if SCREE_WITH_CUDA
@@ -23,13 +24,30 @@ void* Host::allocate(std::size_t bytes) {
 
 void Host::deallocate(void* memory) noexcept { std::free(memory); }
 
-std::size_t Host::free_memory() {
-  std::ifstream table("/proc/meminfo");
-  std::string key;
-  for (std::size_t kilobytes = 0; table >> key >> kilobytes; table.ignore(64, '\n')) {
-    if (key == "MemAvailable:") return kilobytes * 1024;
+namespace {
+
+/// The bytes in the line "key   123 kB" of one of the system's tables; `otherwise` if there is none.
+std::size_t bytes_in(const char* table, const std::string& key, std::size_t otherwise) {
+  std::ifstream lines(table);
+  for (std::string line; std::getline(lines, line);) {
+    if (line.starts_with(key)) return 1024 * std::strtoull(line.c_str() + key.size(), nullptr, 10);
   }
-  return SIZE_MAX;  // unknown: let the allocation decide
+  return otherwise;
+}
+
+}  // namespace
+
+std::size_t Host::free_memory() {
+  return bytes_in("/proc/meminfo", "MemAvailable:", SIZE_MAX);  // unknown: let the allocation decide
+}
+
+MemoryUse Host::memory_use() {
+  return {bytes_in("/proc/self/status", "VmRSS:", 0), bytes_in("/proc/self/status", "VmHWM:", 0)};
+}
+
+void Host::forget_peak() {
+  malloc_trim(0);  // or what is free, but resident still, would hide what is taken next
+  std::ofstream("/proc/self/clear_refs") << 5;
 }
 
 template <>
@@ -49,15 +67,25 @@ void check(cudaError_t status, const char* what, std::size_t bytes = 0) {
   throw RunError(message + ": " + cudaGetErrorString(status));
 }
 
+cudaMemPool_t default_pool() {
+  int device = 0;
+  cudaMemPool_t pool{};
+  check(cudaGetDevice(&device), "device");
+  check(cudaDeviceGetDefaultMemPool(&pool, device), "memory pool");
+  return pool;
+}
+
+std::size_t pool_bytes(cudaMemPoolAttr attribute) {
+  std::uint64_t bytes = 0;
+  check(cudaMemPoolGetAttribute(default_pool(), attribute, &bytes), "memory pool");
+  return bytes;
+}
+
 // Freed blocks stay in the pool: the steady step then never reaches the driver's allocator.
 void keep_pool() {
   static const bool done = [] {
-    int device = 0;
-    cudaMemPool_t pool{};
     std::uint64_t never = ~std::uint64_t{0};
-    check(cudaGetDevice(&device), "device");
-    check(cudaDeviceGetDefaultMemPool(&pool, device), "memory pool");
-    check(cudaMemPoolSetAttribute(pool, cudaMemPoolAttrReleaseThreshold, &never), "memory pool");
+    check(cudaMemPoolSetAttribute(default_pool(), cudaMemPoolAttrReleaseThreshold, &never), "memory pool");
     return true;
   }();
   (void)done;
@@ -87,15 +115,17 @@ std::size_t Device::free_memory() {
   std::size_t available = 0;
   std::size_t total = 0;
   check(cudaMemGetInfo(&available, &total), "memory");
-  int device = 0;
-  cudaMemPool_t pool{};
-  std::uint64_t reserved = 0;
-  std::uint64_t used = 0;
-  check(cudaGetDevice(&device), "device");
-  check(cudaDeviceGetDefaultMemPool(&pool, device), "memory pool");
-  check(cudaMemPoolGetAttribute(pool, cudaMemPoolAttrReservedMemCurrent, &reserved), "memory pool");
-  check(cudaMemPoolGetAttribute(pool, cudaMemPoolAttrUsedMemCurrent, &used), "memory pool");
-  return available + (reserved - used);
+  return available +
+         (pool_bytes(cudaMemPoolAttrReservedMemCurrent) - pool_bytes(cudaMemPoolAttrUsedMemCurrent));
+}
+
+MemoryUse Device::memory_use() {
+  return {pool_bytes(cudaMemPoolAttrUsedMemCurrent), pool_bytes(cudaMemPoolAttrUsedMemHigh)};
+}
+
+void Device::forget_peak() {
+  std::uint64_t none = 0;
+  check(cudaMemPoolSetAttribute(default_pool(), cudaMemPoolAttrUsedMemHigh, &none), "memory pool");
 }
 
 template <>

@@ -13,6 +13,12 @@
 
 namespace scree {
 
+/// Bytes that a program has taken of a space.
+struct MemoryUse {
+  std::size_t now = 0;
+  std::size_t peak = 0;  ///< since the last call of forget_peak()
+};
+
 /// The processor's cores, driven by Thrust's TBB system.
 struct Host {
   static constexpr const char* name = "host";
@@ -22,6 +28,9 @@ struct Host {
   static void synchronize() {}
   /// Bytes that allocate could still give, as the system sees it now.
   static std::size_t free_memory();
+  /// Resident memory of the process: what was allocated and touched. 0 where the system does not tell.
+  static MemoryUse memory_use();
+  static void forget_peak();
 };
 
 #if SCREE_WITH_CUDA
@@ -35,6 +44,9 @@ struct Device {
   static void synchronize();
   /// Bytes that allocate could still give: what the driver has free and what the pool holds unused.
   static std::size_t free_memory();
+  /// Of the pool.
+  static MemoryUse memory_use();
+  static void forget_peak();
 };
 /// Applies the macro M to each space that this build has; used for explicit instantiation.
 #define SCREE_FOR_EACH_SPACE(M) M(::scree::Host) M(::scree::Device)

@@ -5,8 +5,10 @@
 
 #include <gtest/gtest.h>
 
+#include <cstddef>
 #include <cstdint>
 #include <numeric>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -96,6 +98,23 @@ TEST(HostArray, ViewsSeeAndChangeTheElements) {
   for (int& value : array.view()) value *= 2;
   const ConstView<int> seen = array.view();
   EXPECT_EQ(std::vector<int>(seen.begin(), seen.end()), (std::vector<int>{2, 4, 6, 8}));
+}
+
+TYPED_TEST(ArrayTest, PeakOfMemoryKnowsWhatWasFreed) {
+  constexpr std::size_t bytes = std::size_t{64} << 20;
+  TypeParam::forget_peak();
+  const MemoryUse before = TypeParam::memory_use();
+  if (before.now == 0 && std::is_same_v<TypeParam, Host>) GTEST_SKIP() << "the system does not tell";
+  {
+    const std::vector<char> touched(bytes, 'x');
+    Array<char, TypeParam> array;
+    copy(array, touched);
+    EXPECT_GE(TypeParam::memory_use().now, before.now + bytes);
+  }
+  EXPECT_GE(TypeParam::memory_use().peak, before.now + bytes);
+  TypeParam::forget_peak();
+  const MemoryUse after = TypeParam::memory_use();
+  EXPECT_LT(after.peak, after.now + bytes / 2);
 }
 
 }  // namespace
