@@ -12,6 +12,13 @@ namespace scree {
 /// The bodies of a potentially colliding pair, i < j.
 using BodyPair = std::array<std::int32_t, 2>;
 
+/// The box of a body in the broad phase (m, relative to the simulation's local origin); inverted where the
+/// body is in none: planes, and absent ones.
+struct BodyBox {
+  std::array<float, 3> lo;
+  std::array<float, 3> hi;
+};
+
 /// A contact of the last substep.
 struct ContactForce {
   std::int32_t i;

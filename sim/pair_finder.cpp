@@ -6,6 +6,7 @@
 #include "core/timing.hpp"
 
 #include <algorithm>
+#include <array>
 #include <tuple>
 #include <type_traits>
 #include <utility>
@@ -38,6 +39,13 @@ class PairFinderIn final : public PairFinder {
   }
 
   const char* space_name() const override { return Space::name; }
+
+  std::vector<BodyBox> boxes() const override {
+    std::vector<BodyBox> boxes;
+    for (const Aabb& box : host_bounds_.view())
+      boxes.push_back({std::to_array(box.lo), std::to_array(box.hi)});
+    return boxes;
+  }
 
   GridOccupancy grid_occupancy() const override {
     GridOccupancy grid;

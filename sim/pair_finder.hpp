@@ -9,6 +9,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <vector>
 
 namespace scree {
 
@@ -19,6 +20,7 @@ class PairFinder {
   virtual ConstView<Pair> find(const Bodies<Host>& bodies, const Array<double, Host>& margin) = 0;
   virtual const char* space_name() const = 0;
   /// Of the last call of find().
+  virtual std::vector<BodyBox> boxes() const = 0;
   virtual GridOccupancy grid_occupancy() const = 0;
 };
 
@@ -49,6 +51,7 @@ class KeptPairs {
   /// The bodies are others: the next call makes the pairs anew.
   void forget() { kept_ = false; }
 
+  std::vector<BodyBox> boxes() const { return finder_->boxes(); }
   GridOccupancy grid_occupancy() const { return finder_->grid_occupancy(); }
   /// Of the PCS.
   std::int64_t size() const { return pcs_size_; }

@@ -233,6 +233,8 @@ std::vector<BodyPair> Simulation::pairs() {
   return pairs;
 }
 
+std::vector<BodyBox> Simulation::boxes() const { return parts_->substepper.kept_pairs().boxes(); }
+
 std::vector<ContactForce> Simulation::contact_forces() const { return parts_->substepper.contact_forces(); }
 
 ContactProblem Simulation::contact_problem() const { return parts_->substepper.contact_problem(); }

@@ -43,6 +43,8 @@ class Simulation {
   BodyState body(std::int32_t id) const;
   /// The pairs of the last step's broad phase (before the first step, of the start), each once.
   std::vector<BodyPair> pairs();
+  /// The boxes in which the last broad phase looked for pairs, by body; none before the first step.
+  std::vector<BodyBox> boxes() const;
   /// The contacts of the last substep that carried a force.
   std::vector<ContactForce> contact_forces() const;
   /// What the response had to solve in the last substep, and its answer; empty before the first step.
