@@ -1,4 +1,4 @@
-// The command line of a benchmark: options with a value each, some of which are lists.
+// The command line of a benchmark: options with a value each, some of which are lists, and words.
 #pragma once
 
 #include "core/error.hpp"
@@ -14,15 +14,33 @@ namespace scree::bench {
 
 using Options = std::map<std::string, std::string>;
 
-/// The options, by their names with the dashes, at their defaults but for what the command line gives. Throws
-/// InputError for an option that is not among them.
-inline Options parse(int argc, char** argv, Options options) {
-  for (int k = 1; k < argc; k += 2) {
-    const auto option = options.find(argv[k]);
-    if (option == options.end() || k + 1 == argc) {
-      throw InputError(std::string(argv[k]) + ": not an option, or without a value");
+/// What --help asks for; status_of() prints it.
+struct Help {
+  std::string text;
+};
+
+/// The options, by their names with the dashes, at their defaults but for what the command line gives; what
+/// is no option goes to `words`. Throws InputError for an option that is not among them, and for a word where
+/// none are wanted; and Help, with the options and their defaults if it has no `usage`.
+inline Options parse(int argc, char** argv, Options options, std::vector<std::string>* words = nullptr,
+                     std::string usage = "") {
+  for (int k = 1; k < argc; ++k) {
+    const std::string word = argv[k];
+    const auto option = options.find(word);
+    if (word == "--help") {
+      if (usage.empty()) {
+        for (const auto& [name, value] : options) usage += '[' + name + ' ' + value + "] ";
+        usage += '\n';
+      }
+      throw Help{usage};
     }
-    option->second = argv[k + 1];
+    if (words && !word.starts_with("-")) {
+      words->push_back(word);
+    } else if (option == options.end() || k + 1 == argc) {
+      throw InputError(word + ": not an option, or without a value; see --help");
+    } else {
+      option->second = argv[++k];
+    }
   }
   return options;
 }
@@ -35,11 +53,14 @@ inline std::vector<std::string> split(const std::string& list) {
   return items;
 }
 
-/// What main() returns: the benchmark's own status, or 2 after the message of an error.
+/// What main() returns: the benchmark's own status, 0 after help, or 2 after the message of an error.
 template <class Benchmark>
 int status_of(const char* program, Benchmark run) {
   try {
     return run();
+  } catch (const Help& help) {
+    std::printf("usage: %s %s", program, help.text.c_str());
+    return 0;
   } catch (const std::exception& error) {
     std::fprintf(stderr, "%s: %s\n", program, error.what());
     return 2;

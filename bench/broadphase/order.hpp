@@ -1,0 +1,76 @@
+// The objects of a benchmark, and the orders in which a broad phase may be given them.
+#pragma once
+
+#include "broadphase/broad_phase.hpp"
+#include "core/array.hpp"
+#include "core/bodies.hpp"
+#include "core/rng.hpp"
+
+#include <bit>
+#include <cstdint>
+
+namespace scree::bench {
+
+/// What a broad phase is given.
+template <class Space>
+struct Objects {
+  Array<Aabb, Space> bounds;
+  Array<Mobility, Space> mobility;
+};
+
+/// A permutation of 0 to n - 1 without a table, another one for each seed: a Feistel network of six rounds
+/// (Luby and Rackoff 1988) over the least power of four that holds n, walked on while it leads outside (Black
+/// and Rogaway 2002, "Ciphers with arbitrary finite domains").
+class Permutation {
+ public:
+  Permutation(std::int64_t n, std::uint64_t seed)
+      : n_(static_cast<std::uint64_t>(n)), half_bits_((std::bit_width(n_) + 1) / 2) {
+    for (int round = 0; round < rounds; ++round)
+      key_[round] = philox({static_cast<std::uint32_t>(round), 0, 0, 0},
+                           {static_cast<std::uint32_t>(seed), static_cast<std::uint32_t>(seed >> 32)})[0];
+  }
+
+  SCREE_HD std::int64_t operator()(std::int64_t i) const {
+    auto x = static_cast<std::uint64_t>(i);
+    do {
+      x = once(x);
+    } while (x >= n_);
+    return static_cast<std::int64_t>(x);
+  }
+
+ private:
+  static constexpr int rounds = 6;
+
+  SCREE_HD std::uint64_t once(std::uint64_t x) const {
+    const std::uint32_t mask = (1u << half_bits_) - 1;
+    auto left = static_cast<std::uint32_t>(x >> half_bits_);
+    auto right = static_cast<std::uint32_t>(x) & mask;
+    for (const std::uint32_t key : key_) {
+      const std::uint32_t next = left ^ (mixed(right ^ key) & mask);
+      left = right;
+      right = next;
+    }
+    return std::uint64_t{left} << half_bits_ | right;
+  }
+  /// murmur3's finaliser (Appleby 2011).
+  SCREE_HD static std::uint32_t mixed(std::uint32_t h) {
+    h = (h ^ (h >> 16)) * 0x85EBCA6Bu;
+    h = (h ^ (h >> 13)) * 0xC2B2AE35u;
+    return h ^ (h >> 16);
+  }
+
+  std::uint64_t n_;
+  int half_bits_;
+  std::uint32_t key_[rounds];
+};
+
+/// Object i of `to` is object permutation(i) of `from`.
+template <class Space>
+void permute(const Objects<Space>& from, const Permutation& permutation, Objects<Space>& to);
+
+/// Into the order of the cells, as wide as the mean extent, that hold their centres: by z, then y, then x.
+/// What is not there comes last.
+template <class Space>
+void sort_into_rows(const Objects<Space>& from, Objects<Space>& to);
+
+}  // namespace scree::bench
