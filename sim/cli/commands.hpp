@@ -55,6 +55,10 @@ int plan(const PlanArguments& arguments);
 int print_schema();
 int print_reference();
 
+/// A benchmark's name, and what it is given; without any, lists those that there are. Becomes that program:
+/// returns only if it starts none.
+int bench(const std::vector<std::string>& arguments);
+
 int info();
 
 }  // namespace scree::cli

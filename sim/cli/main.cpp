@@ -129,6 +129,15 @@ CLI::App* add_study(CLI::App& app, StudyArguments& arguments) {
   return command;
 }
 
+/// What follows is the benchmark's, help included.
+CLI::App* add_bench(CLI::App& app) {
+  CLI::App* command =
+      app.add_subcommand("bench", "Run a benchmark: scree bench NAME ...; lists them without");
+  command->prefix_command();
+  command->set_help_flag();
+  return command;
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -147,6 +156,7 @@ int main(int argc, char** argv) {
   const CLI::App* plan_command = add_plan(app, plan_arguments, schema, reference);
   const CLI::App* verify_command = add_verify(app, verify_arguments);
   const CLI::App* study_command = add_study(app, study_arguments);
+  const CLI::App* bench_command = add_bench(app);
   app.add_subcommand("info", "Say what this program is and what it finds on this machine");
 
   try {
@@ -154,6 +164,7 @@ int main(int argc, char** argv) {
     if (run_command->parsed()) return run(run_arguments);
     if (verify_command->parsed()) return verify(verify_arguments);
     if (study_command->parsed()) return study(study_arguments);
+    if (bench_command->parsed()) return bench(bench_command->remaining());
     if (plan_command->parsed())
       return schema ? print_schema() : reference ? print_reference() : plan(plan_arguments);
     return info();
