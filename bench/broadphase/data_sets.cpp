@@ -75,7 +75,7 @@ const Recipe recipes[] = {
     {"log:R", 0.3, log_uniform},
     {"volume:R", 0.3, equal_volumes},
     {"giant", 0.5, half, nullptr, giant},
-    {"floor", 0.5, half, nullptr, slab},
+    {"slab", 0.5, half, nullptr, slab},
     {"plummer", 0.5, half, in_plummer_sphere},
     {"boxes", 0.2, nullptr},  // the share that gives the pairs of A
     {"line", 0.5, half, on_line},

@@ -10,22 +10,21 @@
 
 namespace scree::bench {
 
-/// The bounds of n objects, by the name of their set. Unless said otherwise the centres are uniform in a
-/// cube, whose side follows from the share of its volume that the objects would fill; m.
-///   A          radius 0.5, share 0.5: 12/pi = 3.82 pairs per object
-///   B          radius log-uniform from 0.01 to 1, share 0.3
-///   C          radius 1, but 50 with probability 1e-4, share 0.3
-///   log:R      radius log-uniform from 1/R to 1, share 0.3; three decades are log:1000
-///   volume:R   radius from 1/R to 1, as much volume in each octave (the density of radii falls as r^-4),
-///   share 0.3. The
-///              largest of n is about n^(1/3) times the smallest, if R allows it
-///   giant      A, but the first object, in the middle, is 1000 times as wide: it overlaps all others, up to
-///   1e9 of them floor      A, but the first object is a slab, 1000 wide, that reaches in from below by 1
-///   plummer    the balls of A in a Plummer sphere, untruncated, as many pairs per object on average
-///   boxes      edges from 0.1 to 1, the longest 1, the others log-uniform; turned at random; as many pairs
-///   per object line       the balls of A on a line along (1, 1, 1), as many pairs per object, but for the
-///   rounding of coordinates clusters   A in two halves, on each axis a hundred of their widths apart point
-///   the balls of A, all in one place: n (n - 1) / 2 pairs
+/// The bounds of n objects (m), by the name of their set. Unless said otherwise the centres are uniform in a
+/// cube, whose side follows from the share of its volume that the objects would fill.
+///   A         balls of radius 0.5, share 0.5: 12/pi = 3.82 pairs per object
+///   B         radius log-uniform from 0.01 to 1, share 0.3
+///   C         radius 1, but 50 with probability 1e-4, share 0.3
+///   log:R     radius log-uniform from 1/R to 1, share 0.3; three decades are log:1000
+///   volume:R  radius from 1/R to 1, as much volume in each octave, share 0.3; density of radii as r^-4, so
+///             that the largest of n is about n^(1/3) times the smallest, if R allows it
+///   giant     A, but the first one, in the middle, is 1000 times as wide: to n = 1e9 it meets all others
+///   slab      A, but the first one is a floor, 1000 wide, that reaches in from below by 1
+///   plummer   the balls of A in a Plummer sphere, untruncated, as many pairs per object on average
+///   boxes     edges from 0.1 to 1, the longest 1, the others log-uniform; turned; pairs as in A
+///   line      the balls of A along (1, 1, 1); pairs as in A, but for the rounding of large coordinates
+///   clusters  A in two halves, on each axis a hundred of their widths apart
+///   point     the balls of A, all in one place: n (n - 1) / 2 pairs
 /// Throws InputError for other names, a ratio R under 1, and n out of range.
 std::vector<Aabb> make_data_set(const std::string& name, std::int64_t n);
 

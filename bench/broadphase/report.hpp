@@ -28,9 +28,8 @@ void print_row(const Subject& subject, const Measurement& result);
 /// The parallel calls and their times.
 void print_calls(const Measurement& result);
 
-/// A row for each measurement: what is in the table; the times of the four stages by the labels of their
-/// calls
-/// (`other`: calls that name none of them), and those of the calls themselves; machine and commit.
+/// A row for each measurement: what is in the table; the times of the four stages, by the labels of their
+/// calls, and of the calls that name none of them; those of each call; machine and commit.
 class CsvFile {
  public:
   /// Throws InputError if the file cannot be written.

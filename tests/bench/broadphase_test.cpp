@@ -129,7 +129,7 @@ TEST(DataSetsTest, OneMeetsAll) {
       std::count_if(a.begin() + 1, a.end(), [&](const Aabb& box) { return overlap(a[0], box); });
   EXPECT_EQ(stats_of("giant", 20000).pairs, stats_of("A", 20000).pairs - met_in_a + 19999);
   EXPECT_EQ(stats_of("point", 1000).pairs, 1000 * 999 / 2);
-  const double of_slab = pairs_per_object("floor", 20000) - pairs_per_object("A", 20000);
+  const double of_slab = pairs_per_object("slab", 20000) - pairs_per_object("A", 20000);
   EXPECT_NEAR(of_slab, 1.5 / 27.6, 0.01) << "those whose centres are within 1.5 of the bottom";
 }
 
