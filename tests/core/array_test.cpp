@@ -102,6 +102,7 @@ TEST(HostArray, ViewsSeeAndChangeTheElements) {
 
 TYPED_TEST(ArrayTest, PeakOfMemoryKnowsWhatWasFreed) {
   constexpr std::size_t bytes = std::size_t{64} << 20;
+  TypeParam::synchronize();
   TypeParam::forget_peak();
   const MemoryUse before = TypeParam::memory_use();
   if (before.now == 0 && std::is_same_v<TypeParam, Host>) GTEST_SKIP() << "the system does not tell";
