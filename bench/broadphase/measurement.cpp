@@ -1,11 +1,13 @@
 #include "bench/broadphase/measurement.hpp"
 
+#include "core/error.hpp"
 #include "core/parallel.hpp"
 
 #include <algorithm>
 #include <chrono>
 #include <map>
 #include <memory>
+#include <new>
 #include <string>
 #include <type_traits>
 #include <utility>
@@ -39,90 +41,121 @@ std::uint64_t checksum(ConstView<Pair> pairs) {
                                                 std::uint64_t{0}, thrust::plus<std::uint64_t>());
 }
 
-/// A broad phase at work on objects, the order of which changes from call to call.
+/// Objects, and the order in which they are given out.
 template <class Space>
-class Trial {
+class Deck {
  public:
-  Trial(const Objects<Space>& objects, const BroadPhaseSettings& settings, Order order)
-      : objects_(objects), order_(order), broad_phase_(make_broad_phase<Space>(settings)) {
+  Deck(const Objects<Space>& objects, Order order) : objects_(objects), order_(order) {
     if (order == Order::rows) sort_into_rows(objects, ordered_);
-    prepare();
+    shuffle();
   }
-
-  /// The order of the next call.
-  void prepare() {
-    if (order_ == Order::random)
-      permute(objects_, Permutation(objects_.bounds.size(), ++permutations_), ordered_);
-    Space::synchronize();
+  /// Another permutation, if the order is random.
+  void shuffle() {
+    if (order_ != Order::random) return;
+    permute(objects_, Permutation(objects_.bounds.size(), ++permutations_), ordered_);
   }
-  void find() { find_in(order_ == Order::given ? objects_ : ordered_); }
-  ConstView<Pair> find_in(const Objects<Space>& objects) {
-    return broad_phase_->find(objects.bounds.view(), objects.mobility.view());
-  }
-
-  /// Time of a call (s).
-  double time() {
-    prepare();
-    const Clock::time_point start = Clock::now();
-    find();
-    Space::synchronize();
-    return std::chrono::duration<double>(Clock::now() - start).count();
-  }
-
-  const BroadPhaseStats& stats() const { return broad_phase_->stats(); }
+  const Objects<Space>& objects() const { return order_ == Order::given ? objects_ : ordered_; }
 
  private:
   const Objects<Space>& objects_;
   Objects<Space> ordered_;
   Order order_;
   std::uint64_t permutations_ = 0;
-  std::unique_ptr<BroadPhase<Space>> broad_phase_;
 };
 
-/// On Device each parallel call then waits for its end.
 template <class Space>
-std::vector<timing::Entry> profile(Trial<Space>& trial, int profiles) {
-  std::vector<timing::Entry> calls;
-  std::map<std::string, std::vector<double>> times;
-  for (int k = 0; k < profiles; ++k) {
-    trial.prepare();
+ConstView<Pair> find(BroadPhase<Space>& broad_phase, const Objects<Space>& objects) {
+  return broad_phase.find(objects.bounds.view(), objects.mobility.view());
+}
+
+/// Of one call (s).
+template <class Space>
+double time(BroadPhase<Space>& broad_phase, const Objects<Space>& objects) {
+  Space::synchronize();
+  const Clock::time_point start = Clock::now();
+  find(broad_phase, objects);
+  Space::synchronize();
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+template <class Space>
+class Contestant {
+ public:
+  explicit Contestant(const BroadPhaseSettings& settings) : broad_phase_(make_broad_phase<Space>(settings)) {}
+
+  void warm_up(Deck<Space>& deck, const Objects<Space>& given, int calls) {
+    Space::synchronize();
+    Space::forget_peak();
+    const std::size_t before = Space::memory_use().now;
+    for (int k = 0; k < calls; ++k, deck.shuffle()) time(*broad_phase_, deck.objects());
+    const std::size_t peak = Space::memory_use().peak;
+    result_.checksum = checksum<Space>(find(*broad_phase_, given));
+    result_.stats = broad_phase_->stats();
+    result_.memory = static_cast<double>(peak) - static_cast<double>(before) -
+                     static_cast<double>(result_.stats.pairs) * sizeof(Pair);
+  }
+  void repeat(const Objects<Space>& objects) { result_.times.push_back(time(*broad_phase_, objects)); }
+  /// On Device each parallel call then waits for its end.
+  void profile(const Objects<Space>& objects) {
     timing::reset();
     timing::time_calls(true);
-    trial.find();
+    find(*broad_phase_, objects);
     timing::time_calls(false);
-    calls = timing::calls();
-    for (const timing::Entry& call : calls) times[call.label].push_back(call.seconds);
+    result_.calls = timing::calls();
+    for (const timing::Entry& call : result_.calls) call_times_[call.label].push_back(call.seconds);
   }
-  for (timing::Entry& call : calls) call.seconds = median(times[call.label]);
-  return calls;
-}
+  Measurement result() {
+    std::ranges::sort(result_.times);
+    for (timing::Entry& call : result_.calls) call.seconds = median(call_times_[call.label]);
+    return result_;
+  }
+
+  /// Does the work unless some failed before.
+  template <class Work>
+  void attempt(const Work& work) {
+    if (!result_.problem.empty()) return;
+    try {
+      work(*this);
+    } catch (const RunError& error) {
+      result_.problem = error.what();
+    } catch (const std::bad_alloc&) {
+      result_.problem = "out of memory";
+    }
+    if (!result_.problem.empty()) broad_phase_.reset();
+  }
+
+ private:
+  std::unique_ptr<BroadPhase<Space>> broad_phase_;
+  Measurement result_;
+  std::map<std::string, std::vector<double>> call_times_;
+};
 
 }  // namespace
 
 template <class Space>
-Measurement measure(const Objects<Space>& objects, const BroadPhaseSettings& settings,
-                    const Protocol& protocol) {
-  Measurement result;
-  Trial<Space> trial(objects, settings, protocol.order);
-  Space::forget_peak();
-  const std::size_t before = Space::memory_use().now;
-  for (int k = 0; k < protocol.warm_ups; ++k) trial.time();
-  for (int k = 0; k < protocol.repeats; ++k) result.times.push_back(trial.time());
-  std::ranges::sort(result.times);
-  const std::size_t peak = Space::memory_use().peak;
-  result.calls = profile(trial, protocol.profiles);
-  result.checksum = checksum<Space>(trial.find_in(objects));
-  result.stats = trial.stats();
-  result.memory = static_cast<double>(peak) - static_cast<double>(before) -
-                  static_cast<double>(result.stats.pairs) * sizeof(Pair);
-  return result;
+std::vector<Measurement> measure(const Objects<Space>& objects,
+                                 const std::vector<BroadPhaseSettings>& methods, const Protocol& protocol) {
+  using One = Contestant<Space>;
+  Deck<Space> deck(objects, protocol.order);
+  std::vector<One> contestants;
+  for (const BroadPhaseSettings& method : methods) {
+    contestants.emplace_back(method);
+    contestants.back().attempt([&](One& one) { one.warm_up(deck, objects, protocol.warm_ups); });
+  }
+  for (int k = 0; k < protocol.repeats; ++k, deck.shuffle())
+    for (One& contestant : contestants) contestant.attempt([&](One& one) { one.repeat(deck.objects()); });
+  for (int k = 0; k < protocol.profiles; ++k, deck.shuffle())
+    for (One& contestant : contestants) contestant.attempt([&](One& one) { one.profile(deck.objects()); });
+  std::vector<Measurement> results;
+  for (One& contestant : contestants) results.push_back(contestant.result());
+  return results;
 }
 
 template <class Space>
 bool agree(const Objects<Space>& objects, const BroadPhaseSettings& a, const BroadPhaseSettings& b) {
   const auto found = [&objects](const BroadPhaseSettings& settings) {
-    Trial<Space> trial(objects, settings, Order::given);
-    const ConstView<Pair> pairs = trial.find_in(objects);
+    const auto broad_phase = make_broad_phase<Space>(settings);
+    const ConstView<Pair> pairs = find(*broad_phase, objects);
     return std::pair(pairs.size(), checksum<Space>(pairs));
   };
   return found(a) == found(b);
@@ -167,9 +200,10 @@ double copy_bandwidth(std::int64_t bytes) {
   return 2 * static_cast<double>(sizeof(std::uint64_t)) * static_cast<double>(from.size()) / median(times);
 }
 
-#define SCREE_INSTANTIATE(Space)                                                                           \
-  template Measurement measure<Space>(const Objects<Space>&, const BroadPhaseSettings&, const Protocol&);  \
-  template bool agree<Space>(const Objects<Space>&, const BroadPhaseSettings&, const BroadPhaseSettings&); \
+#define SCREE_INSTANTIATE(Space)                                                                             \
+  template std::vector<Measurement> measure<Space>(const Objects<Space>&,                                    \
+                                                   const std::vector<BroadPhaseSettings>&, const Protocol&); \
+  template bool agree<Space>(const Objects<Space>&, const BroadPhaseSettings&, const BroadPhaseSettings&);   \
   template double copy_bandwidth<Space>(std::int64_t);
 SCREE_FOR_EACH_SPACE(SCREE_INSTANTIATE)
 #undef SCREE_INSTANTIATE

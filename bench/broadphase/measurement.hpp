@@ -1,4 +1,4 @@
-// One measurement of the broad phase: a method, in a space, on objects in an order.
+// Measurements of the broad phase: methods, in a space, on objects in an order.
 #pragma once
 
 #include "bench/broadphase/order.hpp"
@@ -6,6 +6,7 @@
 #include "core/timing.hpp"
 
 #include <cstdint>
+#include <string>
 #include <vector>
 
 namespace scree::bench {
@@ -25,18 +26,21 @@ struct Protocol {
 
 /// Of find(), from bounds in the space to pairs in the space, nothing carried over but capacity. Times in s.
 struct Measurement {
+  std::string problem;               ///< why there is none: what find() threw; else empty
   std::vector<double> times;         ///< of the repeats, sorted
   BroadPhaseStats stats;             ///< in the order given, as is the checksum
   std::uint64_t checksum = 0;        ///< of the pairs, whatever their order
   double memory = 0;                 ///< most that was in use at once beyond the objects and the pairs (B)
-  std::vector<timing::Entry> calls;  ///< median of the profiles, in the order in which they came
+  std::vector<timing::Entry> calls;  ///< medians of the profiles, in the order in which they came
 
   double median() const { return times[times.size() / 2]; }
 };
 
+/// Of each method. After their warm-ups they take turns, in rounds on one order of the objects, so that a
+/// machine that slows down slows all alike.
 template <class Space>
-Measurement measure(const Objects<Space>& objects, const BroadPhaseSettings& settings,
-                    const Protocol& protocol);
+std::vector<Measurement> measure(const Objects<Space>& objects,
+                                 const std::vector<BroadPhaseSettings>& methods, const Protocol& protocol);
 
 /// Whether two methods find the same pairs, by their number and checksum.
 template <class Space>

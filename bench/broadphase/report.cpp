@@ -58,7 +58,7 @@ void print_row(const Subject& subject, const Measurement& result) {
   fmt::print(
       "{:<10} {:>10} {:<6} {:<17} {:<5} {:>6} {:>11} {:>8.2f} {:>10.3f} {:>10.3f} {:>10.3f} {:>9.2f} "
       "{:>7.1f} "
-      "{:>8.1f}  {:016x}",
+      "{:>8.1f}  {:016x}\n",
       subject.set, subject.n, subject.order, subject.method, subject.space, result.stats.levels,
       result.stats.pairs, per_object(subject, static_cast<double>(result.stats.candidates)),
       1e3 * result.median(), 1e3 * result.times.front(), 1e3 * result.times.back(),

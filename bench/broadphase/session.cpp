@@ -1,27 +1,27 @@
 #include "bench/broadphase/session.hpp"
 
 #include "bench/broadphase/input.hpp"
-#include "core/error.hpp"
 #include "core/space.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <new>
 
 namespace scree::bench {
 
 namespace {
 
-// What objects, their orders and a broad phase take of the memory of a space, or about (B). What would need
-// more than is free is left out, since the system may end a program rather than refuse it memory.
-constexpr std::size_t bytes_per_object = 200;
+// What objects and their orders take of the memory of a space, and each method that works on them (B), or
+// about. What would need more than is free is left out, since the system may end a program rather than refuse
+// it memory.
+constexpr std::size_t bytes_of_object = 80;
+constexpr std::size_t bytes_of_method = 120;
 
 constexpr int profiles = 3;
 
 template <class Space>
-bool has_room(const std::string& input, std::int64_t n) {
-  const std::size_t need = static_cast<std::size_t>(n) * bytes_per_object;
+bool has_room(const std::string& input, std::int64_t n, std::size_t methods) {
+  const std::size_t need = static_cast<std::size_t>(n) * (bytes_of_object + methods * bytes_of_method);
   const std::size_t free = Space::free_memory();
   if (need <= free) return true;
   fmt::print("{} {}: left out in {}: needs about {} bytes, of which {} are free\n", input, n, Space::name,
@@ -36,14 +36,6 @@ const Objects<Space>& in_space(const Objects<Host>& objects, Objects<Space>& cop
   copy(copied.bounds, objects.bounds);
   copy(copied.mobility, objects.mobility);
   return copied;
-}
-
-std::string name_of(const std::string& input, const std::string& space, const std::string& method,
-                    int levels) {
-  return fmt::format("{} {} {} {}", input, space, method, levels);
-}
-std::string name_of(const Subject& subject) {
-  return name_of(subject.set, subject.space, subject.method, subject.levels);
 }
 
 }  // namespace
@@ -66,21 +58,23 @@ bool Session::run() {
   return good_;
 }
 
-/// Whether there is anybody left to be measured with so many objects, and room for them.
 bool Session::wants(const std::string& input, std::int64_t n) const {
-  for (const std::string& space : settings_.spaces) {
-    for (const auto& [name, method] : settings_.methods) {
-      if (!slow_.contains(name_of(input, space, name, method.levels))) return has_room<Host>(input, n);
-    }
+  const auto has_methods = [&](const std::string& space) { return !methods_for(input, space).empty(); };
+  return std::ranges::any_of(settings_.spaces, has_methods) && has_room<Host>(input, n, 0);
+}
+
+std::vector<Session::Method> Session::methods_for(const std::string& input, const std::string& space) const {
+  std::vector<Method> methods;
+  for (const auto& [name, method] : settings_.methods) {
+    if (!slow_.contains({input, space, name, method.levels})) methods.push_back({name, method});
   }
-  return false;
+  return methods;
 }
 
 void Session::measure_all(const std::string& input, const Objects<Host>& objects) {
   for (const std::string& space : settings_.spaces) {
-#define SCREE_TRY(Space)                                                     \
-  if (space == Space::name && has_room<Space>(input, objects.bounds.size())) \
-    measure_in<Space>(input, objects);
+#define SCREE_TRY(Space) \
+  if (space == Space::name) measure_in<Space>(input, objects);
     SCREE_FOR_EACH_SPACE(SCREE_TRY)
 #undef SCREE_TRY
   }
@@ -88,51 +82,52 @@ void Session::measure_all(const std::string& input, const Objects<Host>& objects
 
 template <class Space>
 void Session::measure_in(const std::string& input, const Objects<Host>& given) {
+  const std::vector<Method> methods = methods_for(input, Space::name);
+  if (methods.empty() || !has_room<Space>(input, given.bounds.size(), methods.size())) return;
+  const double bandwidth = bandwidth_in<Space>();
   Objects<Space> copied;
   const Objects<Space>& objects = in_space(given, copied);
-  for (const auto& [name, method] : settings_.methods) {
-    Subject subject{.set = input,
-                    .n = objects.bounds.size(),
-                    .order = settings_.order.first,
-                    .method = name,
-                    .space = Space::name,
-                    .levels = method.levels,
-                    .bandwidth = bandwidth<Space>()};
-    if (slow_.contains(name_of(subject))) continue;
-    try {
-      measure_one(subject, objects, method);
-    } catch (const RunError& error) {
-      good_ = false;
-      fmt::print("{} {}: {}\n", name_of(subject), subject.n, error.what());
-    } catch (const std::bad_alloc&) {
-      good_ = false;
-      fmt::print("{} {}: out of memory\n", name_of(subject), subject.n);
+  std::vector<BroadPhaseSettings> settings;
+  for (const Method& method : methods) settings.push_back(method.second);
+  const bool profiled = settings_.stages || csv_;
+  const std::vector<Measurement> results = measure<Space>(
+      objects, settings,
+      {.order = settings_.order.second, .repeats = settings_.repeats, .profiles = profiled ? profiles : 0});
+  for (std::size_t k = 0; k < methods.size(); ++k) {
+    const auto& [name, method] = methods[k];
+    report({.set = input,
+            .n = objects.bounds.size(),
+            .order = settings_.order.first,
+            .method = name,
+            .space = Space::name,
+            .levels = method.levels,
+            .bandwidth = bandwidth},
+           results[k]);
+    if (settings_.check && results[k].problem.empty()) {
+      const auto& [other_name, other] = *settings_.check;
+      const bool agrees = agree<Space>(objects, method, other);
+      fmt::print("       {} {}\n", agrees ? "agrees with" : "DIFFERS from", other_name);
+      good_ = good_ && agrees;
     }
-    std::fflush(stdout);
   }
+  std::fflush(stdout);
 }
 
-template <class Space>
-void Session::measure_one(Subject& subject, const Objects<Space>& objects, const BroadPhaseSettings& method) {
-  const bool profiled = settings_.stages || csv_;
-  const Measurement result = measure<Space>(
-      objects, method,
-      {.order = settings_.order.second, .repeats = settings_.repeats, .profiles = profiled ? profiles : 0});
-  print_row(subject, result);
-  if (settings_.check) {
-    const auto& [name, other] = *settings_.check;
-    const bool agrees = agree<Space>(objects, method, other);
-    fmt::print("  {} {}", agrees ? "agrees with" : "DIFFERS from", name);
-    good_ = good_ && agrees;
+void Session::report(const Subject& subject, const Measurement& result) {
+  if (!result.problem.empty()) {
+    good_ = false;
+    fmt::print("{} {} {} {}: {}\n", subject.set, subject.n, subject.space, subject.method, result.problem);
+    return;
   }
-  fmt::print("\n");
+  print_row(subject, result);
   if (settings_.stages) print_calls(result);
   if (csv_) csv_->write(subject, result);
-  if (settings_.limit > 0 && result.median() > settings_.limit) slow_.insert(name_of(subject));
+  if (settings_.limit > 0 && result.median() > settings_.limit)
+    slow_.insert({subject.set, subject.space, subject.method, subject.levels});
 }
 
 template <class Space>
-double Session::bandwidth() {
+double Session::bandwidth_in() {
   double& known = bandwidth_[Space::name];
   if (known == 0) known = copy_bandwidth<Space>(settings_.copy_bytes);
   return known;

@@ -11,6 +11,7 @@
 #include <optional>
 #include <set>
 #include <string>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -41,19 +42,23 @@ class Session {
   bool run();
 
  private:
+  using Method = std::pair<std::string, BroadPhaseSettings>;
+
+  /// Whether there is anybody left to be measured with so many objects, and room for them.
   bool wants(const std::string& input, std::int64_t n) const;
+  /// Those that are not too slow for more of the input.
+  std::vector<Method> methods_for(const std::string& input, const std::string& space) const;
   void measure_all(const std::string& input, const Objects<Host>& objects);
   template <class Space>
   void measure_in(const std::string& input, const Objects<Host>& given);
+  void report(const Subject& subject, const Measurement& result);
   template <class Space>
-  void measure_one(Subject& subject, const Objects<Space>& objects, const BroadPhaseSettings& method);
-  template <class Space>
-  double bandwidth();
+  double bandwidth_in();
 
   SessionSettings settings_;
   std::optional<CsvFile> csv_;
-  std::map<std::string, double> bandwidth_;  ///< of each space
-  std::set<std::string> slow_;               ///< subjects but for n
+  std::map<std::string, double> bandwidth_;                                ///< of each space
+  std::set<std::tuple<std::string, std::string, std::string, int>> slow_;  ///< input, space, method, levels
   bool good_ = true;
 };
 

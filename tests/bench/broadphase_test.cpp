@@ -16,6 +16,7 @@
 #include <cmath>
 #include <cstring>
 #include <numeric>
+#include <string>
 #include <tuple>
 #include <vector>
 
@@ -217,33 +218,45 @@ TYPED_TEST(BroadPhaseBenchTest, RowsAreInOrderAndComplete) {
 TYPED_TEST(BroadPhaseBenchTest, ChecksumDependsOnThePairsAlone) {
   const Objects<TypeParam> b = this->objects("B", 2000);
   const BroadPhaseSettings brute = {.method = BroadPhaseMethod::brute_force};
-  const Measurement expected = measure<TypeParam>(b, brute, {.order = Order::given, .repeats = 1});
+  const Measurement expected = measure<TypeParam>(b, {brute}, {.order = Order::given, .repeats = 1}).front();
   for (const Order order : {Order::random, Order::rows, Order::given}) {
-    for (const int levels : {0, 1, 3}) {
-      const Measurement actual = measure<TypeParam>(b, {.levels = levels}, {.order = order, .repeats = 2});
+    const auto results = measure<TypeParam>(b, {{.levels = 0}, {.levels = 1}, {.levels = 3}, brute},
+                                            {.order = order, .repeats = 2});
+    for (const Measurement& actual : results) {
       EXPECT_EQ(actual.checksum, expected.checksum);
       EXPECT_EQ(actual.stats.pairs, expected.stats.pairs);
     }
   }
   const Objects<TypeParam> others = this->objects("log:101", 2000);
-  EXPECT_NE(measure<TypeParam>(others, brute, {.repeats = 1}).checksum, expected.checksum);
+  EXPECT_NE(measure<TypeParam>(others, {brute}, {.repeats = 1}).front().checksum, expected.checksum);
   EXPECT_TRUE(agree<TypeParam>(b, {}, brute));
 }
 
 TYPED_TEST(BroadPhaseBenchTest, MeasuresTimesCallsAndMemory) {
   const Measurement result =
-      measure<TypeParam>(this->objects("A", 100000), {}, {.repeats = 3, .profiles = 2});
+      measure<TypeParam>(this->objects("A", 100000), {{}}, {.repeats = 3, .profiles = 2}).front();
+  EXPECT_EQ(result.problem, "");
   ASSERT_EQ(result.times.size(), 3u);
   EXPECT_TRUE(std::ranges::is_sorted(result.times));
   EXPECT_GT(result.times.front(), 0);
   for (const char* stage : {"initialize", "sort", "traverse"}) {
     const std::string label = std::string("broadphase.") + stage;
-    EXPECT_TRUE(std::ranges::any_of(result.calls, [&](const auto& call) {
-      return call.label.starts_with(label);
-    })) << stage;
+    const auto is_of_stage = [&](const timing::Entry& call) { return call.label.starts_with(label); };
+    EXPECT_TRUE(std::ranges::any_of(result.calls, is_of_stage)) << stage;
   }
   EXPECT_GT(result.memory, 100000.0 * sizeof(std::int32_t)) << "at least an order of the objects";
   EXPECT_GT(copy_bandwidth<TypeParam>(1 << 24), 1e8);
+}
+
+TYPED_TEST(BroadPhaseBenchTest, SaysWhatFailed) {
+  Objects<TypeParam> objects = this->objects("A", 10);
+  std::vector<Aabb> boxes = to_vector(objects.bounds);
+  boxes[3].lo[0] = std::nanf("");
+  copy(objects.bounds, boxes);
+  const std::vector<Measurement> results = measure<TypeParam>(objects, {{}, {.levels = 1}}, {});
+  ASSERT_EQ(results.size(), 2u);
+  for (const Measurement& result : results)
+    EXPECT_NE(result.problem.find("the bounds of body"), std::string::npos);
 }
 
 TEST(BenchInputTest, ScenesGiveTheBoxesOfTheirFirstStep) {
