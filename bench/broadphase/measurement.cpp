@@ -142,10 +142,15 @@ std::vector<Measurement> measure(const Objects<Space>& objects,
     contestants.emplace_back(method);
     contestants.back().attempt([&](One& one) { one.warm_up(deck, objects, protocol.warm_ups); });
   }
-  for (int k = 0; k < protocol.repeats; ++k, deck.shuffle())
-    for (One& contestant : contestants) contestant.attempt([&](One& one) { one.repeat(deck.objects()); });
-  for (int k = 0; k < protocol.profiles; ++k, deck.shuffle())
-    for (One& contestant : contestants) contestant.attempt([&](One& one) { one.profile(deck.objects()); });
+  // Another one begins each round: what it finds in the caches is the objects', not what a method left there.
+  for (int k = 0; k < std::max(protocol.repeats, protocol.profiles); ++k, deck.shuffle()) {
+    const auto all_in_turn = [&](const auto& work) {
+      for (std::size_t c = 0; c < contestants.size(); ++c)
+        contestants[(c + static_cast<std::size_t>(k)) % contestants.size()].attempt(work);
+    };
+    if (k < protocol.repeats) all_in_turn([&](One& one) { one.repeat(deck.objects()); });
+    if (k < protocol.profiles) all_in_turn([&](One& one) { one.profile(deck.objects()); });
+  }
   std::vector<Measurement> results;
   for (One& contestant : contestants) results.push_back(contestant.result());
   return results;
