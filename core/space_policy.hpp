@@ -5,12 +5,14 @@
 #include "core/space.hpp"
 
 #include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
 #include <tbb/parallel_reduce.h>
-#include <thrust/sort.h>
+#include <tbb/task_arena.h>
 #include <thrust/system/tbb/execution_policy.h>
 
 #include <algorithm>
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 #if SCREE_WITH_CUDA
@@ -22,11 +24,54 @@ namespace scree::detail {
 
 inline auto policy(Host) { return thrust::tbb::par; }
 
+/// Calls work(b, begin, end) for each of `blocks` runs of like length among n items, at once.
+template <class Work>
+void for_each_block(std::int64_t n, std::int64_t blocks, const Work& work) {
+  const auto call = [&](std::int64_t b) { work(b, n * b / blocks, n * (b + 1) / blocks); };
+  if (blocks == 1) {
+    call(0);  // without waking a thread
+  } else {
+    tbb::parallel_for(std::int64_t{0}, blocks, call);
+  }
+}
+
 /// Stable sort of n pairs by the lowest `bits` bits of their unsigned keys. The sorted pairs are left in
 /// keys and values; the spare arrays are overwritten.
+///
+/// On Host a radix sort from the lowest digit: each block of pairs counts its digits, and thus knows where
+/// its pairs go. A stable order is the only one there is, however many blocks there are.
 template <class Key, class Value>
-void sort_pairs(Host, Key*& keys, Value*& values, Key*&, Value*&, std::int64_t n, int) {
-  thrust::stable_sort_by_key(policy(Host{}), keys, keys + n, values);
+void sort_pairs(Host, Key*& keys, Value*& values, Key*& spare_keys, Value*& spare_values, std::int64_t n,
+                int bits) {
+  const int most_bits = n < 16384 ? 8 : 11;  // more buckets than pairs, or than a cache has lines, are slower
+  const int passes = std::max(1, (bits + most_bits - 1) / most_bits);
+  const int digit_bits = (bits + passes - 1) / passes;
+  const std::int64_t buckets = std::int64_t{1} << digit_bits;
+  const std::int64_t blocks =
+      std::clamp<std::int64_t>(n / 16384, 1, 4 * tbb::this_task_arena::max_concurrency());
+  std::vector<std::int64_t> places(static_cast<std::size_t>(blocks * buckets));
+  for (int shift = 0; shift < passes * digit_bits; shift += digit_bits) {
+    const auto digit = [=](Key key) { return static_cast<std::int64_t>(key >> shift) & (buckets - 1); };
+    std::ranges::fill(places, 0);
+    for_each_block(n, blocks, [&](std::int64_t b, std::int64_t begin, std::int64_t end) {
+      std::int64_t* count = places.data() + b * buckets;
+      for (std::int64_t i = begin; i < end; ++i) ++count[digit(keys[i])];
+    });
+    std::int64_t place = 0;
+    for (std::int64_t d = 0; d < buckets; ++d)
+      for (std::int64_t b = 0; b < blocks; ++b)
+        place += std::exchange(places[static_cast<std::size_t>(b * buckets + d)], place);
+    for_each_block(n, blocks, [&](std::int64_t b, std::int64_t begin, std::int64_t end) {
+      std::int64_t* next = places.data() + b * buckets;
+      for (std::int64_t i = begin; i < end; ++i) {
+        const std::int64_t to = next[digit(keys[i])]++;
+        spare_keys[to] = keys[i];
+        spare_values[to] = values[i];
+      }
+    });
+    std::swap(keys, spare_keys);
+    std::swap(values, spare_values);
+  }
 }
 
 /// counts[b] = how often b occurs among n samples, for 0 <= b < bins.
