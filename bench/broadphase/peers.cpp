@@ -2,16 +2,15 @@
 // scans (box_self_intersection_d; Zomorodian and Edelsbrunner 2002): boxes that move, each 1 % of its extent
 // a step along a direction of its own.
 //
-//   scree_bench_broadphase_peers [--set A,B,C] [--n 100000,1000000] [--threads 1,2] [--rounds 9] [--steps 10]
-//                                [--margin 0.05] [--cutoff 3000]
+//   scree_bench_broadphase_peers [--set A,B,C] [--n 100000,1000000] [--programs scree,CGAL,Bullet]
+//                                [--threads 1,2] [--rounds 9] [--steps 10] [--margin 0.05] [--cutoff 3000]
 //
-// All contestants take turns with the same boxes, so that whatever else the machine does hits them alike.
-// scree and CGAL start from nothing in every round; Bullet takes every step, `steps` of them before the first
-// round and as many in each, of which it is given the mean: its work comes in waves, since boxes leave their
-// fat boxes after a few steps. Its margin is absolute (m, its own default is 0.05). After the last round the
-// pairs of all are compared, one by one; of Bullet's, those of boxes that overlap as given, without its
-// margin. Exit status 1 if they differ. Times are medians over the rounds, of the wall clock and of the
-// processor.
+// All take turns with the same boxes, so that whatever else the machine does hits them alike. scree and CGAL
+// start from nothing, once in a round; Bullet takes every one of a round's `steps`, of which it is given the
+// mean: its work comes in waves, since boxes leave their fat boxes after a few steps. Its margin is absolute
+// (m, its own default is 0.05). One round warms up. In the end the pairs of all are compared, one by one; of
+// Bullet's, those of boxes that overlap as given, without its margin. Exit status 1 if they differ. Times are
+// medians over the rounds, of the wall clock and of the processor.
 #include "bench/broadphase/data_sets.hpp"
 #include "bench/clock.hpp"
 #include "bench/options.hpp"
@@ -25,11 +24,11 @@
 #include <BulletCollision/BroadphaseCollision/btDbvtBroadphase.h>
 #include <CGAL/box_intersection_d.h>
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <memory>
-#include <optional>
 #include <string>
-#include <tuple>
+#include <utility>
 #include <vector>
 
 namespace scree::bench {
@@ -48,6 +47,7 @@ class Contestant {
   virtual void find(const Boxes& boxes) = 0;
   /// Those of the last call of find(), in any order.
   virtual Pairs pairs() = 0;
+  virtual bool takes_every_step() const { return false; }
 
  private:
   std::string name_;
@@ -131,6 +131,7 @@ class Bullet final : public Contestant {
     }
     broad_phase_.calculateOverlappingPairs(nullptr);
   }
+  bool takes_every_step() const override { return true; }
   Pairs pairs() override {
     Pairs all;
     const btBroadphasePairArray& cached = broad_phase_.getOverlappingPairCache()->getOverlappingPairArray();
@@ -237,17 +238,25 @@ bool same(const Pairs& a, const Pairs& b) {
 
 std::vector<Entry> make_entries(const Boxes& boxes, const Options& options) {
   const std::ptrdiff_t cutoff = std::stol(options.at("--cutoff"));
-  std::vector<Entry> entries;
   gDbvtMargin = std::stof(options.at("--margin"));
-  entries.push_back({.contestant = std::make_unique<Bullet>(boxes), .threads = 1});
-  for (const std::string& count : split(options.at("--threads"))) {
-    const int threads = std::stoi(count);
-    entries.push_back({.contestant = std::make_unique<Scree>(boxes.size()), .threads = threads});
-    if (threads == 1) {
-      entries.push_back({.contestant = std::make_unique<Cgal<CGAL::Sequential_tag>>(cutoff), .threads = 1});
-    } else {
-      entries.push_back(
-          {.contestant = std::make_unique<Cgal<CGAL::Parallel_tag>>(cutoff), .threads = threads});
+  std::vector<Entry> entries;
+  for (const std::string& program : split(options.at("--programs"))) {
+    for (const std::string& count : split(options.at("--threads"))) {
+      const int threads = std::stoi(count);
+      std::unique_ptr<Contestant> contestant;
+      if (program == "scree") {
+        contestant = std::make_unique<Scree>(boxes.size());
+      } else if (program == "CGAL" && threads == 1) {
+        contestant = std::make_unique<Cgal<CGAL::Sequential_tag>>(cutoff);
+      } else if (program == "CGAL") {
+        contestant = std::make_unique<Cgal<CGAL::Parallel_tag>>(cutoff);
+      } else if (program == "Bullet") {
+        if (threads > 1) continue;  // its tree has no threads
+        contestant = std::make_unique<Bullet>(boxes);
+      } else {
+        throw InputError("program " + program + ": one of scree, CGAL, Bullet");
+      }
+      entries.push_back({.contestant = std::move(contestant), .threads = threads});
     }
   }
   return entries;
@@ -257,19 +266,17 @@ std::vector<Entry> make_entries(const Boxes& boxes, const Options& options) {
 bool run(const std::string& set, std::int64_t n, const Options& options) {
   MovingBoxes moving(set, n);
   std::vector<Entry> entries = make_entries(moving.boxes(), options);
-  Entry& bullet = entries.front();
   const int steps = std::stoi(options.at("--steps"));
   for (int round = 0; round <= std::stoi(options.at("--rounds")); ++round) {
     for (Entry& entry : entries) entry.begin_round();
-    for (int step = 0; step < steps; ++step) {
+    for (int step = 1; step <= steps; ++step) {
       moving.move();
-      bullet.find(moving.boxes());
+      for (Entry& entry : entries)
+        if (step == steps || entry.contestant->takes_every_step()) entry.find(moving.boxes());
     }
-    for (Entry& entry : entries)
-      if (&entry != &bullet) entry.find(moving.boxes());
   }
   bool agree = true;
-  const Pairs expected = sorted(bullet.contestant->pairs());
+  const Pairs expected = sorted(entries.front().contestant->pairs());
   for (const Entry& entry : entries) {
     const Pairs found = sorted(entry.contestant->pairs());
     const bool equal = same(found, expected);
@@ -286,6 +293,7 @@ int run_all(int argc, char** argv) {
   const Options options = parse(argc, argv,
                                 {{"--set", "A,B,C"},
                                  {"--n", "100000,1000000"},
+                                 {"--programs", "scree,CGAL,Bullet"},
                                  {"--threads", "1,2"},
                                  {"--rounds", "9"},
                                  {"--steps", "10"},
