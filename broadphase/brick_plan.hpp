@@ -21,7 +21,7 @@ struct BrickSample {
   std::uint32_t hi[3];    ///< of the upper ones
   std::uint32_t largest;  ///< extent, as its bits
   std::uint32_t sizes[size_bins];
-  std::uint32_t places[width * width * width];  ///< lower corners, from lo to hi
+  std::uint32_t places[width * width * width];  ///< of centres, from lo to hi
 };
 
 /// Unsigned numbers in the order of the floats that they stand for.

@@ -33,8 +33,9 @@ __global__ void __launch_bounds__(sample_threads)
     const Aabb box = sampled(k);
     if (!is_proper(box)) continue;
     for (int a = 0; a < 3; ++a) {
-      lo[a] = max(lo[a], ~ordered_bits(box.lo[a]));
-      hi[a] = max(hi[a], ordered_bits(box.hi[a]));
+      const std::uint32_t centre = ordered_bits(static_cast<float>(centre_of(box, a)));
+      lo[a] = max(lo[a], ~centre);
+      hi[a] = max(hi[a], centre);
     }
     const float extent = extent_of(box);
     largest = max(largest, std::bit_cast<std::uint32_t>(extent));
@@ -74,7 +75,9 @@ __global__ void __launch_bounds__(sample_threads)
     if (!is_proper(box)) continue;
     int place = 0;
     for (int a = 0; a < 3; ++a)
-      place = place * width + min(max(static_cast<int>((box.lo[a] - lo[a]) * inverse[a]), 0), width - 1);
+      place = place * width +
+              min(max(static_cast<int>((static_cast<float>(centre_of(box, a)) - lo[a]) * inverse[a]), 0),
+                  width - 1);
     atomicAdd(&counts[place], 1u);
   }
   __syncthreads();

@@ -126,8 +126,9 @@ std::unique_ptr<BrickSample> sample_of(const Boxes& boxes) {
   for (std::size_t k = 0; k < n; ++k) {
     const Aabb& box = boxes[k * boxes.size() / n];
     for (int a = 0; a < 3; ++a) {
-      sample->lo[a] = std::min(sample->lo[a], ordered_bits(box.lo[a]));
-      sample->hi[a] = std::max(sample->hi[a], ordered_bits(box.hi[a]));
+      const std::uint32_t centre = ordered_bits(static_cast<float>(centre_of(box, a)));
+      sample->lo[a] = std::min(sample->lo[a], centre);
+      sample->hi[a] = std::max(sample->hi[a], centre);
     }
     ++sample->sizes[size_class(extent_of(box))];
     sample->largest = std::max(sample->largest, std::bit_cast<std::uint32_t>(extent_of(box)));
@@ -137,7 +138,8 @@ std::unique_ptr<BrickSample> sample_of(const Boxes& boxes) {
     int place = 0;
     for (int a = 0; a < 3; ++a) {
       const double lo = from_ordered_bits(sample->lo[a]);
-      const double share = (static_cast<double>(box.lo[a]) - lo) / (from_ordered_bits(sample->hi[a]) - lo);
+      const double length = from_ordered_bits(sample->hi[a]) - lo;
+      const double share = length > 0 ? (centre_of(box, a) - lo) / length : 0;
       place = place * BrickSample::width +
               std::min(static_cast<int>(share * BrickSample::width), BrickSample::width - 1);
     }
