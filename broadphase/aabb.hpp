@@ -49,9 +49,10 @@ SCREE_HD inline double centre_of(const Aabb& box, int axis) {
 SCREE_HD inline float extent_of(const Aabb& box) {
   double largest = 0;
   for (int a = 0; a < 3; ++a) {
-    largest = fmax(largest, static_cast<double>(box.hi[a]) - static_cast<double>(box.lo[a]));
+    const double extent = static_cast<double>(box.hi[a]) - static_cast<double>(box.lo[a]);
+    largest = extent > largest ? extent : largest;
   }
-  return static_cast<float>(fmin(largest, static_cast<double>(FLT_MAX)));
+  return largest < static_cast<double>(FLT_MAX) ? static_cast<float>(largest) : FLT_MAX;
 }
 
 /// A pair in canonical order.

@@ -23,7 +23,7 @@ struct Enumerate {
     float distance = 0;
     for (int a = 0; a < 3; ++a) {
       one.lo[a] = one.hi[a] = static_cast<float>(centre_of(box, a));
-      distance = fmaxf(distance, fabsf(one.lo[a]));
+      distance = fabsf(one.lo[a]) > distance ? fabsf(one.lo[a]) : distance;
     }
     one.largest = extent_of(box);
     one.present = 1;
@@ -37,10 +37,10 @@ struct Enumerate {
 struct Merge {
   SCREE_HD Census operator()(Census a, const Census& b) const {
     for (int k = 0; k < 3; ++k) {
-      a.lo[k] = fminf(a.lo[k], b.lo[k]);
-      a.hi[k] = fmaxf(a.hi[k], b.hi[k]);
+      a.lo[k] = b.lo[k] < a.lo[k] ? b.lo[k] : a.lo[k];
+      a.hi[k] = b.hi[k] > a.hi[k] ? b.hi[k] : a.hi[k];
     }
-    a.largest = fmaxf(a.largest, b.largest);
+    a.largest = b.largest > a.largest ? b.largest : a.largest;
     a.present += b.present;
     a.extended += b.extended;
     a.first_bad = a.first_bad < b.first_bad ? a.first_bad : b.first_bad;

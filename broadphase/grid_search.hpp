@@ -154,10 +154,14 @@ struct Query {
   /// Of a run.
   SCREE_HD CellRange cells(std::int64_t run) const {
     constexpr auto row = static_cast<std::int32_t>(brick_row);
-    const std::int64_t line = run / runs_per_row;
-    const auto y = static_cast<std::int32_t>(range.lo[1] + line % rows_y);
-    const auto z = static_cast<std::int32_t>(range.lo[2] + line / rows_y);
-    const std::int32_t begin = (range.lo[0] / row + static_cast<std::int32_t>(run % runs_per_row)) * row;
+    // Runs are fewer than the objects of the level, so 32 bits hold them, and divide faster.
+    const auto number = static_cast<std::uint32_t>(run);
+    const auto per_row = static_cast<std::uint32_t>(runs_per_row);
+    const auto per_layer = static_cast<std::uint32_t>(rows_y);
+    const std::uint32_t line = number / per_row;
+    const std::int32_t y = range.lo[1] + static_cast<std::int32_t>(line % per_layer);
+    const std::int32_t z = range.lo[2] + static_cast<std::int32_t>(line / per_layer);
+    const std::int32_t begin = (range.lo[0] / row + static_cast<std::int32_t>(number % per_row)) * row;
     const std::int32_t end = begin + row - 1;
     return {{begin > range.lo[0] ? begin : range.lo[0], y, z}, {end < range.hi[0] ? end : range.hi[0], y, z}};
   }
@@ -196,6 +200,7 @@ struct WideSearch : GridSearch {
     Boxed boxed;
     Query query;
     std::int64_t part;
+    bool by_cell;  ///< candidates count only under their own cell
   };
   struct Item {
     Object object;
@@ -208,7 +213,8 @@ struct WideSearch : GridSearch {
   SCREE_HD Item item(std::int64_t i) const {
     const std::int64_t q = query_of(i);
     const Query query = make_query(grid, descents, q);
-    return {{grid.object(query.object), query, i - first_item[q]}};
+    return {
+        {grid.object(query.object), query, i - first_item[q], !query.all && grid.levels[query.to].hashed}};
   }
   SCREE_HD Run run(const Item& item, int part, int r) const {
     const Query& query = item.object.query;
@@ -222,10 +228,10 @@ struct WideSearch : GridSearch {
   /// A wide search can visit a slot of a hashed table under several cells: what stands there counts only
   /// under its own.
   SCREE_HD bool meets(const Object& a, int r, const Boxed& b) const {
-    if (!may_collide(a.boxed, b)) return false;
-    const GridLevel& level = grid.levels[a.query.to];
-    if (a.query.all || !level.hashed) return true;
-    return level.stands_in(b.box(), a.query.cells(a.part * Query::runs_per_item + r));
+    const bool collide = may_collide(a.boxed, b);
+    if (!a.by_cell) return collide;
+    return collide &&
+           grid.levels[a.query.to].stands_in(b.box(), a.query.cells(a.part * Query::runs_per_item + r));
   }
   SCREE_HD Pair match(const Object& a, const Boxed& b) const { return pair_of(a.boxed.body(), b.body()); }
 
