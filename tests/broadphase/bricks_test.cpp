@@ -200,8 +200,9 @@ TEST(BrickPlan, CellsHoldTheirNumbers) {
     for (int a = 0; a < 3; ++a) {
       for (std::int32_t number = 0; number <= last_local; ++number) {
         ASSERT_LT(plan->cells.cell_of(number, a), plan->cells.count[a]);
-        if (plan->method == BrickMethod::stencil && a > 0 && number >= plan->reach[a])
+        if (plan->method == BrickMethod::stencil && a > 0 && number >= plan->reach[a]) {
           ASSERT_LE(plan->cells.cell_of(number, a), plan->cells.cell_of(number - plan->reach[a], a) + 1);
+        }
       }
     }
   }
@@ -227,7 +228,9 @@ void expect_bricks(const Boxes& boxes, const char* what) {
   const auto grid = make_broad_phase<Space>({});
   const std::vector<Mobility> mobility = all_free(boxes);
   const PairSet first = found(*grid, boxes, mobility);
-  if constexpr (!std::is_same_v<Space, Host>) EXPECT_GT(grid->stats().bricks, 0) << what;
+  if constexpr (!std::is_same_v<Space, Host>) {
+    EXPECT_GT(grid->stats().bricks, 0) << what;
+  }
   EXPECT_TRUE(same_pairs(first, found(*grid, boxes, mobility))) << what;
   // The grid, which is held to the definition where there are few (find_test.cpp).
   EXPECT_TRUE(same_pairs(sorted(found<Space>({.levels = 4}, boxes, mobility)), sorted(first))) << what;
