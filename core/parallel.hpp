@@ -1,6 +1,5 @@
 // Labelled parallel calls in either space. Sums have a fixed tree, so results do not depend on the number of
-// threads. Its own headers, space_policy.hpp and space_matches.hpp, and it reach Thrust: for parallel
-// libraries alone.
+// threads. It and its own headers (space_*.hpp) reach Thrust: for parallel libraries alone.
 #pragma once
 
 #include "core/array.hpp"

@@ -1,7 +1,8 @@
-// How Thrust is asked to run in each space, and the primitives that Thrust cannot say. With parallel.hpp and
-// space_matches.hpp the headers for parallel libraries alone: include parallel.hpp instead.
+// How Thrust is asked to run in each space, and the primitives that Thrust cannot say. For parallel libraries
+// alone: include parallel.hpp instead.
 #pragma once
 
+#include "core/error.hpp"
 #include "core/space.hpp"
 
 #include <tbb/blocked_range.h>
@@ -11,13 +12,17 @@
 #include <thrust/system/tbb/execution_policy.h>
 
 #include <algorithm>
+#include <cstddef>
 #include <cstdint>
+#include <string>
 #include <utility>
 #include <vector>
 
 #if SCREE_WITH_CUDA
 #include <cub/device/device_radix_sort.cuh>
 #include <thrust/system/cuda/execution_policy.h>
+
+#include <cuda_runtime_api.h>
 #endif
 
 namespace scree::detail {
@@ -96,6 +101,17 @@ void histogram(Host, Samples samples, std::int64_t n, int bins, std::uint32_t* c
 
 #if SCREE_WITH_CUDA
 
+/// Sets memory of Device to zero, in the order of what is launched.
+inline void clear_bytes(void* memory, std::size_t bytes) {
+  if (cudaMemsetAsync(memory, 0, bytes) != cudaSuccess) throw RunError("CUDA: could not clear memory");
+}
+
+/// Throws if the last kernel could not be started, which would otherwise pass for one that found nothing.
+inline void require_launched(const char* kernel) {
+  if (const cudaError_t error = cudaGetLastError(); error != cudaSuccess)
+    throw RunError(std::string("CUDA: ") + kernel + " could not be started: " + cudaGetErrorString(error));
+}
+
 /// Scratch memory of Thrust's algorithms, from the same stream-ordered pool as the arrays.
 struct PoolAllocator {
   using value_type = char;
@@ -152,9 +168,11 @@ template <class Samples>
 void histogram(Device, Samples samples, std::int64_t n, int bins, std::uint32_t* counts) {
   constexpr std::int64_t most_blocks = 2048;  // more would add to the same counters more often
   const std::size_t bytes = static_cast<std::size_t>(bins) * sizeof(std::uint32_t);
-  cudaMemsetAsync(counts, 0, bytes);
+  clear_bytes(counts, bytes);
   const std::int64_t blocks = std::min((n + 255) / 256, most_blocks);
-  if (blocks > 0) count_samples<<<static_cast<unsigned>(blocks), 256, bytes>>>(samples, n, bins, counts);
+  if (blocks == 0) return;
+  count_samples<<<static_cast<unsigned>(blocks), 256, bytes>>>(samples, n, bins, counts);
+  require_launched("the histogram");
 }
 
 #endif

@@ -50,7 +50,8 @@ LIBRARIES = {
     "FreeType": r"ft2build\.h",
     "CLI11": r"CLI/", "Boost": r"boost/", "nlohmann-json": r"nlohmann/", "xxHash": r"xxhash\.h",
 }
-THRUST_HEADERS = ["core/parallel.hpp", "core/space_matches.hpp", "core/space_policy.hpp"]
+THRUST_HEADERS = ["core/parallel.hpp", "core/space_matches.hpp", "core/space_matches_device.hpp", "core/space_matches_host.hpp",
+                  "core/space_policy.hpp", "core/space_warp.hpp"]
 THRUST = re.compile(r"(thrust|cub|cuda)/")
 
 INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]', re.M)
