@@ -10,6 +10,7 @@
 // both boxes if they overlap, so both were copied there; and it is in one brick alone.
 #pragma once
 
+#include "broadphase/broad_phase.hpp"
 #include "core/space.hpp"
 
 #include <cmath>
@@ -22,6 +23,12 @@ inline constexpr std::int32_t brick_points = 1 << brick_bits;
 /// Coordinates within a brick: a brick's width below it, so that nothing narrower is cut off there, and its
 /// own.
 inline constexpr std::int32_t last_local = 2 * brick_points - 1;
+
+/// A box in numbers of the lattice.
+struct LatticeBox {
+  std::int32_t lo[3];
+  std::int32_t hi[3];
+};
 
 struct BrickLattice {
   float origin[3];  ///< m
@@ -37,16 +44,19 @@ struct BrickLattice {
     return whole < last ? whole : last;
   }
 
+  SCREE_HD LatticeBox numbers_of(const Aabb& box) const {
+    LatticeBox numbers;
+    for (int a = 0; a < 3; ++a) {
+      numbers.lo[a] = number_of(box.lo[a], a);
+      numbers.hi[a] = number_of(box.hi[a], a);
+    }
+    return numbers;
+  }
+
   SCREE_HD std::int64_t total() const { return std::int64_t{bricks[0]} * bricks[1] * bricks[2]; }
   SCREE_HD std::uint32_t brick(std::int32_t x, std::int32_t y, std::int32_t z) const {
     return static_cast<std::uint32_t>((z * bricks[1] + y) * bricks[0] + x);
   }
-};
-
-/// A box in numbers of the lattice.
-struct LatticeBox {
-  std::int32_t lo[3];
-  std::int32_t hi[3];
 };
 
 /// Who an object is, and where its lower corner lies: what has to be known of a pair is the union of both.

@@ -1,6 +1,7 @@
 #include "broadphase/brick_plan.hpp"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 #include <vector>
@@ -9,11 +10,12 @@ namespace scree {
 
 namespace {
 
-// Cost of what is done once for an object in a brick, for an entry of it and for a run of candidates, in box
-// tests.
+// Costs in box tests that are dealt to lanes: of what is done once for an object in a brick, for an entry of
+// it, for a run of candidates; and of a test against an object that is too wide for the stencil.
 constexpr double object_cost = 10;
 constexpr double entry_cost = 12;
 constexpr double run_cost = 3;
+constexpr double wide_test_cost = 0.5;
 // Standard deviations that a brick in the densest place of the sample may be fuller than others there. Where
 // one is fuller all the same, the grid has to do.
 constexpr double spare_deviations = 6;
@@ -21,17 +23,27 @@ constexpr double spare_deviations = 6;
 constexpr double round_entries = 256;
 constexpr double usual_deviations = 1;
 constexpr double most_copies = 3;
-constexpr double fewest_objects = 32;  // of a brick, on average
+constexpr double fewest_objects = 32;  // of a brick, on average, unless the bricks are few
+constexpr double few_bricks = 8;
+constexpr std::int32_t narrowest_bucket = 2;
 constexpr int most_rows = 8;
 constexpr double finest_stencil = 9;  // cells along a brick
 constexpr double finest_row = 64;
 constexpr double stencil_runs = 5;
 constexpr double stencil_cells_tested = 11;  // of the volume of a cell's cube, half as wide along x
+constexpr double most_wide = 0.05;           // share of the objects that may be too wide for the stencil
+constexpr double cells_to_reach = 4;         // of a row, to the usual length of an object there
+// An object's length in numbers may be larger than that in metres says, by rounding.
+constexpr double reach_slack = 0x1p-10;
+constexpr double edge_slack = 1e-9;        // of products of edges, by rounding
+constexpr double shortest_length = 1e-30;  // m
+constexpr double most_points_per_m = 1e30;
 
 /// Objects of one octave of sizes.
 struct Octave {
-  double share;  ///< of all objects
-  double size;   ///< mean (m)
+  double share;    ///< of all objects
+  double size;     ///< mean (m)
+  double largest;  ///< end of the highest class in use (m)
 };
 
 /// What the plan uses of a sample.
@@ -47,22 +59,28 @@ struct Summary {
   Summary(const BrickSample& sample, std::int64_t objects) {
     double seen = 0;
     for (const std::uint32_t n : sample.sizes) seen += n;
-    for (int bin = 0; bin < BrickSample::size_bins; ++bin) {
-      const double share = sample.sizes[bin] / seen;
-      if (bin % classes_per_octave == 0 && (octaves.empty() || octaves.back().share > 0))
-        octaves.push_back({0, 0});
-      octaves.back().share += share;
-      octaves.back().size += share * class_end(bin) / (1 + 0.5 / classes_per_octave);
-    }
-    if (octaves.back().share == 0) octaves.pop_back();
-    for (Octave& octave : octaves) octave.size /= octave.share;
     largest = std::bit_cast<float>(sample.largest);
     present = static_cast<double>(objects) * seen /
               static_cast<double>(std::min<std::int64_t>(objects, BrickSample::most));
+    for (int bin = 0; bin < BrickSample::size_bins; bin += classes_per_octave) {
+      double count = 0;
+      Octave octave{};
+      for (int c = bin; c < bin + classes_per_octave; ++c) {
+        if (sample.sizes[c] == 0) continue;
+        octave.largest = std::min<double>(class_end(c), largest);
+        octave.size += sample.sizes[c] * octave.largest / (1 + 0.5 / classes_per_octave);
+        count += sample.sizes[c];
+      }
+      if (count == 0) continue;
+      octave.size /= count;
+      // One that was seen alone may be alone: floors and giants are.
+      octave.share = count == 1 ? 1 / present : count / seen;
+      octaves.push_back(octave);
+    }
     double volume = 1;
     for (int a = 0; a < 3; ++a) {
       lo[a] = from_ordered_bits(sample.lo[a]);
-      length[a] = std::max(from_ordered_bits(sample.hi[a]) - lo[a], 1e-30);
+      length[a] = std::max(from_ordered_bits(sample.hi[a]) - lo[a], shortest_length);
       volume *= length[a];
     }
     double squares = 0;
@@ -82,6 +100,14 @@ struct Summary {
     for (const double l : length) product *= std::min(l, width);
     return product;
   }
+  /// Width of bricks with this volume (m).
+  double width_of(double wanted) const {
+    double sides[3] = {length[0], length[1], length[2]};
+    std::ranges::sort(sides);
+    if (std::cbrt(wanted) <= sides[0]) return std::cbrt(wanted);
+    if (std::sqrt(wanted / sides[0]) <= sides[1]) return std::sqrt(wanted / sides[0]);
+    return std::min(wanted / (sides[0] * sides[1]), sides[2]);
+  }
   /// Bricks in which an object of this size stands.
   double copies(double size, double width) const {
     double product = 1;
@@ -93,26 +119,33 @@ struct Summary {
 struct Choice {
   BrickMethod method;
   int rows;          ///< along y and z, of method rows
+  double reach;      ///< longest object in the cells of a stencil (m)
   double width = 0;  ///< of a brick (m)
   double cost = 0;   ///< of an object
+
+  bool has_wide(const Octave& octave) const {
+    return method == BrickMethod::stencil && octave.largest > reach;
+  }
 };
 
 /// What a brick around the usual object has to do; expected values.
 struct Load {
   double objects = 0;
+  double wide = 0;  ///< objects among them that are too wide for the stencil
   double entries = 0;
   double entry_squares = 0;  ///< sum over the objects: their variance, since objects are there by chance
   double reach = 0;          ///< along x, of an entry (m)
 
   Load(const Summary& all, const Choice& choice, double density) {
     const double row = choice.width / choice.rows;
+    const double in_volume = density * all.volume(choice.width);
     for (const Octave& octave : all.octaves) {
-      const double n =
-          density * all.volume(choice.width) * octave.share * all.copies(octave.size, choice.width);
+      const double n = in_volume * octave.share * all.copies(octave.size, choice.width);
       const double within = std::min(octave.size, choice.width);
       const double rows = std::min(1 + within / row, static_cast<double>(choice.rows));
       const double of_object = choice.method == BrickMethod::stencil ? 1 : rows * rows;
       objects += n;
+      if (choice.has_wide(octave)) wide += n;
       entries += n * of_object;
       entry_squares += n * of_object * of_object;
       reach += n * of_object * within;
@@ -124,8 +157,7 @@ struct Load {
 double usual_entries(BrickMethod method) { return round_entries * (method == BrickMethod::stencil ? 4 : 6); }
 
 bool fits(const Summary& all, const Choice& choice) {
-  if (choice.method == BrickMethod::stencil && all.largest >= choice.width)
-    return true;  // no narrower one does
+  if (choice.reach >= choice.width) return true;  // no narrower one does
   const Load worst(all, choice, all.densest);
   const Load usual(all, choice, all.density);
   return worst.objects + spare_deviations * std::sqrt(worst.objects) <= brick_objects &&
@@ -138,34 +170,48 @@ double cost_of(const Summary& all, const Choice& choice) {
   double tests;  // of an entry
   double runs = 1;
   if (choice.method == BrickMethod::stencil) {
-    const double cell = std::max(all.largest, choice.width / finest_stencil);
-    tests = load.entries / all.volume(choice.width) * std::pow(cell, 3) * stencil_cells_tested;
+    const double cell = std::max(choice.reach, choice.width / finest_stencil);
+    tests = (load.entries - load.wide) / all.volume(choice.width) * std::pow(cell, 3) * stencil_cells_tested +
+            load.wide * wide_test_cost;
     runs = stencil_runs;
   } else {
-    tests = load.entries / (choice.rows * choice.rows * choice.width) * 1.25 * load.reach;
+    tests = load.entries / (choice.rows * choice.rows * choice.width) * (1 + 1 / cells_to_reach) * load.reach;
   }
   const double cost = load.objects * object_cost + load.entries * (entry_cost + runs * run_cost + tests);
   return cost / (all.density * all.volume(choice.width));
 }
 
 /// The widest bricks that fit, and what that costs; nothing if most objects would stand in too many of them.
-std::optional<Choice> widest(const Summary& all, BrickMethod method, int rows) {
-  constexpr int halvings = 11;
-  Choice choice{method, rows};
-  const double longest = *std::max_element(all.length, all.length + 3);
-  double narrow = -14;  // octaves under the longest
-  double wide = 0;
+std::optional<Choice> widest(const Summary& all, Choice choice) {
+  constexpr int halvings = 7;
+  double narrow = std::log2(all.width_of(fewest_objects / all.density));
+  double wide = std::log2(all.width_of(brick_objects / all.densest));
   for (int k = 0; k < halvings; ++k) {
-    const double octave = k == 0 ? 0 : (narrow + wide) / 2;
-    choice.width = longest * std::exp2(octave);
-    (fits(all, choice) ? narrow : wide) = octave;
+    const double tried = k == 0 ? wide : (narrow + wide) / 2;
+    choice.width = std::exp2(tried);
+    (fits(all, choice) ? narrow : wide) = tried;
   }
-  choice.width = longest * std::exp2(narrow);
+  choice.width = std::exp2(narrow);
   const Load load(all, choice, all.density);
-  if (!fits(all, choice) || load.objects > most_copies * all.density * all.volume(choice.width)) return {};
-  if (method == BrickMethod::stencil && all.largest >= choice.width) return {};
+  if (choice.reach >= choice.width || !fits(all, choice) ||
+      load.objects > most_copies * all.density * all.volume(choice.width))
+    return {};
   choice.cost = cost_of(all, choice);
   return choice;
+}
+
+/// The cheapest of all ways; nothing if none suits.
+std::optional<Choice> cheapest(const Summary& all) {
+  std::optional<Choice> best;
+  const auto consider = [&](const Choice& choice) {
+    const std::optional<Choice> other = widest(all, choice);
+    if (other && (!best || other->cost < best->cost)) best = other;
+  };
+  double wide = 0;
+  for (std::size_t k = all.octaves.size(); k-- > 0 && wide <= most_wide; wide += all.octaves[k].share)
+    consider({BrickMethod::stencil, 1, all.octaves[k].largest});
+  for (int rows = 1; rows <= most_rows; ++rows) consider({BrickMethod::rows, rows, 0});
+  return best;
 }
 
 BrickCells stencil_cells(const BrickPlan& plan) {
@@ -189,23 +235,43 @@ BrickCells row_cells(const Summary& all, const Choice& choice) {
         std::min(finest_row, std::floor(most_cells(choice.method) / double(choice.rows * choice.rows)));
     cells.first[a] = brick_points;
     cells.count[a] =
-        a == 0 ? static_cast<std::int32_t>(std::clamp(4 * choice.width / reach, 1.0, most)) : choice.rows;
+        a == 0 ? static_cast<std::int32_t>(std::clamp(cells_to_reach * choice.width / reach, 1.0, most))
+               : choice.rows;
     cells.factor[a] = static_cast<std::uint32_t>(cells.count[a]) << (16 - brick_bits);
   }
   return cells;
 }
 
-/// False if there are too many buckets.
+/// So that what goes to a bucket from a tile, and to a brick from a bucket's chunk, lies together as well as
+/// it can. False if there are too many buckets.
 bool choose_buckets(BrickPlan& plan) {
-  constexpr double few = 216;
-  for (plan.bucket_width = 4;; ++plan.bucket_width) {
-    double total = 1;
-    for (int a = 0; a < 3; ++a) {
-      plan.buckets[a] = (plan.lattice.bricks[a] + plan.bucket_width - 1) / plan.bucket_width;
-      total *= plan.buckets[a];
-    }
-    if (total <= few || plan.bucket_width == widest_bucket) return total <= most_buckets;
+  std::int32_t fewest = 0;
+  for (std::int32_t width = narrowest_bucket; width <= widest_bucket; ++width) {
+    std::int32_t buckets[3];
+    for (int a = 0; a < 3; ++a) buckets[a] = (plan.lattice.bricks[a] + width - 1) / width;
+    const std::int32_t total = buckets[0] * buckets[1] * buckets[2];
+    const std::int32_t runs = total + (width + 1) * (width + 1) * (width + 1);
+    if (total > most_buckets || (fewest > 0 && runs >= fewest)) continue;
+    fewest = runs;
+    plan.bucket_width = width;
+    std::ranges::copy(buckets, plan.buckets);
   }
+  return fewest > 0;
+}
+
+/// As few bricks along each axis as make them no larger, in volume, than one of this width (m).
+std::array<double, 3> count_bricks(const Summary& all, double width) {
+  std::array<double, 3> count;
+  std::array<double, 3> edge;
+  for (std::size_t a = 0; a < 3; ++a) {
+    count[a] = std::max(1.0, std::floor(all.length[a] / width));
+    edge[a] = all.length[a] / count[a];
+  }
+  while (edge[0] * edge[1] * edge[2] > all.volume(width) * (1 + edge_slack)) {
+    const auto a = static_cast<std::size_t>(std::ranges::max_element(edge) - edge.begin());
+    edge[a] = all.length[a] / ++count[a];
+  }
+  return count;
 }
 
 }  // namespace
@@ -213,27 +279,24 @@ bool choose_buckets(BrickPlan& plan) {
 std::optional<BrickPlan> plan_bricks(const BrickSample& sample, std::int64_t objects) {
   if (sample.largest == 0 || objects > std::int64_t{body_mask}) return {};
   const Summary all(sample, objects);
-  std::optional<Choice> best = widest(all, BrickMethod::stencil, 1);
-  for (int rows = 1; rows <= most_rows; ++rows) {
-    const std::optional<Choice> other = widest(all, BrickMethod::rows, rows);
-    if (other && (!best || other->cost < best->cost)) best = other;
-  }
+  const std::optional<Choice> best = cheapest(all);
   if (!best) return {};
 
   BrickPlan plan{};
   plan.method = best->method;
-  double bricks = 1;
+  const std::array<double, 3> count = count_bricks(all, best->width);
+  const double bricks = count[0] * count[1] * count[2];
+  if (bricks > static_cast<double>(most_bricks) ||
+      bricks > std::max(few_bricks, all.present / fewest_objects))
+    return {};
   for (int a = 0; a < 3; ++a) {
-    const double n = std::max(1.0, std::ceil(all.length[a] / best->width));
-    bricks *= n;
-    if (bricks > static_cast<double>(most_bricks) || bricks > std::max(8.0, all.present / fewest_objects))
-      return {};
+    const double n = count[static_cast<std::size_t>(a)];
     plan.lattice.bricks[a] = static_cast<std::int32_t>(n);
     plan.lattice.origin[a] = static_cast<float>(all.lo[a]);
     const double points_per_m = brick_points * n / all.length[a];
-    plan.lattice.points_per_m[a] = static_cast<float>(std::min(points_per_m, 1e30));
+    plan.lattice.points_per_m[a] = static_cast<float>(std::min(points_per_m, most_points_per_m));
     plan.reach[a] = static_cast<std::int32_t>(
-        std::min(std::ceil(all.largest * points_per_m * (1 + 0x1p-10)) + 1, double{brick_points}));
+        std::min(std::ceil(best->reach * points_per_m * (1 + reach_slack)) + 1, double{brick_points}));
   }
   plan.cells = plan.method == BrickMethod::stencil ? stencil_cells(plan) : row_cells(all, *best);
   if (plan.cells.total() > most_cells(plan.method) || !choose_buckets(plan)) return {};

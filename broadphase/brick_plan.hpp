@@ -4,8 +4,8 @@
 
 #include "broadphase/brick_lattice.hpp"
 #include "broadphase/census.hpp"
+#include "broadphase/sorted_keys.hpp"
 
-#include <bit>
 #include <cstdint>
 #include <optional>
 
@@ -17,21 +17,19 @@ struct BrickSample {
   static constexpr int size_bins = 2048;  ///< size classes, eight to an octave
   static constexpr int width = 8;         ///< cells along each axis of the counts of places
 
-  std::uint32_t lo[3];    ///< of the lower corners, as ordered_bits
-  std::uint32_t hi[3];    ///< of the upper ones
+  std::uint32_t lo[3];    ///< the lowest centre on each axis, by ordered_bits
+  std::uint32_t hi[3];    ///< the highest
   std::uint32_t largest;  ///< extent, as its bits
   std::uint32_t sizes[size_bins];
   std::uint32_t places[width * width * width];  ///< of centres, from lo to hi
-};
 
-/// Unsigned numbers in the order of the floats that they stand for.
-SCREE_HD inline std::uint32_t ordered_bits(float x) {
-  const auto bits = std::bit_cast<std::uint32_t>(x);
-  return bits >> 31 ? ~bits : bits | 0x80000000u;
-}
-SCREE_HD inline float from_ordered_bits(std::uint32_t bits) {
-  return std::bit_cast<float>(bits >> 31 ? bits & 0x7fffffffu : ~bits);
-}
+  /// Which of `count` objects the sample looks at, for 0 <= k < min(count, most): the middle of each of as
+  /// many stretches. Not the first, which often is a floor and like no other.
+  SCREE_HD static std::int64_t object(std::int64_t k, std::int64_t count) {
+    const std::int64_t looked_at = count < most ? count : most;
+    return (2 * k + 1) * count / (2 * looked_at);
+  }
+};
 
 /// Cells within a brick, by numbers of lower corners.
 struct BrickCells {
@@ -59,8 +57,8 @@ struct BrickPlan {
   BrickLattice lattice;
   BrickMethod method;
   BrickCells cells;
-  std::int32_t
-      reach[3];  ///< stencil: what is wider is no part of the cells, but tested against all (numbers)
+  /// Numbers. Of a stencil: what is wider is tested against all in its bricks.
+  std::int32_t reach[3];
   // Where there are many bricks they are filled in two steps: first buckets of bricks, which are cubes.
   std::int32_t bucket_width;  ///< bricks along each of its edges
   std::int32_t buckets[3];

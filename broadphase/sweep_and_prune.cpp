@@ -6,18 +6,10 @@
 #include "broadphase/sorted_keys.hpp"
 
 #include <algorithm>
-#include <bit>
 
 namespace scree {
 
 namespace {
-
-/// Unsigned numbers in the order of the floats, to be sorted by their bits; 0 and -0 are one.
-SCREE_HD std::uint32_t ordered(float x) {
-  constexpr std::uint32_t sign = 0x80000000u;
-  const auto bits = std::bit_cast<std::uint32_t>(x + 0.0f);  // -0 becomes 0
-  return bits < sign ? bits | sign : ~bits;
-}
 
 /// Sums over the centres of their numbers, counted from the middle, and of the squares of these.
 struct Moments {
@@ -70,7 +62,7 @@ struct KeyOfBegin {
   View<std::uint32_t> key;
   View<std::int32_t> body;
   SCREE_HD void operator()(std::int64_t i) const {
-    key[i] = ordered(bounds[i].lo[axis]);
+    key[i] = ordered_bits(bounds[i].lo[axis]);
     body[i] = static_cast<std::int32_t>(i);
   }
 };
@@ -102,7 +94,7 @@ struct SweepSearch {
   int parts = 1;
 
   SCREE_HD Item item(std::int64_t k) const {
-    const std::int64_t end = first_not_under(key, k, items, ordered(sorted[k].hi.at[axis]) + 1);
+    const std::int64_t end = first_not_under(key, k, items, ordered_bits(sorted[k].hi.at[axis]) + 1);
     return {sorted[k], {static_cast<std::uint32_t>(k) + 1, static_cast<std::uint32_t>(end)}};
   }
   SCREE_HD Run run(const Item& item, int, int r) const { return r == 0 ? item.run : Run{}; }

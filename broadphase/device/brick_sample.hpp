@@ -1,37 +1,47 @@
 // What the plan of the bricks has to know, from some of the objects, on Device.
 #pragma once
 
-#include "broadphase/device/brick_scatter.hpp"
+#include "broadphase/aabb.hpp"
+#include "broadphase/brick_plan.hpp"
+#include "core/space_warp.hpp"
 
 namespace scree {
 
-inline constexpr int sample_threads = 256;
+inline constexpr int sample_threads = 1024;
 inline constexpr int sample_blocks = 64;
 
 struct Sampled {
   const Aabb* bounds;
   std::int64_t count;
-  std::int64_t looked_at;
 
-  __device__ Aabb operator()(std::int64_t k) const { return bounds[k * count / looked_at]; }
+  /// Calls f(box) for those of the sample that are this thread's.
+  template <class F>
+  __device__ void for_each(const F& f) const {
+    const std::int64_t looked_at = count < BrickSample::most ? count : BrickSample::most;
+    for (std::int64_t k = std::int64_t{blockIdx.x} * sample_threads + threadIdx.x; k < looked_at;
+         k += sample_blocks * sample_threads) {
+      const Aabb box = bounds[BrickSample::object(k, count)];
+      if (is_proper(box)) f(box);
+    }
+  }
 };
 
-__device__ inline std::uint32_t max_of_warp(std::uint32_t value) {
+/// A shared word becomes the largest of itself and the values of a warp.
+__device__ inline void raise(std::uint32_t& word, std::uint32_t value) {
   for (int d = 16; d > 0; d /= 2) value = max(value, __shfl_xor_sync(detail::all_lanes, value, d));
-  return value;
+  if (threadIdx.x % 32 == 0) atomicMax(&word, value);
 }
 
 /// Extremes and sizes. The sample's lo stands inverted meanwhile, so that all begins with zero.
 __global__ void __launch_bounds__(sample_threads)
     sample_sizes(const __grid_constant__ Sampled sampled, BrickSample* sample) {
   __shared__ std::uint32_t sizes[BrickSample::size_bins];
+  __shared__ std::uint32_t extreme[7];
+  if (threadIdx.x < 7) extreme[threadIdx.x] = 0;
   for (int b = static_cast<int>(threadIdx.x); b < BrickSample::size_bins; b += sample_threads) sizes[b] = 0;
   __syncthreads();
   std::uint32_t lo[3] = {}, hi[3] = {}, largest = 0;
-  for (std::int64_t k = std::int64_t{blockIdx.x} * sample_threads + threadIdx.x; k < sampled.looked_at;
-       k += sample_blocks * sample_threads) {
-    const Aabb box = sampled(k);
-    if (!is_proper(box)) continue;
+  sampled.for_each([&](const Aabb& box) {
     for (int a = 0; a < 3; ++a) {
       const std::uint32_t centre = ordered_bits(static_cast<float>(centre_of(box, a)));
       lo[a] = max(lo[a], ~centre);
@@ -40,20 +50,21 @@ __global__ void __launch_bounds__(sample_threads)
     const float extent = extent_of(box);
     largest = max(largest, std::bit_cast<std::uint32_t>(extent));
     atomicAdd(&sizes[size_class(extent)], 1u);
-  }
-  largest = max_of_warp(largest);
-  if (threadIdx.x % 32 == 0) atomicMax(&sample->largest, largest);
+  });
+  // In the block first: all others would wait for the same few words.
+  raise(extreme[0], largest);
   for (int a = 0; a < 3; ++a) {
-    lo[a] = max_of_warp(lo[a]);
-    hi[a] = max_of_warp(hi[a]);
-    if (threadIdx.x % 32 == 0) {
-      atomicMax(&sample->lo[a], lo[a]);
-      atomicMax(&sample->hi[a], hi[a]);
-    }
+    raise(extreme[1 + a], lo[a]);
+    raise(extreme[4 + a], hi[a]);
   }
   __syncthreads();
   for (int b = static_cast<int>(threadIdx.x); b < BrickSample::size_bins; b += sample_threads)
     if (sizes[b] > 0) atomicAdd(&sample->sizes[b], sizes[b]);
+  if (threadIdx.x == 0) atomicMax(&sample->largest, extreme[0]);
+  if (threadIdx.x < 3) {
+    atomicMax(&sample->lo[threadIdx.x], extreme[1 + threadIdx.x]);
+    atomicMax(&sample->hi[threadIdx.x], extreme[4 + threadIdx.x]);
+  }
 }
 
 __global__ void __launch_bounds__(sample_threads)
@@ -69,17 +80,14 @@ __global__ void __launch_bounds__(sample_threads)
     const float length = from_ordered_bits(sample->hi[a]) - lo[a];
     inverse[a] = length > 0 ? width / length : 0;
   }
-  for (std::int64_t k = std::int64_t{blockIdx.x} * sample_threads + threadIdx.x; k < sampled.looked_at;
-       k += sample_blocks * sample_threads) {
-    const Aabb box = sampled(k);
-    if (!is_proper(box)) continue;
+  sampled.for_each([&](const Aabb& box) {
     int place = 0;
     for (int a = 0; a < 3; ++a)
       place = place * width +
               min(max(static_cast<int>((static_cast<float>(centre_of(box, a)) - lo[a]) * inverse[a]), 0),
                   width - 1);
     atomicAdd(&counts[place], 1u);
-  }
+  });
   __syncthreads();
   for (int b = static_cast<int>(threadIdx.x); b < places; b += sample_threads)
     if (counts[b] > 0) atomicAdd(&sample->places[b], counts[b]);

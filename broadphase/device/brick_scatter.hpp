@@ -4,7 +4,7 @@
 
 #include "broadphase/brick_plan.hpp"
 #include "core/bodies.hpp"
-#include "core/parallel.hpp"
+#include "core/space_matches_device.hpp"
 
 #include <cstdint>
 
@@ -14,7 +14,8 @@ using detail::Word;
 
 /// Set to zero before each call of find().
 struct BrickState {
-  Word first_bad;  ///< number of bodies less that of the first one whose box is not proper; 0 if all are
+  /// Number of bodies less that of the first one whose box is not proper; 0 if all are.
+  Word first_bad;
   std::uint32_t giants;     ///< objects wider than a brick
   std::uint32_t chunks;     ///< in use
   std::uint32_t over_full;  ///< whether a brick has more objects than there is room for
@@ -98,15 +99,18 @@ __device__ inline Located locate(const Loaded& loaded, const BrickInput& input, 
   }
   object.tag = static_cast<std::uint32_t>(i);
   if (loaded.mobility != Mobility::fixed) object.tag |= not_fixed;
+  object.box = store.plan.lattice.numbers_of(box);
   bool giant = false;
-  for (int a = 0; a < 3; ++a) {
-    object.box.lo[a] = store.plan.lattice.number_of(box.lo[a], a);
-    object.box.hi[a] = store.plan.lattice.number_of(box.hi[a], a);
-    giant |= object.box.hi[a] - object.box.lo[a] > brick_points;
-  }
+  for (int a = 0; a < 3; ++a) giant |= object.box.hi[a] - object.box.lo[a] > brick_points;
   if (giant) store.giants[atomicAdd(&store.state->giants, 1u)] = static_cast<std::uint32_t>(i);
   object.here = !giant;
   return object;
+}
+
+__device__ inline Entry entry_in_brick(const LatticeBox& box, std::uint32_t tag, std::int32_t x,
+                                       std::int32_t y, std::int32_t z) {
+  const std::int32_t base[3] = {x << brick_bits, y << brick_bits, z << brick_bits};
+  return entry_in(box, base, tag);
 }
 
 /// Calls f(x, y, z) for each brick that a box overlaps.
@@ -117,53 +121,34 @@ __device__ void for_each_brick(const LatticeBox& box, const F& f) {
       for (std::int32_t x = box.lo[0] >> brick_bits; x <= box.hi[0] >> brick_bits; ++x) f(x, y, z);
 }
 
-__device__ inline Entry entry_in_brick(const LatticeBox& box, std::uint32_t tag, std::int32_t x,
-                                       std::int32_t y, std::int32_t z) {
-  const std::int32_t base[3] = {x << brick_bits, y << brick_bits, z << brick_bits};
-  return entry_in(box, base, tag);
-}
-
-/// Objects straight to their bricks: where these are so few that most writes meet in the cache.
-inline constexpr int direct_threads = 256;
-__global__ void __launch_bounds__(direct_threads)
-    scatter_directly(const __grid_constant__ BrickInput input, const __grid_constant__ BrickStore store) {
-  const std::int64_t i = std::int64_t{blockIdx.x} * direct_threads + threadIdx.x;
-  const Located object = locate(Loaded(input, i), input, store, i);
-  if (!object.here) return;
-  for_each_brick(object.box, [&](std::int32_t x, std::int32_t y, std::int32_t z) {
-    const std::uint32_t brick = store.plan.lattice.brick(x, y, z);
-    store.add(brick, entry_in_brick(object.box, object.tag, x, y, z));
-  });
-}
-
-/// Giants: a block for each, its threads over the bricks.
-__global__ void __launch_bounds__(128)
-    scatter_giants(const __grid_constant__ BrickInput input, const __grid_constant__ BrickStore store) {
+/// Giants to their bricks, entered by `blocks` blocks, of which this is number `block`: if they are fewer
+/// than the blocks, several share one.
+inline constexpr unsigned giant_blocks = 64;
+__device__ inline void scatter_giants(const BrickInput& input, const BrickStore& store, unsigned block,
+                                      unsigned blocks) {
   const std::uint32_t giants = store.state->giants;
-  for (std::uint32_t g = blockIdx.x; g < giants; g += gridDim.x) {
-    const std::uint32_t body = store.giants[g];
-    const Aabb bounds = input.bounds[body];
-    LatticeBox box;
-    std::int32_t begin[3];
-    std::int64_t size[3];
-    for (int a = 0; a < 3; ++a) {
-      box.lo[a] = store.plan.lattice.number_of(bounds.lo[a], a);
-      box.hi[a] = store.plan.lattice.number_of(bounds.hi[a], a);
-      begin[a] = box.lo[a] >> brick_bits;
-      size[a] = (box.hi[a] >> brick_bits) - begin[a] + 1;
-    }
+  if (giants == 0) return;
+  const std::uint32_t shares = max(blocks / giants, 1u);
+  for (std::uint32_t item = block; item < giants * shares; item += blocks) {
+    const std::uint32_t body = store.giants[item % giants];
+    const std::uint32_t share = item / giants;
+    const LatticeBox box = store.plan.lattice.numbers_of(input.bounds[body]);
     const std::uint32_t tag = body | (input.mobility[body] != Mobility::fixed ? not_fixed : 0);
-    for (std::int64_t k = threadIdx.x; k < size[0] * size[1] * size[2]; k += blockDim.x) {
-      const auto x = begin[0] + static_cast<std::int32_t>(k % size[0]);
-      const auto y = begin[1] + static_cast<std::int32_t>(k / size[0] % size[1]);
-      const auto z = begin[2] + static_cast<std::int32_t>(k / (size[0] * size[1]));
-      const std::uint32_t brick = store.plan.lattice.brick(x, y, z);
-      store.add(brick, entry_in_brick(box, tag, x, y, z));
+    std::int32_t first[3];
+    std::uint32_t size[3];
+    for (int a = 0; a < 3; ++a) {
+      first[a] = box.lo[a] >> brick_bits;
+      size[a] = static_cast<std::uint32_t>((box.hi[a] >> brick_bits) - first[a] + 1);
+    }
+    for (std::uint32_t k = share * blockDim.x + threadIdx.x; k < size[0] * size[1] * size[2];
+         k += shares * blockDim.x) {
+      const auto x = first[0] + static_cast<std::int32_t>(k % size[0]);
+      const auto y = first[1] + static_cast<std::int32_t>(k / size[0] % size[1]);
+      const auto z = first[2] + static_cast<std::int32_t>(k / (size[0] * size[1]));
+      store.add(store.plan.lattice.brick(x, y, z), entry_in_brick(box, tag, x, y, z));
     }
   }
 }
-
-// --- in two steps
 
 /// Buckets grow by chunks, which whoever needs the first place of one takes from all that there are.
 inline constexpr std::uint32_t chunk_parcels = 2048;
@@ -177,6 +162,7 @@ struct BucketStore {
 
 inline constexpr int scatter_threads = 256;
 inline constexpr int scatter_items = 8;  // of a thread
+inline constexpr int loads_at_once = 4;  // of them
 inline constexpr std::uint32_t scatter_tile = scatter_threads * scatter_items;
 static_assert(scatter_tile <= chunk_parcels);
 
@@ -187,15 +173,8 @@ __device__ std::uint32_t scan_in_block(std::uint32_t* counts, int n, std::uint32
   const int begin = static_cast<int>(threadIdx.x) * each;
   std::uint32_t sum = 0;
   for (int k = begin; k < min(begin + each, n); ++k) sum += counts[k];
-  std::uint32_t in_warp;
-  std::uint32_t before = detail::sum_before(sum, in_warp);
-  if (threadIdx.x % 32 == 0) sums[threadIdx.x / 32] = in_warp;
-  __syncthreads();
-  std::uint32_t all = 0;
-  for (int w = 0; w < threads / 32; ++w) {
-    if (w < static_cast<int>(threadIdx.x / 32)) before += sums[w];
-    all += sums[w];
-  }
+  std::uint32_t all;
+  std::uint32_t before = detail::sum_before_in_block<threads>(sum, sums, all);
   for (int k = begin; k < min(begin + each, n); ++k) {
     const std::uint32_t count = counts[k];
     counts[k] = before;
@@ -218,10 +197,10 @@ __device__ inline void take_chunk(const BrickStore& store, const BucketStore& bu
   asm volatile("st.relaxed.gpu.global.u32 [%0], %1;" ::"l"(buckets.chunk + slot), "r"(chunk + 1) : "memory");
 }
 
+/// What goes to one bucket from a tile.
 struct BucketRun {
-  std::uint32_t begin;     ///< of a bucket's parcels in the stage
-  std::uint32_t split;     ///< from here on they go to a second chunk
-  std::uint32_t place[2];  ///< in all chunks, less the place in the stage
+  std::uint32_t split;     ///< as many parcels go to the first chunk, the others to a second one
+  std::uint32_t place[2];  ///< of the first parcel in each, in all chunks
 };
 
 /// Tiles of objects, to buckets: sorted by bucket in shared memory, so that what is written lies together.
@@ -239,18 +218,17 @@ __global__ void __launch_bounds__(scatter_threads, 4)
   __syncthreads();
   Parcel parcel[scatter_items];
   std::uint32_t rank[scatter_items];  // in its bucket, and 2^16 times the bucket
-  constexpr int loads = 4;            // under way at once
-  Loaded loaded[loads];
+  Loaded loaded[loads_at_once];
   const std::int64_t first = std::int64_t{blockIdx.x} * scatter_tile + threadIdx.x;
 #pragma unroll
   for (int k = 0; k < scatter_items; ++k) {
-    if (k % loads == 0) {
+    if (k % loads_at_once == 0) {
 #pragma unroll
-      for (int l = 0; l < loads; ++l) loaded[l] = Loaded(input, first + (k + l) * scatter_threads);
+      for (int l = 0; l < loads_at_once; ++l) loaded[l] = Loaded(input, first + (k + l) * scatter_threads);
     }
     const std::int64_t i = first + k * scatter_threads;
     rank[k] = ~0u;
-    const Located object = locate(loaded[k % loads], input, store, i);
+    const Located object = locate(loaded[k % loads_at_once], input, store, i);
     if (!object.here) continue;
     std::int32_t at[3];
     for (int a = 0; a < 3; ++a) {
@@ -305,70 +283,98 @@ __global__ void __launch_bounds__(scatter_threads, 4)
   }
 }
 
-/// What goes to one brick from a tile.
+/// What goes to one brick from a chunk.
 struct BrickRun {
-  std::uint32_t begin;  ///< of its entries in the stage
-  std::uint32_t end;    ///< of those that find room in the brick
-  std::uint32_t to;     ///< where they go in all entries, less their place in the stage
+  std::uint32_t end;  ///< in the order of the chunk, of those that find room in the brick
+  std::uint32_t to;   ///< where they go in all entries, less their place in the order
 };
 
-/// The objects of a chunk to the bricks that they overlap, likewise: each to the brick of its lower corner,
-/// and its copies to the others from a list, so that no lanes wait for those that have some.
-inline constexpr std::uint32_t most_staged = 3072;
+/// The bricks that the objects of a bucket can overlap: those that begin there, and one more on each axis.
+struct BucketBricks {
+  std::int32_t side;
+  std::int32_t corner[3];
+  std::uint32_t inverse;  ///< so that k * inverse / 2^16 is k / side
+
+  __device__ BucketBricks(const BrickPlan& plan, std::uint32_t bucket)
+      : side(plan.bucket_width + 1), inverse(65536u / static_cast<std::uint32_t>(side) + 1) {
+    const auto number = static_cast<std::int32_t>(bucket);
+    corner[0] = number % plan.buckets[0] * plan.bucket_width;
+    corner[1] = number / plan.buckets[0] % plan.buckets[1] * plan.bucket_width;
+    corner[2] = number / (plan.buckets[0] * plan.buckets[1]) * plan.bucket_width;
+  }
+  __device__ std::uint32_t local(std::int32_t x, std::int32_t y, std::int32_t z) const {
+    return static_cast<std::uint32_t>((z * side + y) * side + x);
+  }
+  /// Where the local brick k is.
+  __device__ void locate(std::uint32_t k, std::int32_t (&at)[3]) const {
+    const auto wide = static_cast<std::uint32_t>(side);
+    const std::uint32_t row = k * inverse >> 16;
+    const std::uint32_t layer = row * inverse >> 16;
+    at[0] = static_cast<std::int32_t>(k - row * wide);
+    at[1] = static_cast<std::int32_t>(row - layer * wide);
+    at[2] = static_cast<std::int32_t>(layer);
+  }
+  __device__ std::uint32_t brick(const BrickLattice& lattice, std::uint32_t k) const {
+    std::int32_t at[3];
+    locate(k, at);
+    return lattice.brick(corner[0] + at[0], corner[1] + at[1], corner[2] + at[2]);
+  }
+};
+
+/// The objects of a chunk to the bricks that they overlap: each to the brick of its lower corner, and its
+/// copies to the others from a list, so that no lanes wait for those that have some. They are put in order
+/// before they are written, so that what goes to a brick lies together. Blocks beyond the chunks deal the
+/// giants.
 inline constexpr int copies_of_thread = 5;
 inline constexpr std::uint32_t most_listed = copies_of_thread * scatter_threads;
-__global__ void __launch_bounds__(scatter_threads, 3)
-    scatter_to_bricks(const __grid_constant__ BrickStore store, const __grid_constant__ BucketStore buckets) {
+inline constexpr std::uint32_t most_ordered = chunk_parcels + most_listed;
+__global__ void __launch_bounds__(scatter_threads, 5)
+    scatter_to_bricks(const __grid_constant__ BrickInput input, const __grid_constant__ BrickStore store,
+                      const __grid_constant__ BucketStore buckets) {
   extern __shared__ uint4 shared[];
   __shared__ std::uint32_t sums[scatter_threads / 32];
   __shared__ std::uint32_t wide;
   __shared__ std::uint32_t listed;
   __shared__ std::uint16_t wider[chunk_parcels];  // parcels that overlap more than one brick
-  __shared__ std::uint32_t list[most_listed];     // parcel in 16 bits, brick along x, y and z in 4 each
-  if (blockIdx.x >= store.state->chunks) return;
-  const std::int32_t width = store.plan.bucket_width;
-  const std::int32_t side = width + 1;  // of the bricks that its objects can overlap
-  const int count = side * side * side;
-  auto* stage = reinterpret_cast<Entry*>(shared);
-  auto* run = reinterpret_cast<BrickRun*>(stage + most_staged);
-  auto* begin = reinterpret_cast<std::uint32_t*>(run + count);
-  auto* brick_of = reinterpret_cast<std::uint16_t*>(begin + count);
+  __shared__ std::uint32_t list[most_listed];     // parcel, and 2^16 times the local brick
+  __shared__ std::uint32_t order[most_ordered];   // likewise
+  const std::uint32_t chunks = store.state->chunks;
+  if (blockIdx.x >= chunks) {
+    scatter_giants(input, store, blockIdx.x - chunks, gridDim.x - chunks);
+    return;
+  }
   const std::uint32_t slot = buckets.owner[blockIdx.x];
   const std::uint32_t bucket = slot / buckets.per_bucket;
   const std::uint32_t before = slot % buckets.per_bucket * chunk_parcels;
   const std::uint32_t parcels = min(buckets.counts[bucket] - before, chunk_parcels);
   const Parcel* from = buckets.parcels + std::size_t{blockIdx.x} * chunk_parcels;
-  std::int32_t corner[3];  // the bucket's first brick
-  corner[0] = static_cast<std::int32_t>(bucket) % store.plan.buckets[0] * width;
-  corner[1] = static_cast<std::int32_t>(bucket) / store.plan.buckets[0] % store.plan.buckets[1] * width;
-  corner[2] = static_cast<std::int32_t>(bucket) / (store.plan.buckets[0] * store.plan.buckets[1]) * width;
-  const auto number_of = [&](std::int32_t k) {
-    return store.plan.lattice.brick(corner[0] + k % side, corner[1] + k / side % side,
-                                    corner[2] + k / (side * side));
-  };
-  Parcel parcel[scatter_items];
-#pragma unroll
-  for (int k = 0; k < scatter_items; ++k) {
-    const std::uint32_t t = static_cast<unsigned>(k) * scatter_threads + threadIdx.x;
-    if (t < parcels) parcel[k] = from[t];
-  }
+  const BucketBricks bricks(store.plan, bucket);
+  const int count = bricks.side * bricks.side * bricks.side;
+  auto* run = reinterpret_cast<BrickRun*>(shared);
+  auto* begin = reinterpret_cast<std::uint32_t*>(run + count);
   for (int b = static_cast<int>(threadIdx.x); b < count; b += scatter_threads) begin[b] = 0;
   if (threadIdx.x == 0) wide = listed = 0;
   __syncthreads();
   std::uint32_t rank[scatter_items];  // in its brick, and 2^16 times the brick
+  Parcel loaded[loads_at_once];
 #pragma unroll
   for (int k = 0; k < scatter_items; ++k) {
     const std::uint32_t t = static_cast<unsigned>(k) * scatter_threads + threadIdx.x;
+    if (k % loads_at_once == 0) {
+#pragma unroll
+      for (std::uint32_t l = 0; l < loads_at_once; ++l)
+        loaded[l] = from[min(t + l * scatter_threads, parcels - 1)];
+    }
     if (t >= parcels) continue;
-    const LatticeBox box = parcel[k].box();
+    const LatticeBox box = loaded[k % loads_at_once].box();
     std::int32_t at[3];
     std::int32_t further[3];
     for (int a = 0; a < 3; ++a) {
       at[a] = box.lo[a] >> brick_bits;
       further[a] = (box.hi[a] >> brick_bits) - at[a];
     }
-    const std::int32_t own = (at[2] * side + at[1]) * side + at[0];
-    rank[k] = atomicAdd(&begin[own], 1u) | static_cast<std::uint32_t>(own) << 16;
+    const std::uint32_t own = bricks.local(at[0], at[1], at[2]);
+    rank[k] = atomicAdd(&begin[own], 1u) | own << 16;
     if ((further[0] | further[1] | further[2]) != 0)
       wider[atomicAdd(&wide, 1u)] = static_cast<std::uint16_t>(t);
   }
@@ -380,78 +386,57 @@ __global__ void __launch_bounds__(scatter_threads, 3)
     for_each_brick(box, [&](std::int32_t x, std::int32_t y, std::int32_t z) {
       if (x == box.lo[0] >> brick_bits && y == box.lo[1] >> brick_bits && z == box.lo[2] >> brick_bits)
         return;
+      const std::uint32_t local = bricks.local(x, y, z);
       const std::uint32_t l = atomicAdd(&listed, 1u);
       if (l < most_listed) {
-        list[l] = t | static_cast<std::uint32_t>(x << 16 | y << 20 | z << 24);
+        list[l] = t | local << 16;
       } else {
-        store.add(number_of((z * side + y) * side + x), entry_in_brick(box, sent.tag, x, y, z));
+        store.add(bricks.brick(store.plan.lattice, local), entry_in_brick(box, sent.tag, x, y, z));
       }
     });
   }
   __syncthreads();
   const std::uint32_t in_list = min(listed, most_listed);
-  const auto along = [](std::uint32_t item, int a) {
-    return static_cast<std::int32_t>(item >> (16 + 4 * a) & 15u);
-  };
-  const auto listed_brick = [&](std::uint32_t item) {
-    return (along(item, 2) * side + along(item, 1)) * side + along(item, 0);
-  };
   std::uint32_t copy_rank[copies_of_thread];
 #pragma unroll
   for (int k = 0; k < copies_of_thread; ++k) {
     const std::uint32_t l = static_cast<unsigned>(k) * scatter_threads + threadIdx.x;
-    if (l < in_list) copy_rank[k] = atomicAdd(&begin[listed_brick(list[l])], 1u);
+    if (l < in_list) copy_rank[k] = atomicAdd(&begin[list[l] >> 16], 1u);
   }
   __syncthreads();
   for (int b = static_cast<int>(threadIdx.x); b < count; b += scatter_threads) {
     const std::uint32_t n = begin[b];
     if (n == 0) continue;
-    const std::uint32_t brick = number_of(b);
+    const std::uint32_t brick = bricks.brick(store.plan.lattice, static_cast<std::uint32_t>(b));
     const std::uint32_t place = atomicAdd(&store.counts[brick], n);
     run[b].end = place < brick_objects ? min(n, brick_objects - place) : 0;
     if (run[b].end < n) store.state->over_full = 1;
     run[b].to = brick * brick_objects + place;
   }
-  const std::uint32_t staged = scan_in_block<scatter_threads>(begin, count, sums);
+  const std::uint32_t entries = scan_in_block<scatter_threads>(begin, count, sums);
   for (int b = static_cast<int>(threadIdx.x); b < count; b += scatter_threads) {
-    run[b].begin = begin[b];
     run[b].end += begin[b];
     run[b].to -= begin[b];
   }
-  __syncthreads();
-  const auto send = [&](const Entry& entry, std::uint32_t b, std::uint32_t t) {
-    if (t < run[b].end) store.entries[run[b].to + t] = entry;
-  };
-  const auto put = [&](const Entry& entry, std::uint32_t b, std::uint32_t of_brick) {
-    const std::uint32_t t = run[b].begin + of_brick;
-    if (t < most_staged) {
-      stage[t] = entry;
-      brick_of[t] = static_cast<std::uint16_t>(b);
-    } else {
-      send(entry, b, t);
-    }
-  };
 #pragma unroll
   for (int k = 0; k < scatter_items; ++k) {
     const std::uint32_t t = static_cast<unsigned>(k) * scatter_threads + threadIdx.x;
-    if (t >= parcels) continue;
-    const LatticeBox box = parcel[k].box();
-    put(entry_in_brick(box, parcel[k].tag, box.lo[0] >> brick_bits, box.lo[1] >> brick_bits,
-                       box.lo[2] >> brick_bits),
-        rank[k] >> 16, rank[k] & 0xffffu);
+    if (t < parcels) order[begin[rank[k] >> 16] + (rank[k] & 0xffffu)] = t | (rank[k] & 0xffff0000u);
   }
 #pragma unroll
   for (int k = 0; k < copies_of_thread; ++k) {
     const std::uint32_t l = static_cast<unsigned>(k) * scatter_threads + threadIdx.x;
-    if (l >= in_list) continue;
-    const std::uint32_t item = list[l];
-    const Parcel sent = from[item & 0xffffu];
-    put(entry_in_brick(sent.box(), sent.tag, along(item, 0), along(item, 1), along(item, 2)),
-        static_cast<std::uint32_t>(listed_brick(item)), copy_rank[k]);
+    if (l < in_list) order[begin[list[l] >> 16] + copy_rank[k]] = list[l];
   }
   __syncthreads();
-  for (std::uint32_t t = threadIdx.x; t < min(staged, most_staged); t += scatter_threads)
-    send(stage[t], brick_of[t], t);
+  for (std::uint32_t k = threadIdx.x; k < entries; k += scatter_threads) {
+    const std::uint32_t local = order[k] >> 16;
+    if (k >= run[local].end) continue;
+    const Parcel sent = from[order[k] & 0xffffu];
+    std::int32_t at[3];
+    bricks.locate(local, at);
+    store.entries[run[local].to + k] = entry_in_brick(sent.box(), sent.tag, at[0], at[1], at[2]);
+  }
 }
 
 }  // namespace scree

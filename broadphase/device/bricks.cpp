@@ -16,13 +16,6 @@ namespace scree {
 
 namespace {
 
-/// Under this many objects they go straight to their bricks.
-constexpr std::int64_t many = 200'000;
-
-void clear(void* memory, std::size_t bytes) {
-  if (cudaMemsetAsync(memory, 0, bytes) != cudaSuccess) throw RunError("CUDA: could not clear memory");
-}
-
 unsigned blocks_for(std::int64_t items, std::int64_t of_block) {
   return static_cast<unsigned>((items + of_block - 1) / of_block);
 }
@@ -34,7 +27,7 @@ constexpr std::size_t shared_to_buckets(std::int64_t buckets) {
 }
 constexpr std::size_t shared_to_bricks(std::int32_t bucket_width) {
   const auto side = static_cast<std::size_t>(bucket_width) + 1;
-  return most_staged * (sizeof(Entry) + 2) + side * side * side * (sizeof(BrickRun) + 4);
+  return side * side * side * (sizeof(BrickRun) + 4);
 }
 
 /// Whether a block of threads can have the shared memory that it needs; then the kernels are told to.
@@ -57,80 +50,115 @@ bool make_room() {
          allow(reinterpret_cast<const void*>(search_bricks<BrickMethod::rows>), shared_to_search);
 }
 
+/// A T in memory of the host that the device reaches.
+template <class T>
+class Pinned {
+ public:
+  Pinned() {
+    if (cudaMallocHost(&at_, sizeof(T)) != cudaSuccess)
+      throw RunError("CUDA: could not pin memory of the host");
+  }
+  ~Pinned() { cudaFreeHost(at_); }
+  Pinned(const Pinned&) = delete;
+  Pinned& operator=(const Pinned&) = delete;
+  T* operator->() { return at_; }
+
+ private:
+  T* at_ = nullptr;
+};
+
 }  // namespace
 
 struct Bricks<Device>::Arrays {
   Array<BrickSample, Device> sample{1};
-  Array<BrickState, Device> state{1};
+  /// All that has to be zero: the state, the tiles of the search, and the counts.
+  Array<Word, Device> zeros;
   Array<std::uint32_t, Device> giants;
-  Array<std::uint32_t, Device> counts;  ///< of bricks, of buckets, and the buckets' chunks
   Array<std::uint32_t, Device> owners;
   Array<Parcel, Device> parcels;
   Array<Entry, Device> entries;
-  Array<Word, Device> tiles;
   Array<Pair, Device> pairs;
+
+  /// In memory that the device writes to by itself: a copy to any other goes by way of such memory.
+  struct ToHost {
+    BrickSample sample;
+    BrickState state;
+  };
+  Pinned<ToHost> to_host;
+
+  template <class T>
+  static void fetch(T& to, const T* from) {
+    if (cudaMemcpyAsync(&to, from, sizeof(T), cudaMemcpyDeviceToHost) != cudaSuccess)
+      throw RunError("CUDA: could not copy from the device");
+    Device::synchronize();
+  }
 
   BrickSample take_sample(const BrickInput& input) {
     const timing::Call<Device> call("broadphase.initialize.sample");
-    clear(sample.data(), sizeof(BrickSample));
-    const Sampled sampled{input.bounds, input.count, std::min<std::int64_t>(input.count, BrickSample::most)};
+    detail::clear_bytes(sample.data(), sizeof(BrickSample));
+    const Sampled sampled{input.bounds, input.count};
     sample_sizes<<<sample_blocks, sample_threads>>>(sampled, sample.data());
+    detail::require_launched("sample_sizes");
     sample_places<<<sample_blocks, sample_threads>>>(sampled, sample.data());
-    BrickSample host;
-    copy_bytes<Host, Device>(&host, sample.data(), sizeof(host));
+    detail::require_launched("sample_places");
+    BrickSample& host = to_host->sample;
+    fetch(host, sample.data());
     for (std::uint32_t& lo : host.lo) lo = ~lo;
     return host;
   }
 
+  static constexpr std::int64_t state_words = sizeof(BrickState) / sizeof(Word);
+  BrickState* state() { return reinterpret_cast<BrickState*>(zeros.data()); }
+  Word* tiles() { return zeros.data() + state_words; }
+
   BrickStore scatter(const BrickPlan& plan, const BrickInput& input) {
     const std::int64_t bricks = plan.lattice.total();
-    const bool in_two_steps = input.count >= many;
-    const std::int64_t buckets = in_two_steps ? plan.total_buckets() : 0;
+    const std::int64_t buckets = plan.total_buckets();
     const std::int64_t per_bucket = input.count / chunk_parcels + 1;
+    const std::int64_t most_chunks = input.count / chunk_parcels + buckets;
+    const std::int64_t counts = bricks + buckets + buckets * per_bucket;
     giants.resize(input.count);
     entries.resize(bricks * std::int64_t{brick_objects});
-    counts.resize(bricks + buckets + buckets * per_bucket);
-    clear(state.data(), sizeof(BrickState));
-    clear(counts.data(), static_cast<std::size_t>(counts.size()) * sizeof(std::uint32_t));
-    const BrickStore store{plan, state.data(), giants.data(), counts.data(), entries.data()};
-    if (in_two_steps) {
-      const std::int64_t most_chunks = input.count / chunk_parcels + buckets;
-      parcels.resize(most_chunks * chunk_parcels);
-      owners.resize(most_chunks);
-      const BucketStore to{parcels.data(), counts.data() + bricks, counts.data() + bricks + buckets,
-                           static_cast<std::uint32_t>(per_bucket), owners.data()};
-      {
-        const timing::Call<Device> call("broadphase.sort.buckets");
-        const std::size_t shared = shared_to_buckets(buckets);
-        scatter_to_buckets<<<blocks_for(input.count, scatter_tile), scatter_threads, shared>>>(input, store,
-                                                                                               to);
-      }
-      const timing::Call<Device> call("broadphase.sort.bricks");
-      const std::size_t shared = shared_to_bricks(plan.bucket_width);
-      scatter_to_bricks<<<static_cast<unsigned>(most_chunks), scatter_threads, shared>>>(store, to);
-    } else {
-      const timing::Call<Device> call("broadphase.sort.bricks");
-      scatter_directly<<<blocks_for(input.count, direct_threads), direct_threads>>>(input, store);
+    parcels.resize(most_chunks * chunk_parcels);
+    owners.resize(most_chunks);
+    zeros.resize(state_words + bricks + (counts + 1) / 2);
+    detail::clear_bytes(zeros.data(), static_cast<std::size_t>(zeros.size()) * sizeof(Word));
+    auto* const count = reinterpret_cast<std::uint32_t*>(tiles() + bricks);
+    const BrickStore store{plan, state(), giants.data(), count, entries.data()};
+    const BucketStore to{parcels.data(), count + bricks, count + bricks + buckets,
+                         static_cast<std::uint32_t>(per_bucket), owners.data()};
+    {
+      const timing::Call<Device> call("broadphase.sort.buckets");
+      const std::size_t shared = shared_to_buckets(buckets);
+      scatter_to_buckets<<<blocks_for(input.count, scatter_tile), scatter_threads, shared>>>(input, store,
+                                                                                             to);
+      detail::require_launched("scatter_to_buckets");
     }
-    const timing::Call<Device> call("broadphase.sort.giants");
-    scatter_giants<<<1024, 128>>>(input, store);
+    const timing::Call<Device> call("broadphase.sort.bricks");
+    const std::size_t shared = shared_to_bricks(plan.bucket_width);
+    const auto blocks = static_cast<unsigned>(most_chunks) + giant_blocks;
+    scatter_to_bricks<<<blocks, scatter_threads, shared>>>(input, store, to);
+    detail::require_launched("scatter_to_bricks");
     return store;
   }
 
   BrickState search(const BrickStore& store, const BrickInput& input) {
     const timing::Call<Device> call("broadphase.traverse.bricks");
-    const std::int64_t bricks = store.plan.lattice.total();
-    tiles.resize(bricks);
-    clear(tiles.data(), static_cast<std::size_t>(bricks) * sizeof(Word));
-    const SearchOutput out{input.bounds, pairs.data(), static_cast<Word>(pairs.capacity()), tiles.data()};
+    const SearchOutput out{input.bounds, pairs.data(), static_cast<Word>(pairs.capacity()), tiles()};
     if (store.plan.method == BrickMethod::stencil) {
       start<BrickMethod::stencil>(store, out);
     } else {
       start<BrickMethod::rows>(store, out);
     }
-    BrickState host;
-    copy_bytes<Host, Device>(&host, state.data(), sizeof(host));
-    return host;
+    fetch(to_host->state, state());
+    return to_host->state;
+  }
+
+  /// What a search leaves behind, so that another can be made.
+  void clear_search(const BrickStore& store) {
+    detail::clear_bytes(&state()->crowded,
+                        sizeof(BrickState) - offsetof(BrickState, crowded) +
+                            static_cast<std::size_t>(store.plan.lattice.total()) * sizeof(Word));
   }
 
   template <BrickMethod method>
@@ -138,6 +166,7 @@ struct Bricks<Device>::Arrays {
     constexpr std::size_t shared = sizeof(SearchMemory<method>);
     search_bricks<method>
         <<<static_cast<unsigned>(store.plan.lattice.total()), search_threads, shared>>>(store, out);
+    detail::require_launched("search_bricks");
   }
 };
 
@@ -163,7 +192,7 @@ std::optional<ConstView<Pair>> Bricks<Device>::find(ConstView<Aabb> bounds, Cons
           pairs, Device::free_memory() + static_cast<std::size_t>(arrays.pairs.capacity()) * sizeof(Pair));
     arrays.pairs.resize(pairs);
     if (!fits) {
-      clear(&arrays.state.data()->crowded, sizeof(BrickState) - offsetof(BrickState, crowded));
+      arrays.clear_search(store);
       continue;
     }
     stats.levels = 1;

@@ -122,9 +122,13 @@ std::unique_ptr<BrickSample> sample_of(const Boxes& boxes) {
   auto sample = std::make_unique<BrickSample>();
   *sample = {};
   const auto n = std::min<std::size_t>(boxes.size(), BrickSample::most);
+  const auto looked_at = [&](std::size_t k) -> const Aabb& {
+    return boxes[static_cast<std::size_t>(
+        BrickSample::object(static_cast<std::int64_t>(k), static_cast<std::int64_t>(boxes.size())))];
+  };
   std::ranges::fill(sample->lo, ~0u);
   for (std::size_t k = 0; k < n; ++k) {
-    const Aabb& box = boxes[k * boxes.size() / n];
+    const Aabb& box = looked_at(k);
     for (int a = 0; a < 3; ++a) {
       const std::uint32_t centre = ordered_bits(static_cast<float>(centre_of(box, a)));
       sample->lo[a] = std::min(sample->lo[a], centre);
@@ -134,7 +138,7 @@ std::unique_ptr<BrickSample> sample_of(const Boxes& boxes) {
     sample->largest = std::max(sample->largest, std::bit_cast<std::uint32_t>(extent_of(box)));
   }
   for (std::size_t k = 0; k < n; ++k) {
-    const Aabb& box = boxes[k * boxes.size() / n];
+    const Aabb& box = looked_at(k);
     int place = 0;
     for (int a = 0; a < 3; ++a) {
       const double lo = from_ordered_bits(sample->lo[a]);
@@ -161,10 +165,22 @@ std::int64_t fullest(const BrickPlan& plan, const Boxes& boxes) {
 }
 
 TEST(BrickPlan, OrderedBitsOrderFloats) {
-  const float rising[] = {-FLT_MAX, -1, -1e-40f, -0.0f, 0.0f, 1e-40f, 1, FLT_MAX};
+  const float rising[] = {-FLT_MAX, -1, -1e-40f, 0, 1e-40f, 1, FLT_MAX};
   for (std::size_t k = 0; k + 1 < std::size(rising); ++k)
     EXPECT_LT(ordered_bits(rising[k]), ordered_bits(rising[k + 1]));
   for (const float x : rising) EXPECT_EQ(from_ordered_bits(ordered_bits(x)), x);
+  EXPECT_EQ(ordered_bits(-0.0f), ordered_bits(0.0f));
+}
+
+TEST(BrickPlan, TheSampleIsSpreadOverAllObjects) {
+  for (std::int64_t k = 0; k < 1000; ++k) EXPECT_EQ(BrickSample::object(k, 1000), k);
+  constexpr std::int64_t count = body_mask;
+  std::int64_t before = -1;
+  for (std::int64_t k = 0; k < BrickSample::most; ++k) {
+    EXPECT_LT(before, BrickSample::object(k, count));
+    before = BrickSample::object(k, count);
+  }
+  EXPECT_LT(before, count);
 }
 
 TEST(BrickPlan, EqualSizesHaveAStencilAndBricksThatHoldThem) {
@@ -185,6 +201,19 @@ TEST(BrickPlan, MixedSizesHaveRows) {
   EXPECT_EQ(plan->method, BrickMethod::rows);
   EXPECT_LE(fullest(*plan, boxes), std::int64_t{brick_objects});
   EXPECT_LE(plan->cells.total(), most_cells(plan->method));
+}
+
+// Whether the sample shows it or not.
+TEST(BrickPlan, OneGiantIsNoReasonForOtherBricks) {
+  Boxes boxes = equal_cloud(400000, 74, 0.5);
+  const auto plan = plan_of(boxes);
+  ASSERT_TRUE(plan);
+  boxes[static_cast<std::size_t>(BrickSample::object(1000, 400000))] = ball(0, 0, 0, 500);
+  const auto with_giant = plan_of(boxes);
+  ASSERT_TRUE(with_giant);
+  EXPECT_EQ(with_giant->method, BrickMethod::stencil);
+  EXPECT_NEAR(static_cast<double>(with_giant->lattice.total()), static_cast<double>(plan->lattice.total()),
+              0.15 * static_cast<double>(plan->lattice.total()));
 }
 
 TEST(BrickPlan, FewObjectsHaveOneBrick) {
@@ -236,7 +265,6 @@ void expect_bricks(const Boxes& boxes, const char* what) {
   EXPECT_TRUE(same_pairs(sorted(found<Space>({.levels = 4}, boxes, mobility)), sorted(first))) << what;
 }
 
-// Few go straight to their bricks, many by way of buckets.
 TYPED_TEST(Bricked, SuchScenesUseThemAndTwoRunsGiveTheSameBytes) {
   constexpr bool on_host = std::is_same_v<TypeParam, Host>;
   for (const int n : on_host ? std::vector{3000} : std::vector{3000, 100000, 400000}) {
@@ -257,21 +285,36 @@ TYPED_TEST(Bricked, SuchScenesUseThemAndTwoRunsGiveTheSameBytes) {
   }
 }
 
+template <class Space>
+void expect_pairs_of_the_uniform_grid(const Boxes& boxes, bool in_bricks) {
+  const auto grid = make_broad_phase<Space>({});
+  const std::vector<Mobility> mobility = all_free(boxes);
+  EXPECT_TRUE(same_pairs(sorted(found<Space>({.method = BroadPhaseMethod::uniform_grid}, boxes, mobility)),
+                         sorted(found(*grid, boxes, mobility))));
+  if constexpr (!std::is_same_v<Space, Host>) {
+    EXPECT_EQ(grid->stats().bricks > 0, in_bricks);
+  }
+}
+
 // More pairs than a warp keeps in its memory: it searches again.
 TYPED_TEST(Bricked, ManyPairsToAnObject) {
   const Boxes boxes = equal_cloud(30000, 20, 0.5);
-  EXPECT_TRUE(
-      same_pairs(sorted(found<TypeParam>({.method = BroadPhaseMethod::uniform_grid}, boxes, all_free(boxes))),
-                 sorted(found<TypeParam>({}, boxes, all_free(boxes)))));
+  ASSERT_TRUE(plan_of(boxes));
+  expect_pairs_of_the_uniform_grid<TypeParam>(boxes, true);
 }
 
 // The sample does not see the crowd, and the grid does what bricks cannot.
 TYPED_TEST(Bricked, AHiddenCrowdIsLeftToTheGrid) {
   Boxes boxes = equal_cloud(400000, 74, 0.5);
-  for (std::size_t k = 1; k < 20000; k += 2) boxes[k] = ball(1, 2, 3 + 1e-3 * static_cast<double>(k), 1e-3);
-  EXPECT_TRUE(
-      same_pairs(sorted(found<TypeParam>({.method = BroadPhaseMethod::uniform_grid}, boxes, all_free(boxes))),
-                 sorted(found<TypeParam>({}, boxes, all_free(boxes)))));
+  std::vector<bool> seen(boxes.size());
+  for (std::int64_t k = 0; k < BrickSample::most; ++k)
+    seen[static_cast<std::size_t>(BrickSample::object(k, 400000))] = true;
+  for (std::size_t k = 0; k < 20000; ++k)
+    if (!seen[k]) boxes[k] = ball(1, 2, 3 + 1e-3 * static_cast<double>(k), 1e-3);
+  const auto plan = plan_of(boxes);
+  ASSERT_TRUE(plan);
+  ASSERT_GT(fullest(*plan, boxes), std::int64_t{brick_objects});
+  expect_pairs_of_the_uniform_grid<TypeParam>(boxes, false);
 }
 
 }  // namespace
