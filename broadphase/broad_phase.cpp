@@ -1,5 +1,6 @@
 #include "broadphase/broad_phase.hpp"
 
+#include "broadphase/alternative_grid.hpp"
 #include "broadphase/brute_force.hpp"
 #include "broadphase/hierarchical_grid.hpp"
 #include "broadphase/lbvh.hpp"
@@ -14,6 +15,8 @@ std::unique_ptr<BroadPhase<Space>> make_broad_phase(const BroadPhaseSettings& se
   switch (settings.method) {
     case BroadPhaseMethod::hierarchical_grid:
       return make_hierarchical_grid<Space>(settings.levels);
+    case BroadPhaseMethod::alternative_grid:
+      return make_alternative_grid<Space>(settings.levels);
     case BroadPhaseMethod::uniform_grid:
       return make_uniform_grid<Space>();
     case BroadPhaseMethod::sweep_and_prune:

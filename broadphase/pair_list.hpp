@@ -23,7 +23,8 @@ inline void require_memory(std::int64_t pairs, std::size_t available) {
 /// A corner of a body's box, and what fills the 16 bytes up.
 struct alignas(16) Corner {
   float at[3];
-  std::int32_t tag;  ///< of the lower one: the body; of the upper one: 1 if it is fixed, else 0
+  std::int32_t tag;  ///< of the lower one: the body; of the upper one: bits that no two of a pair share, 1 if
+                     ///< it is fixed
 };
 
 /// What a test needs of a body.

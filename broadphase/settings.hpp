@@ -3,7 +3,14 @@
 
 namespace scree {
 
-enum class BroadPhaseMethod { hierarchical_grid, uniform_grid, sweep_and_prune, lbvh, brute_force };
+enum class BroadPhaseMethod {
+  hierarchical_grid,
+  alternative_grid,
+  uniform_grid,
+  sweep_and_prune,
+  lbvh,
+  brute_force
+};
 
 struct BroadPhaseSettings {
   BroadPhaseMethod method = BroadPhaseMethod::hierarchical_grid;

@@ -21,6 +21,7 @@ namespace {
 
 const std::map<std::string, BroadPhaseMethod> methods = {
     {"hierarchical_grid", BroadPhaseMethod::hierarchical_grid},
+    {"alternative_grid", BroadPhaseMethod::alternative_grid},
     {"uniform_grid", BroadPhaseMethod::uniform_grid},
     {"sweep_and_prune", BroadPhaseMethod::sweep_and_prune},
     {"lbvh", BroadPhaseMethod::lbvh},
@@ -42,7 +43,7 @@ be lists with commas, but for those of order and check; all combinations are mea
   --n N             objects of a data set (1000000)
   --space NAME      host, cuda, or all that are here (host)
   --method NAME     one of {} (hierarchical_grid)
-  --levels L        of the hierarchical grid; 0: as it chooses (0)
+  --levels L        of the hierarchical and the alternative grid; 0: as they choose (0)
   --order NAME      of the objects: random, another one for each call; rows, sorted by rows of cells of the mean
                     size; given (random)
   --check METHOD    compare the pairs with those of this method; exit status 1 if they differ

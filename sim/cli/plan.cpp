@@ -106,9 +106,13 @@ void print_model(const ModelPlan& plan) {
 }
 
 std::string broad_phase_words(const BroadPhaseSettings& settings) {
+  const std::string levels =
+      settings.levels == 0 ? "levels chosen from the sizes" : fmt::format("{} levels", settings.levels);
   switch (settings.method) {
     case BroadPhaseMethod::hierarchical_grid:
       break;
+    case BroadPhaseMethod::alternative_grid:
+      return "alternative grid, " + levels;
     case BroadPhaseMethod::uniform_grid:
       return "uniform grid";
     case BroadPhaseMethod::sweep_and_prune:
@@ -118,8 +122,7 @@ std::string broad_phase_words(const BroadPhaseSettings& settings) {
     case BroadPhaseMethod::brute_force:
       return "brute force";
   }
-  return "hierarchical grid, " +
-         (settings.levels == 0 ? "levels chosen from the sizes" : fmt::format("{} levels", settings.levels));
+  return "hierarchical grid, " + levels;
 }
 
 std::string narrow_phase_words(const Scene& scene) {

@@ -13,6 +13,7 @@ Codec<int> levels() {
 Codec<BroadPhaseMethod> broadphase_word() {
   using enum BroadPhaseMethod;
   return word<BroadPhaseMethod>({{"hierarchical_grid", hierarchical_grid},
+                                 {"alternative_grid", alternative_grid},
                                  {"uniform_grid", uniform_grid},
                                  {"sweep_and_prune", sweep_and_prune},
                                  {"lbvh", lbvh},

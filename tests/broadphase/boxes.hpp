@@ -114,8 +114,11 @@ inline std::vector<std::pair<std::string, BroadPhaseSettings>> every_method() {
       {"sweep and prune", {.method = BroadPhaseMethod::sweep_and_prune}},
       {"bounding volume hierarchy", {.method = BroadPhaseMethod::lbvh}}};
   for (int levels = 0; levels <= 8; ++levels) {
-    all.emplace_back("hierarchical grid, levels " + std::to_string(levels),
+    const std::string which = " grid, levels " + std::to_string(levels);
+    all.emplace_back("hierarchical" + which,
                      BroadPhaseSettings{.method = BroadPhaseMethod::hierarchical_grid, .levels = levels});
+    all.emplace_back("alternative" + which,
+                     BroadPhaseSettings{.method = BroadPhaseMethod::alternative_grid, .levels = levels});
   }
   return all;
 }

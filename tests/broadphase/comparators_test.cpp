@@ -16,7 +16,8 @@ template <class Space>
 class Comparators : public test::InSpace<Space> {};
 TYPED_TEST_SUITE(Comparators, test::Spaces, test::SpaceName);
 
-constexpr BroadPhaseMethod comparators[] = {BroadPhaseMethod::uniform_grid, BroadPhaseMethod::sweep_and_prune,
+constexpr BroadPhaseMethod comparators[] = {BroadPhaseMethod::alternative_grid,
+                                            BroadPhaseMethod::uniform_grid, BroadPhaseMethod::sweep_and_prune,
                                             BroadPhaseMethod::lbvh, BroadPhaseMethod::brute_force};
 
 Boxes mixed_scene() {
@@ -68,6 +69,27 @@ TYPED_TEST(Comparators, TheSweepGoesAlongTheLine) {
     boxes.push_back(ball(axis == 0 ? 7 : 1e7, axis == 0 ? 1e7 : 7, 7, 1));
     EXPECT_LE(tests_per_body<TypeParam>(BroadPhaseMethod::sweep_and_prune, boxes), 2);
   }
+}
+
+// Each pair in up to eight cells, but small objects against each other in the cells of their own level alone.
+TYPED_TEST(Comparators, TheAlternativeGridTestsFewBoxes) {
+  constexpr int n = 20000;
+  const auto tests = [](const Boxes& boxes) {
+    return tests_per_body<TypeParam>(BroadPhaseMethod::alternative_grid, boxes);
+  };
+  const Boxes plain = equal_cloud(n, 27.5, 0.5);
+  EXPECT_LT(tests(plain), 35);
+  Boxes outlier = plain;
+  outlier.push_back(ball(1e30, 1e30, -1e30, 1e23));
+  EXPECT_LT(tests(outlier), 45);
+  Boxes giant = plain;
+  giant.push_back(ball(0, 0, 0, 1e5));
+  EXPECT_LT(tests(giant), 45);
+  // Cells 2^19 apart have one key.
+  Boxes clusters = plain;
+  for (const Aabb& b : plain)
+    clusters.push_back({{b.lo[0] + 524296, b.lo[1], b.lo[2]}, {b.hi[0] + 524296, b.hi[1], b.hi[2]}});
+  EXPECT_LT(tests(clusters), 70);
 }
 
 // --- the hierarchy

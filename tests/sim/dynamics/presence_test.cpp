@@ -118,6 +118,7 @@ TEST(Presence, SameBitsForAnyBroadPhase) {
   };
   const std::uint64_t grid = hash("");
   EXPECT_EQ(grid, hash("broadphase: {method: brute_force}\n"));
+  EXPECT_EQ(grid, hash("broadphase: {method: alternative_grid}\n"));
   EXPECT_EQ(grid, hash("broadphase: {method: uniform_grid}\n"));
   EXPECT_EQ(grid, hash("broadphase: {method: sweep_and_prune}\n"));
   EXPECT_EQ(grid, hash("broadphase: {method: lbvh}\n"));

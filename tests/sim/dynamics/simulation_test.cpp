@@ -90,7 +90,7 @@ bodies:
 
 TEST(Simulation, SameBitsForAnyBroadPhase) {
   const std::uint64_t grid = hash_after(scene_of(heap), 50, one_thread);
-  for (const char* method : {"uniform_grid", "sweep_and_prune", "lbvh", "brute_force"}) {
+  for (const char* method : {"alternative_grid", "uniform_grid", "sweep_and_prune", "lbvh", "brute_force"}) {
     const Scene scene = scene_of(heap + "broadphase: {method: " + method + "}\n");
     EXPECT_EQ(grid, hash_after(scene, 50, one_thread)) << method;
   }

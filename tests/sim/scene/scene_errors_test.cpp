@@ -118,7 +118,7 @@ constexpr BadScene bad_scenes[] = {
     {"friction_negative", 4, 46, "materials.glass.friction: must be a number >= 0, not -0.4"},
     {"no_shape", 6, 5, "bodies[0]: must have exactly one shape (plane, sphere, box or tube), not none"},
     {"two_shapes", 6, 5, "bodies[0]: must have exactly one shape (plane, sphere, box or tube), not 2"},
-    {"bad_word", 7, 22, "broadphase.method: must be one of hierarchical_grid, uniform_grid, sweep_and_prune, lbvh, brute_force, not brute_froce (did you mean brute_force?)"},
+    {"bad_word", 7, 22, "broadphase.method: must be one of hierarchical_grid, alternative_grid, uniform_grid, sweep_and_prune, lbvh, brute_force, not brute_froce (did you mean brute_force?)"},
     {"uniform_reversed", 6, 33, "bodies[0].sphere.radius.uniform: must be [low, high] with low <= high"},
     {"powerlaw_zero", 6, 34, "bodies[0].sphere.radius.powerlaw: must be [min, max, exponent] with 0 < min <= max"},
     {"two_distributions", 6, 23, "bodies[0].sphere.radius: must have exactly one of uniform, powerlaw, choose"},
