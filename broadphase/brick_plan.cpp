@@ -30,9 +30,10 @@ constexpr int most_rows = 8;
 constexpr double finest_stencil = 9;  // cells along a brick
 constexpr double finest_row = 64;
 constexpr double stencil_runs = 5;
-constexpr double stencil_cells_tested = 11;  // of the volume of a cell's cube, half as wide along x
-constexpr double most_wide = 0.05;           // share of the objects that may be too wide for the stencil
-constexpr double cells_to_reach = 4;         // of a row, to the usual length of an object there
+constexpr std::uint32_t stencil_fineness = 3;  // cells along x to one along y
+constexpr double stencil_cells_tested = 10;    // of the volume of a cube as wide as a cell along y
+constexpr double most_wide = 0.05;             // share of the objects that may be too wide for the stencil
+constexpr double cells_to_reach = 4;           // of a row, to the usual length of an object there
 // An object's length in numbers may be larger than that in metres says, by rounding.
 constexpr double reach_slack = 0x1p-10;
 constexpr double edge_slack = 1e-9;        // of products of edges, by rounding
@@ -220,7 +221,7 @@ BrickCells stencil_cells(const BrickPlan& plan) {
     const auto cell =
         static_cast<std::uint32_t>(std::max<double>(plan.reach[a], brick_points / finest_stencil));
     cells.first[a] = brick_points - plan.reach[a];
-    cells.factor[a] = (a == 0 ? 2u : 1u) * 65536u / cell;
+    cells.factor[a] = (a == 0 ? stencil_fineness : 1) * 65536u / cell;
     cells.count[a] = 1;
     cells.count[a] = cells.cell_of(last_local, a) + 1;
   }

@@ -76,7 +76,7 @@ inline constexpr std::uint32_t brick_objects = 1280;
 constexpr std::uint32_t most_entries(BrickMethod method) {
   return method == BrickMethod::stencil ? brick_objects : 1792;
 }
-constexpr std::int32_t most_cells(BrickMethod method) { return method == BrickMethod::stencil ? 2400 : 1024; }
+constexpr std::int32_t most_cells(BrickMethod method) { return method == BrickMethod::stencil ? 3200 : 1024; }
 
 /// Nothing where bricks do not suit: where there would be too many, where most objects would stand in
 /// several, or where objects are crowded in few places. `objects`: all, of which the sample shows some.
