@@ -5,6 +5,7 @@
 #include "broadphase/pair_list.hpp"
 #include "core/array.hpp"
 #include "core/space_four.hpp"
+#include "core/space_prefetch.hpp"
 
 #include <cstdint>
 
@@ -60,6 +61,10 @@ struct GridObjects<Host> {
     Probe probe;
     for (int l = 0; l < lanes; ++l) put(object, probe, l);
     return probe;
+  }
+  void prefetch(std::uint32_t number) const {
+    scree::prefetch(block[number].lo);
+    scree::prefetch(block[number].hi[1]);
   }
   /// Bit l for the l-th object of a block.
   std::uint32_t may_collide(const Probe& a, std::uint32_t number) const {

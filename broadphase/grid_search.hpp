@@ -60,6 +60,7 @@ struct GridSearch {
   int parts;
 
   SCREE_HD Boxed candidate(std::uint32_t k) const { return grid.objects.object(k); }
+  void prefetch(std::uint32_t block) const { grid.objects.prefetch(block); }
 };
 
 /// A search whose objects are tested against all candidates alike.

@@ -7,6 +7,7 @@
 #include "broadphase/grid_search.hpp"
 #include "broadphase/pair_list.hpp"
 #include "core/parallel.hpp"
+#include "core/space_prefetch.hpp"
 
 #include <algorithm>
 #include <bit>
@@ -37,11 +38,18 @@ struct AssignCell {
 
 template <class Space>
 struct GatherObject {
+  static constexpr std::int64_t ahead = 16;
   ConstView<Aabb> bounds;
   ConstView<Mobility> mobility;
   ConstView<std::int32_t> body;
   GridObjects<Space> objects;
   SCREE_HD void operator()(std::int64_t k) const {
+    if (k + ahead < body.size()) {
+      const std::int32_t next = body[k + ahead];
+      prefetch(&bounds[next]);
+      prefetch(&bounds[next].hi[2]);  // of 24 bytes, which may be in two cache lines
+      prefetch(&mobility[next]);
+    }
     const std::int32_t i = body[k];
     objects.set(k, boxed(bounds[i], i, mobility[i]));
   }
@@ -90,7 +98,7 @@ class HierarchicalGrid final : public BroadPhase<Space> {
   /// Level and cell of each object.
   void initialize(ConstView<Aabb> bounds) {
     const Census census = take_census<Space>(bounds);
-    plan_ = plan_grid(census, count_sizes<Space>(bounds, census), forced_levels_);
+    plan_ = plan_grid(census, count_sizes<Space>(bounds, census), grid_costs<Space>, forced_levels_);
     stats_.levels = static_cast<int>(plan_.levels.size());
     if (plan_.levels.empty()) return;
     objects_.resize(census.present);

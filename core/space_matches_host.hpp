@@ -85,10 +85,7 @@ class HostTasks {
 
   /// Each with its own number in the code, so that what they have in common is done once.
   void find_runs(const typename Search::Item& item, int part, Run (&to)[runs_at_once]) const {
-    [&]<int... r>(std::integer_sequence<int, r...>) {
-      const Run run[] = {search_.run(item, part, r)...};
-      std::copy_n(run, runs_at_once, to);
-    }
+    [&]<int... r>(std::integer_sequence<int, r...>) { ((to[r] = search_.run(item, part, r)), ...); }
     (std::make_integer_sequence<int, runs_at_once>());
   }
 
@@ -115,6 +112,7 @@ class HostTasks {
             test(count, found);
             count = 0;
           }
+          if constexpr (lanes > 1) search_.prefetch(block);
           if (left <= stride * lanes) break;
           block += stride;
           left -= stride * lanes;

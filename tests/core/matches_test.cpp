@@ -62,6 +62,7 @@ struct ToyOfFour : Toy {
     for (std::uint32_t l = 0; l < 4; ++l) bits |= meets(o, r, 4 * block + l) ? 1u << l : 0;
     return bits;
   }
+  void prefetch(std::uint32_t) const {}
   Item item_after(const Item& before) const { return item(before.object.item + 1); }
 };
 
