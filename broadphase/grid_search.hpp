@@ -164,21 +164,22 @@ struct Query {
   CellRange range;
   std::int32_t run_cells;  ///< at most, of a run
   std::int32_t first_x;    ///< of the first run of a row, which begins there or after it
-  std::int64_t runs_per_row;
-  std::int64_t rows_y;  ///< rows per layer of cells
+  std::int32_t runs_per_row;
+  std::int32_t rows_y;    ///< rows per layer of cells
+  double layers_per_row;  ///< its inverse, since to divide is slower
   std::int64_t runs;
   bool all;  ///< test all objects of the level instead
 
   /// Of a run.
   SCREE_HD CellRange cells(std::int64_t run) const {
-    // Runs are fewer than the objects of the level, so 32 bits hold them, and divide faster.
-    const auto number = static_cast<std::uint32_t>(run);
-    const auto per_row = static_cast<std::uint32_t>(runs_per_row);
-    const auto per_layer = static_cast<std::uint32_t>(rows_y);
-    const std::uint32_t line = per_row == 1 ? number : number / per_row;
-    const std::int32_t y = range.lo[1] + static_cast<std::int32_t>(line % per_layer);
-    const std::int32_t z = range.lo[2] + static_cast<std::int32_t>(line / per_layer);
-    const std::int32_t begin = first_x + static_cast<std::int32_t>(number - line * per_row) * run_cells;
+    // Runs are fewer than the objects of the level, so 32 bits hold them. The product is half of a layer's
+    // share or more from any whole number, so that its rounding does not matter.
+    const auto number = static_cast<std::int32_t>(run);
+    const std::int32_t row = runs_per_row == 1 ? number : number / runs_per_row;
+    const auto layer = static_cast<std::int32_t>((row + 0.5) * layers_per_row);
+    const std::int32_t y = range.lo[1] + row - layer * rows_y;
+    const std::int32_t z = range.lo[2] + layer;
+    const std::int32_t begin = first_x + (number - row * runs_per_row) * run_cells;
     const std::int32_t end = begin + run_cells - 1;
     return {{begin > range.lo[0] ? begin : range.lo[0], y, z}, {end < range.hi[0] ? end : range.hi[0], y, z}};
   }
@@ -203,12 +204,13 @@ SCREE_HD Query make_query(const GridView<Space>& grid, const LevelPair* descents
   query.first_x = level.hashed ? range.lo[0] / query.run_cells * query.run_cells : range.lo[0];
   query.runs_per_row = empty ? 0 : (range.hi[0] - query.first_x) / query.run_cells + 1;
   query.rows_y = range.hi[1] - range.lo[1] + 1;
-  const std::int64_t rows_z = range.hi[2] - range.lo[2] + 1;
+  query.layers_per_row = 1.0 / query.rows_y;
+  const std::int32_t rows_z = range.hi[2] - range.lo[2] + 1;
   // In floating point, since the product of three such numbers can pass 64 bits.
   const double runs = static_cast<double>(query.runs_per_row) * static_cast<double>(query.rows_y) *
                       static_cast<double>(rows_z);
   query.all = runs * Query::tests_per_run > static_cast<double>(level.end - level.begin);
-  query.runs = query.all ? 0 : query.runs_per_row * query.rows_y * rows_z;
+  query.runs = query.all ? 0 : std::int64_t{query.runs_per_row} * query.rows_y * rows_z;
   return query;
 }
 
@@ -239,12 +241,16 @@ struct WideSearch : GridSearch<Space> {
   }
   /// The next one, found faster; not for the last one.
   Item item_after(const Item& before) const {
-    Item item = before;
-    const std::int64_t next = first_item[item.query] + ++item.object.part;
-    if (next < first_item[item.query + 1]) return item;
-    do ++item.query;
-    while (next >= first_item[item.query + 1]);
-    return item_of(item.query, 0);
+    std::int64_t q = before.query;
+    const std::int64_t next = first_item[q] + before.object.part + 1;
+    if (next < first_item[q + 1]) {
+      Item item = before;
+      ++item.object.part;
+      return item;
+    }
+    do ++q;
+    while (next >= first_item[q + 1]);
+    return item_of(q, 0);
   }
   SCREE_HD Run run(const Item& item, int part, int r) const {
     const Query& query = item.object.query;

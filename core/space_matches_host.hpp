@@ -14,6 +14,7 @@
 #include <bit>
 #include <cstdint>
 #include <deque>
+#include <new>
 #include <utility>
 
 namespace scree {
@@ -52,8 +53,9 @@ class HostTasks {
   template <class Match>
   void search(std::int64_t first, std::int64_t end, FoundMatches<Match>& found) {
     const auto items = static_cast<std::uint32_t>(end - first);
-    item_[0] = search_.item(first);
-    for (std::uint32_t i = 1; i < items; ++i) item_[i] = item_after(item_[i - 1], first + i);
+    // Made in place, since items can be large.
+    new (&item_[0]) Item(search_.item(first));
+    for (std::uint32_t i = 1; i < items; ++i) new (&item_[i]) Item(item_after(item_[i - 1], first + i));
     for (int part = 0; part < search_.parts; ++part) {
       for (std::uint32_t i = 0; i < items; ++i) find_runs(item_[i], part, run_[i]);
       write_down(items, static_cast<std::uint32_t>(part) * runs_at_once, found);
@@ -68,6 +70,8 @@ class HostTasks {
   static constexpr std::uint32_t most = 1024;
   static constexpr std::uint32_t in_word = 64 / lanes;  // tasks
 
+  using Item = typename Search::Item;
+
   /// Candidates lanes * block and those that follow it, as far as `those` has a bit for them.
   struct Task {
     std::uint32_t block;
@@ -75,7 +79,7 @@ class HostTasks {
     std::uint16_t those;
   };
 
-  typename Search::Item item_after(const typename Search::Item& before, std::int64_t i) const {
+  Item item_after(const Item& before, std::int64_t i) const {
     if constexpr (requires { search_.item_after(before); }) {
       return search_.item_after(before);
     } else {
@@ -84,7 +88,7 @@ class HostTasks {
   }
 
   /// Each with its own number in the code, so that what they have in common is done once.
-  void find_runs(const typename Search::Item& item, int part, Run (&to)[runs_at_once]) const {
+  void find_runs(const Item& item, int part, Run (&to)[runs_at_once]) const {
     [&]<int... r>(std::integer_sequence<int, r...>) { ((to[r] = search_.run(item, part, r)), ...); }
     (std::make_integer_sequence<int, runs_at_once>());
   }
@@ -156,7 +160,7 @@ class HostTasks {
   const auto& object(const Task& task) const { return item_[task.owner % items_at_once].object; }
 
   const Search& search_;
-  typename Search::Item item_[items_at_once];
+  Item item_[items_at_once];
   Run run_[items_at_once][runs_at_once];
   std::uint32_t count_ = 0;
   Task task_[most];
