@@ -34,7 +34,7 @@ struct GridObjects<Host> {
   static constexpr int lanes = 4;
   static constexpr std::int32_t body_bits = 0x7fffffff;
 
-  struct alignas(128) Block {
+  struct alignas(64) Block {
     float lo[3][lanes];
     float hi[3][lanes];
     std::int32_t tag[lanes];  ///< the body, and the sign bit if it is fixed
