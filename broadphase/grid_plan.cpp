@@ -11,8 +11,6 @@ namespace scree {
 
 namespace {
 
-// Cost of one box test, in units of the look-up of one row of cells.
-constexpr double test_cost = 0.35;
 // Half of the 3x3x3 cells: rows looked up, and cells of candidates.
 constexpr double own_rows = 5;
 constexpr double own_cells = 13.5;
@@ -42,7 +40,7 @@ struct Group {
 
 class CostModel {
  public:
-  explicit CostModel(const Census& census) {
+  CostModel(const Census& census, const GridCosts& costs) : costs_(costs) {
     for (int a = 0; a < 3; ++a)
       length_[a] = static_cast<double>(census.hi[a]) - static_cast<double>(census.lo[a]);
   }
@@ -64,14 +62,14 @@ class CostModel {
   }
 
   double own(const Group& g, double occupancy) const {
-    return g.count * (own_rows + std::min(own_cells * occupancy, g.count) * test_cost);
+    return g.count * (own_rows + std::min(own_cells * occupancy, g.count) * costs_.test);
   }
 
   /// All objects of `from` search the cells of `to`.
   double up(const Group& from, const Group& to, double occupancy_to) const {
     const double width = static_cast<double>(from.cell) / to.cell + 2;
     return from.count *
-           (width * width + std::min(width * width * width * occupancy_to, to.count) * test_cost);
+           (width * width + std::min(width * width * width * occupancy_to, to.count) * costs_.test);
   }
 
   /// The same where the cells of `to` are the smaller ones; a very large object rather tests all of them.
@@ -79,10 +77,11 @@ class CostModel {
     const double width = static_cast<double>(from.cell) / to.cell + 2;
     const double rows = width * width * (1 + width / brick_row);
     const double tests = std::min(width * width * width * occupancy_to, to.count);
-    return from.count * std::min(rows + tests * test_cost, to.count * test_cost);
+    return from.count * std::min(rows + tests * costs_.test, to.count * costs_.test);
   }
 
  private:
+  GridCosts costs_;
   double length_[3];
 };
 
@@ -228,10 +227,10 @@ void choose_directions(GridPlan& plan, const CostModel& model, const std::vector
 
 }  // namespace
 
-GridPlan plan_grid(const Census& census, const SizeHistogram& sizes, int forced) {
+GridPlan plan_grid(const Census& census, const SizeHistogram& sizes, const GridCosts& costs, int forced) {
   GridPlan plan;
   if (census.present == 0) return plan;
-  const CostModel model(census);
+  const CostModel model(census, costs);
   const std::vector<Group> groups = choose(model, octaves(census, sizes), forced);
   std::int32_t begin = 0;
   for (const Group& group : groups) {

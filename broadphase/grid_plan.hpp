@@ -32,8 +32,18 @@ struct GridPlan {
   }
 };
 
+/// What the cost model counts with, in units of the look-up of one row of cells: measured in each space.
+struct GridCosts {
+  double test;  ///< of two boxes
+};
+template <class Space>
+inline constexpr GridCosts grid_costs{.test = 0.35};
+/// Four at once.
+template <>
+inline constexpr GridCosts grid_costs<Host>{.test = 0.12};
+
 /// `forced`: number of levels, or 0 to choose it. There are no more levels than octaves with objects in them,
 /// and no more than max_grid_levels.
-GridPlan plan_grid(const Census& census, const SizeHistogram& sizes, int forced);
+GridPlan plan_grid(const Census& census, const SizeHistogram& sizes, const GridCosts& costs, int forced);
 
 }  // namespace scree

@@ -3,24 +3,21 @@
 #pragma once
 
 #include "broadphase/aabb.hpp"
+#include "broadphase/grid_objects.hpp"
 #include "broadphase/grid_plan.hpp"
-#include "broadphase/pair_list.hpp"
 
+#include <bit>
 #include <cstdint>
 
 namespace scree {
 
 /// The grid, built.
+template <class Space>
 struct GridView {
   GridLevel levels[max_grid_levels];
   bool any_hashed;
-  // The objects sorted by cell, so that neighbours share cache lines, and their corners apart, so that a
-  // warp's loads of 16 bytes do as well.
-  const Corner* lo;
-  const Corner* hi;
+  GridObjects<Space> objects;
   const std::uint32_t* starts;  ///< of each cell among the objects, one past the last cell included
-
-  SCREE_HD Boxed object(std::int64_t k) const { return {lo[k], hi[k]}; }
 
   /// The objects in the cells from x to `end` of a row: those that stand in one run with x (part 0), or the
   /// rest of them (part 1), which are in the next brick of a hashed table. At most brick_row cells. Part 1 of
@@ -44,44 +41,64 @@ struct GridView {
 };
 
 /// Of a list of level pairs, the one that a search belongs to.
-SCREE_HD inline const LevelPair& pair_of_search(const GridView& grid, const LevelPair* pairs,
-                                                std::int64_t search) {
+template <class Space>
+SCREE_HD const LevelPair& pair_of_search(const GridView<Space>& grid, const LevelPair* pairs,
+                                         std::int64_t search) {
   while (search >= pairs->first + (grid.levels[pairs->from].end - grid.levels[pairs->from].begin)) ++pairs;
   return *pairs;
 }
 
 /// What all searches of the grid have in common.
+template <class Space>
 struct GridSearch {
   using Candidate = Boxed;
+  using Objects = GridObjects<Space>;
+  static constexpr int lanes = Objects::lanes;
 
-  GridView grid;
+  GridView<Space> grid;
   std::int64_t items;
   int parts;
 
-  SCREE_HD Boxed candidate(std::uint32_t k) const { return grid.object(k); }
+  SCREE_HD Boxed candidate(std::uint32_t k) const { return grid.objects.object(k); }
+  void prefetch(std::uint32_t block) const { grid.objects.prefetch(block); }
+};
+
+/// A search whose objects are tested against all candidates alike.
+template <class Space>
+struct PlainSearch : GridSearch<Space> {
+  using Object = typename GridObjects<Space>::Probe;
+
+  SCREE_HD bool meets(const Object& a, int, const Boxed& b) const { return may_collide(a, b); }
+  std::uint32_t meets_block(const Object& a, int, std::uint32_t block) const {
+    return this->grid.objects.may_collide(a, block);
+  }
+  SCREE_HD Pair match(const Object& a, const Boxed& b) const { return pair_of(a.body(), b.body()); }
 };
 
 /// Each object against half of the 27 cells around it on its own level: what follows in its cell, the next
 /// cell of its row, and the four rows after it in the order of (z, y). The other half finds this object from
 /// there.
-struct OwnSearch : GridSearch {
+template <class Space>
+struct OwnSearch : PlainSearch<Space> {
   static constexpr const char* label = "broadphase.traverse.own";
-  using Object = Boxed;
+  using Objects = GridObjects<Space>;
+  using GridSearch<Space>::grid;
   struct Item {
-    Boxed object;
+    typename Objects::Probe object;
     int level;
     std::uint32_t next;
     std::int32_t x, y, z;
   };
 
-  OwnSearch(const GridView& of, std::int64_t objects) : GridSearch{of, objects, of.any_hashed ? 2 : 1} {}
+  OwnSearch(const GridView<Space>& of, std::int64_t objects)
+      : PlainSearch<Space>{{of, objects, of.any_hashed ? 2 : 1}} {}
 
   SCREE_HD Item item(std::int64_t k) const {
     const int own = level_of_rank(grid.levels, k);
     const GridLevel& level = grid.levels[own];
-    const Boxed object = grid.object(k);
+    const Boxed object = grid.objects.object(k);
     const Aabb box = object.box();
-    return {object,
+    return {Objects::probe(object),
             own,
             static_cast<std::uint32_t>(k) + 1,
             level.cell_of(centre_of(box, 0), 0),
@@ -99,17 +116,17 @@ struct OwnSearch : GridSearch {
     if (row == 0 && part == 0) run.begin = at.next;
     return run;
   }
-  SCREE_HD bool meets(const Boxed& a, int, const Boxed& b) const { return may_collide(a, b); }
-  SCREE_HD Pair match(const Boxed& a, const Boxed& b) const { return pair_of(a.body(), b.body()); }
 };
 
 /// Each object of a level against one whose cells are wider: at most 3x3x3 of them.
-struct UpSearch : GridSearch {
+template <class Space>
+struct UpSearch : PlainSearch<Space> {
   static constexpr const char* label = "broadphase.traverse.up";
   static constexpr int parts_of_row = 2;  // 9 rows, runs_at_once in each
-  using Object = Boxed;
+  using Objects = GridObjects<Space>;
+  using GridSearch<Space>::grid;
   struct Item {
-    Boxed object;
+    typename Objects::Probe object;
     int level;
     CellRange range;
   };
@@ -118,8 +135,8 @@ struct UpSearch : GridSearch {
 
   SCREE_HD Item item(std::int64_t i) const {
     const LevelPair& ascent = pair_of_search(grid, ascents, i);
-    const Boxed object = grid.object(grid.levels[ascent.from].begin + (i - ascent.first));
-    return {object, ascent.to, grid.levels[ascent.to].reach_of(object.box())};
+    const Boxed object = grid.objects.object(grid.levels[ascent.from].begin + (i - ascent.first));
+    return {Objects::probe(object), ascent.to, grid.levels[ascent.to].reach_of(object.box())};
   }
   SCREE_HD Run run(const Item& item, int part, int r) const {
     const CellRange& range = item.range;
@@ -129,40 +146,41 @@ struct UpSearch : GridSearch {
     if (row >= 9 || y > range.hi[1] || z > range.hi[2]) return {};
     return grid.row(grid.levels[item.level], range.lo[0], range.hi[0], y, z, part / parts_of_row);
   }
-  SCREE_HD bool meets(const Boxed& a, int, const Boxed& b) const { return may_collide(a, b); }
-  SCREE_HD Pair match(const Boxed& a, const Boxed& b) const { return pair_of(a.body(), b.body()); }
 };
 
-/// A query, and how it is cut into work items: into runs of up to brick_row cells or, where these are too
+/// A query, and how it is cut into work items: into runs of cells of one row or, where these are too
 /// many for the objects there are, into all objects of the level. A giant is thus spread over as many threads
 /// as it needs.
 struct Query {
   static constexpr int parts = 3;  // of an item
   static constexpr int runs_per_item = parts * runs_at_once;
   static constexpr std::int64_t objects_per_item = 64;
+  static constexpr std::int32_t longest_run = 4 * brick_row;  // cells of a dense level
   // A run costs about as much as this many tests.
   static constexpr double tests_per_run = 3;
 
   std::int64_t object;  ///< in cell order
   int to;               ///< level searched
   CellRange range;
-  std::int64_t runs_per_row;
-  std::int64_t rows_y;  ///< rows per layer of cells
+  std::int32_t run_cells;  ///< at most, of a run
+  std::int32_t first_x;    ///< of the first run of a row, which begins there or after it
+  std::int32_t runs_per_row;
+  std::int32_t rows_y;    ///< rows per layer of cells
+  double layers_per_row;  ///< its inverse, since to divide is slower
   std::int64_t runs;
   bool all;  ///< test all objects of the level instead
 
   /// Of a run.
   SCREE_HD CellRange cells(std::int64_t run) const {
-    constexpr auto row = static_cast<std::int32_t>(brick_row);
-    // Runs are fewer than the objects of the level, so 32 bits hold them, and divide faster.
-    const auto number = static_cast<std::uint32_t>(run);
-    const auto per_row = static_cast<std::uint32_t>(runs_per_row);
-    const auto per_layer = static_cast<std::uint32_t>(rows_y);
-    const std::uint32_t line = number / per_row;
-    const std::int32_t y = range.lo[1] + static_cast<std::int32_t>(line % per_layer);
-    const std::int32_t z = range.lo[2] + static_cast<std::int32_t>(line / per_layer);
-    const std::int32_t begin = (range.lo[0] / row + static_cast<std::int32_t>(number % per_row)) * row;
-    const std::int32_t end = begin + row - 1;
+    // Runs are fewer than the objects of the level, so 32 bits hold them. The product is half of a layer's
+    // share or more from any whole number, so that its rounding does not matter.
+    const auto number = static_cast<std::int32_t>(run);
+    const std::int32_t row = runs_per_row == 1 ? number : number / runs_per_row;
+    const auto layer = static_cast<std::int32_t>((row + 0.5) * layers_per_row);
+    const std::int32_t y = range.lo[1] + row - layer * rows_y;
+    const std::int32_t z = range.lo[2] + layer;
+    const std::int32_t begin = first_x + (number - row * runs_per_row) * run_cells;
+    const std::int32_t end = begin + run_cells - 1;
     return {{begin > range.lo[0] ? begin : range.lo[0], y, z}, {end < range.hi[0] ? end : range.hi[0], y, z}};
   }
 
@@ -172,38 +190,45 @@ struct Query {
   }
 };
 
-SCREE_HD inline Query make_query(const GridView& grid, const LevelPair* descents, std::int64_t q) {
+template <class Space>
+SCREE_HD Query make_query(const GridView<Space>& grid, const LevelPair* descents, std::int64_t q) {
   const LevelPair& descent = pair_of_search(grid, descents, q);
   Query query;
   query.object = grid.levels[descent.from].begin + (q - descent.first);
   query.to = descent.to;
   const GridLevel& level = grid.levels[query.to];
-  query.range = level.reach_of(grid.object(query.object).box());
+  query.range = level.reach_of(grid.objects.object(query.object).box());
   const CellRange& range = query.range;
   const bool empty = range.lo[0] > range.hi[0] || range.lo[1] > range.hi[1] || range.lo[2] > range.hi[2];
-  constexpr std::int64_t row = brick_row;
-  query.runs_per_row = empty ? 0 : range.hi[0] / row - range.lo[0] / row + 1;
+  query.run_cells = level.hashed ? static_cast<std::int32_t>(brick_row) : Query::longest_run;
+  query.first_x = level.hashed ? range.lo[0] / query.run_cells * query.run_cells : range.lo[0];
+  query.runs_per_row = empty ? 0 : (range.hi[0] - query.first_x) / query.run_cells + 1;
   query.rows_y = range.hi[1] - range.lo[1] + 1;
-  const std::int64_t rows_z = range.hi[2] - range.lo[2] + 1;
+  query.layers_per_row = 1.0 / query.rows_y;
+  const std::int32_t rows_z = range.hi[2] - range.lo[2] + 1;
   // In floating point, since the product of three such numbers can pass 64 bits.
   const double runs = static_cast<double>(query.runs_per_row) * static_cast<double>(query.rows_y) *
                       static_cast<double>(rows_z);
   query.all = runs * Query::tests_per_run > static_cast<double>(level.end - level.begin);
-  query.runs = query.all ? 0 : query.runs_per_row * query.rows_y * rows_z;
+  query.runs = query.all ? 0 : std::int64_t{query.runs_per_row} * query.rows_y * rows_z;
   return query;
 }
 
 /// The queries of all descents, cut into items.
-struct WideSearch : GridSearch {
+template <class Space>
+struct WideSearch : GridSearch<Space> {
   static constexpr const char* label = "broadphase.traverse.wide";
+  using Objects = GridObjects<Space>;
+  using GridSearch<Space>::grid;
   struct Object {
-    Boxed boxed;
+    typename Objects::Probe probe;
     Query query;
     std::int64_t part;
     bool by_cell;  ///< candidates count only under their own cell
   };
   struct Item {
     Object object;
+    std::int64_t query;
   };
 
   const LevelPair* descents;
@@ -212,9 +237,20 @@ struct WideSearch : GridSearch {
 
   SCREE_HD Item item(std::int64_t i) const {
     const std::int64_t q = query_of(i);
-    const Query query = make_query(grid, descents, q);
-    return {
-        {grid.object(query.object), query, i - first_item[q], !query.all && grid.levels[query.to].hashed}};
+    return item_of(q, i - first_item[q]);
+  }
+  /// The next one, found faster; not for the last one.
+  Item item_after(const Item& before) const {
+    std::int64_t q = before.query;
+    const std::int64_t next = first_item[q] + before.object.part + 1;
+    if (next < first_item[q + 1]) {
+      Item item = before;
+      ++item.object.part;
+      return item;
+    }
+    do ++q;
+    while (next >= first_item[q + 1]);
+    return item_of(q, 0);
   }
   SCREE_HD Run run(const Item& item, int part, int r) const {
     const Query& query = item.object.query;
@@ -228,14 +264,25 @@ struct WideSearch : GridSearch {
   /// A wide search can visit a slot of a hashed table under several cells: what stands there counts only
   /// under its own.
   SCREE_HD bool meets(const Object& a, int r, const Boxed& b) const {
-    const bool collide = may_collide(a.boxed, b);
-    if (!a.by_cell) return collide;
-    return collide &&
-           grid.levels[a.query.to].stands_in(b.box(), a.query.cells(a.part * Query::runs_per_item + r));
+    return may_collide(a.probe, b) & counts(a, r, b);
   }
-  SCREE_HD Pair match(const Object& a, const Boxed& b) const { return pair_of(a.boxed.body(), b.body()); }
+  std::uint32_t meets_block(const Object& a, int r, std::uint32_t block) const {
+    std::uint32_t found = grid.objects.may_collide(a.probe, block);
+    if (a.by_cell)
+      for (std::uint32_t rest = found; rest != 0; rest &= rest - 1) {
+        const auto l = static_cast<std::uint32_t>(std::countr_zero(rest));
+        if (!counts(a, r, this->candidate(block * Objects::lanes + l))) found &= ~(1u << l);
+      }
+    return found;
+  }
+  SCREE_HD Pair match(const Object& a, const Boxed& b) const { return pair_of(a.probe.body(), b.body()); }
 
  private:
+  SCREE_HD Item item_of(std::int64_t q, std::int64_t part) const {
+    const Query query = make_query(grid, descents, q);
+    const bool by_cell = !query.all && grid.levels[query.to].hashed;
+    return {{Objects::probe(grid.objects.object(query.object)), query, part, by_cell}, q};
+  }
   SCREE_HD std::int64_t query_of(std::int64_t item) const {
     std::int64_t lo = 0;
     std::int64_t hi = queries;
@@ -244,6 +291,10 @@ struct WideSearch : GridSearch {
       (first_item[middle] <= item ? lo : hi) = middle;
     }
     return lo;
+  }
+  SCREE_HD bool counts(const Object& a, int r, const Boxed& b) const {
+    return !a.by_cell ||
+           grid.levels[a.query.to].stands_in(b.box(), a.query.cells(a.part * Query::runs_per_item + r));
   }
   SCREE_HD static Run objects_of(const GridLevel& level, std::int64_t part) {
     const std::int64_t begin = level.begin + part * Query::objects_per_item;

@@ -2,10 +2,12 @@
 
 #include "broadphase/bricks.hpp"
 #include "broadphase/census.hpp"
+#include "broadphase/grid_objects.hpp"
 #include "broadphase/grid_plan.hpp"
 #include "broadphase/grid_search.hpp"
 #include "broadphase/pair_list.hpp"
 #include "core/parallel.hpp"
+#include "core/space_prefetch.hpp"
 
 #include <algorithm>
 #include <bit>
@@ -34,16 +36,22 @@ struct AssignCell {
   }
 };
 
+template <class Space>
 struct GatherObject {
+  static constexpr std::int64_t ahead = 16;
   ConstView<Aabb> bounds;
   ConstView<Mobility> mobility;
   ConstView<std::int32_t> body;
-  View<Corner> lo, hi;
+  GridObjects<Space> objects;
   SCREE_HD void operator()(std::int64_t k) const {
+    if (k + ahead < body.size()) {
+      const std::int32_t next = body[k + ahead];
+      prefetch(&bounds[next]);
+      prefetch(&bounds[next].hi[2]);  // of 24 bytes, which may be in two cache lines
+      prefetch(&mobility[next]);
+    }
     const std::int32_t i = body[k];
-    const Boxed object = boxed(bounds[i], i, mobility[i]);
-    lo[k] = object.lo;
-    hi[k] = object.hi;
+    objects.set(k, boxed(bounds[i], i, mobility[i]));
   }
 };
 
@@ -57,8 +65,9 @@ struct EndRun {
   }
 };
 
+template <class Space>
 struct CountQueryItems {
-  GridView grid;
+  GridView<Space> grid;
   const LevelPair* descents;
   View<std::uint32_t> items;
   SCREE_HD void operator()(std::int64_t q) const {
@@ -89,11 +98,10 @@ class HierarchicalGrid final : public BroadPhase<Space> {
   /// Level and cell of each object.
   void initialize(ConstView<Aabb> bounds) {
     const Census census = take_census<Space>(bounds);
-    plan_ = plan_grid(census, count_sizes<Space>(bounds, census), forced_levels_);
+    plan_ = plan_grid(census, count_sizes<Space>(bounds, census), grid_costs<Space>, forced_levels_);
     stats_.levels = static_cast<int>(plan_.levels.size());
     if (plan_.levels.empty()) return;
-    lo_.resize(census.present);
-    hi_.resize(census.present);
+    objects_.resize(census.present);
     copy(levels_, plan_.levels);
     key_.resize(bounds.size());
     body_.resize(bounds.size());
@@ -106,38 +114,40 @@ class HierarchicalGrid final : public BroadPhase<Space> {
 
   /// Start and end of each cell's run, and the objects themselves in cell order.
   void construct(ConstView<Aabb> bounds, ConstView<Mobility> mobility) {
-    parallel::for_each<Space>("broadphase.construct.gather", lo_.size(),
-                              GatherObject{bounds, mobility, body_.view(), lo_.view(), hi_.view()});
+    parallel::for_each<Space>("broadphase.construct.gather", objects_.size(),
+                              GatherObject<Space>{bounds, mobility, body_.view(), objects_.objects()});
     starts_.resize(std::int64_t{plan_.cells} + 1);
     parallel::fill("broadphase.construct.clear", starts_, 0u);
-    parallel::for_each<Space>("broadphase.construct.ends", lo_.size(),
-                              EndRun{key_.view(), lo_.size(), starts_.view()});
+    parallel::for_each<Space>("broadphase.construct.ends", objects_.size(),
+                              EndRun{key_.view(), objects_.size(), starts_.view()});
     parallel::running_max("broadphase.construct.starts", starts_);
   }
 
   /// Each object against its own level and the others.
   ConstView<Pair> traverse() {
-    GridView grid{{}, false, lo_.data(), hi_.data(), starts_.data()};
+    GridView<Space> grid{{}, false, objects_.objects(), starts_.data()};
     std::ranges::copy(plan_.levels, grid.levels);
     grid.any_hashed = std::ranges::any_of(plan_.levels, &GridLevel::hashed);
-    return pairs_.collect(stats_, OwnSearch(grid, lo_.size()), up_search(grid), wide_search(grid));
+    return pairs_.collect(stats_, OwnSearch<Space>(grid, objects_.size()), up_search(grid),
+                          wide_search(grid));
   }
 
-  UpSearch up_search(const GridView& grid) {
+  UpSearch<Space> up_search(const GridView<Space>& grid) {
     const std::int64_t searches = plan_.searches(plan_.ascents);
     if (searches > 0) copy(ascents_, plan_.ascents);
-    return {{grid, searches, (grid.any_hashed ? 2 : 1) * UpSearch::parts_of_row}, ascents_.data()};
+    const int parts = (grid.any_hashed ? 2 : 1) * UpSearch<Space>::parts_of_row;
+    return {{{grid, searches, parts}}, ascents_.data()};
   }
 
   /// The searches of large objects among small ones, cut into items of like cost.
-  WideSearch wide_search(const GridView& grid) {
+  WideSearch<Space> wide_search(const GridView<Space>& grid) {
     const std::int64_t queries = plan_.searches(plan_.descents);
-    WideSearch search{{grid, 0, Query::parts}, nullptr, nullptr, queries};
+    WideSearch<Space> search{{grid, 0, Query::parts}, nullptr, nullptr, queries};
     if (queries == 0) return search;
     copy(descents_, plan_.descents);
     query_items_.resize(queries);
     parallel::for_each<Space>("broadphase.traverse.queries", queries,
-                              CountQueryItems{grid, descents_.data(), query_items_.view()});
+                              CountQueryItems<Space>{grid, descents_.data(), query_items_.view()});
     search.items = parallel::exclusive_scan<Space>("broadphase.traverse.items", query_items_, first_item_);
     search.descents = descents_.data();
     search.first_item = first_item_.data();
@@ -151,7 +161,7 @@ class HierarchicalGrid final : public BroadPhase<Space> {
   Array<GridLevel, Space> levels_;
   Array<std::uint32_t, Space> key_;  ///< cell of each object
   Array<std::int32_t, Space> body_;  ///< its number
-  Array<Corner, Space> lo_, hi_;     ///< of the objects, in cell order
+  GridObjectArray<Space> objects_;   ///< in cell order
   Array<std::uint32_t, Space> starts_;
   Array<LevelPair, Space> ascents_, descents_;
   Array<std::uint32_t, Space> query_items_;

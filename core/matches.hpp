@@ -30,6 +30,12 @@ inline constexpr int runs_at_once = 5;  // a part of an item's
 ///   Candidate candidate(std::uint32_t k)
 ///   bool meets(const Object&, int run, const Candidate&)    run: part * runs_at_once + r
 ///   Match match(const Object&, const Candidate&)
+/// and, for Host, may have
+///   static constexpr int lanes                candidates that are tested at once: a power of two, 8 at most
+///   std::uint32_t meets_block(const Object&, int run, std::uint32_t block)
+///                                             bit l: for candidate lanes * block + l, which may not be there
+///   void prefetch(std::uint32_t block)
+///   Item item_after(const Item&)              the next one, where that is found faster
 template <class Space, class Match>
 class MatchFinder;
 

@@ -11,8 +11,11 @@
 #include <tbb/task_arena.h>
 
 #include <algorithm>
+#include <bit>
 #include <cstdint>
 #include <deque>
+#include <new>
+#include <utility>
 
 namespace scree {
 
@@ -27,10 +30,20 @@ struct FoundMatches {
   std::int64_t tests = 0;
 };
 
-/// The tests of a block of items, in order, each a task: a candidate, and whose it is. Runs have few
-/// candidates, and any number: a loop over each would end unforeseen, which costs a processor as much as
-/// several tests. So tasks are written down `stride` at a time, which most runs are not longer than, and
-/// tested in a loop without branches.
+/// Candidates that a search tests at once.
+template <class Search>
+constexpr std::uint32_t lanes_of() {
+  if constexpr (requires { Search::lanes; }) {
+    return Search::lanes;
+  } else {
+    return 1;
+  }
+}
+
+/// The tests of a block of items, in order, each task a block of candidates that are tested at once, and
+/// whose they are. Runs have few candidates, and any number: a loop over each would end unforeseen, which
+/// costs a processor as much as several tests. So tasks are written down `stride` at a time, which most runs
+/// are not longer than, and tested in a loop without branches, whose outcome is a bit for each candidate.
 template <class Search>
 class HostTasks {
  public:
@@ -40,62 +53,117 @@ class HostTasks {
   template <class Match>
   void search(std::int64_t first, std::int64_t end, FoundMatches<Match>& found) {
     const auto items = static_cast<std::uint32_t>(end - first);
-    for (std::uint32_t i = 0; i < items; ++i) item_[i] = search_.item(first + i);
-    for (int part = 0; part < search_.parts; ++part)
-      for (std::uint32_t i = 0; i < items; ++i)
-        for (int r = 0; r < runs_at_once; ++r) {
-          const auto number = static_cast<std::uint32_t>(part * runs_at_once + r);
-          add(search_.run(item_[i], part, r), number * items_at_once + i, found);
-        }
-    test(found);
+    // Made in place, since items can be large.
+    new (&item_[0]) Item(search_.item(first));
+    for (std::uint32_t i = 1; i < items; ++i) new (&item_[i]) Item(item_after(item_[i - 1], first + i));
+    for (int part = 0; part < search_.parts; ++part) {
+      for (std::uint32_t i = 0; i < items; ++i) find_runs(item_[i], part, run_[i]);
+      write_down(items, static_cast<std::uint32_t>(part) * runs_at_once, found);
+    }
+    test(count_, found);
+    count_ = 0;
   }
 
  private:
-  static constexpr std::uint32_t stride = 8;
+  static constexpr std::uint32_t lanes = lanes_of<Search>();
+  static constexpr std::uint32_t stride = lanes > 1 ? 2 : 8;
   static constexpr std::uint32_t most = 1024;
+  static constexpr std::uint32_t in_word = 64 / lanes;  // tasks
 
-  template <class Match>
-  void add(Run run, std::uint32_t owner, FoundMatches<Match>& found) {
-    found.tests += run.end - run.begin;
-    for (;;) {
-      std::uint32_t* const candidate = candidate_ + count_;
-      std::uint32_t* const owners = owner_ + count_;
-      for (std::uint32_t j = 0; j < stride; ++j) candidate[j] = run.begin + j;
-      for (std::uint32_t j = 0; j < stride; ++j) owners[j] = owner;
-      const std::uint32_t left = run.end - run.begin;
-      count_ += std::min(left, stride);
-      if (count_ > most - stride) test(found);
-      if (left <= stride) return;
-      run.begin += stride;
+  using Item = typename Search::Item;
+
+  /// Candidates lanes * block and those that follow it, as far as `those` has a bit for them.
+  struct Task {
+    std::uint32_t block;
+    std::uint16_t owner;  ///< item, and items_at_once times the run's number
+    std::uint16_t those;
+  };
+
+  Item item_after(const Item& before, std::int64_t i) const {
+    if constexpr (requires { search_.item_after(before); }) {
+      return search_.item_after(before);
+    } else {
+      return search_.item(i);
     }
+  }
+
+  /// Each with its own number in the code, so that what they have in common is done once.
+  void find_runs(const Item& item, int part, Run (&to)[runs_at_once]) const {
+    [&]<int... r>(std::integer_sequence<int, r...>) { ((to[r] = search_.run(item, part, r)), ...); }
+    (std::make_integer_sequence<int, runs_at_once>());
+  }
+
+  /// The tasks of a part of the items' runs, the first of which has this number.
+  template <class Match>
+  void write_down(std::uint32_t items, std::uint32_t first_run, FoundMatches<Match>& found) {
+    std::int64_t tests = 0;
+    std::uint32_t count = count_;
+    for (std::uint32_t i = 0; i < items; ++i) {
+      auto owner = static_cast<std::uint16_t>(first_run * items_at_once + i);
+      for (const Run run : run_[i]) {
+        const std::uint32_t length = run.end - run.begin;
+        tests += length;
+        std::uint32_t block = run.begin / lanes;
+        std::uint32_t before = run.begin % lanes;
+        std::uint32_t left = length > 0 ? before + length : 0;
+        for (;;) {
+          const std::uint32_t those = ((1u << std::min(left, stride * lanes)) - 1) >> before << before;
+          for (std::uint32_t j = 0; j < stride; ++j)
+            task_[count + j] = {block + j, owner,
+                                static_cast<std::uint16_t>(those >> (j * lanes) & ((1u << lanes) - 1))};
+          count += std::min((left + lanes - 1) / lanes, stride);
+          if (count > most - stride) {
+            test(count, found);
+            count = 0;
+          }
+          if constexpr (lanes > 1) search_.prefetch(block);
+          if (left <= stride * lanes) break;
+          block += stride;
+          left -= stride * lanes;
+          before = 0;
+        }
+        owner += items_at_once;
+      }
+    }
+    count_ = count;
+    found.tests += tests;
   }
 
   /// Does all tasks.
   template <class Match>
-  void test(FoundMatches<Match>& found) {
-    std::uint32_t hit[most];
-    std::uint32_t hits = 0;
-    for (std::uint32_t t = 0; t < count_; ++t) {
-      hit[hits] = t;
-      hits += search_.meets(object(t), static_cast<int>(owner_[t] / items_at_once),
-                            search_.candidate(candidate_[t]))
-                  ? 1
-                  : 0;
+  [[gnu::noinline]] void test(std::uint32_t count, FoundMatches<Match>& found) {
+    for (std::uint32_t first = 0; first < count; first += in_word) {
+      std::uint64_t hits = 0;
+      const std::uint32_t end = std::min(count - first, in_word);
+      for (std::uint32_t t = 0; t < end; ++t) hits |= std::uint64_t{meeting(task_[first + t])} << (t * lanes);
+      for (; hits != 0; hits &= hits - 1) {
+        const auto bit = static_cast<std::uint32_t>(std::countr_zero(hits));
+        const Task& task = task_[first + bit / lanes];
+        if (found.count < found.room)
+          found.to[found.count] =
+              search_.match(object(task), search_.candidate(task.block * lanes + bit % lanes));
+        ++found.count;
+      }
     }
-    const std::int64_t room = std::clamp<std::int64_t>(found.room - found.count, 0, hits);
-    for (std::int64_t h = 0; h < room; ++h)
-      found.to[found.count + h] = search_.match(object(hit[h]), search_.candidate(candidate_[hit[h]]));
-    found.count += hits;
-    count_ = 0;
   }
 
-  const auto& object(std::uint32_t task) const { return item_[owner_[task] % items_at_once].object; }
+  /// A bit for each of its candidates.
+  std::uint32_t meeting(const Task& task) const {
+    const int run = task.owner / items_at_once;
+    if constexpr (lanes > 1) {
+      return search_.meets_block(object(task), run, task.block) & task.those;
+    } else {
+      return search_.meets(object(task), run, search_.candidate(task.block)) ? 1 : 0;
+    }
+  }
+
+  const auto& object(const Task& task) const { return item_[task.owner % items_at_once].object; }
 
   const Search& search_;
-  typename Search::Item item_[items_at_once];
+  Item item_[items_at_once];
+  Run run_[items_at_once][runs_at_once];
   std::uint32_t count_ = 0;
-  std::uint32_t candidate_[most];
-  std::uint32_t owner_[most];  ///< item, and items_at_once times the run's number
+  Task task_[most];
 };
 
 }  // namespace detail

@@ -41,7 +41,7 @@ std::vector<double> cell_widths(const Scene& scene) {
   const Census census = take_census<Host>(std::as_const(bounds).view());
   const SizeHistogram sizes = count_sizes<Host>(std::as_const(bounds).view(), census);
   std::vector<double> widths;
-  for (const GridLevel& level : plan_grid(census, sizes, scene.broadphase.levels).levels)
+  for (const GridLevel& level : plan_grid(census, sizes, grid_costs<Host>, scene.broadphase.levels).levels)
     widths.push_back(level.cell);
   return widths;
 }

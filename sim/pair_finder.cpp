@@ -53,7 +53,7 @@ class PairFinderIn final : public PairFinder {
     const ConstView<Aabb> boxes = host_bounds_.view();
     const Census census = take_census<Host>(boxes);
     const std::vector<GridLevel> levels =
-        plan_grid(census, count_sizes<Host>(boxes, census), settings_.levels).levels;
+        plan_grid(census, count_sizes<Host>(boxes, census), grid_costs<Space>, settings_.levels).levels;
     if (levels.empty()) return grid;
     for (const GridLevel& level : levels) grid.width.push_back(level.cell);
     for (const Aabb& box : boxes) {

@@ -171,7 +171,7 @@ GridPlan plan_of(const Boxes& boxes, int levels = 0) {
   Array<Aabb, Host> bounds;
   copy(bounds, boxes);
   const Census census = take_census<Host>(bounds.view());
-  return plan_grid(census, count_sizes<Host>(bounds.view(), census), levels);
+  return plan_grid(census, count_sizes<Host>(bounds.view(), census), grid_costs<Host>, levels);
 }
 
 TEST(GridPlan, EqualSizesHaveOneLevelOfTheirOwnSize) {

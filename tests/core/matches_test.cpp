@@ -53,6 +53,19 @@ struct Toy {
   SCREE_HD Match match(const Object& o, Candidate k) const { return {o.item, k}; }
 };
 
+/// Tests four candidates at once, on Host.
+struct ToyOfFour : Toy {
+  static constexpr int lanes = 4;
+
+  std::uint32_t meets_block(const Object& o, int r, std::uint32_t block) const {
+    std::uint32_t bits = 0;
+    for (std::uint32_t l = 0; l < 4; ++l) bits |= meets(o, r, 4 * block + l) ? 1u << l : 0;
+    return bits;
+  }
+  void prefetch(std::uint32_t) const {}
+  Item item_after(const Item& before) const { return item(before.object.item + 1); }
+};
+
 void append(const Toy& toy, std::vector<Match>& found, std::int64_t& tests) {
   for (std::int64_t block = 0; block < toy.items; block += items_at_once)
     for (int part = 0; part < toy.parts; ++part)
@@ -67,8 +80,8 @@ void append(const Toy& toy, std::vector<Match>& found, std::int64_t& tests) {
         }
 }
 
-template <class Space>
-void expect_found(const Toy& a, const Toy& b, MatchFinder<Space, Match>& finder, Array<Match, Space>& out) {
+template <class A, class Space>
+void expect_found(const A& a, const Toy& b, MatchFinder<Space, Match>& finder, Array<Match, Space>& out) {
   std::vector<Match> expected;
   std::int64_t tests = 0;
   append(a, expected, tests);
@@ -87,8 +100,10 @@ TYPED_TEST(Matches, AreThoseOfTheLoops) {
   for (const std::int64_t n : {0, 1, 31, 32, 33, 127, 129, 5000})
     for (const int parts : {1, 2, 4})
       for (const std::uint32_t longest : {2u, 20u, 3000u}) {
-        expect_found({n, parts, longest, 3}, {n / 2, 2, 50, 1}, finder, out);
-        if (n > 0 && longest > 20) expect_found({n / 16 + 1, parts, longest, 1}, {0, 1, 1, 1}, finder, out);
+        expect_found(Toy{n, parts, longest, 3}, {n / 2, 2, 50, 1}, finder, out);
+        expect_found(ToyOfFour{{n, parts, longest, 3}}, {n / 2, 2, 50, 1}, finder, out);
+        if (n > 0 && longest > 20)
+          expect_found(Toy{n / 16 + 1, parts, longest, 1}, {0, 1, 1, 1}, finder, out);
       }
 }
 
