@@ -18,8 +18,8 @@ namespace {
 /// of the level before those of finer levels. What is no larger than a level's cells overlaps at most two of
 /// them on each axis, so no object has more than eight entries on a level.
 struct LevelCells {
-  static constexpr int most_bits =
-      20;  ///< of a number; cells that differ above share a key, which costs tests
+  /// Of a number; cells that differ above share a key, which costs tests.
+  static constexpr int most_bits = 20;
 
   GridLevel levels[max_grid_levels];
   int count;
@@ -186,7 +186,9 @@ class AlternativeGrid final : public BroadPhase<Space> {
   ConstView<Pair> find(ConstView<Aabb> bounds, ConstView<Mobility> mobility) override {
     stats_ = {};
     const Census census = take_census<Space>(bounds);
-    const GridPlan plan = plan_grid(census, count_sizes<Space>(bounds, census), forced_levels_);
+    // The levels are the same in both spaces, so that the order of the pairs is.
+    const GridPlan plan =
+        plan_grid(census, count_sizes<Space>(bounds, census), grid_costs<Host>, forced_levels_);
     stats_.levels = static_cast<int>(plan.levels.size());
     if (plan.levels.empty()) return {};
     const LevelCells cells(plan);

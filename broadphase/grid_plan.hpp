@@ -41,6 +41,11 @@ inline constexpr GridCosts grid_costs{.test = 0.35};
 /// Four at once.
 template <>
 inline constexpr GridCosts grid_costs<Host>{.test = 0.12};
+/// Levels whose number is forced are the same in every space.
+template <class Space>
+constexpr const GridCosts& grid_costs_for(int forced) {
+  return forced > 0 ? grid_costs<Host> : grid_costs<Space>;
+}
 
 /// `forced`: number of levels, or 0 to choose it. There are no more levels than octaves with objects in them,
 /// and no more than max_grid_levels.

@@ -98,7 +98,8 @@ class HierarchicalGrid final : public BroadPhase<Space> {
   /// Level and cell of each object.
   void initialize(ConstView<Aabb> bounds) {
     const Census census = take_census<Space>(bounds);
-    plan_ = plan_grid(census, count_sizes<Space>(bounds, census), grid_costs<Space>, forced_levels_);
+    plan_ = plan_grid(census, count_sizes<Space>(bounds, census), grid_costs_for<Space>(forced_levels_),
+                      forced_levels_);
     stats_.levels = static_cast<int>(plan_.levels.size());
     if (plan_.levels.empty()) return;
     objects_.resize(census.present);

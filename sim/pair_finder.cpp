@@ -52,8 +52,9 @@ class PairFinderIn final : public PairFinder {
     if (settings_.method != BroadPhaseMethod::hierarchical_grid) return grid;
     const ConstView<Aabb> boxes = host_bounds_.view();
     const Census census = take_census<Host>(boxes);
-    const std::vector<GridLevel> levels =
-        plan_grid(census, count_sizes<Host>(boxes, census), grid_costs<Space>, settings_.levels).levels;
+    const std::vector<GridLevel> levels = plan_grid(census, count_sizes<Host>(boxes, census),
+                                                    grid_costs_for<Space>(settings_.levels), settings_.levels)
+                                              .levels;
     if (levels.empty()) return grid;
     for (const GridLevel& level : levels) grid.width.push_back(level.cell);
     for (const Aabb& box : boxes) {
