@@ -79,7 +79,9 @@ struct Summary {
       octaves.push_back(octave);
     }
     double volume = 1;
+    double places = 1;  // on an axis without extent all centres are in the first one
     for (int a = 0; a < 3; ++a) {
+      if (sample.hi[a] != sample.lo[a]) places *= BrickSample::width;
       lo[a] = from_ordered_bits(sample.lo[a]);
       length[a] = std::max(from_ordered_bits(sample.hi[a]) - lo[a], shortest_length);
       volume *= length[a];
@@ -90,7 +92,6 @@ struct Summary {
       squares += static_cast<double>(n) * n;
       most = std::max(most, static_cast<double>(n));
     }
-    constexpr double places = BrickSample::width * BrickSample::width * BrickSample::width;
     // What chance adds is taken off.
     density = present / volume * std::max(1.0, (squares - seen) * places / (seen * seen));
     densest = std::max(density, present / volume * (most - 3 * std::sqrt(most)) * places / seen);
@@ -287,7 +288,8 @@ std::optional<BrickPlan> plan_bricks(const BrickSample& sample, std::int64_t obj
   plan.method = best->method;
   const std::array<double, 3> count = count_bricks(all, best->width);
   const double bricks = count[0] * count[1] * count[2];
-  if (bricks > static_cast<double>(most_bricks) ||
+  if (std::ranges::max(count) > static_cast<double>(most_bricks_along) ||
+      bricks > static_cast<double>(most_bricks) ||
       bricks > std::max(few_bricks, all.present / fewest_objects))
     return {};
   for (int a = 0; a < 3; ++a) {

@@ -68,8 +68,9 @@ struct BrickPlan {
 
 inline constexpr std::int32_t widest_bucket = 8;
 inline constexpr std::int32_t most_buckets = 2048;
-/// So many that 32 bits number all entries.
+/// So many that 32 bits number all entries; and along an axis, that they number all points.
 inline constexpr std::int64_t most_bricks = 1 << 21;
+inline constexpr std::int64_t most_bricks_along = 1 << 14;
 /// What the memory of a block of threads holds: objects, entries (an object has one in each row, or one
 /// alone) and cells.
 inline constexpr std::uint32_t brick_objects = 1280;

@@ -237,6 +237,32 @@ TEST(BrickPlan, CellsHoldTheirNumbers) {
   }
 }
 
+// Where all objects are on a line, the lattice has one row of bricks: its points must not run out of numbers.
+TEST(BrickPlan, ARowOfBricksIsNotTooLong) {
+  Boxes line;
+  for (int k = 0; k < 60000; ++k) line.push_back(ball(1e-3 * k, 0, 0, 1e-7));
+  const auto sample = sample_of(line);
+  for (const std::int64_t objects : {60000, 1000000, 10000000, 100000000, 200000000}) {
+    const auto plan = plan_bricks(*sample, objects);
+    if (plan) {
+      EXPECT_LE(plan->lattice.bricks[0], most_bricks_along) << objects;
+    }
+    EXPECT_EQ(plan.has_value(), objects < 100000000) << objects;
+  }
+}
+
+TEST(BrickPlan, FlatScenesHaveFullBricks) {
+  Boxes plate = equal_cloud(100000, 400, 0.5);
+  for (Aabb& box : plate) {
+    box.lo[2] = -0.5;
+    box.hi[2] = 0.5;
+  }
+  const auto plan = plan_of(plate);
+  ASSERT_TRUE(plan);
+  EXPECT_LE(fullest(*plan, plate), std::int64_t{brick_objects});
+  EXPECT_GT(fullest(*plan, plate), brick_objects / 2);
+}
+
 TEST(BrickPlan, DeclinesWhatDoesNotSuit) {
   EXPECT_FALSE(plan_of(Boxes(5000, ball(3, -2, 1, 0.5))));  // all at one point
   EXPECT_FALSE(plan_of(equal_cloud(5000, 10, 0)));          // points
