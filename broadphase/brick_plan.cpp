@@ -30,10 +30,10 @@ constexpr int most_rows = 8;
 constexpr double finest_stencil = 9;  // cells along a brick
 constexpr double finest_row = 64;
 constexpr double stencil_runs = 5;
-constexpr std::uint32_t stencil_fineness = 3;  // cells along x to one along y
-constexpr double stencil_cells_tested = 10;    // of the volume of a cube as wide as a cell along y
-constexpr double most_wide = 0.05;             // share of the objects that may be too wide for the stencil
-constexpr double cells_to_reach = 4;           // of a row, to the usual length of an object there
+constexpr std::uint32_t stencil_fineness = 3;            // cells along x to one along y
+constexpr double stencil_cells_tested[3] = {2.2, 3, 3};  // along each axis, as wide as one along y
+constexpr double most_wide = 0.05;    // share of the objects that may be too wide for the stencil
+constexpr double cells_to_reach = 4;  // of a row, to the usual length of an object there
 // An object's length in numbers may be larger than that in metres says, by rounding.
 constexpr double reach_slack = 0x1p-10;
 constexpr double edge_slack = 1e-9;        // of products of edges, by rounding
@@ -97,11 +97,9 @@ struct Summary {
     densest = std::max(density, present / volume * (most - 3 * std::sqrt(most)) * places / seen);
   }
 
-  double volume(double width) const {
-    double product = 1;
-    for (const double l : length) product *= std::min(l, width);
-    return product;
-  }
+  /// Of a brick of this width, along an axis (m).
+  double edge(int axis, double width) const { return std::min(length[axis], width); }
+  double volume(double width) const { return edge(0, width) * edge(1, width) * edge(2, width); }
   /// Width of bricks with this volume (m).
   double width_of(double wanted) const {
     double sides[3] = {length[0], length[1], length[2]};
@@ -120,7 +118,7 @@ struct Summary {
 
 struct Choice {
   BrickMethod method;
-  int rows;          ///< along y and z, of method rows
+  int rows;          ///< along y and z, of method rows; fewer where the brick is flat
   double reach;      ///< longest object in the cells of a stencil (m)
   double width = 0;  ///< of a brick (m)
   double cost = 0;   ///< of an object
@@ -129,6 +127,12 @@ struct Choice {
     return method == BrickMethod::stencil && octave.largest > reach;
   }
 };
+
+/// Of a brick, along y or z.
+int rows_along(const Summary& all, const Choice& choice, int axis) {
+  const double share = all.edge(axis, choice.width) / choice.width;
+  return std::max(1, static_cast<int>(std::lround(choice.rows * share)));
+}
 
 /// What a brick around the usual object has to do; expected values.
 struct Load {
@@ -139,13 +143,15 @@ struct Load {
   double reach = 0;          ///< along x, of an entry (m)
 
   Load(const Summary& all, const Choice& choice, double density) {
-    const double row = choice.width / choice.rows;
+    const double rows[3] = {1, static_cast<double>(rows_along(all, choice, 1)),
+                            static_cast<double>(rows_along(all, choice, 2))};
     const double in_volume = density * all.volume(choice.width);
     for (const Octave& octave : all.octaves) {
       const double n = in_volume * octave.share * all.copies(octave.size, choice.width);
       const double within = std::min(octave.size, choice.width);
-      const double rows = std::min(1 + within / row, static_cast<double>(choice.rows));
-      const double of_object = choice.method == BrickMethod::stencil ? 1 : rows * rows;
+      double of_object = 1;
+      for (int a = 1; a < 3 && choice.method == BrickMethod::rows; ++a)
+        of_object *= std::min(1 + within * rows[a] / all.edge(a, choice.width), rows[a]);
       objects += n;
       if (choice.has_wide(octave)) wide += n;
       entries += n * of_object;
@@ -173,11 +179,14 @@ double cost_of(const Summary& all, const Choice& choice) {
   double runs = 1;
   if (choice.method == BrickMethod::stencil) {
     const double cell = std::max(choice.reach, choice.width / finest_stencil);
-    tests = (load.entries - load.wide) / all.volume(choice.width) * std::pow(cell, 3) * stencil_cells_tested +
-            load.wide * wide_test_cost;
+    double share = 0.5;  // of the brick, in which the others are that are tested
+    for (int a = 0; a < 3; ++a)
+      share *= std::min(1.0, stencil_cells_tested[a] * cell / all.edge(a, choice.width));
+    tests = (load.entries - load.wide) * share + load.wide * wide_test_cost;
     runs = stencil_runs;
   } else {
-    tests = load.entries / (choice.rows * choice.rows * choice.width) * (1 + 1 / cells_to_reach) * load.reach;
+    tests = load.entries / (rows_along(all, choice, 1) * rows_along(all, choice, 2)) *
+            std::min(1.0, (1 + 1 / cells_to_reach) * load.reach / all.edge(0, choice.width));
   }
   const double cost = load.objects * object_cost + load.entries * (entry_cost + runs * run_cost + tests);
   return cost / (all.density * all.volume(choice.width));
@@ -232,14 +241,13 @@ BrickCells stencil_cells(const BrickPlan& plan) {
 BrickCells row_cells(const Summary& all, const Choice& choice) {
   const double reach = Load(all, choice, all.density).reach;
   BrickCells cells{};
-  for (int a = 0; a < 3; ++a) {
-    const double most =
-        std::min(finest_row, std::floor(most_cells(choice.method) / double(choice.rows * choice.rows)));
+  std::int32_t room = most_cells(choice.method);
+  for (const int a : {2, 1, 0}) {
+    const double fine = std::clamp(cells_to_reach * all.edge(0, choice.width) / reach, 1.0, finest_row);
     cells.first[a] = brick_points;
-    cells.count[a] =
-        a == 0 ? static_cast<std::int32_t>(std::clamp(cells_to_reach * choice.width / reach, 1.0, most))
-               : choice.rows;
+    cells.count[a] = a > 0 ? rows_along(all, choice, a) : std::min(static_cast<std::int32_t>(fine), room);
     cells.factor[a] = static_cast<std::uint32_t>(cells.count[a]) << (16 - brick_bits);
+    room /= cells.count[a];
   }
   return cells;
 }
