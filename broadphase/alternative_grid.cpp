@@ -132,28 +132,15 @@ struct GatherEntries {
 };
 
 /// Each object of a level against what follows it in its cell: others of the level, then those of finer ones.
-struct CellSearch {
+struct CellSearch : RunSearch {
   static constexpr const char* label = "broadphase.traverse.cells";
-  using Object = Boxed;
-  using Candidate = Boxed;
-  struct Item {
-    Boxed object;
-    Run run;
-  };
 
-  std::int64_t items;
   const std::uint64_t* key;
-  const Boxed* entry;
-  int parts = 1;
 
   SCREE_HD Item item(std::int64_t k) const {
-    if (LevelCells::is_finer(key[k])) return {entry[k], {}};
-    return {entry[k], {static_cast<std::uint32_t>(k) + 1, static_cast<std::uint32_t>(end_of_cell(k))}};
+    if (LevelCells::is_finer(key[k])) return {sorted[k], {}};
+    return {sorted[k], {static_cast<std::uint32_t>(k) + 1, static_cast<std::uint32_t>(end_of_cell(k))}};
   }
-  SCREE_HD Run run(const Item& item, int, int r) const { return r == 0 ? item.run : Run{}; }
-  SCREE_HD Boxed candidate(std::uint32_t k) const { return entry[k]; }
-  SCREE_HD bool meets(const Boxed& a, int, const Boxed& b) const { return may_collide(a, b); }
-  SCREE_HD Pair match(const Boxed& a, const Boxed& b) const { return pair_of(a.body(), b.body()); }
 
  private:
   /// In steps that double: the end is near, but for the cells of giants.
@@ -198,7 +185,7 @@ class AlternativeGrid final : public BroadPhase<Space> {
     parallel::for_each<Space>(
         "broadphase.construct.gather", key_.size(),
         GatherEntries{cells, bounds, mobility, key_.view(), body_.view(), entry_.view()});
-    return pairs_.collect(stats_, CellSearch{key_.size(), key_.data(), entry_.data()});
+    return pairs_.collect(stats_, CellSearch{{key_.size(), entry_.data()}, key_.data()});
   }
   const BroadPhaseStats& stats() const override { return stats_; }
 

@@ -61,8 +61,7 @@ struct Summary {
     double seen = 0;
     for (const std::uint32_t n : sample.sizes) seen += n;
     largest = std::bit_cast<float>(sample.largest);
-    present = static_cast<double>(objects) * seen /
-              static_cast<double>(std::min<std::int64_t>(objects, BrickSample::most));
+    present = static_cast<double>(objects) * seen / static_cast<double>(BrickSample::looked_at(objects));
     for (int bin = 0; bin < BrickSample::size_bins; bin += classes_per_octave) {
       double count = 0;
       Octave octave{};

@@ -23,11 +23,11 @@ struct BrickSample {
   std::uint32_t sizes[size_bins];
   std::uint32_t places[width * width * width];  ///< of centres, from lo to hi
 
-  /// Which of `count` objects the sample looks at, for 0 <= k < min(count, most): the middle of each of as
+  SCREE_HD static constexpr std::int64_t looked_at(std::int64_t count) { return count < most ? count : most; }
+  /// Which of `count` objects the sample looks at, for 0 <= k < looked_at(count): the middle of each of as
   /// many stretches. Not the first, which often is a floor and like no other.
-  SCREE_HD static std::int64_t object(std::int64_t k, std::int64_t count) {
-    const std::int64_t looked_at = count < most ? count : most;
-    return (2 * k + 1) * count / (2 * looked_at);
+  SCREE_HD static constexpr std::int64_t object(std::int64_t k, std::int64_t count) {
+    return (2 * k + 1) * count / (2 * looked_at(count));
   }
 };
 
@@ -59,7 +59,7 @@ struct BrickPlan {
   BrickCells cells;
   /// Numbers. Of a stencil: what is wider is tested against all in its bricks.
   std::int32_t reach[3];
-  // Where there are many bricks they are filled in two steps: first buckets of bricks, which are cubes.
+  // Bricks are filled in two steps: first buckets of bricks, which are cubes.
   std::int32_t bucket_width;  ///< bricks along each of its edges
   std::int32_t buckets[3];
 

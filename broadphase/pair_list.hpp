@@ -45,6 +45,25 @@ SCREE_HD inline bool may_collide(const Boxed& a, const Boxed& b) {
   return overlap(a.box(), b.box()) & ((a.hi.tag & b.hi.tag) == 0);
 }
 
+/// A search among objects in some order, each against one run of them, which item() finds.
+struct RunSearch {
+  using Object = Boxed;
+  using Candidate = Boxed;
+  struct Item {
+    Boxed object;
+    Run run;
+  };
+
+  std::int64_t items;
+  const Boxed* sorted;
+  int parts = 1;
+
+  SCREE_HD Run run(const Item& item, int, int r) const { return r == 0 ? item.run : Run{}; }
+  SCREE_HD Boxed candidate(std::uint32_t k) const { return sorted[k]; }
+  SCREE_HD bool meets(const Boxed& a, int, const Boxed& b) const { return may_collide(a, b); }
+  SCREE_HD Pair match(const Boxed& a, const Boxed& b) const { return pair_of(a.body(), b.body()); }
+};
+
 template <class Space>
 class PairList {
  public:

@@ -78,29 +78,16 @@ struct GatherBoxed {
 };
 
 /// Each object against those that begin with it or after it, and not after its end.
-struct SweepSearch {
+struct SweepSearch : RunSearch {
   static constexpr const char* label = "broadphase.sweep_and_prune.search";
-  using Object = Boxed;
-  using Candidate = Boxed;
-  struct Item {
-    Boxed object;
-    Run run;
-  };
 
-  std::int64_t items;
   int axis;
   const std::uint32_t* key;
-  const Boxed* sorted;
-  int parts = 1;
 
   SCREE_HD Item item(std::int64_t k) const {
     const std::int64_t end = first_not_under(key, k, items, ordered_bits(sorted[k].hi.at[axis]) + 1);
     return {sorted[k], {static_cast<std::uint32_t>(k) + 1, static_cast<std::uint32_t>(end)}};
   }
-  SCREE_HD Run run(const Item& item, int, int r) const { return r == 0 ? item.run : Run{}; }
-  SCREE_HD Boxed candidate(std::uint32_t k) const { return sorted[k]; }
-  SCREE_HD bool meets(const Boxed& a, int, const Boxed& b) const { return may_collide(a, b); }
-  SCREE_HD Pair match(const Boxed& a, const Boxed& b) const { return pair_of(a.body(), b.body()); }
 };
 
 template <class Space>
@@ -119,7 +106,7 @@ class SweepAndPrune final : public BroadPhase<Space> {
     parallel::sort_by_key("broadphase.sweep_and_prune.sort", key_, body_);
     parallel::for_each<Space>("broadphase.sweep_and_prune.gather", sorted_.size(),
                               GatherBoxed{bounds, mobility, body_.view(), sorted_.view()});
-    return pairs_.collect(stats_, SweepSearch{sorted_.size(), axis, key_.data(), sorted_.data()});
+    return pairs_.collect(stats_, SweepSearch{{sorted_.size(), sorted_.data()}, axis, key_.data()});
   }
   const BroadPhaseStats& stats() const override { return stats_; }
 

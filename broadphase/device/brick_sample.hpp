@@ -17,9 +17,8 @@ struct Sampled {
   /// Calls f(box) for those of the sample that are this thread's.
   template <class F>
   __device__ void for_each(const F& f) const {
-    const std::int64_t looked_at = count < BrickSample::most ? count : BrickSample::most;
-    for (std::int64_t k = std::int64_t{blockIdx.x} * sample_threads + threadIdx.x; k < looked_at;
-         k += sample_blocks * sample_threads) {
+    for (std::int64_t k = std::int64_t{blockIdx.x} * sample_threads + threadIdx.x;
+         k < BrickSample::looked_at(count); k += sample_blocks * sample_threads) {
       const Aabb box = bounds[BrickSample::object(k, count)];
       if (is_proper(box)) f(box);
     }

@@ -31,7 +31,7 @@ struct BrickInput {
   std::int64_t count;
 };
 
-/// What is common to all ways into the bricks.
+/// The bricks, and what is known of them while they are filled and searched.
 struct BrickStore {
   BrickPlan plan;
   BrickState* state;
