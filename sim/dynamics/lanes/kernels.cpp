@@ -1,6 +1,7 @@
 // Compiled once for each instruction set; SCREE_LANES names it. It calls nothing that other sources share, so
 // that no function of theirs is compiled for more than the program may use.
 #include "sim/dynamics/lanes/lanes.hpp"
+#include "sim/dynamics/lanes/laws.hpp"
 
 #include <cstddef>
 
@@ -10,29 +11,23 @@ namespace {
 
 using V [[gnu::vector_size(sizeof(Lane)), gnu::may_alias]] = double;
 
-struct V3 {
-  V x, y, z;
-
-  friend V3 operator+(const V3& a, const V3& b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
-  friend V3 operator-(const V3& a, const V3& b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
-  friend V3 operator*(const V& s, const V3& a) { return {s * a.x, s * a.y, s * a.z}; }
+struct Lanes {
+  using V = scree::lanes::SCREE_LANES::V;
+  static V root(const V& a) {
+    V r = a;
+    for (int l = 0; l < width; ++l) r[l] = __builtin_sqrt(a[l]);
+    return r;
+  }
 };
+using V3 = lanes::V3<Lanes>;
+using Bodies = lanes::Moving<Lanes>;  // one of each contact
+using Centres = lanes::Centre<Lanes>;
+using Symmetric = lanes::Symmetric<Lanes>;
+using Balls = lanes::Balls<Lanes>;
+using Point = lanes::Point<Lanes>;
+using PointLaw = lanes::PointLaw<Lanes>;
 
-V dot(const V3& a, const V3& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
-V3 cross(const V3& a, const V3& b) {
-  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
-}
 V all(double value) { return value - V{}; }
-V above_zero(const V& a) { return a > 0 ? a : all(0); }
-V root(const V& a) {
-  V r = a;
-  for (int l = 0; l < width; ++l) r[l] = __builtin_sqrt(a[l]);
-  return r;
-}
-template <class Condition>
-V3 where(const Condition& yes, const V3& a, const V3& b) {
-  return {yes ? a.x : b.x, yes ? a.y : b.y, yes ? a.z : b.z};
-}
 
 V get(const Lane& lane) { return *reinterpret_cast<const V*>(lane.at); }
 void set(Lane& lane, const V& value) { *reinterpret_cast<V*>(lane.at) = value; }
@@ -43,13 +38,16 @@ void set(LaneVec& lanes, const V3& value) {
   set(lanes.z, value.z);
 }
 
-/// Symmetric matrices: xx, yy, zz, xy, xz, yz.
-[[gnu::always_inline]] inline V3 times(const Lane* m, const V3& a) {
-  const V xy = get(m[3]);
-  const V xz = get(m[4]);
-  const V yz = get(m[5]);
-  return {get(m[0]) * a.x + xy * a.y + xz * a.z, xy * a.x + get(m[1]) * a.y + yz * a.z,
-          xz * a.x + yz * a.y + get(m[2]) * a.z};
+Symmetric get(const Lane (&m)[6]) {
+  return {get(m[0]), get(m[1]), get(m[2]), get(m[3]), get(m[4]), get(m[5])};
+}
+Balls get(const BallBatch& batch) {
+  return {get(batch.normal), get(batch.arm_i),       get(batch.arm_j),       get(batch.friction),
+          get(batch.target), get(batch.normal_mass), get(batch.tangent_mass)};
+}
+Point point_of(const PointRow& row) { return {get(row.arm_i), get(row.arm_j)}; }
+PointLaw law_of(const PointRow& row) {
+  return {get(row.stick), get(row.coupling), get(row.target), get(row.normal_mass), get(row.tangent_mass)};
 }
 
 /// Squares of `size` numbers, side by side, each turned about its diagonal: pairs, then fours, then halves
@@ -78,14 +76,6 @@ template <int size>
   }
 }
 
-/// One body of each contact: its numbers in the order of Body.
-struct Bodies {
-  V3 velocity;
-  V inverse_mass;
-  V3 spin;
-  V inverse_inertia;
-};
-
 static_assert(sizeof(Body) == sizeof(V) && offsetof(Body, inverse_mass) == 24 && offsetof(Body, spin) == 32);
 static_assert(sizeof(Bodies) == width * sizeof(V));
 V& whole(Body& body) { return reinterpret_cast<V&>(body); }
@@ -107,11 +97,7 @@ const V& whole(const Body& body) { return reinterpret_cast<const V&>(body); }
   }
 }
 
-/// Of each body the half that does not turn.
-struct Centres {
-  V3 velocity;
-  V inverse_mass;
-};
+/// Of a body what does not turn is half.
 constexpr int half = width / 2;
 using Half [[gnu::vector_size(sizeof(Lane) / 2), gnu::may_alias]] = double;
 Half& linear_half(Body& body) { return reinterpret_cast<Half&>(body); }
@@ -138,11 +124,6 @@ const Half& linear_half(const Body& body) { return reinterpret_cast<const Half&>
   }
 }
 
-[[gnu::always_inline]] inline void push(const V3& p, Centres& i, Centres& j) {
-  i.velocity = i.velocity - i.inverse_mass * p;
-  j.velocity = j.velocity + j.inverse_mass * p;
-}
-
 /// Goes on by beta of what the last sweep has changed.
 [[gnu::always_inline]] inline V3 accelerate(LaneImpulse& lanes, const V& beta) {
   const V3 p = get(lanes.impulse);
@@ -161,29 +142,6 @@ Change total(const V& step, const V& size) {
   return change;
 }
 
-[[gnu::always_inline]] inline V3 on_disc(const V& pn, const V3& pt, const V3& n, const V& friction) {
-  const V radius = friction * pn;
-  const V square = dot(pt, pt);
-  return pn * n + where(square <= radius * radius, pt, (radius / root(square)) * pt);
-}
-
-[[gnu::always_inline]] inline void push_ball(const BallBatch& batch, const V3& n, const V3& p, Bodies& i,
-                                             Bodies& j) {
-  i.velocity = i.velocity - i.inverse_mass * p;
-  j.velocity = j.velocity + j.inverse_mass * p;
-  const V3 turn = where(get(batch.friction) > 0, cross(n, p), V3{});  // no rounding turns smooth balls
-  i.spin = i.spin - (i.inverse_inertia * get(batch.arm_i)) * turn;
-  j.spin = j.spin + (j.inverse_inertia * get(batch.arm_j)) * turn;
-}
-
-[[gnu::always_inline]] inline void push_point(const PointBatch& batch, const PointRow& row, const V3& p,
-                                              Bodies& i, Bodies& j) {
-  i.velocity = i.velocity - i.inverse_mass * p;
-  j.velocity = j.velocity + j.inverse_mass * p;
-  i.spin = i.spin - times(batch.inertia_i, cross(get(row.arm_i), p));
-  j.spin = j.spin + times(batch.inertia_j, cross(get(row.arm_j), p));
-}
-
 /// Sets the impulses p; what that changes.
 [[gnu::always_inline]] inline Change keep(BallBatch& batch, const V3& p, const V3& last) {
   const V3 change = p - last;
@@ -195,16 +153,10 @@ Change total(const V& step, const V& size) {
 Change sweep_balls(BallBatch& batch, Body* bodies, double beta) {
   Bodies i = load(bodies, batch.ends.i);
   Bodies j = load(bodies, batch.ends.j);
-  const V3 n = get(batch.normal);
-  const V normal_mass = get(batch.normal_mass);
+  const Balls balls = get(batch);
   const V3 last = accelerate(batch.impulse, all(beta));
-  const V3 u = j.velocity - i.velocity + cross(get(batch.arm_j) * j.spin - get(batch.arm_i) * i.spin, n);
-  const V pn_old = dot(last, n);
-  const V un = dot(u, n);
-  const V pn = above_zero(pn_old - (un - get(batch.target)) * normal_mass);
-  const V3 pt = last - pn_old * n - get(batch.tangent_mass) * (u - un * n);
-  const V3 p = on_disc(pn, pt, n, get(batch.friction));
-  push_ball(batch, n, p - last, i, j);
+  const V3 p = impulse_of(balls, last, i, j);
+  push(balls, p - last, i, j);
   store(i, bodies, batch.ends.i);
   store(j, bodies, batch.ends.j);
   return keep(batch, p, last);
@@ -215,31 +167,12 @@ Change sweep_smooth_balls(BallBatch& batch, Body* bodies, double beta) {
   Centres j = load_centres(bodies, batch.ends.j);
   const V3 n = get(batch.normal);
   const V3 last = accelerate(batch.impulse, all(beta));
-  const V un = dot(j.velocity - i.velocity, n);
-  const V3 p = above_zero(dot(last, n) - (un - get(batch.target)) * get(batch.normal_mass)) * n;
-  push(p - last, i, j);
+  const V3 p =
+      smooth_impulse_of(n, get(batch.target), get(batch.normal_mass), last, dot(j.velocity - i.velocity, n));
+  push_centres(p - last, i, j);
   store(i, bodies, batch.ends.i);
   store(j, bodies, batch.ends.j);
   return keep(batch, p, last);
-}
-
-/// coulomb_update(), given the relative velocity u.
-template <bool rough>
-[[gnu::always_inline]] inline V3 update(const PointRow& row, const V3& n, const V& friction, const V3& p,
-                                        const V3& u) {
-  const V target = get(row.target);
-  if constexpr (!rough) return above_zero(dot(p, n) - (dot(u, n) - target) * get(row.normal_mass)) * n;
-  const V3 sticking = p - times(row.stick, u - target * n);
-  const V pn_sticking = dot(sticking, n);
-  const V3 pt_sticking = sticking - pn_sticking * n;
-  const V radius = friction * pn_sticking;
-  const auto sticks =
-      (friction > 0) & (pn_sticking >= 0) & (dot(pt_sticking, pt_sticking) <= radius * radius);
-  const V pn_old = dot(p, n);
-  const V pn = above_zero(pn_old - (dot(u, n) - target) * get(row.normal_mass));
-  const V3 v = u + (pn - pn_old) * get(row.coupling);
-  const V3 pt = p - pn_old * n - get(row.tangent_mass) * (v - dot(v, n) * n);
-  return where(sticks, sticking, on_disc(pn, pt, n, friction));
 }
 
 template <bool rough>
@@ -257,11 +190,17 @@ Change sweep_points(const PointBatch& batch, PointRow* rows, Body* bodies, doubl
   for (int sweep = 0; sweep < sweeps; ++sweep) {
     for (int k = 0; k < batch.count; ++k) {
       PointRow& row = rows[k];
-      const V3 u = j.velocity + cross(j.spin, get(row.arm_j)) - i.velocity - cross(i.spin, get(row.arm_i));
+      const Point at = point_of(row);
+      const V3 u = velocity_at(at, i, j);
       const V3 old = get(row.impulse.impulse);
-      const V3 p = update<rough>(row, n, friction, old, u);
+      V3 p;
+      if constexpr (rough) {
+        p = impulse_of(law_of(row), n, friction, old, u);
+      } else {
+        p = smooth_impulse_of(n, get(row.target), get(row.normal_mass), old, dot(u, n));
+      }
       set(row.impulse.impulse, p);
-      push_point(batch, row, p - old, i, j);
+      push(get(batch.inertia_i), get(batch.inertia_j), at, p - old, i, j);
     }
   }
   store(i, bodies, batch.ends.i);
@@ -288,7 +227,7 @@ void accelerate(Body& body, Body& last, double beta) {
 void push_balls(const BallBatch& batch, Body* bodies) {
   Bodies i = load(bodies, batch.ends.i);
   Bodies j = load(bodies, batch.ends.j);
-  push_ball(batch, get(batch.normal), get(batch.impulse.impulse), i, j);
+  push(get(batch), get(batch.impulse.impulse), i, j);
   store(i, bodies, batch.ends.i);
   store(j, bodies, batch.ends.j);
 }
@@ -296,24 +235,25 @@ void push_balls(const BallBatch& batch, Body* bodies) {
 void push_points(const PointBatch& batch, const PointRow* rows, Body* bodies) {
   Bodies i = load(bodies, batch.ends.i);
   Bodies j = load(bodies, batch.ends.j);
-  for (int k = 0; k < batch.count; ++k) push_point(batch, rows[k], get(rows[k].impulse.impulse), i, j);
+  for (int k = 0; k < batch.count; ++k) {
+    push(get(batch.inertia_i), get(batch.inertia_j), point_of(rows[k]), get(rows[k].impulse.impulse), i, j);
+  }
   store(i, bodies, batch.ends.i);
   store(j, bodies, batch.ends.j);
 }
 
-/// What more a point pushes that has pushed so much (kg m), to close in on a gap of 0 by a share. Where
-/// others have opened the gap since, it takes back what it did: so bodies part as little as they must.
-V parting(const V& gap, const V& cap, double share, const V& normal_mass, Lane& pushed) {
-  const V part = -share * gap;
-  const V before = get(pushed);
-  const V after = above_zero(before + (part < cap ? part : cap) * normal_mass);
-  set(pushed, after);
-  return after - before;
+/// As lanes::parting().
+[[gnu::always_inline]] inline V part(const V& gap, const Lane& cap, double share, const Lane& normal_mass,
+                                     Lane& pushed) {
+  V so_far = get(pushed);
+  const V more = parting<Lanes>(gap, get(cap), all(share), get(normal_mass), so_far);
+  set(pushed, so_far);
+  return more;
 }
 
 /// The deepest overlap of the lanes, in units of the cap.
 double deepest(const V& gap, const V& cap) {
-  const V depth = above_zero(cap > 0 ? -gap / cap : all(0));
+  const V depth = above_zero<Lanes>(cap > 0 ? -gap / cap : all(0));
   double deepest = 0;
   for (int l = 0; l < width; ++l) deepest = depth[l] > deepest ? depth[l] : deepest;
   return deepest;
@@ -324,7 +264,7 @@ double part_balls(BallParting& batch, double share, Body* bodies) {
   Centres j = load_centres(bodies, batch.ends.j);
   const V3 n = get(batch.normal);
   const V gap = get(batch.flown) + dot(n, j.velocity - i.velocity);
-  push(parting(gap, get(batch.cap), share, get(batch.normal_mass), batch.pushed) * n, i, j);
+  push_centres(part(gap, batch.cap, share, batch.normal_mass, batch.pushed) * n, i, j);
   store(i, bodies, batch.ends.i);
   store(j, bodies, batch.ends.j);
   return deepest(gap, get(batch.cap));
@@ -337,10 +277,10 @@ double part_points(const PointBatch& batch, const PointRow* rows, PointParting* 
   const V3 n = get(batch.normal);
   V least = all(0);
   for (int k = 0; k < batch.count; ++k) {
-    const PointRow& row = rows[k];
-    const V3 moved = j.velocity + cross(j.spin, get(row.arm_j)) - i.velocity - cross(i.spin, get(row.arm_i));
-    const V gap = get(points[k].flown) + dot(n, moved);
-    push_point(batch, row, parting(gap, get(cap), share, get(row.normal_mass), points[k].pushed) * n, i, j);
+    const Point at = point_of(rows[k]);
+    const V gap = get(points[k].flown) + dot(n, velocity_at(at, i, j));
+    push(get(batch.inertia_i), get(batch.inertia_j), at,
+         part(gap, cap, share, rows[k].normal_mass, points[k].pushed) * n, i, j);
     least = gap < least ? gap : least;
   }
   store(i, bodies, batch.ends.i);

@@ -1,0 +1,176 @@
+// What one visit to a contact does, for one contact or for several side by side. No function here knows how
+// contacts and bodies lie in memory.
+//
+// A: an arithmetic. A::V is a number, or one of each contact; A::root(V) its square roots. Everything here is
+// a template on it, so that code for different instruction sets shares no function.
+#pragma once
+
+#include "core/space.hpp"
+
+#define SCREE_LAW [[gnu::always_inline]] SCREE_HD inline
+
+namespace scree::lanes {
+
+template <class A>
+struct V3 {
+  using V = typename A::V;
+  V x, y, z;
+
+  SCREE_LAW friend V3 operator+(const V3& a, const V3& b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
+  SCREE_LAW friend V3 operator-(const V3& a, const V3& b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
+  SCREE_LAW friend V3 operator*(const V& s, const V3& a) { return {s * a.x, s * a.y, s * a.z}; }
+  SCREE_LAW friend V dot(const V3& a, const V3& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+  SCREE_LAW friend V3 cross(const V3& a, const V3& b) {
+    return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+  }
+};
+
+template <class A, class Condition>
+SCREE_LAW V3<A> where(const Condition& yes, const V3<A>& a, const V3<A>& b) {
+  return {yes ? a.x : b.x, yes ? a.y : b.y, yes ? a.z : b.z};
+}
+
+template <class A>
+SCREE_LAW typename A::V above_zero(const typename A::V& a) {
+  return a > 0 ? a : typename A::V{};
+}
+
+/// A symmetric matrix.
+template <class A>
+struct Symmetric {
+  typename A::V xx, yy, zz, xy, xz, yz;
+
+  SCREE_LAW friend V3<A> operator*(const Symmetric& m, const V3<A>& a) {
+    return {m.xx * a.x + m.xy * a.y + m.xz * a.z, m.xy * a.x + m.yy * a.y + m.yz * a.z,
+            m.xz * a.x + m.yz * a.y + m.zz * a.z};
+  }
+};
+
+/// A body's centre: its velocity, or in the position correction its displacement.
+template <class A>
+struct Centre {
+  V3<A> velocity;
+  typename A::V inverse_mass;  ///< 0: not free
+};
+
+/// A body: its velocities, or displacement and turn.
+template <class A>
+struct Moving {
+  V3<A> velocity;
+  typename A::V inverse_mass;
+  V3<A> spin;
+  typename A::V inverse_inertia;  ///< of a ball
+};
+
+/// A contact of balls with balls, or with bodies that are not free and do not turn: of the lever arms only
+/// what is along the normal matters.
+template <class A>
+struct Balls {
+  V3<A> normal;
+  typename A::V arm_i, arm_j;  ///< along the normal (m)
+  typename A::V friction, target, normal_mass, tangent_mass;
+};
+
+/// A point of a contact of any bodies.
+template <class A>
+struct Point {
+  V3<A> arm_i, arm_j;
+};
+template <class A>
+struct PointLaw {
+  Symmetric<A> stick;  ///< of RowCoupling
+  V3<A> coupling;      ///< RowCoupling::normal
+  typename A::V target, normal_mass, tangent_mass;
+};
+
+/// Impulse in Coulomb's cone: its normal part, and the tangential part cut to the disc.
+template <class A>
+SCREE_LAW V3<A> on_disc(const typename A::V& pn, const V3<A>& pt, const V3<A>& n,
+                        const typename A::V& friction) {
+  const typename A::V radius = friction * pn;
+  const typename A::V square = dot(pt, pt);
+  return pn * n + where(square <= radius * radius, pt, (radius / A::root(square)) * pt);
+}
+
+/// Body is Centre or Moving.
+template <class A, class Body>
+SCREE_LAW void push_centres(const V3<A>& p, Body& i, Body& j) {
+  i.velocity = i.velocity - i.inverse_mass * p;
+  j.velocity = j.velocity + j.inverse_mass * p;
+}
+
+template <class A>
+SCREE_LAW void push(const Balls<A>& c, const V3<A>& p, Moving<A>& i, Moving<A>& j) {
+  push_centres(p, i, j);
+  const V3<A> turn = where(c.friction > 0, cross(c.normal, p), V3<A>{});  // no rounding turns smooth balls
+  i.spin = i.spin - (i.inverse_inertia * c.arm_i) * turn;
+  j.spin = j.spin + (j.inverse_inertia * c.arm_j) * turn;
+}
+
+template <class A>
+SCREE_LAW void push(const Symmetric<A>& inertia_i, const Symmetric<A>& inertia_j, const Point<A>& at,
+                    const V3<A>& p, Moving<A>& i, Moving<A>& j) {
+  push_centres(p, i, j);
+  i.spin = i.spin - inertia_i * cross(at.arm_i, p);
+  j.spin = j.spin + inertia_j * cross(at.arm_j, p);
+}
+
+/// natural_map() of a contact that carries `last`; for balls it is the exact local solution.
+template <class A>
+SCREE_LAW V3<A> impulse_of(const Balls<A>& c, const V3<A>& last, const Moving<A>& i, const Moving<A>& j) {
+  using V = typename A::V;
+  const V3<A>& n = c.normal;
+  const V3<A> u = j.velocity - i.velocity + cross(c.arm_j * j.spin - c.arm_i * i.spin, n);
+  const V un = dot(u, n);
+  const V pn_old = dot(last, n);
+  const V pn = above_zero<A>(pn_old - (un - c.target) * c.normal_mass);
+  const V3<A> pt = last - pn_old * n - c.tangent_mass * (u - un * n);
+  return on_disc(pn, pt, n, c.friction);
+}
+
+/// The same without friction.
+template <class A>
+SCREE_LAW V3<A> smooth_impulse_of(const V3<A>& n, const typename A::V& target,
+                                  const typename A::V& normal_mass, const V3<A>& last,
+                                  const typename A::V& un) {
+  return above_zero<A>(dot(last, n) - (un - target) * normal_mass) * n;
+}
+
+template <class A>
+SCREE_LAW V3<A> velocity_at(const Point<A>& at, const Moving<A>& i, const Moving<A>& j) {
+  return j.velocity + cross(j.spin, at.arm_j) - i.velocity - cross(i.spin, at.arm_i);
+}
+
+/// coulomb_update() of a point that carries p, given its relative velocity u.
+template <class A>
+SCREE_LAW V3<A> impulse_of(const PointLaw<A>& law, const V3<A>& n, const typename A::V& friction,
+                           const V3<A>& p, const V3<A>& u) {
+  using V = typename A::V;
+  const V3<A> sticking = p - law.stick * (u - law.target * n);
+  const V pn_sticking = dot(sticking, n);
+  const V3<A> pt_sticking = sticking - pn_sticking * n;
+  const V radius = friction * pn_sticking;
+  const auto sticks =
+      (friction > 0) & (pn_sticking >= 0) & (dot(pt_sticking, pt_sticking) <= radius * radius);
+  const V pn_old = dot(p, n);
+  const V pn = above_zero<A>(pn_old - (dot(u, n) - law.target) * law.normal_mass);
+  const V3<A> v = u + (pn - pn_old) * law.coupling;
+  const V3<A> pt = p - pn_old * n - law.tangent_mass * (v - dot(v, n) * n);
+  return where(sticks, sticking, on_disc(pn, pt, n, friction));
+}
+
+/// What more a point pushes that has pushed so much (kg m), to close in on a gap of 0 by a share. Where
+/// others have opened the gap since, it takes back what it did: so bodies part as little as they must.
+/// `pushed` becomes what it has pushed then.
+template <class A>
+SCREE_LAW typename A::V parting(const typename A::V& gap, const typename A::V& cap,
+                                const typename A::V& share, const typename A::V& normal_mass,
+                                typename A::V& pushed) {
+  using V = typename A::V;
+  const V part = -share * gap;
+  const V before = pushed;
+  pushed = above_zero<A>(before + (part < cap ? part : cap) * normal_mass);
+  return pushed - before;
+}
+
+}  // namespace scree::lanes
