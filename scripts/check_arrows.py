@@ -29,6 +29,7 @@ ARROWS = {
     "sim/measurement.": ["core/", "narrowphase/contact.hpp", "sim/dynamics/", "sim/observation.hpp",
                          "sim/measurement.hpp"],
     "sim/dynamics/": ["core/", "narrowphase/", "sim/observation.hpp", "sim/scene/scene.hpp", "sim/dynamics/"],
+    "sim/resident/": ["core/", "broadphase/", "narrowphase/", "sim/dynamics/", "sim/observation.hpp", "sim/resident/"],
     "sim/record/": ["core/", "sim/model.hpp", "sim/observation.hpp", "sim/scene/", "sim/simulation.hpp", "sim/record/"],
     "sim/simulation.hpp": ["core/", "sim/inspection.hpp", "sim/observation.hpp", "sim/scene/"],
     "sim/moving_state.hpp": ["core/"],
@@ -51,7 +52,7 @@ LIBRARIES = {
     "CLI11": r"CLI/", "Boost": r"boost/", "nlohmann-json": r"nlohmann/", "xxHash": r"xxhash\.h",
 }
 THRUST_HEADERS = ["core/parallel.hpp", "core/space_matches.hpp", "core/space_matches_device.hpp", "core/space_matches_host.hpp",
-                  "core/space_policy.hpp", "core/space_warp.hpp"]
+                  "core/space_policy.hpp", "core/space_warp.hpp", "core/space_tiles.hpp"]
 THRUST = re.compile(r"(thrust|cub|cuda)/")
 
 INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]', re.M)

@@ -47,6 +47,23 @@ struct PairLaw {
   double friction;
 };
 
+/// So many points that solving them to the end in every substep is not worth what it costs: what is left is
+/// for the next ones, which start from there.
+SCREE_HD inline bool is_heap(std::int64_t points) {
+  constexpr std::int64_t fewest = 2500;
+  return points >= fewest;
+}
+/// Whether contacts have several points, among which the load moves slowly.
+SCREE_HD inline bool shares_loads(std::int64_t contacts, std::int64_t points) { return points > contacts; }
+
+struct ContactCounts {
+  std::int64_t contacts = 0;
+  std::int64_t points = 0;  ///< of theirs
+  SCREE_HD friend ContactCounts operator+(const ContactCounts& a, const ContactCounts& b) {
+    return {a.contacts + b.contacts, a.points + b.points};
+  }
+};
+
 /// What the response works on.
 struct ContactSet {
   Coloring coloring;
@@ -55,14 +72,8 @@ struct ContactSet {
   Array<RowCoupling, Host> couplings;  ///< of the rows; not set for those of balls
   lanes::Batches batches;              ///< the same for the kernels, colour by colour
 
-  /// So many points that solving them to the end in every substep is not worth what it costs: what is left is
-  /// for the next ones, which start from there.
-  bool is_heap() const {
-    constexpr std::int64_t fewest = 2500;
-    return rows.size() >= fewest;
-  }
-  /// Whether contacts have several points, among which the load moves slowly.
-  bool shares_loads() const { return rows.size() > contacts.size(); }
+  bool is_heap() const { return scree::is_heap(rows.size()); }
+  bool shares_loads() const { return scree::shares_loads(contacts.size(), rows.size()); }
   /// All that a contact's rows gave to its body j in the last substep (N s).
   Vec3 impulse_of(const Contact& contact) const {
     Vec3 impulse = Vec3::Zero();
