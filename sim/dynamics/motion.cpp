@@ -126,13 +126,17 @@ struct Speed {
   }
 };
 
+SCREE_HD bool is_finite(const Vec3& v) {
+  return fabs(v.x()) < HUGE_VAL && fabs(v.y()) < HUGE_VAL && fabs(v.z()) < HUGE_VAL;
+}
+
 /// The id of a body whose state is no longer finite; `none` for the others.
 struct NonFinite {
   static constexpr std::int32_t none = std::numeric_limits<std::int32_t>::max();
   ConstBodyView bodies;
   SCREE_HD std::int32_t operator()(std::int64_t k) const {
     const bool finite =
-        bodies.position[k].allFinite() && bodies.velocity[k].allFinite() && bodies.spin[k].allFinite();
+        is_finite(bodies.position[k]) && is_finite(bodies.velocity[k]) && is_finite(bodies.spin[k]);
     return finite ? none : bodies.id[k];
   }
 };
