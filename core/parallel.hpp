@@ -134,6 +134,12 @@ T max(const char* label, std::int64_t n, F f, T lowest) {
   return reduce<T, Space>(label, n, f, lowest, thrust::maximum<T>());
 }
 
+/// Smallest f(i), and `highest` for n = 0. Exact, whatever the grouping.
+template <class T, class Space, class F>
+T min(const char* label, std::int64_t n, F f, T highest) {
+  return reduce<T, Space>(label, n, f, highest, thrust::minimum<T>());
+}
+
 /// counts[b] = number of i, 0 <= i < n, with f(i) = b, for 0 <= b < bins; other values are not counted. f
 /// gives int; bins <= 256 is fastest.
 template <class Space, class F>

@@ -4,6 +4,8 @@
 #include "core/tolerances.hpp"
 #include "sim/dynamics/rotation.hpp"
 
+#include <limits>
+
 namespace scree {
 
 namespace {
@@ -124,6 +126,21 @@ struct Speed {
   }
 };
 
+SCREE_HD bool is_finite(const Vec3& v) {
+  return fabs(v.x()) < HUGE_VAL && fabs(v.y()) < HUGE_VAL && fabs(v.z()) < HUGE_VAL;
+}
+
+/// The id of a body whose state is no longer finite; `none` for the others.
+struct NonFinite {
+  static constexpr std::int32_t none = std::numeric_limits<std::int32_t>::max();
+  ConstBodyView bodies;
+  SCREE_HD std::int32_t operator()(std::int64_t k) const {
+    const bool finite =
+        is_finite(bodies.position[k]) && is_finite(bodies.velocity[k]) && is_finite(bodies.spin[k]);
+    return finite ? none : bodies.id[k];
+  }
+};
+
 }  // namespace
 
 double advance(Bodies<Host>& bodies, double dt, const ResponseParameters& parameters) {
@@ -183,6 +200,12 @@ Totals totals_of(const Bodies<Host>& bodies, const Vec3& gravity, const Vec3& re
 
 double largest_speed(const Bodies<Host>& bodies) {
   return parallel::max<double, Host>("motion.speed", bodies.count(), Speed{view_of(bodies)}, 0.0);
+}
+
+std::int32_t first_non_finite(const Bodies<Host>& bodies) {
+  const std::int32_t first = parallel::min<std::int32_t, Host>("motion.finite", bodies.count(),
+                                                               NonFinite{view_of(bodies)}, NonFinite::none);
+  return first == NonFinite::none ? -1 : first;
 }
 
 }  // namespace scree

@@ -95,5 +95,7 @@ SCREE_HD inline Totals totals_of_body(const ConstBodyView& bodies, std::int64_t 
 
 Totals totals_of(const Bodies<Host>& bodies, const Vec3& gravity, const Vec3& reference);
 double largest_speed(const Bodies<Host>& bodies);
+/// The smallest id of a body whose state is no longer finite; -1 if there is none.
+std::int32_t first_non_finite(const Bodies<Host>& bodies);
 
 }  // namespace scree
