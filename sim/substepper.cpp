@@ -218,11 +218,8 @@ ConstView<Pair> Substepper::pairs_now() {
 
 ImpactProblem Substepper::impact_problem(ConstView<Pair> pairs, double h, double from) const {
   return {.pairs = pairs,
-          .laws = contact_laws(),
           .memory = memory_,
-          .step = h,
-          .from = from,
-          .bounces = from == 0};
+          .terms = {.laws = contact_laws(), .step = h, .from = from, .bounces = from == 0}};
 }
 
 ContactLaws Substepper::contact_laws() const {

@@ -2,31 +2,12 @@
 
 #include "core/parallel.hpp"
 
-#include <algorithm>
-#include <utility>
-
 namespace scree {
-
-ConstView<ImpulseMemory::Entry> ImpulseMemory::entries_of(std::int32_t i, std::int32_t j,
-                                                          std::int32_t part) const {
-  if (begin_.empty()) return {};
-  const auto place = [](const Entry& entry) { return std::pair(entry.j, entry.part); };
-  // A floor may have as many entries as there are bodies.
-  const auto range =
-      std::ranges::equal_range(entries_.data() + begin_.view()[i], entries_.data() + begin_.view()[i + 1],
-                               std::pair(j, part), {}, place);
-  return {range.data(), static_cast<std::int64_t>(range.size())};
-}
-
-bool ImpulseMemory::is_loaded(std::int32_t i, std::int32_t j, std::int32_t part) const {
-  const ConstView<Entry> entries = entries_of(i, j, part);
-  return std::any_of(entries.begin(), entries.end(), [](const Entry& entry) { return entry.loaded; });
-}
 
 bool ImpulseMemory::recall(const ManifoldHeader& manifold, const ContactPoint* points, Vec3* impulses) const {
   for (int k = 0; k < manifold.count; ++k) impulses[k].setZero();
   bool loaded = false;
-  for (const Entry& entry : entries_of(manifold.i, manifold.j, manifold.part)) {
+  for (const Entry& entry : index().of(manifold.i, manifold.j, manifold.part)) {
     loaded = loaded || entry.loaded;
     for (int old = 0; old < entry.count; ++old) {
       const Point& point = points_.view()[entry.first_point + old];
