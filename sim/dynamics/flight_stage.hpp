@@ -53,6 +53,18 @@ struct FlightLog {
   }
 };
 
+/// What counts as an impact of two bodies.
+struct ImpactLimits {
+  double earliest;  ///< into the substep (s)
+  double left;      ///< from then to its end (s)
+  double slowest;   ///< approach that bounces (m/s)
+  double farthest;  ///< approach until the end that is shallow enough to be none (m)
+
+  SCREE_HD bool may_bounce(double speed) const { return speed > slowest; }
+  SCREE_HD bool may_go_deep(double speed) const { return speed * left > farthest; }
+  SCREE_HD bool may_count(double speed) const { return may_bounce(speed) || may_go_deep(speed); }
+};
+
 /// The bodies in flight, and what has become of them. Cheap to copy; the bodies and the log are the caller's.
 struct FlightStage {
   template <class Space>
@@ -146,31 +158,35 @@ struct FlightStage {
     return speed - terms.step * parameters.gravity.norm();
   }
 
+  /// Whether two bodies, of which one is free, may meet in an impact, told without a look at their shapes;
+  /// then sets what counts as one.
+  SCREE_HD bool may_meet(std::int32_t i, std::int32_t j, ImpactLimits& limits) const {
+    if (top_speed[i] + top_speed[j] <= harmless || are_far(i, j) || std::max(hits[i], hits[j]) >= most_hits)
+      return false;
+    limits.earliest = std::max(clock[i], clock[j]);
+    if (!(limits.earliest < terms.step)) return false;
+    limits.left = terms.step - limits.earliest;
+    limits.slowest = terms.bounces ? slowest_bounce(i, j) : HUGE_VAL;
+    limits.farthest =
+        parameters.continuous ? tolerance::deep_approach * terms.laws.smaller_size(i, j) : HUGE_VAL;
+    return limits.may_count(fastest(i, j));
+  }
+
   /// The next impact of two bodies, of which one is free. `loads` are those of the pair, as LoadedParts.
   template <class Loads>
   SCREE_HD Meeting next(std::int32_t i, std::int32_t j, const Loads& loads) const {
-    if (top_speed[i] + top_speed[j] <= harmless || are_far(i, j) || std::max(hits[i], hits[j]) >= most_hits)
-      return {};
-    const double earliest = std::max(clock[i], clock[j]);
-    if (!(earliest < terms.step)) return {};
-    const double farthest = tolerance::deep_approach * terms.laws.smaller_size(i, j);
-    const double slowest = terms.bounces ? slowest_bounce(i, j) : HUGE_VAL;
-    const auto may_bounce = [&](double speed) { return speed > slowest; };
-    const auto may_go_deep = [&](double speed) {
-      return parameters.continuous && speed * (terms.step - earliest) > farthest;
-    };
-    const double bound = fastest(i, j);
-    if (!may_bounce(bound) && !may_go_deep(bound)) return {};
+    ImpactLimits limits;
+    if (!may_meet(i, j, limits)) return {};
     PairFlight pair = pair_of(i, j, terms.step);
     const double speed = fastest_approach(pair);
-    if (!may_bounce(speed) && !may_go_deep(speed)) return {};
-    if (may_bounce(speed)) {
+    if (!limits.may_count(speed)) return {};
+    if (limits.may_bounce(speed)) {
       for (int part = 0; part < PairFlight::parts; ++part) {
-        if (!loads.is_loaded(part)) pair.slowest[part] = slowest;
+        if (!loads.is_loaded(part)) pair.slowest[part] = limits.slowest;
       }
     }
-    if (may_go_deep(speed)) pair.farthest = farthest;
-    return next_meeting(pair, earliest);
+    if (limits.may_go_deep(speed)) pair.farthest = limits.farthest;
+    return next_meeting(pair, limits.earliest);
   }
 
  private:
