@@ -88,6 +88,7 @@ void Substepper::undo_step() {
 void Substepper::change_bodies(const std::function<void(Bodies<Host>&)>& change) {
   change(bodies_);
   kept_pairs_.forget();
+  forces_.forget();
 }
 
 // What stops by a blow and not by friction does so no sooner in a shorter part: then cuts do not help, and
@@ -151,7 +152,7 @@ double Substepper::reach_from(double h, double done) const { return grid_.length
 
 /// Moves every body to the time given, dt later than it is.
 void Substepper::fly(double time, double dt) {
-  ledger.integration += advance(bodies_, dt, parameters_);
+  ledger.integration += advance<Host>(bodies_, dt, parameters_);
   place_prescribed(paths_, time, bodies_);
 }
 
@@ -236,22 +237,21 @@ void Substepper::add_impulse_on_driven_bodies(std::int32_t i, std::int32_t j, co
 
 SteppedBody Substepper::body(std::int32_t id) const {
   const ConstBodyView views = view_of(bodies_);
-  const auto k = static_cast<std::size_t>(id);
   return {.mobility = views.mobility[id],
           .inverse_mass = views.inverse_mass[id],
           .position = views.position[id],
           .orientation = views.orientation[id],
           .velocity = views.velocity[id],
           .spin = views.spin[id],
-          .velocity_before = start_.velocity[k],
+          .velocity_before = start_.velocity.view()[id],
           .acceleration = parameters_.acceleration_of(id),
-          .contact_impulse = contact_impulse_[k]};
+          .contact_impulse = contact_impulse_[static_cast<std::size_t>(id)]};
 }
 
-std::int32_t Substepper::non_finite_body() const { return first_non_finite(bodies_); }
+std::int32_t Substepper::non_finite_body() const { return first_non_finite<Host>(bodies_); }
 
 Totals Substepper::totals(const Vec3& reference) const {
-  return totals_of(bodies_, parameters_.gravity, reference);
+  return totals_of<Host>(bodies_, parameters_.gravity, reference);
 }
 
 std::vector<BodyPair> Substepper::pairs() {

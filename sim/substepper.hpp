@@ -43,9 +43,9 @@ class Substepper final : public Stepper {
   SteppedBody body(std::int32_t id) const override;
   std::int32_t non_finite_body() const override;
   Totals totals(const Vec3& reference) const override;
-  double largest_speed() const override { return scree::largest_speed(bodies_); }
+  double largest_speed() const override { return scree::largest_speed<Host>(bodies_); }
   RegionContents contents_of(const Region& region) const override {
-    return scree::contents_of(region, bodies_);
+    return scree::contents_of<Host>(region, bodies_);
   }
 
   std::vector<BodyPair> pairs() override;
@@ -62,7 +62,7 @@ class Substepper final : public Stepper {
  private:
   /// What the first half of a substep changes.
   struct Restart {
-    MovingState state;
+    MovingState<Host> state;
     Ledger ledger;
     std::int64_t impacts = 0, unfinished_impacts = 0;
     std::vector<Vec3> contact_impulse;
@@ -90,8 +90,8 @@ class Substepper final : public Stepper {
   ResponseParameters parameters_;
   Array<PairLaw, Host> laws_;
   std::int64_t materials_;
-  AppliedForces forces_;
-  KeptPairs kept_pairs_;
+  AppliedForces<Host> forces_;
+  KeptPairs<Host> kept_pairs_;
   NarrowPhase narrow_phase_;
   NarrowPhase end_narrow_phase_;  // for the penetration at the end of a step
   ImpactSolver impacts_;
@@ -99,7 +99,7 @@ class Substepper final : public Stepper {
   PositionCorrector corrector_;
 
   double last_substep_ = 0;  // its length; scales the remembered impulses
-  MovingState start_;        // of the step
+  MovingState<Host> start_;  // of the step
   Ledger start_ledger_;
   Restart before_;  // of the last substep, in the accurate mode
   std::vector<Vec3> contact_impulse_;
