@@ -6,6 +6,7 @@
 #include "sim/dynamics/prescribed.hpp"
 #include "sim/measurement.hpp"
 #include "sim/presence.hpp"
+#include "sim/resident_stepper.hpp"
 #include "sim/scene/time_grid.hpp"
 #include "sim/stepper.hpp"
 #include "sim/substepper.hpp"
@@ -20,10 +21,6 @@
 namespace scree {
 
 namespace {
-
-bool runs_on_device(SpaceChoice space) {
-  return space == SpaceChoice::cuda || (space == SpaceChoice::automatic && device_info().available);
-}
 
 /// Middle of the free bodies: where float bounds are finest.
 Vec3 middle_of(const BodyTable& bodies) {
@@ -53,6 +50,22 @@ std::vector<PrescribedPath> paths_of(const Scene& scene, const TimeGrid& grid, c
   std::vector<PrescribedPath> paths = prescribed_paths(scene);
   for (PrescribedPath& path : paths) path.start = grid.time(presence.first_step(path.body));
   return paths;
+}
+
+/// Free bodies from which on a step on Device is the faster one (docs/performance.md).
+constexpr std::int64_t few_for_device = 20000;
+
+/// The accurate mode, and few bodies, are for Host; its PCS may come from Device all the same.
+std::unique_ptr<Stepper> make_stepper(const Scene& scene, const TimeGrid& grid, const Presence& presence,
+                                      SpaceChoice space, const Vec3& origin) {
+  const std::vector<PrescribedPath> paths = paths_of(scene, grid, presence);
+  const bool accurate = scene.response.mode == ResponseMode::accurate;
+  const bool device = space == SpaceChoice::cuda ||
+                      (space == SpaceChoice::automatic && device_info().available &&
+                       std::ranges::count(scene.bodies.mobility, Mobility::free) >= few_for_device);
+  if (!accurate && (device || scene.precision == Precision::mixed))
+    return make_resident_stepper(scene, grid, paths, device, origin);
+  return std::make_unique<Substepper>(scene, grid, paths, device, origin);
 }
 
 }  // namespace
@@ -86,8 +99,7 @@ struct Simulation::Parts {
                     ? static_cast<std::size_t>(options.threads)
                     : tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism)),
         origin(middle_of(s.bodies)),
-        stepper(std::make_unique<Substepper>(s, grid, paths_of(s, grid, presence),
-                                             runs_on_device(options.space), origin)) {
+        stepper(make_stepper(s, grid, presence, options.space, origin)) {
     if (presence.count() < scene.bodies.count())
       stepper->change_bodies([this](Bodies<Host>& bodies) { presence.begin(bodies); });
     first_orientation = scene.bodies.orientation;

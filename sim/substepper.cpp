@@ -4,41 +4,13 @@
 #include "core/tolerances.hpp"
 #include "sim/contact_problem.hpp"
 #include "sim/measurement.hpp"
-#include "sim/model.hpp"
+#include "sim/response_parameters.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
 namespace scree {
-
-namespace {
-
-ResponseParameters parameters_of(const Scene& scene) {
-  const ModelPlan plan = plan_model(scene);
-  return {.gravity = scene.gravity,
-          .acceleration = {},
-          .torque = {},
-          .friction = plan.friction.on,
-          .restitution = plan.restitution.on,
-          .rotation = plan.rotation.on,
-          .gyroscopic = plan.gyroscopic.on,
-          .continuous = plan.continuous.on,
-          .warm_start = scene.response.warm_start,
-          .accurate = scene.response.mode == ResponseMode::accurate,
-          .iterations = scene.response.iterations.value_or(0),
-          .block_sweeps = scene.response.block_sweeps.value_or(0),
-          .tolerance = scene.response.tolerance.value_or(0),
-          .restitution_threshold = plan.restitution_threshold};
-}
-
-std::vector<PairLaw> table_of(const Scene& scene) {
-  std::vector<PairLaw> table;
-  for (const ContactLaw& law : scene.laws) table.push_back({law.restitution, law.friction});
-  return table;
-}
-
-}  // namespace
 
 void Substepper::Restart::save(const Substepper& now) {
   state.save(now.bodies_);
@@ -59,7 +31,7 @@ void Substepper::Restart::restore(Substepper& now) const {
 Substepper::Substepper(const Scene& scene, const TimeGrid& grid, const std::vector<PrescribedPath>& paths,
                        bool on_device, const Vec3& origin)
     : grid_(grid),
-      parameters_(parameters_of(scene)),
+      parameters_(response_parameters_of(scene)),
       materials_(static_cast<std::int64_t>(scene.materials.size())),
       forces_(scene, grid),
       kept_pairs_(scene.broadphase, on_device, origin),
@@ -67,7 +39,7 @@ Substepper::Substepper(const Scene& scene, const TimeGrid& grid, const std::vect
       end_narrow_phase_({.box_box = scene.narrowphase.box_box}) {
   copy_bodies(bodies_, scene.bodies);
   copy(paths_, paths);
-  copy(laws_, table_of(scene));
+  copy(laws_, pair_laws_of(scene));
   contact_impulse_.assign(scene.bodies.position.size(), Vec3::Zero());
   start_.save(bodies_);
 }

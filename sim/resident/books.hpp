@@ -99,6 +99,9 @@ struct BookStage {
   }
 };
 
+/// What flies past is nearer to the other's tangent plane than to the other: its gap does not count.
+SCREE_HD inline bool passes(std::uint8_t flags, bool loaded) { return (flags & flag_flying) != 0 && !loaded; }
+
 /// Of contacts of balls. Sets their gaps at the end, and remembers their impulses.
 template <class Real>
 struct BookBalls {
@@ -133,8 +136,12 @@ struct BookBalls {
       if (stage.loads.size() > 0) stage.mark_loaded(slot, stage.part_of(slot));
     }
     Real& flown = f.at(C::flown, c);
-    flown += static_cast<Real>(0.5 * stage.step * n.dot(j.after - i.after));
-    books.deepest = fmax(0.0, static_cast<double>(-flown / f.at(C::cap, c)));
+    if (contacts.flags[c] == 0) {
+      flown += static_cast<Real>(0.5 * stage.step * n.dot(j.after - i.after));
+      books.deepest = fmax(0.0, static_cast<double>(-flown / f.at(C::cap, c)));
+    } else if (passes(contacts.flags[c], memory[place].is_loaded())) {
+      flown = static_cast<Real>(HUGE_VAL);
+    }
     return books;
   }
 };
@@ -172,8 +179,11 @@ struct BookPoints {
         books.gaps += fabs(static_cast<double>(f.at(C::at_point(k, C::gap), c)));
         ++books.loaded;
       }
-      const Vec3 u = j.after + j.after_spin.cross(arm_j) - i.after - i.after_spin.cross(arm_i);
       Real& flown = f.at(C::at_point(k, C::flown), c);
+      if (passes(contacts.flags[c], impulse.x != 0 || impulse.y != 0 || impulse.z != 0))
+        flown = static_cast<Real>(HUGE_VAL);
+      if (contacts.flags[c] != 0) continue;
+      const Vec3 u = j.after + j.after_spin.cross(arm_j) - i.after - i.after_spin.cross(arm_i);
       flown += static_cast<Real>(0.5 * stage.step * n.dot(u));
       books.deepest = fmax(books.deepest, static_cast<double>(-flown) / cap);
     }

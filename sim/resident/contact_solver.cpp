@@ -5,13 +5,14 @@
 #include "core/tolerances.hpp"
 
 #include <algorithm>
+#include <type_traits>
 #include <utility>
 
 namespace scree::resident {
 
 namespace {
 
-constexpr std::int64_t tile = parallel::tile;
+constexpr int tile = parallel::tile;
 
 template <class T>
 struct LoadSum {
@@ -29,6 +30,51 @@ struct CountPoints {
   PointContacts<Real> contacts;
   SCREE_HD ContactCounts operator()(std::int64_t c) const {
     return has_contact(contacts.found, c) ? ContactCounts{1, contacts.points[c]} : ContactCounts{};
+  }
+};
+
+/// work(first tile, tiles) for each colour in turn; the tiles are counted from `first` on.
+template <class Work>
+void for_each_color(const ColorTiles& colors, std::int64_t first, Work work) {
+  for (std::size_t c = 0; c + 1 < colors.begin.size(); ++c)
+    work(colors.begin[c] - first, colors.begin[c + 1] - colors.begin[c]);
+}
+
+struct ImpulseSum {
+  Vec3 impulse = Vec3::Zero();
+  SCREE_HD friend ImpulseSum operator+(const ImpulseSum& a, const ImpulseSum& b) {
+    return {a.impulse + b.impulse};
+  }
+};
+
+/// What a contact gave to a body, if it is one of its two.
+template <class Real>
+struct BallImpulseOn {
+  std::int32_t body;
+  BallContacts<Real> contacts;
+  ConstView<Slot> places;
+  SCREE_HD ImpulseSum operator()(std::int64_t c) const {
+    if (!has_contact(contacts.found, c)) return {};
+    const Slot& slot = places[c - c % tile + contacts.slot[c]];
+    if (slot.i != body && slot.j != body) return {};
+    const Vec3 impulse = vec3(contacts.fields.vector(BallContacts<Real>::impulse, c));
+    return {slot.j == body ? impulse : Vec3(-impulse)};
+  }
+};
+template <class Real>
+struct PointImpulseOn {
+  std::int32_t body;
+  PointContacts<Real> contacts;
+  ConstView<Slot> places;
+  SCREE_HD ImpulseSum operator()(std::int64_t c) const {
+    using C = PointContacts<Real>;
+    if (!has_contact(contacts.found, c)) return {};
+    const Slot& slot = places[c - c % tile + contacts.slot[c]];
+    if (slot.i != body && slot.j != body) return {};
+    Vec3 impulse = Vec3::Zero();
+    for (int k = 0; k < contacts.points[c]; ++k)
+      impulse += vec3(contacts.point_fields.vector(C::at_point(k, C::impulse), c));
+    return {slot.j == body ? impulse : Vec3(-impulse)};
   }
 };
 
@@ -61,17 +107,10 @@ void ContactSolver<Space, Real>::take_candidates(ConstView<Pair> candidates, con
   const std::int64_t places = slots_.places().size();
   const std::int64_t balls = slots_.balls().tiles() * tile;
   const std::int64_t others = places - balls;
-  found_.resize(places / tile);
   change_.resize(places / tile);
   deepest_.resize(places / tile);
   book_sums_.resize(places / tile);
-  ends_.resize(places);
-  slot_.resize(places);
-  flags_.resize(places);
-  ball_fields_.resize(balls * BallContacts<Real>::count);
-  points_.resize(others);
-  contact_fields_.resize(others * PointContacts<Real>::count);
-  point_fields_.resize(others * PointContacts<Real>::point_count * Manifold::max_points);
+  store_.resize(balls, others, tile);
   for (auto* loads : {&loads_, &next_loads_}) {
     loads->resize((candidates.size() + 3) / 4);
     parallel::fill("contacts.loads", *loads, 0u);
@@ -85,29 +124,31 @@ void ContactSolver<Space, Real>::take_candidates(ConstView<Pair> candidates, con
 template <class Space, class Real>
 void ContactSolver<Space, Real>::forget() {
   slots_.clear();
+  store_.resize(0, 0, tile);
 }
 
 template <class Space, class Real>
-BallContacts<Real> ContactSolver<Space, Real>::balls() {
-  const std::int64_t places = slots_.balls().tiles() * tile;
-  return {.found = found_.data(),
-          .ends = {ends_.data(), places},
-          .slot = {slot_.data(), places},
-          .flags = {flags_.data(), places},
-          .fields = {ball_fields_.data(), places}};
+Inspection<Real> ContactSolver<Space, Real>::inspect() const {
+  Inspection<Real> seen;
+  seen.places.resize(static_cast<std::size_t>(slots_.places().size()));
+  copy_bytes<Host, Space>(seen.places.data(), slots_.places().data(), seen.places.size() * sizeof(Slot));
+  copy(seen.free, free_);
+  seen.contacts.copy_from(store_);
+  seen.step = step_;
+  return seen;
 }
 
 template <class Space, class Real>
-PointContacts<Real> ContactSolver<Space, Real>::points() {
-  const std::int64_t first = slots_.balls().tiles() * tile;
-  const std::int64_t places = ends_.size() - first;
-  return {.found = found_.data() + first / tile,
-          .ends = {ends_.data() + first, places},
-          .slot = {slot_.data() + first, places},
-          .flags = {flags_.data() + first, places},
-          .points = points_.view(),
-          .fields = {contact_fields_.data(), places},
-          .point_fields = {point_fields_.data(), places}};
+Vec3 ContactSolver<Space, Real>::impulse_on(std::int32_t body) {
+  const std::int64_t first = store_.ball_places();
+  const ConstView<Slot> places = slots_.places();
+  if (step_ == 0 || places.size() == 0) return Vec3::Zero();
+  const auto on_balls = parallel::sum<ImpulseSum, Space>("contacts.impulse", first,
+                                                         BallImpulseOn<Real>{body, store_.balls(), places});
+  const auto on_points = parallel::sum<ImpulseSum, Space>(
+      "contacts.impulse", places.size() - first,
+      PointImpulseOn<Real>{body, store_.points(), {places.data() + first, places.size() - first}});
+  return (on_balls + on_points).impulse;
 }
 
 template <class Space, class Real>
@@ -131,26 +172,32 @@ void ContactSolver<Space, Real>::load_bodies(const ConstBodyView& bodies, ConstV
 }
 
 template <class Space, class Real>
-void ContactSolver<Space, Real>::find(const ConstBodyView& bodies, ConstView<double> margin, double step,
-                                      double scale, const ResponseParameters& parameters) {
-  step_ = step;
+void ContactSolver<Space, Real>::find(ConstView<double> margin, double scale, const FlightStage& flight,
+                                      bool any_is_late) {
+  step_ = flight.terms.step;
+  const ConstBodyView bodies = read_only(flight.bodies);
+  const ResponseParameters& parameters = flight.parameters;
   load_bodies(bodies, margin, parameters);
   const FindStage<Real> stage{.places = slots_.places(),
                               .mid = mid_.view(),
                               .bodies = bodies,
                               .solver = solver_.view(),
-                              .laws = laws_,
-                              .materials = materials_,
+                              .laws = flight.terms.laws.table,
+                              .materials = flight.terms.laws.materials,
                               .parameters = parameters,
-                              .step = step,
+                              .step = step_,
                               .scale = scale,
-                              .noise = tolerance::parting_speed * step * parameters.gravity.norm()};
+                              .noise = tolerance::parting_speed * step_ * parameters.gravity.norm(),
+                              .struck = {flight},
+                              .any_is_late = any_is_late};
   const std::int64_t balls = slots_.balls().tiles();
   parallel::compact_tiles<Space>("contacts.find balls", balls,
-                                 FindBalls<Real>{stage, this->balls(), slots_.ball_memory()}, found_.data());
-  parallel::compact_tiles<Space>("contacts.find", slots_.others().tiles(),
-                                 FindPoints<Real>{stage, balls * tile, points(), slots_.point_memory()},
-                                 found_.data() + balls);
+                                 FindBalls<Real>{stage, store_.balls(), slots_.ball_memory()},
+                                 store_.found());
+  parallel::compact_tiles<Space>(
+      "contacts.find", slots_.others().tiles(),
+      FindPoints<Real>{stage, balls * tile, store_.points(), slots_.point_memory(), loads()},
+      store_.found() + balls);
   count();
 }
 
@@ -158,21 +205,12 @@ template <class Space, class Real>
 void ContactSolver<Space, Real>::count() {
   Array<ContactCounts, Space> scratch, totals(2);
   parallel::sum_into<ContactCounts, Space>("contacts.count", slots_.balls().tiles(),
-                                           CountBalls{found_.data()}, scratch, totals.data());
-  parallel::sum_into<ContactCounts, Space>("contacts.count", points_.size(), CountPoints<Real>{points()},
-                                           scratch, totals.data() + 1);
+                                           CountBalls{store_.found()}, scratch, totals.data());
+  parallel::sum_into<ContactCounts, Space>("contacts.count", store_.point_places(),
+                                           CountPoints<Real>{store_.points()}, scratch, totals.data() + 1);
   ContactCounts both[2];
   copy_bytes<Host, Space>(both, totals.data(), sizeof(both));
   counts_ = both[0] + both[1];
-}
-
-/// work(first place): a function object over the places from there on, launched for each colour in turn.
-template <class Space, class Real>
-template <class Work>
-void ContactSolver<Space, Real>::for_each_color(const char* label, const ColorTiles& tiles,
-                                                std::int64_t first, Work work) {
-  for (std::size_t c = 0; c + 1 < tiles.begin.size(); ++c)
-    work(label, tiles.begin[c] - first, tiles.begin[c + 1] - tiles.begin[c]);
 }
 
 template <class Space, class Real>
@@ -194,19 +232,18 @@ void ContactSolver<Space, Real>::sweep(const SweepPlan& plan) {
   parallel::for_each<Space>("sweep.accelerate", solver_.size(),
                             Accelerate<Real>{solver_.data(), last_.data(), state_.data()});
   const std::int64_t first = slots_.balls().tiles();
-  for_each_color("sweep.balls", slots_.balls(), 0,
-                 [&](const char* label, std::int64_t t, std::int64_t tiles) {
-                   parallel::sum_tiles<SweepChange, Space>(
-                       label, tiles, SweepBalls<Real>{balls(), solver_.data(), state_.data(), t * tile},
-                       change_.data() + t);
-                 });
-  for_each_color(
-      "sweep.points", slots_.others(), first, [&](const char* label, std::int64_t t, std::int64_t tiles) {
-        parallel::sum_tiles<SweepChange, Space>(label, tiles,
-                                                SweepPoints<Real>{points(), inertia_.data(), solver_.data(),
-                                                                  state_.data(), plan.block_sweeps, t * tile},
-                                                change_.data() + first + t);
-      });
+  for_each_color(slots_.balls(), 0, [&](std::int64_t t, std::int64_t tiles) {
+    parallel::sum_tiles<SweepChange, Space>(
+        "sweep.balls", tiles, SweepBalls<Real>{store_.balls(), solver_.data(), state_.data(), t * tile},
+        change_.data() + t);
+  });
+  for_each_color(slots_.others(), first, [&](std::int64_t t, std::int64_t tiles) {
+    parallel::sum_tiles<SweepChange, Space>(
+        "sweep.points", tiles,
+        SweepPoints<Real>{store_.points(), inertia_.data(), solver_.data(), state_.data(), plan.block_sweeps,
+                          t * tile},
+        change_.data() + first + t);
+  });
   join_parts(solver_);
   parallel::sum_into<SweepChange, Space>("sweep.change", change_.size(), LoadSum<SweepChange>{change_.data()},
                                          change_scratch_, total_.data());
@@ -215,84 +252,133 @@ void ContactSolver<Space, Real>::sweep(const SweepPlan& plan) {
 }
 
 template <class Space, class Real>
-SweepState ContactSolver<Space, Real>::sweeps_done() const {
-  SweepState state;
-  copy_bytes<Host, Space>(&state, state_.data(), sizeof(state));
-  return state;
+void ContactSolver<Space, Real>::find_impulses(const ResponseParameters& parameters, Counters& counters) {
+  constexpr int sweeps_at_once = 4;
+  SweepPlan plan = plan_sweeps(parameters, counts_.contacts, counts_.points);
+  if (std::is_same_v<Real, float>) plan.tolerance = std::max(plan.tolerance, tolerance::mixed_change);
+  const std::int64_t first = slots_.balls().tiles();
+  state_.resize(1);
+  total_.resize(1);
+  parallel::fill("sweep.start", state_, SweepState{});
+  for_each_color(slots_.balls(), 0, [&](std::int64_t t, std::int64_t tiles) {
+    parallel::for_each<Space>("sweep.push balls", tiles * tile,
+                              PushBalls<Real>{store_.balls(), solver_.data(), t * tile});
+  });
+  for_each_color(slots_.others(), first, [&](std::int64_t t, std::int64_t tiles) {
+    parallel::for_each<Space>("sweep.push points", tiles * tile,
+                              PushPoints<Real>{store_.points(), inertia_.data(), solver_.data(), t * tile});
+  });
+  join_parts(solver_);
+  int launched = 0;
+  SweepState done;
+  while (launched < plan.most && done.converged == 0) {
+    const int wanted = launched == 0 ? std::max(plan.least, sweeps_at_once) : sweeps_at_once;
+    const int more = std::min(wanted, plan.most - launched);
+    for (int k = 0; k < more; ++k) sweep(plan);
+    launched += more;
+    copy_bytes<Host, Space>(&done, state_.data(), sizeof(done));
+  }
+  counters.sweeps += done.sweeps;
+  counters.unconverged += done.converged == 0;
 }
 
 template <class Space, class Real>
-Ledger ContactSolver<Space, Real>::solve(const BodyView& bodies, const ResponseParameters& parameters,
-                                         Counters& counters) {
-  Ledger ledger;
-  const std::int64_t n = bodies.count();
+Ledger ContactSolver<Space, Real>::book(const ConstBodyView& bodies, const ResponseParameters& parameters) {
   const std::int64_t first = slots_.balls().tiles();
-  books_ = {};
-  if (counts_.contacts > 0) {
-    constexpr int sweeps_at_once = 4;
-    const SweepPlan plan = plan_sweeps(parameters, counts_.contacts, counts_.points);
-    state_.resize(1);
-    total_.resize(1);
-    parallel::fill("sweep.start", state_, SweepState{});
-    for_each_color(
-        "sweep.push", slots_.balls(), 0, [&](const char* label, std::int64_t t, std::int64_t tiles) {
-          parallel::for_each<Space>(label, tiles * tile, PushBalls<Real>{balls(), solver_.data(), t * tile});
-        });
-    for_each_color(
-        "sweep.push", slots_.others(), first, [&](const char* label, std::int64_t t, std::int64_t tiles) {
-          parallel::for_each<Space>(label, tiles * tile,
-                                    PushPoints<Real>{points(), inertia_.data(), solver_.data(), t * tile});
-        });
-    join_parts(solver_);
-    int launched = 0;
-    SweepState done;
-    while (launched < plan.most && done.converged == 0) {
-      const int more = std::min(launched == 0 ? std::max(plan.least, sweeps_at_once) : sweeps_at_once,
-                                plan.most - launched);
-      for (int k = 0; k < more; ++k) sweep(plan);
-      launched += more;
-      done = sweeps_done();
-    }
-    counters.sweeps += done.sweeps;
-    counters.unconverged += done.converged == 0;
-
-    parallel::fill("books.loads", next_loads_, 0u);
-    const BookStage<Real> stage{slots_.places(),
-                                read_only(bodies),
-                                free_.view(),
-                                solver_.view(),
-                                parameters,
-                                step_,
-                                parameters.restitution ? next_loads_.view() : View<std::uint32_t>()};
-    parallel::sum_tiles<Books, Space>(
-        "books.balls", first, BookBalls<Real>{stage, balls(), slots_.ball_memory()}, book_sums_.data());
-    parallel::sum_tiles<Books, Space>("books.points", slots_.others().tiles(),
-                                      BookPoints<Real>{stage, first * tile, points(), slots_.point_memory()},
-                                      book_sums_.data() + first);
-    Array<Books, Space> scratch;
-    book_total_.resize(1);
-    parallel::sum_into<Books, Space>("books.sum", book_sums_.size(), LoadSum<Books>{book_sums_.data()},
-                                     scratch, book_total_.data());
-    copy_bytes<Host, Space>(&books_, book_total_.data(), sizeof(books_));
-    ledger.restitution = books_.restitution;
-    ledger.friction = books_.friction;
-    ledger.work = books_.work;
-  }
-  if (parameters.torque.size() > 0) {
-    ledger.work += parallel::sum<double, Space>(
-        "books.torque", n, WorkOfTorque<Real>{read_only(bodies), solver_.view(), parameters.torque, step_});
-  }
-  parallel::for_each<Space>("contacts.velocities", n,
-                            StoreVelocities<Real>{free_.view(), solver_.view(), parameters, step_, bodies});
+  const BookStage<Real> stage{slots_.places(), bodies, free_.view(),      solver_.view(),
+                              parameters,      step_,  next_loads_.view()};
+  parallel::sum_tiles<Books, Space>(
+      "books.balls", first, BookBalls<Real>{stage, store_.balls(), slots_.ball_memory()}, book_sums_.data());
+  parallel::sum_tiles<Books, Space>(
+      "books.points", slots_.others().tiles(),
+      BookPoints<Real>{stage, first * tile, store_.points(), slots_.point_memory()},
+      book_sums_.data() + first);
+  Array<Books, Space> scratch;
+  book_total_.resize(1);
+  parallel::sum_into<Books, Space>("books.sum", book_sums_.size(), LoadSum<Books>{book_sums_.data()}, scratch,
+                                   book_total_.data());
+  copy_bytes<Host, Space>(&books_, book_total_.data(), sizeof(books_));
+  Ledger ledger;
+  ledger.restitution = books_.restitution;
+  ledger.friction = books_.friction;
+  ledger.work = books_.work;
   return ledger;
 }
 
 template <class Space, class Real>
-Ledger ContactSolver<Space, Real>::correct(const BodyView& bodies, const ResponseParameters& parameters) {
+Ledger ContactSolver<Space, Real>::solve(const FlightStage& flight, bool any_is_late, Counters& counters) {
+  const ResponseParameters& parameters = flight.parameters;
+  const ConstBodyView bodies = read_only(flight.bodies);
+  Ledger ledger;
+  books_ = {};
+  parallel::fill("books.loads", next_loads_, 0u);
+  if (counts_.contacts > 0) {
+    find_impulses(parameters, counters);
+    ledger = book(bodies, parameters);
+  }
+  if (parameters.torque.size() > 0) {
+    ledger.work += parallel::sum<double, Space>(
+        "books.torque", bodies.count(), WorkOfTorque<Real>{bodies, solver_.view(), parameters.torque, step_});
+  }
+  parallel::for_each<Space>(
+      "contacts.velocities", bodies.count(),
+      StoreVelocities<Real>{free_.view(), solver_.view(), parameters, step_, flight.bodies});
+  if (any_is_late && counts_.contacts > 0) ledger = ledger + shift_late_bodies(flight);
+  return ledger;
+}
+
+template <class Space, class Real>
+Ledger ContactSolver<Space, Real>::shift_late_bodies(const FlightStage& flight) {
+  const std::int64_t first = slots_.balls().tiles() * tile;
+  const ConstView<Slot> places = slots_.places();
+  const LateMoments<Real> moments{flight, free_.view(), solver_.view()};
+  Array<Ledger, Space> scratch, totals(3);
+  parallel::sum_into<Ledger, Space>(
+      "late.moments", first, LateBallMoments<Real>{moments, store_.balls(), places}, scratch, totals.data());
+  parallel::sum_into<Ledger, Space>(
+      "late.moments", places.size() - first,
+      LatePointMoments<Real>{moments, store_.points(), {places.data() + first, places.size() - first}},
+      scratch, totals.data() + 1);
+  parallel::sum_into<Ledger, Space>("late.shift", flight.bodies.count(),
+                                    ShiftLate<Real>{flight, free_.view(), solver_.view()}, scratch,
+                                    totals.data() + 2);
+  Ledger parts[3];
+  copy_bytes<Host, Space>(parts, totals.data(), sizeof(parts));
+  return parts[0] + parts[1] + parts[2];
+}
+
+template <class Space, class Real>
+void ContactSolver<Space, Real>::take_velocities(const ConstBodyView& bodies) {
+  parallel::for_each<Space>(
+      "late.reload", solver_.size(),
+      ReloadBody<Real>{bodies, slots_.hubs(), slots_.hub_of_parts(), solver_.view(), last_.view()});
+  if (counts_.contacts > 0) {
+    parallel::for_each<Space>("late.fly", slots_.balls().tiles() * tile,
+                              FlyBalls<Real>{store_.balls(), solver_.view(), last_.view(), step_});
+    parallel::for_each<Space>("late.fly", store_.point_places(),
+                              FlyPoints<Real>{store_.points(), solver_.view(), last_.view(), step_});
+  }
+  solver_.swap(last_);
+}
+
+template <class Space, class Real>
+void ContactSolver<Space, Real>::fly_late(const FlightStage& flight) {
+  const std::int64_t first = slots_.balls().tiles() * tile;
+  const ConstView<Slot> places = slots_.places();
+  const ConstBodyView bodies = read_only(flight.bodies);
+  parallel::for_each<Space>("late.fly", first, FlyLateBalls<Real>{store_.balls(), places, bodies});
+  parallel::for_each<Space>(
+      "late.fly", places.size() - first,
+      FlyLatePoints<Real>{store_.points(), {places.data() + first, places.size() - first}, bodies, flight});
+}
+
+template <class Space, class Real>
+Ledger ContactSolver<Space, Real>::correct(const FlightStage& flight, bool any_is_late) {
   loads_.swap(next_loads_);
   overlap_ = tolerance::correction_cap * books_.deepest;
-  if (counts_.contacts == 0 || overlap_ == 0) return {};
-  const std::int64_t first = slots_.balls().tiles();
+  if (counts_.contacts == 0) return {};
+  if (any_is_late) fly_late(flight);
+  if (overlap_ == 0 && !any_is_late) return {};
   part_state_.resize(1);
   deepest_of_all_.resize(1);
   parallel::fill("correction.start", part_state_, PartState{});
@@ -300,39 +386,42 @@ Ledger ContactSolver<Space, Real>::correct(const BodyView& bodies, const Respons
                             ResetDisplacement<Real>{solver_.view(), displacement_.view(), turn_.view()});
   const bool heap = is_heap(counts_.points);
   const int most = !heap ? 100 : shares_loads(counts_.contacts, counts_.points) ? 24 : 6;
+  for (int k = 0; k < most; ++k) part_sweep();
+  const BodyView& bodies = flight.bodies;
+  ledger_total_.resize(1);
+  parallel::sum_into<Ledger, Space>(
+      "correction.apply", bodies.count(),
+      Displace<Real>{displacement_.view(), turn_.view(), flight.parameters, bodies}, ledger_scratch_,
+      ledger_total_.data());
+  Ledger ledger;
+  copy_bytes<Host, Space>(&ledger, ledger_total_.data(), sizeof(ledger));
+  return ledger;
+}
+
+template <class Space, class Real>
+void ContactSolver<Space, Real>::part_sweep() {
+  const std::int64_t first = slots_.balls().tiles();
   const auto share = static_cast<Real>(tolerance::correction_share);
   const auto enough = static_cast<float>(tolerance::corrected_overlap / tolerance::correction_cap);
-  for (int k = 0; k < most; ++k) {
-    for_each_color("correction.balls", slots_.balls(), 0,
-                   [&](const char* label, std::int64_t t, std::int64_t tiles) {
-                     parallel::sum_tiles<Deepest, Space>(
-                         label, tiles,
-                         PartBalls<Real>{balls(), displacement_.data(), part_state_.data(), share, t * tile},
-                         deepest_.data() + t);
-                   });
-    for_each_color("correction.points", slots_.others(), first,
-                   [&](const char* label, std::int64_t t, std::int64_t tiles) {
-                     parallel::sum_tiles<Deepest, Space>(
-                         label, tiles,
-                         PartPoints<Real>{points(), inertia_.data(), displacement_.data(), turn_.data(),
-                                          part_state_.data(), share, t * tile},
-                         deepest_.data() + first + t);
-                   });
-    join_parts(displacement_);
-    join_parts(turn_);
-    parallel::sum_into<Deepest, Space>("correction.deepest", deepest_.size(),
-                                       LoadSum<Deepest>{deepest_.data()}, deepest_scratch_,
-                                       deepest_of_all_.data());
-    parallel::for_each<Space>("correction.judge", 1,
-                              JudgeParting{part_state_.data(), deepest_of_all_.data(), enough});
-  }
-  Array<Ledger, Space> scratch, total(1);
-  parallel::sum_into<Ledger, Space>("correction.apply", bodies.count(),
-                                    Displace<Real>{displacement_.view(), turn_.view(), parameters, bodies},
-                                    scratch, total.data());
-  Ledger ledger;
-  copy_bytes<Host, Space>(&ledger, total.data(), sizeof(ledger));
-  return ledger;
+  for_each_color(slots_.balls(), 0, [&](std::int64_t t, std::int64_t tiles) {
+    parallel::sum_tiles<Deepest, Space>(
+        "correction.balls", tiles,
+        PartBalls<Real>{store_.balls(), displacement_.data(), part_state_.data(), share, t * tile},
+        deepest_.data() + t);
+  });
+  for_each_color(slots_.others(), first, [&](std::int64_t t, std::int64_t tiles) {
+    parallel::sum_tiles<Deepest, Space>(
+        "correction.points", tiles,
+        PartPoints<Real>{store_.points(), inertia_.data(), displacement_.data(), turn_.data(),
+                         part_state_.data(), share, t * tile},
+        deepest_.data() + first + t);
+  });
+  join_parts(displacement_);
+  join_parts(turn_);
+  parallel::sum_into<Deepest, Space>("correction.deepest", deepest_.size(), LoadSum<Deepest>{deepest_.data()},
+                                     deepest_scratch_, deepest_of_all_.data());
+  parallel::for_each<Space>("correction.judge", 1,
+                            JudgeParting{part_state_.data(), deepest_of_all_.data(), enough});
 }
 
 #define SCREE_INSTANTIATE(Space)               \

@@ -8,7 +8,10 @@
 #include "sim/dynamics/sweeps.hpp"
 #include "sim/resident/bodies.hpp"
 #include "sim/resident/books.hpp"
+#include "sim/resident/contact_store.hpp"
 #include "sim/resident/find_contacts.hpp"
+#include "sim/resident/flights.hpp"
+#include "sim/resident/inspection.hpp"
 #include "sim/resident/slots.hpp"
 
 #include <cstdint>
@@ -20,24 +23,24 @@ namespace scree::resident {
 template <class Space, class Real>
 class ContactSolver {
  public:
-  /// `laws`: of materials x materials.
-  explicit ContactSolver(ConstView<PairLaw> laws, std::int64_t materials)
-      : laws_(laws), materials_(materials) {}
-
   /// The candidates have been made anew; impulses are remembered.
   void take_candidates(ConstView<Pair> candidates, const ConstBodyView& bodies);
   void forget();
 
   /// Contacts that may close by the next midpoint: gaps of at most the sum of the two margins (m). Impulses
   /// start from what they were, `scale` times.
-  void find(const ConstBodyView& bodies, ConstView<double> margin, double step, double scale,
-            const ResponseParameters& parameters);
+  /// `flight`: the bodies after the impacts of the first half; `any_is_late`: one came after the midpoint.
+  void find(ConstView<double> margin, double scale, const FlightStage& flight, bool any_is_late);
 
-  /// Impulses with e = 0, by sweeps; the bodies get their velocities. Returns what was moved.
-  Ledger solve(const BodyView& bodies, const ResponseParameters& parameters, Counters& counters);
+  /// Impulses with e = 0, by sweeps; the bodies get their velocities, and those that were struck late their
+  /// places. Returns what was moved.
+  Ledger solve(const FlightStage& flight, bool any_is_late, Counters& counters);
+
+  /// Impacts after the response have changed velocities.
+  void take_velocities(const ConstBodyView& bodies);
 
   /// Parts what would overlap, velocities stay. Returns what that moved.
-  Ledger correct(const BodyView& bodies, const ResponseParameters& parameters);
+  Ledger correct(const FlightStage& flight, bool any_is_late);
   /// Deepest overlap that the last correct() has found (of the smaller smallest_size).
   double overlap() const { return overlap_; }
 
@@ -45,26 +48,30 @@ class ContactSolver {
   const Books& books() const { return books_; }
   const ContactCounts& counts() const { return counts_; }
   /// For each candidate a bit for each part that is loaded.
-  ConstView<std::uint8_t> loads() const {
-    return {reinterpret_cast<const std::uint8_t*>(loads_.data()), slots_.candidates()};
+  ConstView<LoadedParts> loads() const {
+    static_assert(sizeof(LoadedParts) == 1);
+    return {reinterpret_cast<const LoadedParts*>(loads_.data()), slots_.candidates()};
   }
   const Slots<Space, Real>& slots() const { return slots_; }
-  BallContacts<Real> balls();
-  PointContacts<Real> points();
+
+  /// Of the last substep, brought to Host.
+  Inspection<Real> inspect() const;
+  /// What the contacts of the last substep gave to a body (N s).
+  Vec3 impulse_on(std::int32_t body);
 
  private:
   void load_bodies(const ConstBodyView& bodies, ConstView<double> margin,
                    const ResponseParameters& parameters);
   void count();
-  template <class Work>
-  void for_each_color(const char* label, const ColorTiles& tiles, std::int64_t first, Work work);
   void sweep(const SweepPlan& plan);
   template <class Record>
   void join_parts(Array<Record, Space>& bodies);
-  SweepState sweeps_done() const;
+  void part_sweep();
+  void find_impulses(const ResponseParameters& parameters, Counters& counters);
+  Ledger book(const ConstBodyView& bodies, const ResponseParameters& parameters);
+  Ledger shift_late_bodies(const FlightStage& flight);
+  void fly_late(const FlightStage& flight);
 
-  ConstView<PairLaw> laws_;
-  std::int64_t materials_;
   Slots<Space, Real> slots_;
   double step_ = 0;
 
@@ -74,11 +81,7 @@ class ContactSolver {
   Array<CentreRecord<Real>, Space> displacement_, turn_;
   Array<PartsSum, Space> parts_;
 
-  Array<std::int32_t, Space> found_;  // of each tile; those of balls first
-  Array<Ends, Space> ends_;
-  Array<std::uint8_t, Space> slot_, flags_;
-  Array<Real, Space> ball_fields_, contact_fields_, point_fields_;
-  Array<std::int32_t, Space> points_;
+  ContactStore<Space, Real> store_;
 
   ContactCounts counts_;
   Books books_;
@@ -93,6 +96,7 @@ class ContactSolver {
   Array<Deepest, Space> deepest_of_all_;
   Array<Books, Space> book_sums_;
   Array<Books, Space> book_total_;
+  Array<Ledger, Space> ledger_scratch_, ledger_total_;
   Array<SweepChange, Space> change_scratch_;
   Array<Deepest, Space> deepest_scratch_;
 };
