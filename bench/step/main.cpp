@@ -2,11 +2,11 @@
 //
 //   scree bench step SCENE [--settle S] [--steps N] [--space auto|host|cuda] [--threads N] [--set
 //   key=value;...]
-//                          [--calls no|yes]
+//                          [--resident no|yes] [--calls no|yes]
 //
 // Runs until S seconds have passed, then times N steps. One JSON object: medians over these steps, and the
-// state after the last. With --calls yes each parallel call is waited for, and its share printed; steps then
-// take longer.
+// state after the last. With --resident yes Host too takes the steps as Device does. With --calls yes each
+// parallel call is waited for, and its share printed; steps then take longer.
 #include "bench/options.hpp"
 #include "core/error.hpp"
 #include "core/space.hpp"
@@ -79,12 +79,14 @@ int run(int argc, char** argv) {
                                                {"--space", "auto"},
                                                {"--threads", "0"},
                                                {"--set", ""},
+                                               {"--resident", "no"},
                                                {"--calls", "no"}},
                                               &words);
   if (words.size() != 1) throw InputError("needs one scene; see --help");
   const Scene scene = scene_of(words.front(), options.at("--set"));
   const auto building = Clock::now();
-  Simulation simulation(scene, {space_of(options.at("--space")), std::stoi(options.at("--threads"))});
+  Simulation simulation(scene, {space_of(options.at("--space")), std::stoi(options.at("--threads")),
+                                options.at("--resident") == "yes"});
   const double built = seconds_since(building);
   const auto settling = Clock::now();
   while (!simulation.finished() && simulation.time() < std::stod(options.at("--settle"))) simulation.step();

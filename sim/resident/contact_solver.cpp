@@ -143,9 +143,9 @@ Vec3 ContactSolver<Space, Real>::impulse_on(std::int32_t body) {
   const std::int64_t first = store_.ball_places();
   const ConstView<Slot> places = slots_.places();
   if (step_ == 0 || places.size() == 0) return Vec3::Zero();
-  const auto on_balls = parallel::sum<ImpulseSum, Space>("contacts.impulse", first,
-                                                         BallImpulseOn<Real>{body, store_.balls(), places});
-  const auto on_points = parallel::sum<ImpulseSum, Space>(
+  const auto on_balls = parallel::sum_by_tiles<ImpulseSum, Space>(
+      "contacts.impulse", first, BallImpulseOn<Real>{body, store_.balls(), places});
+  const auto on_points = parallel::sum_by_tiles<ImpulseSum, Space>(
       "contacts.impulse", places.size() - first,
       PointImpulseOn<Real>{body, store_.points(), {places.data() + first, places.size() - first}});
   return (on_balls + on_points).impulse;
@@ -217,7 +217,7 @@ template <class Space, class Real>
 template <class Record>
 void ContactSolver<Space, Real>::join_parts(Array<Record, Space>& bodies) {
   const ConstView<Hub> hubs = slots_.hubs();
-  if (hubs.size() == 0) return;
+  if (hubs.size() == 0 || bodies.empty()) return;
   parts_.resize(hubs.size());
   parallel::sum_tiles<PartsSum, Space>("contacts.hubs", hubs.size(), SumParts<Record>{hubs, bodies.data()},
                                        parts_.data());
@@ -317,7 +317,7 @@ Ledger ContactSolver<Space, Real>::solve(const FlightStage& flight, bool any_is_
     ledger = book(bodies, parameters);
   }
   if (parameters.torque.size() > 0) {
-    ledger.work += parallel::sum<double, Space>(
+    ledger.work += parallel::sum_by_tiles<double, Space>(
         "books.torque", bodies.count(), WorkOfTorque<Real>{bodies, solver_.view(), parameters.torque, step_});
   }
   parallel::for_each<Space>(
