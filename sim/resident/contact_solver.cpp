@@ -40,6 +40,17 @@ void for_each_color(const ColorTiles& colors, std::int64_t first, Work work) {
     work(colors.begin[c] - first, colors.begin[c + 1] - colors.begin[c]);
 }
 
+/// What is known of pairs in another list.
+struct LookUpLoads {
+  ConstView<Pair> pairs, known;
+  ConstView<LoadedParts> loads;
+  View<LoadedParts> out;
+  SCREE_HD void operator()(std::int64_t k) const {
+    const std::int64_t at = find_pair(known, pairs[k].i, pairs[k].j);
+    out[k] = at < 0 ? LoadedParts{} : loads[at];
+  }
+};
+
 struct ImpulseSum {
   Vec3 impulse = Vec3::Zero();
   SCREE_HD friend ImpulseSum operator+(const ImpulseSum& a, const ImpulseSum& b) {
@@ -122,9 +133,11 @@ void ContactSolver<Space, Real>::take_candidates(ConstView<Pair> candidates, con
 }
 
 template <class Space, class Real>
-void ContactSolver<Space, Real>::forget() {
-  slots_.clear();
-  store_.resize(0, 0, tile);
+void ContactSolver<Space, Real>::look_up_loads(ConstView<Pair> candidates,
+                                               Array<LoadedParts, Space>& loads) const {
+  loads.resize(candidates.size());
+  parallel::for_each<Space>("contacts.loads", candidates.size(),
+                            LookUpLoads{candidates, slots_.candidates(), this->loads(), loads.view()});
 }
 
 template <class Space, class Real>
