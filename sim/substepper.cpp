@@ -124,9 +124,13 @@ void Substepper::fly_on(const Manifolds& manifolds, double h, double done) {
   ledger.work += forces_.work(bodies);
   ledger = ledger + corrector_.correct(h, parameters_, view_of(bodies), solver_, contacts_);
   memory_.remember(manifolds, contacts_, bodies.count());
-  for (const Contact& c : std::as_const(contacts_.contacts).view()) {
+  for (std::int64_t k = 0; k < contacts_.others(); ++k) {
+    const Contact& c = std::as_const(contacts_.contacts).view()[k];
     if (c.free_ends < 2) add_impulse_on_driven_bodies(c.i, c.j, contacts_.impulse_of(c));
   }
+  contacts_.batches.for_each_driven_pair([this](std::int32_t i, std::int32_t j, const Vec3& impulse) {
+    add_impulse_on_driven_bodies(i, j, impulse);
+  });
   last_substep_ = h;
 }
 
@@ -173,23 +177,34 @@ void Substepper::resolve_impacts(double h, double from, double reach) {
 Manifolds Substepper::find_contacts(double h, double reach) {
   contact_margins(bodies, h, tolerance::contact_slack, parameters_, contact_margin_);
   const ConstView<Pair> pairs = kept_pairs_.covering(bodies, contact_margin_, reach, parameters_);
+  const ConstBodyView views = view_of(std::as_const(bodies));
+  BallPairs& balls = memory_.balls;
+  if (counters.pcs_made != kept_pairs_.times_made())
+    balls.take(views, pairs, contact_laws(), parameters_.friction);
   counters.pcs_made = kept_pairs_.times_made();
   const timing::Region region("narrowphase");
+  const LateBodies* late = impacts_.late_bodies(impact_problem(pairs, h, 0), parameters_, view_of(bodies));
+  any_late_ = late != nullptr;
+  balls.find(views, contact_margin_.view(), late);
   const Manifolds manifolds =
-      narrow_phase_.find(view_of(std::as_const(bodies)), pairs, contact_margin_.view(),
-                         impacts_.late_bodies(impact_problem(pairs, h, 0), parameters_, view_of(bodies)));
+      narrow_phase_.find(views, balls.others(pairs, late), contact_margin_.view(), late);
   counters.narrowphase += narrow_phase_.stats();
+  counters.narrowphase.tested += balls.tested();
   return manifolds;
 }
 
 void Substepper::respond(const Manifolds& manifolds, double h) {
   const timing::Region region("response");
   load_solver_bodies(bodies, solver_);
-  color_contacts(manifolds.headers, std::as_const(bodies.mobility).view(), contacts_.coloring);
+  color_contacts(memory_.balls, manifolds.headers, std::as_const(bodies.mobility).view(), contacts_.coloring);
   const double scale = last_substep_ > 0 ? h / last_substep_ : 1.0;
   prepare_contacts(manifolds, contact_laws(), memory_, scale, parameters_, contacts_);
-  impacts_.mark_flights(impact_problem({}, h, 0), parameters_, manifolds, view_of(bodies), contacts_);
-  ledger = ledger + response_.solve(manifolds, h, parameters_, view_of(bodies), solver_, contacts_, counters);
+  impacts_.mark_flights(impact_problem({}, h, 0), parameters_, manifolds, view_of(bodies), contacts_,
+                        memory_.balls);
+  ledger =
+      ledger + response_.solve(manifolds, h, parameters_, memory_.balls, parameters_.warm_start ? scale : 0.0,
+                               view_of(bodies), solver_, contacts_, counters);
+  if (any_late_) contacts_.list_pairs(solver_.view());
   ledger = ledger + impacts_.shift_late(impact_problem({}, h, 0), parameters_, view_of(bodies), contacts_);
 }
 
@@ -219,10 +234,15 @@ void Substepper::add_impulse_on_driven_bodies(std::int32_t i, std::int32_t j, co
   if (mobility[j] != Mobility::free) contact_impulse_[static_cast<std::size_t>(j)] += impulse;
 }
 
-std::vector<ContactForce> Substepper::contact_forces() const {
-  const ConstView<Contact> contacts = contacts_.contacts.view();
-  const ConstView<ContactRow> rows = contacts_.rows.view();
-  const ConstBodyView views = view_of(bodies);
+const ContactSet& Substepper::contacts() {
+  contacts_.list_pairs(solver_.view());
+  return contacts_;
+}
+
+std::vector<ContactForce> Substepper::contact_forces() {
+  const ConstView<Contact> contacts = this->contacts().contacts.view();
+  const ConstView<ContactRow> rows = this->contacts().rows.view();
+  const ConstBodyView views = view_of(std::as_const(bodies));
   std::vector<ContactForce> forces;
   for (std::int64_t c = 0; c < contacts.size(); ++c) {
     const Contact& contact = contacts[c];
@@ -243,8 +263,8 @@ std::vector<ContactForce> Substepper::contact_forces() const {
   return forces;
 }
 
-ContactProblem Substepper::contact_problem() const {
-  return contact_problem_of(contacts_, solver_.view(), response_.free_velocity(), response_.free_spin());
+ContactProblem Substepper::contact_problem() {
+  return contact_problem_of(contacts(), solver_.view(), response_.free_velocity(), response_.free_spin());
 }
 
 }  // namespace scree

@@ -45,10 +45,10 @@ class Substepper {
 
   const ResponseParameters& parameters() const { return parameters_; }
   /// Of the last substep.
-  const ContactSet& contacts() const { return contacts_; }
+  const ContactSet& contacts();
   /// Of the last substep, those that carried a force.
-  std::vector<ContactForce> contact_forces() const;
-  ContactProblem contact_problem() const;
+  std::vector<ContactForce> contact_forces();
+  ContactProblem contact_problem();
   /// On a body that is not free, over the step (N s).
   const Vec3& contact_impulse(std::int32_t body) const {
     return contact_impulse_[static_cast<std::size_t>(body)];
@@ -100,6 +100,7 @@ class Substepper {
   Array<double, Host> contact_margin_;
   Array<SolverBody, Host> solver_;
   std::vector<Impact> struck_;  // in the last substep
+  bool any_late_ = false;       // of these after the midpoint
   ContactSet contacts_;
   ImpulseMemory memory_;
 };

@@ -4,6 +4,7 @@
 #include "core/array.hpp"
 #include "core/bodies.hpp"
 #include "narrowphase/contact.hpp"
+#include "sim/dynamics/ball_pairs.hpp"
 #include "sim/dynamics/coloring.hpp"
 #include "sim/dynamics/contact_row.hpp"
 #include "sim/dynamics/lanes/batches.hpp"
@@ -54,15 +55,25 @@ struct ContactSet {
   Array<ContactRow, Host> rows;        ///< of one contact after the other
   Array<RowCoupling, Host> couplings;  ///< of the rows; not set for those of balls
   lanes::Batches batches;              ///< the same for the kernels, colour by colour
+  std::int64_t pairs = 0;              ///< contacts of BallPairs: only in the batches, until they are listed
+  bool pairs_are_listed = false;       ///< among the contacts and rows, after the others
+
+  std::int64_t contact_count() const { return contacts.size() + (pairs_are_listed ? 0 : pairs); }
+  std::int64_t point_count() const { return rows.size() + (pairs_are_listed ? 0 : pairs); }
+  /// How many contacts are not of BallPairs.
+  std::int64_t others() const { return contact_count() - pairs; }
+  /// Lists the contacts of BallPairs too, as the batches have them, for those who look at contacts one by
+  /// one.
+  void list_pairs(ConstView<SolverBody> bodies);
 
   /// So many points that solving them to the end in every substep is not worth what it costs: what is left is
   /// for the next ones, which start from there.
   bool is_heap() const {
     constexpr std::int64_t fewest = 2500;
-    return rows.size() >= fewest;
+    return point_count() >= fewest;
   }
   /// Whether contacts have several points, among which the load moves slowly.
-  bool shares_loads() const { return rows.size() > contacts.size(); }
+  bool shares_loads() const { return point_count() > contact_count(); }
   /// All that a contact's rows gave to its body j in the last substep (N s).
   Vec3 impulse_of(const Contact& contact) const {
     Vec3 impulse = Vec3::Zero();
@@ -75,12 +86,14 @@ struct ContactSet {
 /// the place where those of each i begin.
 class ImpulseMemory {
  public:
+  BallPairs balls;  ///< which remember their own
+
   /// Finds the last impulses of a manifold's points (N s, world frame). False if none of the pair's points on
   /// that part carried any: where one corner rests, the others do not bounce.
   bool recall(const ManifoldHeader& manifold, const ContactPoint* points, Vec3* impulses) const;
   /// Whether a part of the pair i, j carried an impulse.
   bool is_loaded(std::int32_t i, std::int32_t j, std::int32_t part) const;
-  /// Takes the impulses of the rows; `bodies` is their number.
+  /// Takes the impulses of the rows and of the batches; `bodies` is their number.
   void remember(const Manifolds& manifolds, const ContactSet& set, std::int64_t bodies);
 
   /// A manifold.
@@ -125,8 +138,8 @@ struct ContactLaws {
   }
 };
 
-/// Fills the contacts with their laws, and the rows with the impulses remembered, scaled by `scale` (ratio of
-/// the substeps' lengths) and projected on the cone at the new normal.
+/// Fills the contacts of the manifolds with their laws, and the rows with the impulses remembered, scaled by
+/// `scale` (ratio of the substeps' lengths) and projected on the cone at the new normal.
 void prepare_contacts(const Manifolds& manifolds, const ContactLaws& laws, const ImpulseMemory& memory,
                       double scale, const ResponseParameters& parameters, ContactSet& set);
 

@@ -14,31 +14,28 @@ bool is_late(const FlightStage& stage, const StruckBody& body) {
   return stage.clock[body.body] > 0.5 * stage.problem.step;
 }
 
-struct MarkFlights {
+/// Two bodies that the rows would hold apart, though nothing else has touched them, may pass by each other:
+/// the normal of the midpoint says nothing of it. Or they meet later, in an impact that will bounce.
+struct Flights {
   FlightStage stage;
   StruckBodies struck;
-  Manifolds manifolds;
-  View<Contact> contacts;
 
-  /// Two bodies that the rows would hold apart, though nothing else has touched them, may pass by each other:
-  /// the normal of the midpoint says nothing of it. Or they meet later, in an impact that will bounce.
-  void operator()(std::int64_t index) const {
-    Contact& contact = contacts[index];
-    const ManifoldHeader& m = manifolds.headers[index];
+  double seen(std::int32_t i, std::int32_t j) const {
+    return std::max(0.5 * stage.problem.step, struck.time_of(i, j));
+  }
+
+  bool fly(const ManifoldHeader& m, const ContactPoint* points, double size) const {
     const double step = stage.problem.step;
-    const double seen = std::max(0.5 * step, struck.time_of(m.i, m.j));
-    contact.lead = seen - 0.5 * step;
-    if (contact.loaded || !would_push_apart(m, contact.size, seen)) return;
+    if (!would_push_apart(m, points, size, seen(m.i, m.j))) return false;
     PairFlight pair = stage.pair_of(m.i, m.j, 1.5 * step);
     pair.slowest[m.part] = 0;
     const Meeting meeting = next_meeting(pair, std::max(stage.clock[m.i], stage.clock[m.j]));
-    contact.flying = meeting.time == HUGE_VAL ||
-                     (meeting.time > step && fastest_approach(pair) > stage.slowest_bounce(m.i, m.j));
+    return meeting.time == HUGE_VAL ||
+           (meeting.time > step && fastest_approach(pair) > stage.slowest_bounce(m.i, m.j));
   }
 
-  bool would_push_apart(const ManifoldHeader& m, double size, double seen) const {
+  bool would_push_apart(const ManifoldHeader& m, const ContactPoint* points, double size, double seen) const {
     const double left = 1.5 * stage.problem.step - seen;
-    const ContactPoint* points = manifolds.points_of(m);
     // A point nearer than its size to a body moves at most twice as fast as its surface may.
     const double fastest = 2 * (stage.top_speed[m.i] + stage.top_speed[m.j]) +
                            stage.problem.step * stage.parameters.gravity.norm();
@@ -56,6 +53,53 @@ struct MarkFlights {
       pushes = true;
     }
     return pushes;
+  }
+};
+
+struct MarkFlights {
+  Flights flights;
+  Manifolds manifolds;
+  View<Contact> contacts;
+  void operator()(std::int64_t index) const {
+    Contact& contact = contacts[index];
+    const ManifoldHeader& m = manifolds.headers[index];
+    contact.lead = flights.seen(m.i, m.j) - 0.5 * flights.stage.problem.step;
+    contact.flying = !contact.loaded && flights.fly(m, manifolds.points_of(m), contact.size);
+  }
+};
+
+struct MarkPairs {
+  Flights flights;
+  BallPairs* balls;
+  void operator()(std::int64_t index) const {
+    const std::int32_t candidate = balls->fresh()[static_cast<std::size_t>(index)];
+    const auto [i, j] = balls->pair(candidate);
+    const BodyView& bodies = flights.stage.bodies;
+    if (!closes(i, j)) {
+      balls->set_flying(candidate, false);
+      return;
+    }
+    Manifold found[max_pair_manifolds];
+    find_pair_contacts(bodies.shape[i], solid(i), bodies.shape[j], solid(j), HUGE_VAL, found);
+    const ManifoldHeader header{
+        .i = i, .j = j, .part = 0, .count = 1, .first_point = 0, .normal = found[0].normal};
+    balls->set_flying(candidate,
+                      flights.fly(header, found[0].points, flights.stage.problem.laws.smaller_size(i, j)));
+  }
+  /// Whether two balls come closer in the flight after the kick: their turning closes nothing. Of a plane,
+  /// always.
+  bool closes(std::int32_t i, std::int32_t j) const {
+    const FlightStage& stage = flights.stage;
+    const BodyView& bodies = stage.bodies;
+    if (is_boundary(bodies.shape[i]) || is_boundary(bodies.shape[j])) return true;
+    Vec3 w = bodies.velocity[j] - bodies.velocity[i];
+    if (stage.is_free(i)) w -= stage.problem.step * stage.parameters.acceleration_of(i);
+    if (stage.is_free(j)) w += stage.problem.step * stage.parameters.acceleration_of(j);
+    return w.dot(bodies.position[j] - bodies.position[i]) < 0;
+  }
+  Solid solid(std::int32_t k) const {
+    const BodyView& bodies = flights.stage.bodies;
+    return {bodies.position[k], bodies.orientation[k], bodies.size[k]};
   }
 };
 
@@ -77,9 +121,11 @@ bool any_is_late(const FlightStage& stage, const std::vector<StruckBody>& struck
                      [&](const StruckBody& body) { return is_late(stage, body); });
 }
 
-void mark_flights(const FlightStage& stage, const Manifolds& manifolds, ContactSet& set) {
+void mark_flights(const FlightStage& stage, const Manifolds& manifolds, ContactSet& set, BallPairs& balls) {
+  const Flights flights{stage, StruckBodies(stage)};
   parallel::for_each<Host>("impact.flights", set.contacts.size(),
-                           MarkFlights{stage, StruckBodies(stage), manifolds, set.contacts.view()});
+                           MarkFlights{flights, manifolds, set.contacts.view()});
+  parallel::for_each<Host>("impact.flights", std::ssize(balls.fresh()), MarkPairs{flights, &balls});
 }
 
 Ledger shift_late(const FlightStage& stage, const std::vector<StruckBody>& struck, const ContactSet& set,

@@ -36,8 +36,8 @@ class StruckBodies final : public LateBodies {
 /// Whether one of them was struck after the midpoint.
 bool any_is_late(const FlightStage& stage, const std::vector<StruckBody>& struck);
 
-/// Sets Contact::flying and Contact::lead.
-void mark_flights(const FlightStage& stage, const Manifolds& manifolds, ContactSet& set);
+/// Sets Contact::flying and Contact::lead, and which of the pairs that touch fly.
+void mark_flights(const FlightStage& stage, const Manifolds& manifolds, ContactSet& set, BallPairs& balls);
 
 /// After the response: a body that was struck late has been where it was until then, so its midpoint moves
 /// to that from which its new flight leads on from its last impact. Returns what that moved. `total`:

@@ -22,6 +22,9 @@ struct SolveStage {
   View<Vec3> free_velocity;    ///< of each body without contacts
   View<Vec3> free_spin;
   double step;
+  double noise = 0;                  ///< parting speeds that count as none (m/s)
+  ConstView<std::int32_t> touching;  ///< candidates of BallPairs, whose contacts are made in the lanes
+  lanes::BallSource pairs = {};      ///< of these
 
   /// Relative velocity of a row of a contact: before the kick,
   SCREE_HD Vec3 velocity_before(const Contact& c, const ContactRow& row) const {
