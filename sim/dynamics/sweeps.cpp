@@ -131,12 +131,13 @@ struct PairBooks : lanes::Books {
 
 struct BookPairs {
   const lanes::Batches* batches;
-  const lanes::Body* mean;
+  const lanes::Body *mean, *kicked, *after;
   View<lanes::Losses> losses;
   PairBooks operator()(std::int64_t b) const {
     losses[b].gaining = 0;
     if (!batches->ball_members.view()[b].are_pairs()) return {};
-    return {lanes::kernels().book_balls(batches->balls.view()[b], mean, tolerance::response_gain, losses[b])};
+    return {lanes::kernels().book_balls(batches->balls.view()[b], mean, kicked, after,
+                                        tolerance::response_gain, losses[b])};
   }
 };
 
@@ -148,8 +149,9 @@ lanes::Books Sweeps::book_pairs(Array<lanes::Losses, Host>& losses) {
   last_.resize(bodies_.size());
   parallel::for_each<Host>("response.mean", bodies_.size(),
                            LoadMean{*stage_, std::as_const(bodies_).view(), last_.view()});
-  return parallel::sum<PairBooks, Host>("response.books", batches_->balls.size(),
-                                        BookPairs{batches_, last_.data(), losses.view()});
+  return parallel::sum<PairBooks, Host>(
+      "response.books", batches_->balls.size(),
+      BookPairs{batches_, last_.data(), free_.data(), bodies_.data(), losses.view()});
 }
 
 bool Sweeps::run(const SweepPlan& plan, int most, std::int64_t& count) {

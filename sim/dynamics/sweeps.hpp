@@ -38,7 +38,7 @@ inline SweepPlan plan_sweeps(const ResponseParameters& parameters, const Contact
       .tolerance = heap && !parameters.accurate ? tolerance::heap_change : tolerance::response_change,
       .direct = !heap,
       .smooth = !parameters.friction};
-  const std::int64_t points = std::max<std::int64_t>(set.rows.size(), 1);
+  const std::int64_t points = std::max<std::int64_t>(set.point_count(), 1);
   plan.most = static_cast<int>(std::clamp(visits / (plan.block_sweeps * points), fewest, most));
   if (parameters.block_sweeps > 0) plan.block_sweeps = parameters.block_sweeps;
   if (parameters.iterations > 0) {

@@ -260,13 +260,21 @@ void prepare_balls(const BallSource& from, const std::int32_t* candidates, BallB
   parting.apart = 0;
 }
 
-Books book_balls(const BallBatch& batch, const Body* mean, double rounding, Losses& losses) {
+Books book_balls(const BallBatch& batch, const Body* mean, const Body* kicked, const Body* after,
+                 double rounding, Losses& losses) {
   const Balls balls = get(batch);
   const V3 p = get(batch.impulse.impulse);
   const auto books = booked<Lanes>(balls, p, load(mean, batch.ends.i), load(mean, batch.ends.j));
   const V loss = books.restitution + books.friction;
   *reinterpret_cast<V*>(losses.at) = loss;
-  losses.gaining = static_cast<std::int32_t>(bits_of(-loss > rounding * 0.5 * dot(p, p) / balls.normal_mass));
+  losses.gaining = 0;
+  if (bits_of(loss < 0) != 0) {
+    // As Moved::gains().
+    const V3 u_kicked = velocity_at(balls, load(kicked, batch.ends.i), load(kicked, batch.ends.j));
+    const V3 u_after = velocity_at(balls, load(after, batch.ends.i), load(after, batch.ends.j));
+    const V square = 0.5 * dot(p, u_after - u_kicked);
+    losses.gaining = static_cast<std::int32_t>(bits_of((loss < 0) & (-loss > rounding * square)));
+  }
   Books sum{0, 0, 0};
   for (int l = 0; l < width; ++l) {
     sum.restitution += books.restitution[l];

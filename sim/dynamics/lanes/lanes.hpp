@@ -170,9 +170,10 @@ struct Kernels {
   std::uint64_t (*touch_planes)(const Reach*, const Triple* up, const Two* pairs);
   /// Prepares the contacts of the candidates given, or none.
   void (*prepare_balls)(const BallSource&, const std::int32_t* candidates, BallBatch&, BallParting&);
-  /// `mean`: velocities halfway between those before and after the substep. A contact gains that gains more
-  /// than `rounding` of p.W p / 2, of the impulse p alone.
-  Books (*book_balls)(const BallBatch&, const Body* mean, double rounding, Losses&);
+  /// `mean`: velocities halfway between those before and after the substep; `kicked`: without impulses. A
+  /// contact gains that gains more than `rounding` of what the impulses do after the kick.
+  Books (*book_balls)(const BallBatch&, const Body* mean, const Body* kicked, const Body* after,
+                      double rounding, Losses&);
   /// Flies the gaps on to the end of the substep, half a step after the midpoint. Returns the deepest overlap
   /// (m).
   double (*fly_balls)(const BallBatch&, BallParting&, const Body* velocities, double step);

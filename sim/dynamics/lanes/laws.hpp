@@ -20,6 +20,7 @@ struct V3 {
   SCREE_LAW friend V3 operator+(const V3& a, const V3& b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
   SCREE_LAW friend V3 operator-(const V3& a, const V3& b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
   SCREE_LAW friend V3 operator*(const V& s, const V3& a) { return {s * a.x, s * a.y, s * a.z}; }
+  SCREE_LAW friend V3 operator/(const V3& a, const V& s) { return {a.x / s, a.y / s, a.z / s}; }
   SCREE_LAW friend V dot(const V3& a, const V3& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
   SCREE_LAW friend V3 cross(const V3& a, const V3& b) {
     return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
@@ -100,8 +101,8 @@ SCREE_LAW Facing<A> facing(const V3<A>& offset, const typename A::V& reach, cons
   const V distance = A::root(dot(offset, offset));
   const auto plane = dot(up, up) > 0;
   // Coincident centres have no direction of their own; any one does, if it is always the same.
-  const V3<A> direction = where(distance > tolerance::coincident * reach, (1.0 / distance) * offset,
-                                V3<A>{zero, zero, zero + 1.0});
+  const V3<A> direction =
+      where(distance > tolerance::coincident * reach, offset / distance, V3<A>{zero, zero, zero + 1.0});
   return {where(plane, up, direction), (plane ? dot(up, offset) : distance) - reach};
 }
 
@@ -142,7 +143,7 @@ SCREE_LAW BallContact<A> contact_of(const Facing<A>& at, const typename A::V& fr
   const V flight = closing - tolerance::flight_margin * (closing < 0 ? -closing : closing);
   target = flies & (flight < target) ? flight : target;
   const V masses = i.inverse_mass + j.inverse_mass;
-  const V turning = i.inverse_inertia * arm_i * arm_i + j.inverse_inertia * arm_j * arm_j;
+  const V turning = i.inverse_inertia * (arm_i * arm_i) + j.inverse_inertia * (arm_j * arm_j);
   const V normal_mass = masses > 0 ? 1.0 / masses : zero + 1.0;
   const V tangent_mass = masses > 0 ? 1.0 / (masses + turning) : zero;
   return {{at.normal, arm_i, arm_j, friction, target, normal_mass, tangent_mass}, at.gap, bend};
