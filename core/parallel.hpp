@@ -7,6 +7,8 @@
 #include "core/space_policy.hpp"
 #include "core/timing.hpp"
 
+#include <thrust/copy.h>
+#include <thrust/count.h>
 #include <thrust/extrema.h>
 #include <thrust/for_each.h>
 #include <thrust/functional.h>
@@ -67,6 +69,12 @@ struct SumLeaf {
     for (std::int64_t i = first + 1; i < last; ++i) sum = sum + f(i);
     partial[block] = sum;
   }
+};
+
+template <class T>
+struct IsNot {
+  T none;
+  SCREE_HD bool operator()(const T& value) const { return value != none; }
 };
 
 template <class T>
@@ -134,6 +142,12 @@ T max(const char* label, std::int64_t n, F f, T lowest) {
   return reduce<T, Space>(label, n, f, lowest, thrust::maximum<T>());
 }
 
+/// Smallest f(i), and `highest` for n = 0. Exact, whatever the grouping.
+template <class T, class Space, class F>
+T min(const char* label, std::int64_t n, F f, T highest) {
+  return reduce<T, Space>(label, n, f, highest, thrust::minimum<T>());
+}
+
 /// counts[b] = number of i, 0 <= i < n, with f(i) = b, for 0 <= b < bins; other values are not counted. f
 /// gives int; bins <= 256 is fastest.
 template <class Space, class F>
@@ -166,6 +180,39 @@ std::int64_t exclusive_scan(const char* label, const Array<T, Space>& counts,
   std::int64_t total = 0;
   copy_bytes<Host, Space>(&total, offsets.data() + n, sizeof(total));
   return total;
+}
+
+/// Those f(i), 0 <= i < n, that are not `none`, in their order. f is asked more than once.
+template <class Space, class T, class F>
+void select(const char* label, std::int64_t n, F f, T none, Array<T, Space>& found) {
+  const timing::Call<Space> call(label);
+  if constexpr (std::is_same_v<Space, Host>) {
+    if (n < few) {
+      found.resize(n);
+      std::int64_t count = 0;
+      for (std::int64_t i = 0; i < n; ++i) {
+        const T value = f(i);
+        if (value != none) found.data()[count++] = value;
+      }
+      found.resize(count);
+      return;
+    }
+  }
+  const auto first = thrust::make_transform_iterator(thrust::counting_iterator<std::int64_t>(0), f);
+  const detail::IsNot<T> some{none};
+  found.resize(thrust::count_if(scree::detail::policy(Space{}), first, first + n, some));
+  thrust::copy_if(scree::detail::policy(Space{}), first, first + n, found.data(), some);
+}
+
+/// Sorts unsigned keys that hold nothing above their lowest `bits` bits.
+template <class Space, class Key>
+void sort(const char* label, Array<Key, Space>& keys, int bits = 8 * sizeof(Key)) {
+  const timing::Call<Space> call(label);
+  Array<Key, Space> spare(keys.size());
+  Key* k = keys.data();
+  Key* s = spare.data();
+  scree::detail::sort_keys(Space{}, k, s, keys.size(), bits);
+  if (k != keys.data()) keys.swap(spare);
 }
 
 /// Stable sort of values by the lowest `bits` bits of their unsigned keys, which hold nothing above them.

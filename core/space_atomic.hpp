@@ -4,6 +4,8 @@
 #include "core/space.hpp"
 
 #include <atomic>
+#include <cstdint>
+#include <type_traits>
 
 namespace scree {
 
@@ -18,6 +20,74 @@ SCREE_HD T exchange(T* place, T value) {
   return before;
 #else
   return std::atomic_ref<T>(*place).exchange(value, std::memory_order_acq_rel);
+#endif
+}
+
+namespace detail {
+
+/// What CUDA calls the unsigned integers of T's size.
+template <class T>
+requires std::is_unsigned_v<T>
+using CudaWord = std::conditional_t<sizeof(T) == 8, unsigned long long, unsigned>;
+
+}  // namespace detail
+
+/// Lowers what is in a place to `value`, if that is smaller: exact, whatever the order of the threads.
+template <class T>
+SCREE_HD void lower(T* place, T value) {
+#if defined(__CUDA_ARCH__)
+  using Word = detail::CudaWord<T>;
+  auto* word = reinterpret_cast<Word*>(place);
+  if (value < *static_cast<volatile Word*>(word)) atomicMin(word, static_cast<Word>(value));
+#else
+  const std::atomic_ref<T> shared(*place);
+  T before = shared.load(std::memory_order_relaxed);
+  while (value < before && !shared.compare_exchange_weak(before, value, std::memory_order_relaxed)) {
+  }
+#endif
+}
+
+/// Raises it, if `value` is larger.
+template <class T>
+SCREE_HD void raise(T* place, T value) {
+#if defined(__CUDA_ARCH__)
+  using Word = detail::CudaWord<T>;
+  auto* word = reinterpret_cast<Word*>(place);
+  if (value > *static_cast<volatile Word*>(word)) atomicMax(word, static_cast<Word>(value));
+#else
+  const std::atomic_ref<T> shared(*place);
+  T before = shared.load(std::memory_order_relaxed);
+  while (value > before && !shared.compare_exchange_weak(before, value, std::memory_order_relaxed)) {
+  }
+#endif
+}
+
+/// Adds one to a count and returns what it was: a place in a list, whose order hangs on the threads.
+SCREE_HD inline std::uint64_t count_up(std::uint64_t* count) {
+#if defined(__CUDA_ARCH__)
+  return atomicAdd(reinterpret_cast<unsigned long long*>(count), 1ull);
+#else
+  return std::atomic_ref<std::uint64_t>(*count).fetch_add(1, std::memory_order_relaxed);
+#endif
+}
+
+/// Adds to an integer; the sum does not hang on the order of threads.
+template <class T>
+SCREE_HD T add(T* place, T value) {
+#if defined(__CUDA_ARCH__)
+  return atomicAdd(place, value);
+#else
+  return std::atomic_ref<T>(*place).fetch_add(value, std::memory_order_relaxed);
+#endif
+}
+
+/// Sets the bits of `value`.
+template <class T>
+SCREE_HD void set_bits(T* place, T value) {
+#if defined(__CUDA_ARCH__)
+  atomicOr(place, value);
+#else
+  std::atomic_ref<T>(*place).fetch_or(value, std::memory_order_relaxed);
 #endif
 }
 

@@ -40,15 +40,13 @@ void for_each_block(std::int64_t n, std::int64_t blocks, const Work& work) {
   }
 }
 
-/// Stable sort of n pairs by the lowest `bits` bits of their unsigned keys. The sorted pairs are left in
-/// keys and values; the spare arrays are overwritten.
-///
-/// On Host a radix sort from the lowest digit: each block of pairs counts its digits, and thus knows where
-/// its pairs go. A stable order is the only one there is, however many blocks there are.
-template <class Key, class Value>
-void sort_pairs(Host, Key*& keys, Value*& values, Key*& spare_keys, Value*& spare_values, std::int64_t n,
-                int bits) {
-  const int most_bits = n < 16384 ? 8 : 11;  // more buckets than pairs, or than a cache has lines, are slower
+/// Stable radix sort of n unsigned keys by their lowest `bits` bits, from the lowest digit: each block of
+/// keys counts its digits, and thus knows where its keys go. A stable order is the only one there is, however
+/// many blocks there are. `along.move(from, to)` moves what belongs to a key, and `along.swap()` follows each
+/// pass.
+template <class Key, class Along>
+void sort_by_digits(Key*& keys, Key*& spare_keys, std::int64_t n, int bits, const Along& along) {
+  const int most_bits = n < 16384 ? 8 : 11;  // more buckets than keys, or than a cache has lines, are slower
   const int passes = std::max(1, (bits + most_bits - 1) / most_bits);
   const int digit_bits = (bits + passes - 1) / passes;
   const std::int64_t buckets = std::int64_t{1} << digit_bits;
@@ -71,12 +69,39 @@ void sort_pairs(Host, Key*& keys, Value*& values, Key*& spare_keys, Value*& spar
       for (std::int64_t i = begin; i < end; ++i) {
         const std::int64_t to = next[digit(keys[i])]++;
         spare_keys[to] = keys[i];
-        spare_values[to] = values[i];
+        along.move(i, to);
       }
     });
     std::swap(keys, spare_keys);
-    std::swap(values, spare_values);
+    along.swap();
   }
+}
+
+template <class Value>
+struct WithValues {
+  Value*& values;
+  Value*& spare;
+  void move(std::int64_t from, std::int64_t to) const { spare[to] = values[from]; }
+  void swap() const { std::swap(values, spare); }
+};
+
+struct KeysAlone {
+  void move(std::int64_t, std::int64_t) const {}
+  void swap() const {}
+};
+
+/// Stable sort of n pairs by the lowest `bits` bits of their unsigned keys. The sorted pairs are left in
+/// keys and values; the spare arrays are overwritten.
+template <class Key, class Value>
+void sort_pairs(Host, Key*& keys, Value*& values, Key*& spare_keys, Value*& spare_values, std::int64_t n,
+                int bits) {
+  sort_by_digits(keys, spare_keys, n, bits, WithValues<Value>{values, spare_values});
+}
+
+/// The same without values.
+template <class Key>
+void sort_keys(Host, Key*& keys, Key*& spare_keys, std::int64_t n, int bits) {
+  sort_by_digits(keys, spare_keys, n, bits, KeysAlone{});
 }
 
 /// counts[b] = how often b occurs among n samples, for 0 <= b < bins.
@@ -140,6 +165,18 @@ void sort_pairs(Device, Key*& keys, Value*& values, Key*& spare_keys, Value*& sp
   values = value_buffer.Current();
   spare_keys = key_buffer.Alternate();
   spare_values = value_buffer.Alternate();
+}
+
+template <class Key>
+void sort_keys(Device, Key*& keys, Key*& spare_keys, std::int64_t n, int bits) {
+  cub::DoubleBuffer<Key> buffer(keys, spare_keys);
+  std::size_t bytes = 0;
+  cub::DeviceRadixSort::SortKeys(nullptr, bytes, buffer, n, 0, bits);
+  void* scratch = Device::allocate(bytes);
+  cub::DeviceRadixSort::SortKeys(scratch, bytes, buffer, n, 0, bits);
+  Device::deallocate(scratch);
+  keys = buffer.Current();
+  spare_keys = buffer.Alternate();
 }
 
 /// Each block counts in shared memory; lanes with the same sample add once, since often all samples are

@@ -72,6 +72,8 @@ inline constexpr double impact_gain = 1e-12;
 /// replaces both. Larger: towers rock; heaps come to rest too dense.
 inline constexpr double response_change = 1e-10;
 inline constexpr double heap_change = 3e-3;
+/// The least of it with impulses in float, whose rounding is 1e-7.
+inline constexpr double mixed_change = 2e-6;
 
 /// Speed at which a contact may part before gravity's kick and still be held at 0 by it, in units of
 /// |gravity| * step. Smaller: the noise of resting faces becomes targets that no rigid body can meet at all

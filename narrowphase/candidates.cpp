@@ -1,95 +1,97 @@
-// A counting sort by the first body, then a sort of each one's few partners.
+// Each pair is a number that orders it; those of the candidates are sorted.
 #include "narrowphase/candidates.hpp"
 
 #include "core/parallel.hpp"
 
-#include <algorithm>
-#include <atomic>
+#include <bit>
+#include <limits>
 #include <utility>
 
 namespace scree {
 
 namespace {
 
-std::atomic_ref<std::int32_t> shared(std::int32_t& count) { return std::atomic_ref<std::int32_t>(count); }
+constexpr std::int32_t no_plane = -1;
+constexpr std::uint64_t no_key = std::numeric_limits<std::uint64_t>::max();
 
-/// What may become a candidate: the pairs of the PCS, then each plane with each body.
-struct Source {
+struct PlaneNumber {
+  ConstView<Shape> shape;
+  SCREE_HD std::int32_t operator()(std::int64_t k) const {
+    return shape[k] == Shape::plane ? static_cast<std::int32_t>(k) : no_plane;
+  }
+};
+
+/// A pair as a number, whose order is that of (i, j).
+struct PairKey {
+  int bits;  // of a body's number
+  SCREE_HD std::uint64_t of(std::int32_t i, std::int32_t j) const {
+    return (static_cast<std::uint64_t>(i) << bits) | static_cast<std::uint64_t>(j);
+  }
+  SCREE_HD Pair pair_of(std::uint64_t key) const {
+    return {static_cast<std::int32_t>(key >> bits),
+            static_cast<std::int32_t>(key & ((std::uint64_t{1} << bits) - 1))};
+  }
+};
+
+/// Keys of what may become a candidate: the pairs of the PCS, then each plane with each body. `no_key` for
+/// what does not.
+struct CandidateKey {
   ConstBodyView bodies;
   ConstView<Pair> pcs;
   ConstView<double> margin;
   ConstView<std::int32_t> planes;
+  PairKey key;
 
-  std::int64_t size() const { return pcs.size() + planes.size() * bodies.count(); }
+  SCREE_HD std::int64_t size() const { return pcs.size() + planes.size() * bodies.mobility.size(); }
 
-  /// False if the k-th does not.
-  bool take(std::int64_t k, Pair& pair) const {
-    if (k < pcs.size()) {
-      pair = pcs[k];
-      return (is_free(pair.i) || is_free(pair.j)) && !is_plane(pair.i) && !is_plane(pair.j);
-    }
-    const std::int32_t plane = planes[(k - pcs.size()) / bodies.count()];
-    const auto body = static_cast<std::int32_t>((k - pcs.size()) % bodies.count());
-    if (!is_free(body) || bodies.mobility[plane] == Mobility::absent) return false;
-    const Vec3 up = bodies.orientation[plane] * Vec3::UnitZ();
-    const double reach =
-        bounding_radius(bodies.shape[body], bodies.size[body]) + margin[plane] + margin[body];
-    pair = {std::min(plane, body), std::max(plane, body)};
-    return up.dot(bodies.position[body] - bodies.position[plane]) <= reach;
+  SCREE_HD std::uint64_t operator()(std::int64_t k) const {
+    if (k < pcs.size()) return of_pair(pcs[k]);
+    const std::int64_t n = bodies.mobility.size();
+    return of_plane(planes[(k - pcs.size()) / n], static_cast<std::int32_t>((k - pcs.size()) % n));
   }
 
  private:
-  bool is_plane(std::int32_t k) const { return bodies.shape[k] == Shape::plane; }
-  bool is_free(std::int32_t k) const { return bodies.mobility[k] == Mobility::free; }
-};
-
-struct CountByFirst {
-  Source source;
-  View<std::int32_t> counts;
-  void operator()(std::int64_t k) const {
-    Pair pair;
-    if (source.take(k, pair)) ++shared(counts[pair.i]);
+  SCREE_HD std::uint64_t of_pair(const Pair& pair) const {
+    const bool taken = (is_free(pair.i) || is_free(pair.j)) && !is_plane(pair.i) && !is_plane(pair.j);
+    return taken ? key.of(pair.i, pair.j) : no_key;
   }
-};
-
-/// Puts each pair into the range of its first body, in any order.
-struct PlaceByFirst {
-  Source source;
-  ConstView<std::int64_t> offsets;
-  View<std::int32_t> counts;
-  View<Pair> placed;
-  void operator()(std::int64_t k) const {
-    Pair pair;
-    if (source.take(k, pair)) placed[offsets[pair.i] + --shared(counts[pair.i])] = pair;
+  SCREE_HD std::uint64_t of_plane(std::int32_t plane, std::int32_t body) const {
+    if (!is_free(body) || bodies.mobility[plane] == Mobility::absent) return no_key;
+    const Vec3 up = bodies.orientation[plane] * Vec3::UnitZ();
+    const double reach =
+        bounding_radius(bodies.shape[body], bodies.size[body]) + margin[plane] + margin[body];
+    if (!(up.dot(bodies.position[body] - bodies.position[plane]) <= reach)) return no_key;
+    return plane < body ? key.of(plane, body) : key.of(body, plane);
   }
+  SCREE_HD bool is_plane(std::int32_t k) const { return bodies.shape[k] == Shape::plane; }
+  SCREE_HD bool is_free(std::int32_t k) const { return bodies.mobility[k] == Mobility::free; }
 };
 
-struct SortBySecond {
-  ConstView<std::int64_t> offsets;
+struct TakePair {
+  PairKey key;
+  ConstView<std::uint64_t> keys;
   View<Pair> pairs;
-  void operator()(std::int64_t i) const {
-    std::sort(pairs.data() + offsets[i], pairs.data() + offsets[i + 1],
-              [](const Pair& a, const Pair& b) { return a.j < b.j; });
-  }
+  SCREE_HD void operator()(std::int64_t k) const { pairs[k] = key.pair_of(keys[k]); }
 };
 
 }  // namespace
 
-ConstView<Pair> Candidates::list(const ConstBodyView& bodies, ConstView<Pair> pcs, ConstView<double> margin) {
-  const std::int64_t n = bodies.count();
-  planes_.clear();
-  for (std::int32_t k = 0; k < n; ++k) {
-    if (bodies.shape[k] == Shape::plane) planes_.push_back(k);
-  }
-  const Source source{bodies, pcs, margin, {planes_.data(), static_cast<std::int64_t>(planes_.size())}};
-  counts_.resize(n);
-  parallel::fill("candidates", counts_, 0);
-  parallel::for_each<Host>("candidates", source.size(), CountByFirst{source, counts_.view()});
-  pairs_.resize(parallel::exclusive_scan<Host>("candidates", counts_, offsets_));
-  parallel::for_each<Host>("candidates", source.size(),
-                           PlaceByFirst{source, offsets_.view(), counts_.view(), pairs_.view()});
-  parallel::for_each<Host>("candidates", n, SortBySecond{offsets_.view(), pairs_.view()});
+template <class Space>
+ConstView<Pair> Candidates<Space>::list(const ConstBodyView& bodies, ConstView<Pair> pcs,
+                                        ConstView<double> margin) {
+  const PairKey key{static_cast<int>(std::bit_width(static_cast<std::uint64_t>(bodies.count())))};
+  parallel::select("candidates", bodies.count(), PlaneNumber{bodies.shape}, no_plane, planes_);
+  const CandidateKey candidate{bodies, pcs, margin, std::as_const(planes_).view(), key};
+  parallel::select("candidates", candidate.size(), candidate, no_key, keys_);
+  parallel::sort("candidates", keys_, 2 * key.bits);
+  pairs_.resize(keys_.size());
+  parallel::for_each<Space>("candidates", keys_.size(),
+                            TakePair{key, std::as_const(keys_).view(), pairs_.view()});
   return std::as_const(pairs_).view();
 }
+
+#define SCREE_INSTANTIATE(Space) template class Candidates<Space>;
+SCREE_FOR_EACH_SPACE(SCREE_INSTANTIATE)
+#undef SCREE_INSTANTIATE
 
 }  // namespace scree

@@ -6,10 +6,11 @@
 #include "core/bodies.hpp"
 
 #include <cstdint>
-#include <vector>
 
 namespace scree {
 
+/// Of bodies in a space.
+template <class Space>
 class Candidates {
  public:
   /// The pairs of which one is free, and of each plane with the free bodies that may come as near to it as
@@ -19,10 +20,9 @@ class Candidates {
   ConstView<Pair> list(const ConstBodyView& bodies, ConstView<Pair> pcs, ConstView<double> margin);
 
  private:
-  std::vector<std::int32_t> planes_;
-  Array<std::int32_t, Host> counts_;   // of the pairs of each first body
-  Array<std::int64_t, Host> offsets_;  // where they begin
-  Array<Pair, Host> pairs_;
+  Array<std::int32_t, Space> planes_;
+  Array<std::uint64_t, Space> keys_;  // of the pairs
+  Array<Pair, Space> pairs_;
 };
 
 }  // namespace scree

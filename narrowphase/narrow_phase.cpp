@@ -6,12 +6,7 @@
 #include "core/tolerances.hpp"
 #include "narrowphase/box_box_ccd.hpp"
 #include "narrowphase/box_box_crosscheck.hpp"
-#include "narrowphase/box_plane.hpp"
-#include "narrowphase/box_tube.hpp"
-#include "narrowphase/sphere_box.hpp"
-#include "narrowphase/sphere_plane.hpp"
-#include "narrowphase/sphere_sphere.hpp"
-#include "narrowphase/sphere_tube.hpp"
+#include "narrowphase/pair_contacts.hpp"
 
 #include <algorithm>
 #include <type_traits>
@@ -24,32 +19,24 @@ namespace {
 /// Sets the manifolds of a pair, and returns their number.
 using PairTest = int (*)(const Solid&, const Solid&, double margin, Manifold* out, NarrowPhaseStats&);
 
-/// The count of a test that has at most one manifold.
-int single(bool found, Manifold& out) {
-  out.part = 0;
-  return found ? 1 : 0;
-}
-
 template <auto test>
 int straight(const Solid& a, const Solid& b, double margin, Manifold* out, NarrowPhaseStats&) {
   if constexpr (std::is_invocable_v<decltype(test), const Solid&, const Solid&, double, Manifold*>) {
     return test(a, b, margin, out);
   } else {
-    return single(test(a, b, margin, *out), *out);
+    return detail::single(test(a, b, margin, *out), *out);
   }
 }
 
 /// The test with the shapes in the other order.
 template <auto test>
 int swapped(const Solid& a, const Solid& b, double margin, Manifold* out, NarrowPhaseStats& stats) {
-  const int count = straight<test>(b, a, margin, out, stats);
-  for (int m = 0; m < count; ++m) out[m].normal = -out[m].normal;
-  return count;
+  return detail::swapped(straight<test>(b, a, margin, out, stats), out);
 }
 
 template <ccd::Method method>
 int by_ccd(const Solid& a, const Solid& b, double margin, Manifold* out, NarrowPhaseStats& stats) {
-  return single(box_box_ccd(a, b, margin, method, *out, stats), *out);
+  return detail::single(box_box_ccd(a, b, margin, method, *out, stats), *out);
 }
 
 /// The test of each two shapes; rows and columns in the order of Shape. Planes and tubes are never free, and
@@ -165,14 +152,6 @@ struct Gather {
 };
 
 }  // namespace
-
-int find_pair_contacts(Shape shape_a, const Solid& a, Shape shape_b, const Solid& b, double margin,
-                       Manifold* out) {
-  const PairTest test =
-      tables[static_cast<int>(BoxBoxMethod::sat)].of[static_cast<int>(shape_a)][static_cast<int>(shape_b)];
-  NarrowPhaseStats stats;
-  return test != nullptr ? test(a, b, margin, out, stats) : 0;
-}
 
 Manifolds NarrowPhase::find(const ConstBodyView& bodies, ConstView<Pair> pairs, ConstView<double> margin,
                             const LateBodies* late) {

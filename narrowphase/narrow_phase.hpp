@@ -34,12 +34,6 @@ struct alignas(64) ManifoldChunk {
 };
 }  // namespace detail
 
-/// The contacts of one pair by the closed forms and the 15 axes, with gaps of at most `margin` (m): sets
-/// everything of its manifolds but i and j, and returns their number, at most max_pair_manifolds. Boundaries
-/// (planes and tubes) make no contact with each other.
-int find_pair_contacts(Shape shape_a, const Solid& a, Shape shape_b, const Solid& b, double margin,
-                       Manifold* out);
-
 /// Bodies that are seen later than the others: where they are before, they have never been.
 class LateBodies {
  public:

@@ -29,14 +29,24 @@ ARROWS = {
     "sim/measurement.": ["core/", "narrowphase/contact.hpp", "sim/dynamics/", "sim/observation.hpp",
                          "sim/measurement.hpp"],
     "sim/dynamics/": ["core/", "narrowphase/", "sim/observation.hpp", "sim/scene/scene.hpp", "sim/dynamics/"],
+    "sim/resident/": ["core/", "broadphase/", "narrowphase/", "sim/dynamics/", "sim/inspection.hpp",
+                      "sim/observation.hpp", "sim/resident/"],
+    "sim/response_parameters.": ["core/", "sim/dynamics/", "sim/model.hpp", "sim/scene/", "sim/response_parameters.hpp"],
+    "sim/resident_stepper.": ["core/", "sim/applied_forces.hpp", "sim/dynamics/", "sim/inspection.hpp",
+                              "sim/moving_state.hpp", "sim/observation.hpp", "sim/pair_finder.hpp", "sim/resident/",
+                              "sim/response_parameters.hpp", "sim/scene/", "sim/stepper.hpp",
+                              "sim/resident_stepper.hpp"],
     "sim/record/": ["core/", "sim/model.hpp", "sim/observation.hpp", "sim/scene/", "sim/simulation.hpp", "sim/record/"],
     "sim/simulation.hpp": ["core/", "sim/inspection.hpp", "sim/observation.hpp", "sim/scene/"],
     "sim/moving_state.hpp": ["core/"],
+    "sim/stepper.hpp": ["core/", "sim/dynamics/", "sim/inspection.hpp", "sim/observation.hpp", "sim/scene/scene.hpp"],
     "sim/substepper.": ["core/", "narrowphase/", "sim/applied_forces.hpp", "sim/contact_problem.hpp", "sim/dynamics/",
-                        "sim/inspection.hpp", "sim/model.hpp", "sim/moving_state.hpp", "sim/observation.hpp",
-                        "sim/pair_finder.hpp", "sim/scene/", "sim/substepper.hpp"],
-    "sim/simulation.cpp": ["core/", "narrowphase/", "sim/dynamics/region.hpp", "sim/measurement.hpp", "sim/presence.hpp",
-                           "sim/scene/", "sim/simulation.hpp", "sim/substepper.hpp"],
+                        "sim/inspection.hpp", "sim/measurement.hpp", "sim/moving_state.hpp",
+                        "sim/observation.hpp", "sim/pair_finder.hpp", "sim/response_parameters.hpp", "sim/scene/",
+                        "sim/stepper.hpp", "sim/substepper.hpp"],
+    "sim/simulation.cpp": ["core/", "sim/dynamics/prescribed.hpp", "sim/measurement.hpp", "sim/presence.hpp",
+                           "sim/resident_stepper.hpp", "sim/scene/", "sim/simulation.hpp", "sim/stepper.hpp",
+                           "sim/substepper.hpp"],
     "sim/cli/": ["core/", "broadphase/", "narrowphase/", "render/", "sim/inspection.hpp", "sim/observation.hpp",
                  "sim/model.hpp", "sim/scene/", "sim/simulation.hpp", "sim/record/", "sim/cli/"],
     "bench/": ["core/", "broadphase/", "narrowphase/", "sim/", "render/", "bench/"],
@@ -51,7 +61,7 @@ LIBRARIES = {
     "CLI11": r"CLI/", "Boost": r"boost/", "nlohmann-json": r"nlohmann/", "xxHash": r"xxhash\.h",
 }
 THRUST_HEADERS = ["core/parallel.hpp", "core/space_matches.hpp", "core/space_matches_device.hpp", "core/space_matches_host.hpp",
-                  "core/space_policy.hpp", "core/space_warp.hpp"]
+                  "core/space_policy.hpp", "core/space_warp.hpp", "core/space_tiles.hpp"]
 THRUST = re.compile(r"(thrust|cub|cuda)/")
 
 INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]', re.M)

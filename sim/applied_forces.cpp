@@ -2,39 +2,59 @@
 
 #include "sim/dynamics/motion.hpp"
 
-#include <algorithm>
+#include <utility>
 
 namespace scree {
 
-AppliedForces::AppliedForces(const Scene& scene, const TimeGrid& grid) : forces_(scene.forces) {
+template <class Space>
+AppliedForces<Space>::AppliedForces(const Scene& scene, const TimeGrid& grid) : forces_(scene.forces) {
   for (const AppliedForce& force : forces_) steps_.push_back(grid.steps_in(force.during));
 }
 
-void AppliedForces::act(std::int64_t step, const Bodies<Host>& bodies, ResponseParameters& parameters) {
+template <class Space>
+void AppliedForces<Space>::act(std::int64_t step, const Bodies<Space>& bodies,
+                               ResponseParameters& parameters) {
   if (forces_.empty()) return;
-  acceleration_.resize(bodies.count());
-  torque_.resize(bodies.count());
-  std::fill(acceleration_.view().begin(), acceleration_.view().end(), Vec3(Vec3::Zero()));
-  std::fill(torque_.view().begin(), torque_.view().end(), Vec3(Vec3::Zero()));
-  for (std::size_t f = 0; f < forces_.size(); ++f) {
-    if (!steps_[f].holds(step)) continue;
-    const BodyRange& on = forces_[f].on;
-    for (std::int64_t k = on.first; k < on.first + on.count; ++k) {
-      acceleration_.view()[k] += bodies.inverse_mass.view()[k] * forces_[f].force;
-      torque_.view()[k] += forces_[f].torque;
-    }
+  std::vector<bool> acting;
+  for (const TimeGrid::Steps& steps : steps_) acting.push_back(steps.holds(step));
+  if (acting != acting_) {
+    acting_ = std::move(acting);
+    sum_up(bodies);
   }
   parameters.acceleration = acceleration_.view();
   parameters.torque = torque_.view();
 }
 
-void AppliedForces::start_substep(const Bodies<Host>& bodies) {
+template <class Space>
+void AppliedForces<Space>::sum_up(const Bodies<Space>& bodies) {
+  const std::vector<double> inverse_mass = to_vector(bodies.inverse_mass);
+  std::vector<Vec3> acceleration(inverse_mass.size(), Vec3::Zero());
+  std::vector<Vec3> torque(inverse_mass.size(), Vec3::Zero());
+  for (std::size_t f = 0; f < forces_.size(); ++f) {
+    if (!acting_[f]) continue;
+    const auto first = static_cast<std::size_t>(forces_[f].on.first);
+    for (std::size_t k = first; k < first + static_cast<std::size_t>(forces_[f].on.count); ++k) {
+      acceleration[k] += inverse_mass[k] * forces_[f].force;
+      torque[k] += forces_[f].torque;
+    }
+  }
+  copy(acceleration_, acceleration);
+  copy(torque_, torque);
+}
+
+template <class Space>
+void AppliedForces<Space>::start_substep(const Bodies<Space>& bodies) {
   if (!forces_.empty()) copy(start_, bodies.position);
 }
 
-double AppliedForces::work(const Bodies<Host>& bodies) const {
+template <class Space>
+double AppliedForces<Space>::work(const Bodies<Space>& bodies) const {
   if (forces_.empty()) return 0;
   return work_of_forces(bodies, start_, acceleration_.view());
 }
+
+#define SCREE_INSTANTIATE(Space) template class AppliedForces<Space>;
+SCREE_FOR_EACH_SPACE(SCREE_INSTANTIATE)
+#undef SCREE_INSTANTIATE
 
 }  // namespace scree

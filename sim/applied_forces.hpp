@@ -11,24 +11,31 @@
 
 namespace scree {
 
-/// Costs nothing in a scene without such forces.
+/// On bodies in a space. Costs nothing in a scene without such forces.
+template <class Space>
 class AppliedForces {
  public:
   AppliedForces(const Scene& scene, const TimeGrid& grid);
 
-  /// Points the parameters at the forces and torques that act in the step after the state `step`.
-  void act(std::int64_t step, const Bodies<Host>& bodies, ResponseParameters& parameters);
+  /// Points the parameters at the forces and torques that act in the step after the state `step`. They are
+  /// summed up anew only where others act than before, or after forget().
+  void act(std::int64_t step, const Bodies<Space>& bodies, ResponseParameters& parameters);
+  /// The bodies are others.
+  void forget() { acting_.clear(); }
   /// From here on work is counted.
-  void start_substep(const Bodies<Host>& bodies);
+  void start_substep(const Bodies<Space>& bodies);
   /// Work of the forces since then (J); that of the torques is the response's.
-  double work(const Bodies<Host>& bodies) const;
+  double work(const Bodies<Space>& bodies) const;
 
  private:
+  void sum_up(const Bodies<Space>& bodies);
+
   std::vector<AppliedForce> forces_;
   std::vector<TimeGrid::Steps> steps_;  // of each force
-  Array<Vec3, Host> acceleration_;      // of each body (m/s^2)
-  Array<Vec3, Host> torque_;            // on each body (N m)
-  Array<Vec3, Host> start_;             // of each body in the substep (m)
+  std::vector<bool> acting_;            // each force, in what is summed up; empty: nothing is
+  Array<Vec3, Space> acceleration_;     // of each body (m/s^2)
+  Array<Vec3, Space> torque_;           // on each body (N m)
+  Array<Vec3, Space> start_;            // of each body in the substep (m)
 };
 
 }  // namespace scree

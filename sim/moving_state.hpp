@@ -3,21 +3,20 @@
 
 #include "core/bodies.hpp"
 
-#include <vector>
-
 namespace scree {
 
+template <class Space>
 struct MovingState {
-  std::vector<Vec3> position, velocity, spin;
-  std::vector<Quat> orientation;
+  Array<Vec3, Space> position, velocity, spin;
+  Array<Quat, Space> orientation;
 
-  void save(const Bodies<Host>& bodies) {
+  void save(const Bodies<Space>& bodies) {
     copy(position, bodies.position);
     copy(velocity, bodies.velocity);
     copy(spin, bodies.spin);
     copy(orientation, bodies.orientation);
   }
-  void restore(Bodies<Host>& bodies) const {
+  void restore(Bodies<Space>& bodies) const {
     copy(bodies.position, position);
     copy(bodies.velocity, velocity);
     copy(bodies.spin, spin);

@@ -15,25 +15,25 @@ namespace scree {
 
 namespace {
 
-template <class Space>
-class PairFinderIn final : public PairFinder {
+template <class BodySpace, class Space>
+class PairFinderIn final : public PairFinder<BodySpace> {
  public:
   PairFinderIn(const BroadPhaseSettings& settings, const Vec3& origin)
       : settings_(settings), broad_phase_(make_broad_phase<Space>(settings)), origin_(origin) {}
 
-  ConstView<Pair> find(const Bodies<Host>& bodies, const Array<double, Host>& margin) override {
-    host_bounds_.resize(bodies.count());
-    compute_bounds<Host>(view_of(bodies), margin.view(), origin_, host_bounds_.view());
-    if constexpr (std::is_same_v<Space, Host>) {
-      return broad_phase_->find(std::as_const(host_bounds_).view(), bodies.mobility.view());
+  ConstView<Pair> find(const Bodies<BodySpace>& bodies, const Array<double, BodySpace>& margin) override {
+    body_bounds_.resize(bodies.count());
+    compute_bounds<BodySpace>(view_of(bodies), margin.view(), origin_, body_bounds_.view());
+    if constexpr (std::is_same_v<Space, BodySpace>) {
+      return broad_phase_->find(std::as_const(body_bounds_).view(), bodies.mobility.view());
     } else {
-      copy(bounds_, host_bounds_);
+      copy(bounds_, body_bounds_);
       copy(mobility_, bodies.mobility);
       const ConstView<Pair> found =
           broad_phase_->find(std::as_const(bounds_).view(), std::as_const(mobility_).view());
       pairs_.resize(found.size());
-      copy_bytes<Host, Space>(pairs_.data(), found.data(),
-                              static_cast<std::size_t>(found.size()) * sizeof(Pair));
+      copy_bytes<BodySpace, Space>(pairs_.data(), found.data(),
+                                   static_cast<std::size_t>(found.size()) * sizeof(Pair));
       return std::as_const(pairs_).view();
     }
   }
@@ -42,7 +42,7 @@ class PairFinderIn final : public PairFinder {
 
   std::vector<BodyBox> boxes() const override {
     std::vector<BodyBox> boxes;
-    for (const Aabb& box : host_bounds_.view())
+    for (const Aabb& box : to_vector(body_bounds_))
       boxes.push_back({std::to_array(box.lo), std::to_array(box.hi)});
     return boxes;
   }
@@ -50,7 +50,9 @@ class PairFinderIn final : public PairFinder {
   GridOccupancy grid_occupancy() const override {
     GridOccupancy grid;
     if (settings_.method != BroadPhaseMethod::hierarchical_grid) return grid;
-    const ConstView<Aabb> boxes = host_bounds_.view();
+    Array<Aabb, Host> host_bounds;
+    copy(host_bounds, body_bounds_);
+    const ConstView<Aabb> boxes = std::as_const(host_bounds).view();
     const Census census = take_census<Host>(boxes);
     const std::vector<GridLevel> levels = plan_grid(census, count_sizes<Host>(boxes, census),
                                                     grid_costs_for<Space>(settings_.levels), settings_.levels)
@@ -83,11 +85,11 @@ class PairFinderIn final : public PairFinder {
   BroadPhaseSettings settings_;
   std::unique_ptr<BroadPhase<Space>> broad_phase_;
   Vec3 origin_;
-  Array<Aabb, Host> host_bounds_;
-  // On their way to the space and back.
+  Array<Aabb, BodySpace> body_bounds_;
+  // On their way to the space and back, where it is another.
   Array<Aabb, Space> bounds_;
   Array<Mobility, Space> mobility_;
-  Array<Pair, Host> pairs_;
+  Array<Pair, BodySpace> pairs_;
 };
 
 /// Picks Device only where the build has it: the last of the spaces is Device there, Host elsewhere.
@@ -102,8 +104,10 @@ struct Last<Only> {
 
 }  // namespace
 
-ConstView<Pair> KeptPairs::covering(const Bodies<Host>& bodies, const Array<double, Host>& contact_margin,
-                                    double reach, const ResponseParameters& parameters) {
+template <class Space>
+ConstView<Pair> KeptPairs<Space>::covering(const Bodies<Space>& bodies,
+                                           const Array<double, Space>& contact_margin, double reach,
+                                           const ResponseParameters& parameters) {
   const timing::Region region("broadphase");
   if (cover(bodies, contact_margin)) return pairs_;
   boxes_.put_around(bodies, reach, parameters, contact_margin);
@@ -115,12 +119,22 @@ ConstView<Pair> KeptPairs::covering(const Bodies<Host>& bodies, const Array<doub
   return pairs_;
 }
 
-std::unique_ptr<PairFinder> make_pair_finder(const BroadPhaseSettings& settings, bool on_device,
-                                             const Vec3& origin) {
-  if (!on_device) return std::make_unique<PairFinderIn<Host>>(settings, origin);
+template <class Space>
+std::unique_ptr<PairFinder<Space>> make_pair_finder(const BroadPhaseSettings& settings, bool on_device,
+                                                    const Vec3& origin) {
+  if constexpr (std::is_same_v<Space, Host>) {
+    if (!on_device) return std::make_unique<PairFinderIn<Host, Host>>(settings, origin);
+  }
   const DeviceInfo info = device_info();
   if (!info.available) throw InputError("--device cuda: there is no GPU to run on: " + info.name);
-  return std::make_unique<PairFinderIn<Last<SCREE_SPACES>::type>>(settings, origin);
+  return std::make_unique<PairFinderIn<Space, typename Last<SCREE_SPACES>::type>>(settings, origin);
 }
+
+#define SCREE_INSTANTIATE(Space)                                                                       \
+  template class KeptPairs<Space>;                                                                     \
+  template std::unique_ptr<PairFinder<Space>> make_pair_finder<Space>(const BroadPhaseSettings&, bool, \
+                                                                      const Vec3&);
+SCREE_FOR_EACH_SPACE(SCREE_INSTANTIATE)
+#undef SCREE_INSTANTIATE
 
 }  // namespace scree

@@ -1,4 +1,5 @@
-// The broad phase in the space of choice, for bodies on the host: bounds out, pairs back.
+// The broad phase for bodies in a space: in that space, or for bodies on Host in the other, to which their
+// bounds go and from which the pairs come back.
 #pragma once
 
 #include "broadphase/broad_phase.hpp"
@@ -13,39 +14,42 @@
 
 namespace scree {
 
+template <class Space>
 class PairFinder {
  public:
   virtual ~PairFinder() = default;
   /// The PCS of the bodies, each box fat by its margin (m). Valid until the next call.
-  virtual ConstView<Pair> find(const Bodies<Host>& bodies, const Array<double, Host>& margin) = 0;
+  virtual ConstView<Pair> find(const Bodies<Space>& bodies, const Array<double, Space>& margin) = 0;
   virtual const char* space_name() const = 0;
   /// Of the last call of find().
   virtual std::vector<BodyBox> boxes() const = 0;
   virtual GridOccupancy grid_occupancy() const = 0;
 };
 
-/// `on_device`: the PCS is made on the GPU; throws InputError if there is none. `origin`: the local origin to
-/// which the float bounds are relative (m).
-std::unique_ptr<PairFinder> make_pair_finder(const BroadPhaseSettings& settings, bool on_device,
-                                             const Vec3& origin);
+/// `on_device`: the PCS of bodies on Host is made on the GPU too; throws InputError if there is none.
+/// `origin`: the local origin to which the float bounds are relative (m).
+template <class Space>
+std::unique_ptr<PairFinder<Space>> make_pair_finder(const BroadPhaseSettings& settings, bool on_device,
+                                                    const Vec3& origin);
 
 /// The PCS and the candidates for contacts, made anew only when a body has left its box.
+template <class Space>
 class KeptPairs {
  public:
   KeptPairs(const BroadPhaseSettings& settings, bool on_device, const Vec3& origin)
-      : finder_(make_pair_finder(settings, on_device, origin)) {}
+      : finder_(make_pair_finder<Space>(settings, on_device, origin)) {}
 
   /// Candidates among which are all pairs that may come as close as their contact margins (m). Where they
   /// have to be made anew, they have room for the bodies' travel within `reach` (s). Valid until the next
   /// call.
-  ConstView<Pair> covering(const Bodies<Host>& bodies, const Array<double, Host>& contact_margin,
+  ConstView<Pair> covering(const Bodies<Space>& bodies, const Array<double, Space>& contact_margin,
                            double reach, const ResponseParameters& parameters);
   /// Whether they still do, for the bodies where they are now.
-  bool cover(const Bodies<Host>& bodies, const Array<double, Host>& contact_margin) const {
+  bool cover(const Bodies<Space>& bodies, const Array<double, Space>& contact_margin) const {
     return kept_ && boxes_.hold(bodies, contact_margin);
   }
   /// Raises the margins (m) by what each body has moved since the pairs were made.
-  void add_travel(const Bodies<Host>& bodies, Array<double, Host>& contact_margin) const {
+  void add_travel(const Bodies<Space>& bodies, Array<double, Space>& contact_margin) const {
     boxes_.add_travel(bodies, contact_margin);
   }
   /// The bodies are others: the next call makes the pairs anew.
@@ -59,9 +63,9 @@ class KeptPairs {
   const char* space_name() const { return finder_->space_name(); }
 
  private:
-  std::unique_ptr<PairFinder> finder_;
-  FatBoxes boxes_;
-  Candidates candidates_;
+  std::unique_ptr<PairFinder<Space>> finder_;
+  FatBoxes<Space> boxes_;
+  Candidates<Space> candidates_;
   ConstView<Pair> pairs_;
   std::int64_t pcs_size_ = 0;
   bool kept_ = false;

@@ -35,8 +35,10 @@ void book(const Totals& body, double sign, Exchange& exchange) {
 }  // namespace
 
 Presence::Presence(const Scene& scene, const TimeGrid& grid) : count_(scene.bodies.count()) {
-  for (const Lifetime& lifetime : scene.lifetimes)
+  for (const Lifetime& lifetime : scene.lifetimes) {
     windows_.push_back({lifetime.bodies, grid.steps_in(lifetime.span)});
+    if (!windows_.back().steps.holds(0)) count_ -= lifetime.bodies.count;
+  }
 }
 
 const Presence::Window* Presence::window_of(std::int32_t body) const {
@@ -57,21 +59,24 @@ std::int64_t Presence::first_step(std::int32_t body) const {
   return window == nullptr ? 0 : window->steps.first;
 }
 
-void Presence::begin(Bodies<Host>& bodies) {
+void Presence::begin(Bodies<Host>& bodies) const {
   for (const Window& window : windows_) {
     if (window.steps.holds(0)) continue;
     for (std::int32_t k = 0; k < window.bodies.count; ++k) set_absent(window.bodies.first + k, bodies);
-    count_ -= window.bodies.count;
   }
+}
+
+bool Presence::changes(std::int64_t step) const {
+  return std::any_of(windows_.begin(), windows_.end(),
+                     [step](const Window& window) { return window.changes_at(step); });
 }
 
 Presence::Change Presence::update(std::int64_t step, const Scene& scene, const Vec3& reference,
                                   Bodies<Host>& bodies) {
   Change change;
   for (const Window& window : windows_) {
+    if (!window.changes_at(step)) continue;
     const bool comes = window.steps.first == step;
-    if (!comes && window.steps.end != step) continue;
-    change.any = true;
     const double sign = comes ? 1 : -1;
     count_ += comes ? window.bodies.count : -window.bodies.count;
     for (std::int64_t k = window.bodies.first; k < window.bodies.first + window.bodies.count; ++k) {

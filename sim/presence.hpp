@@ -22,11 +22,12 @@ class Presence {
   std::int64_t first_step(std::int32_t body) const;
   std::int64_t count() const { return count_; }  ///< bodies that are there
 
-  /// To be called at t = 0: takes out the bodies that come later.
-  void begin(Bodies<Host>& bodies);
+  /// To be called at t = 0, if some body is not there: takes out those that come later.
+  void begin(Bodies<Host>& bodies) const;
 
+  /// Whether bodies come or go as a step is reached.
+  bool changes(std::int64_t step) const;
   struct Change {
-    bool any = false;
     Exchange exchange;
     double first_potential = 0;  ///< of those that came, when they appear, less that of those that went (J)
   };
@@ -38,6 +39,7 @@ class Presence {
   struct Window {
     BodyRange bodies;
     TimeGrid::Steps steps;
+    bool changes_at(std::int64_t step) const { return steps.first == step || steps.end == step; }
   };
   const Window* window_of(std::int32_t body) const;
 

@@ -3,11 +3,12 @@
 #include "core/error.hpp"
 #include "core/timing.hpp"
 #include "core/tolerances.hpp"
-#include "narrowphase/narrow_phase.hpp"
-#include "sim/dynamics/region.hpp"
+#include "sim/dynamics/prescribed.hpp"
 #include "sim/measurement.hpp"
 #include "sim/presence.hpp"
+#include "sim/resident_stepper.hpp"
 #include "sim/scene/time_grid.hpp"
+#include "sim/stepper.hpp"
 #include "sim/substepper.hpp"
 
 #include <fmt/format.h>
@@ -20,10 +21,6 @@
 namespace scree {
 
 namespace {
-
-bool runs_on_device(SpaceChoice space) {
-  return space == SpaceChoice::cuda || (space == SpaceChoice::automatic && device_info().available);
-}
 
 /// Middle of the free bodies: where float bounds are finest.
 Vec3 middle_of(const BodyTable& bodies) {
@@ -48,6 +45,29 @@ double lifting_energy(const Scene& scene) {
   return energy;
 }
 
+/// Of the prescribed bodies, each from when it is there.
+std::vector<PrescribedPath> paths_of(const Scene& scene, const TimeGrid& grid, const Presence& presence) {
+  std::vector<PrescribedPath> paths = prescribed_paths(scene);
+  for (PrescribedPath& path : paths) path.start = grid.time(presence.first_step(path.body));
+  return paths;
+}
+
+/// Free bodies from which on a step on Device is the faster one (docs/performance.md).
+constexpr std::int64_t few_for_device = 20000;
+
+/// The accurate mode, and few bodies, are for Host; its PCS may come from Device all the same.
+std::unique_ptr<Stepper> make_stepper(const Scene& scene, const TimeGrid& grid, const Presence& presence,
+                                      SpaceChoice space, const Vec3& origin) {
+  const std::vector<PrescribedPath> paths = paths_of(scene, grid, presence);
+  const bool accurate = scene.response.mode == ResponseMode::accurate;
+  const bool device = space == SpaceChoice::cuda ||
+                      (space == SpaceChoice::automatic && device_info().available &&
+                       std::ranges::count(scene.bodies.mobility, Mobility::free) >= few_for_device);
+  if (!accurate && (device || scene.precision == Precision::mixed))
+    return make_resident_stepper(scene, grid, paths, device, origin);
+  return std::make_unique<Substepper>(scene, grid, paths, device, origin);
+}
+
 }  // namespace
 
 struct Simulation::Parts {
@@ -56,13 +76,11 @@ struct Simulation::Parts {
   Presence presence;
   tbb::global_control threads;
   Vec3 origin;
-  Substepper substepper;
-  NarrowPhase end_narrow_phase;  // for the penetration at the end of a step
+  std::unique_ptr<Stepper> stepper;
 
   std::int64_t step = 0;
   int substeps = 1;      // of the next, if the scene leaves it open
   double last_step = 0;  // its length
-  MovingState start;     // of the last step
   std::vector<Quat> first_orientation;
   Exchange exchange;  // potential energy about `origin`
   EnergyBaseline baseline;
@@ -81,21 +99,17 @@ struct Simulation::Parts {
                     ? static_cast<std::size_t>(options.threads)
                     : tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism)),
         origin(middle_of(s.bodies)),
-        substepper(s, grid, runs_on_device(options.space), origin),
-        end_narrow_phase({.box_box = s.narrowphase.box_box}) {
-    presence.begin(substepper.bodies);
-    for (PrescribedPath& path : substepper.paths.view())
-      path.start = grid.time(presence.first_step(path.body));
+        stepper(make_stepper(s, grid, presence, options.space, origin)) {
+    if (presence.count() < scene.bodies.count())
+      stepper->change_bodies([this](Bodies<Host>& bodies) { presence.begin(bodies); });
     first_orientation = scene.bodies.orientation;
-    start.save(substepper.bodies);
-    baseline.start(totals_of(substepper.bodies, substepper.parameters().gravity, origin),
-                   lifting_energy(scene));
+    baseline.start(stepper->totals(origin), lifting_energy(scene));
     contents = contents_before = region_contents();
   }
 
   std::vector<RegionContents> region_contents() const {
     std::vector<RegionContents> all;
-    for (const Region& region : scene.regions) all.push_back(contents_of(region, substepper.bodies));
+    for (const Region& region : scene.regions) all.push_back(stepper->contents_of(region));
     return all;
   }
 
@@ -104,24 +118,21 @@ struct Simulation::Parts {
     const int n = scene.time.substeps.value_or(substeps);
     const double h = dt / n;
     double overlap = 0;
-    start.save(substepper.bodies);
-    const Ledger ledger_before = substepper.ledger;
+    stepper->start_step(step);
     try {
-      substepper.start_step(step);
       for (int s = 0; s < n; ++s) {
-        substepper.substep(h, s * h);
-        overlap = std::max(overlap, substepper.overlap());
+        stepper->substep(h, s * h);
+        overlap = std::max(overlap, stepper->overlap());
       }
-      baseline.extend(totals_of(substepper.bodies, substepper.parameters().gravity, origin));
+      baseline.extend(stepper->totals(origin));
       if (!baseline.is_finite()) throw RunError(non_finite_body());
     } catch (const RunError& error) {
-      start.restore(substepper.bodies);
-      substepper.ledger = ledger_before;
+      stepper->undo_step();
       throw RunError(fmt::format("step {} (t = {} s): {}", step + 1, grid.time(step), error.what()));
     }
     if (overlap > tolerance::substep_overlap) substeps = std::min(2 * n, tolerance::most_substeps);
     if (overlap < tolerance::coarser_overlap) substeps = std::max(n / 2, 1);
-    substepper.counters.substeps += n;
+    stepper->counters.substeps += n;
     ++step;
     come_and_go();
     contents_before = std::exchange(contents, region_contents());
@@ -131,48 +142,41 @@ struct Simulation::Parts {
 
   /// Bodies whose time has come or is over.
   void come_and_go() {
-    const Presence::Change change = presence.update(step, scene, origin, substepper.bodies);
-    if (!change.any) return;
+    if (!presence.changes(step)) return;
+    Presence::Change change;
+    stepper->change_bodies(
+        [&](Bodies<Host>& bodies) { change = presence.update(step, scene, origin, bodies); });
     exchange = exchange + change.exchange;
     baseline.exchange(change.first_potential);
-    baseline.extend(totals_of(substepper.bodies, substepper.parameters().gravity, origin));
-    substepper.forget_pairs();
+    baseline.extend(stepper->totals(origin));
   }
 
   void observe_bodies(double time) {
     Observation& o = observation;
     o.time = time;
     o.step = step;
-    o.ledger = substepper.ledger;
+    o.ledger = stepper->ledger;
     o.exchange = exchange;
     o.bodies = presence.count();
-    o.counters = substepper.counters;
-    const Totals totals = totals_of(substepper.bodies, substepper.parameters().gravity, origin);
-    measure_totals(totals, baseline, substepper.parameters().gravity, origin, o);
-    o.speed_max = largest_speed(substepper.bodies);
+    o.counters = stepper->counters;
+    const Totals totals = stepper->totals(origin);
+    measure_totals(totals, baseline, scene.gravity, origin, o);
+    o.speed_max = stepper->largest_speed();
     measure_regions(scene.regions, contents, contents_before, last_step, o.regions);
-    measure_contacts(substepper.contacts(), totals.count, o);
+    stepper->measure_contacts(totals.count, o);
     o.penetration = Penetration::unknown();
     o.pairs = -1;
     observed = true;
   }
 
   void observe_overlaps() {
-    const ConstView<Pair> pairs = substepper.pairs_now();
-    observation.pairs = substepper.kept_pairs().size();
-    measure_penetration(
-        end_narrow_phase.find(view_of(std::as_const(substepper.bodies)), pairs, substepper.margins()),
-        view_of(std::as_const(substepper.bodies)), observation.penetration);
+    stepper->measure_overlaps(observation);
     overlaps_observed = true;
   }
 
   std::string non_finite_body() const {
-    for (std::int64_t k = 0; k < substepper.bodies.count(); ++k) {
-      const auto views = view_of(std::as_const(substepper.bodies));
-      if (views.position[k].allFinite() && views.velocity[k].allFinite() && views.spin[k].allFinite())
-        continue;
-      return fmt::format("the state of body {} is no longer finite; try a smaller time.step", views.id[k]);
-    }
+    if (const std::int32_t body = stepper->non_finite_body(); body >= 0)
+      return fmt::format("the state of body {} is no longer finite; try a smaller time.step", body);
     return "the total energy is no longer finite; try a smaller time.step";
   }
 };
@@ -187,62 +191,50 @@ bool Simulation::finished() const { return parts_->step >= parts_->grid.last(); 
 double Simulation::time() const { return parts_->grid.time(parts_->step); }
 std::int64_t Simulation::steps() const { return parts_->step; }
 std::int64_t Simulation::steps_total() const { return parts_->grid.last(); }
-const char* Simulation::space_name() const { return parts_->substepper.kept_pairs().space_name(); }
+const char* Simulation::space_name() const { return parts_->stepper->space_name(); }
 
 void Simulation::snapshot(Snapshot& out) const {
   out.time = time();
   out.step = parts_->step;
-  copy_bodies(out.bodies, parts_->substepper.bodies);
+  parts_->stepper->copy_state(out.bodies);
 }
 
 std::uint64_t Simulation::state_hash() const {
   BodyTable table;
-  copy_bodies(table, parts_->substepper.bodies);
+  parts_->stepper->copy_state(table);
   return hash_of(table);
 }
 
 BodyState Simulation::body(std::int32_t id) const {
   const Parts& p = *parts_;
-  const auto k = static_cast<std::size_t>(id);
-  const ConstBodyView views = view_of(std::as_const(p.substepper.bodies));
-  if (views.mobility[id] == Mobility::absent) return BodyState::absent();
-  BodyState state{.position = views.position[id],
-                  .velocity = views.velocity[id],
-                  .spin = views.spin[id],
-                  .orientation = views.orientation[id],
-                  .start_orientation = p.first_orientation[k],
+  const SteppedBody body = p.stepper->body(id);
+  if (body.mobility == Mobility::absent) return BodyState::absent();
+  BodyState state{.position = body.position,
+                  .velocity = body.velocity,
+                  .spin = body.spin,
+                  .orientation = body.orientation,
+                  .start_orientation = p.first_orientation[static_cast<std::size_t>(id)],
                   .acceleration = Vec3::Zero(),
                   .force = Vec3::Zero()};
   if (p.step == 0 || !p.presence.holds(id, p.step - 1)) return state;
-  state.acceleration = (state.velocity - p.start.velocity[k]) / p.last_step;
+  state.acceleration = (body.velocity - body.velocity_before) / p.last_step;
   // On a free body the contact impulse is what gravity and applied forces do not explain of the change of its
   // momentum.
-  state.force = views.mobility[id] == Mobility::free
-                    ? Vec3((state.acceleration - p.substepper.parameters().acceleration_of(id)) /
-                           views.inverse_mass[id])
-                    : Vec3(p.substepper.contact_impulse(id) / p.last_step);
+  state.force = body.mobility == Mobility::free
+                    ? Vec3((state.acceleration - body.acceleration) / body.inverse_mass)
+                    : Vec3(body.contact_impulse / p.last_step);
   return state;
 }
 
-std::vector<BodyPair> Simulation::pairs() {
-  std::vector<BodyPair> pairs;
-  const ConstView<Shape> shape = std::as_const(parts_->substepper.bodies.shape).view();
-  for (const Pair& pair : parts_->substepper.pairs_now()) {
-    if (shape[pair.i] != Shape::plane && shape[pair.j] != Shape::plane) pairs.push_back({pair.i, pair.j});
-  }
-  return pairs;
-}
+std::vector<BodyPair> Simulation::pairs() { return parts_->stepper->pairs(); }
 
-std::vector<BodyBox> Simulation::boxes() const { return parts_->substepper.kept_pairs().boxes(); }
+std::vector<BodyBox> Simulation::boxes() const { return parts_->stepper->boxes(); }
 
-std::vector<ContactForce> Simulation::contact_forces() const { return parts_->substepper.contact_forces(); }
+std::vector<ContactForce> Simulation::contact_forces() const { return parts_->stepper->contact_forces(); }
 
-ContactProblem Simulation::contact_problem() const { return parts_->substepper.contact_problem(); }
+ContactProblem Simulation::contact_problem() const { return parts_->stepper->contact_problem(); }
 
-GridOccupancy Simulation::grid_occupancy() {
-  parts_->substepper.pairs_now();
-  return parts_->substepper.kept_pairs().grid_occupancy();
-}
+GridOccupancy Simulation::grid_occupancy() { return parts_->stepper->grid_occupancy(); }
 
 const Observation& Simulation::observe(bool overlaps) {
   Parts& p = *parts_;

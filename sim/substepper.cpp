@@ -3,7 +3,8 @@
 #include "core/timing.hpp"
 #include "core/tolerances.hpp"
 #include "sim/contact_problem.hpp"
-#include "sim/model.hpp"
+#include "sim/measurement.hpp"
+#include "sim/response_parameters.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -11,36 +12,8 @@
 
 namespace scree {
 
-namespace {
-
-ResponseParameters parameters_of(const Scene& scene) {
-  const ModelPlan plan = plan_model(scene);
-  return {.gravity = scene.gravity,
-          .acceleration = {},
-          .torque = {},
-          .friction = plan.friction.on,
-          .restitution = plan.restitution.on,
-          .rotation = plan.rotation.on,
-          .gyroscopic = plan.gyroscopic.on,
-          .continuous = plan.continuous.on,
-          .warm_start = scene.response.warm_start,
-          .accurate = scene.response.mode == ResponseMode::accurate,
-          .iterations = scene.response.iterations.value_or(0),
-          .block_sweeps = scene.response.block_sweeps.value_or(0),
-          .tolerance = scene.response.tolerance.value_or(0),
-          .restitution_threshold = plan.restitution_threshold};
-}
-
-std::vector<PairLaw> table_of(const Scene& scene) {
-  std::vector<PairLaw> table;
-  for (const ContactLaw& law : scene.laws) table.push_back({law.restitution, law.friction});
-  return table;
-}
-
-}  // namespace
-
 void Substepper::Restart::save(const Substepper& now) {
-  state.save(now.bodies);
+  state.save(now.bodies_);
   ledger = now.ledger;
   impacts = now.counters.impacts;
   unfinished_impacts = now.counters.unfinished_impacts;
@@ -48,30 +21,46 @@ void Substepper::Restart::save(const Substepper& now) {
 }
 
 void Substepper::Restart::restore(Substepper& now) const {
-  state.restore(now.bodies);
+  state.restore(now.bodies_);
   now.ledger = ledger;
   now.counters.impacts = impacts;
   now.counters.unfinished_impacts = unfinished_impacts;
   now.contact_impulse_ = contact_impulse;
 }
 
-Substepper::Substepper(const Scene& scene, const TimeGrid& grid, bool on_device, const Vec3& origin)
+Substepper::Substepper(const Scene& scene, const TimeGrid& grid, const std::vector<PrescribedPath>& paths,
+                       bool on_device, const Vec3& origin)
     : grid_(grid),
-      parameters_(parameters_of(scene)),
+      parameters_(response_parameters_of(scene)),
       materials_(static_cast<std::int64_t>(scene.materials.size())),
       forces_(scene, grid),
       kept_pairs_(scene.broadphase, on_device, origin),
-      narrow_phase_(scene.narrowphase) {
-  copy_bodies(bodies, scene.bodies);
-  copy(paths, prescribed_paths(scene));
-  copy(laws_, table_of(scene));
+      narrow_phase_(scene.narrowphase),
+      end_narrow_phase_({.box_box = scene.narrowphase.box_box}) {
+  copy_bodies(bodies_, scene.bodies);
+  copy(paths_, paths);
+  copy(laws_, pair_laws_of(scene));
   contact_impulse_.assign(scene.bodies.position.size(), Vec3::Zero());
+  start_.save(bodies_);
 }
 
 void Substepper::start_step(std::int64_t step) {
   step_ = step;
+  start_.save(bodies_);
+  start_ledger_ = ledger;
   std::fill(contact_impulse_.begin(), contact_impulse_.end(), Vec3(Vec3::Zero()));
-  forces_.act(step, bodies, parameters_);
+  forces_.act(step, bodies_, parameters_);
+}
+
+void Substepper::undo_step() {
+  start_.restore(bodies_);
+  ledger = start_ledger_;
+}
+
+void Substepper::change_bodies(const std::function<void(Bodies<Host>&)>& change) {
+  change(bodies_);
+  kept_pairs_.forget();
+  forces_.forget();
 }
 
 // What stops by a blow and not by friction does so no sooner in a shorter part: then cuts do not help, and
@@ -105,7 +94,7 @@ void Substepper::substep(double h, double done) {
 /// impulses. `done`: how much of the step went before (s).
 Manifolds Substepper::fly_and_respond(double h, double done) {
   struck_.clear();
-  forces_.start_substep(bodies);
+  forces_.start_substep(bodies_);
   {
     const timing::Region region("integration");
     fly(grid_.time(step_) + done + 0.5 * h, 0.5 * h);
@@ -119,11 +108,11 @@ Manifolds Substepper::fly_and_respond(double h, double done) {
 /// And its second: impacts on the way, since the response has changed it, and free flight to the end.
 void Substepper::fly_on(const Manifolds& manifolds, double h, double done) {
   resolve_impacts(h, 0.5 * h, reach_from(h, done));
-  if (!impacts_.impacts().empty()) load_solver_bodies(bodies, solver_);
+  if (!impacts_.impacts().empty()) load_solver_bodies(bodies_, solver_);
   fly(grid_.time(step_) + done + h, 0.5 * h);
-  ledger.work += forces_.work(bodies);
-  ledger = ledger + corrector_.correct(h, parameters_, view_of(bodies), solver_, contacts_);
-  memory_.remember(manifolds, contacts_, bodies.count());
+  ledger.work += forces_.work(bodies_);
+  ledger = ledger + corrector_.correct(h, parameters_, view_of(bodies_), solver_, contacts_);
+  memory_.remember(manifolds, contacts_, bodies_.count());
   for (std::int64_t k = 0; k < contacts_.others(); ++k) {
     const Contact& c = std::as_const(contacts_.contacts).view()[k];
     if (c.free_ends < 2) add_impulse_on_driven_bodies(c.i, c.j, contacts_.impulse_of(c));
@@ -139,8 +128,8 @@ double Substepper::reach_from(double h, double done) const { return grid_.length
 
 /// Moves every body to the time given, dt later than it is.
 void Substepper::fly(double time, double dt) {
-  ledger.integration += advance(bodies, dt, parameters_);
-  place_prescribed(paths, time, bodies);
+  ledger.integration += advance<Host>(bodies_, dt, parameters_);
+  place_prescribed(paths_, time, bodies_);
 }
 
 /// Impacts of the flight of a substep from `problem.from` on. `reach`: to the end of the step (s).
@@ -148,22 +137,22 @@ void Substepper::resolve_impacts(double h, double from, double reach) {
   constexpr int most_attempts = 8;
   // The flight is never more than half a substep away from the midpoint.
   const auto set_margins = [&] {
-    contact_margins(bodies, 0.5 * h, tolerance::contact_slack, parameters_, contact_margin_);
+    contact_margins(bodies_, 0.5 * h, tolerance::contact_slack, parameters_, contact_margin_);
   };
   set_margins();
   for (int attempt = 1;; ++attempt) {
-    const ConstView<Pair> pairs = kept_pairs_.covering(bodies, contact_margin_, reach, parameters_);
+    const ConstView<Pair> pairs = kept_pairs_.covering(bodies_, contact_margin_, reach, parameters_);
     const timing::Region region("impacts");
-    const Ledger moved = impacts_.resolve(impact_problem(pairs, h, from), parameters_, view_of(bodies));
+    const Ledger moved = impacts_.resolve(impact_problem(pairs, h, from), parameters_, view_of(bodies_));
     if (impacts_.impacts().empty()) return;
     // What was struck may have left the boxes: others that it can meet now are not among the pairs.
     set_margins();
-    if (attempt == most_attempts || kept_pairs_.cover(bodies, contact_margin_)) {
+    if (attempt == most_attempts || kept_pairs_.cover(bodies_, contact_margin_)) {
       ledger = ledger + moved;
       break;
     }
-    kept_pairs_.add_travel(bodies, contact_margin_);
-    impacts_.undo(view_of(bodies));
+    kept_pairs_.add_travel(bodies_, contact_margin_);
+    impacts_.undo(view_of(bodies_));
   }
   counters.impacts += static_cast<std::int64_t>(impacts_.impacts().size());
   if (impacts_.hit_bound()) ++counters.unfinished_impacts;
@@ -175,15 +164,15 @@ void Substepper::resolve_impacts(double h, double from, double reach) {
 
 /// That may close by the next midpoint. `reach`: to the end of the step (s).
 Manifolds Substepper::find_contacts(double h, double reach) {
-  contact_margins(bodies, h, tolerance::contact_slack, parameters_, contact_margin_);
-  const ConstView<Pair> pairs = kept_pairs_.covering(bodies, contact_margin_, reach, parameters_);
-  const ConstBodyView views = view_of(std::as_const(bodies));
+  contact_margins(bodies_, h, tolerance::contact_slack, parameters_, contact_margin_);
+  const ConstView<Pair> pairs = kept_pairs_.covering(bodies_, contact_margin_, reach, parameters_);
+  const ConstBodyView views = view_of(std::as_const(bodies_));
   BallPairs& balls = memory_.balls;
   if (counters.pcs_made != kept_pairs_.times_made())
     balls.take(views, pairs, contact_laws(), parameters_.friction);
   counters.pcs_made = kept_pairs_.times_made();
   const timing::Region region("narrowphase");
-  const LateBodies* late = impacts_.late_bodies(impact_problem(pairs, h, 0), parameters_, view_of(bodies));
+  const LateBodies* late = impacts_.late_bodies(impact_problem(pairs, h, 0), parameters_, view_of(bodies_));
   any_late_ = late != nullptr;
   balls.find(views, contact_margin_.view(), late);
   const Manifolds manifolds =
@@ -195,54 +184,97 @@ Manifolds Substepper::find_contacts(double h, double reach) {
 
 void Substepper::respond(const Manifolds& manifolds, double h) {
   const timing::Region region("response");
-  load_solver_bodies(bodies, solver_);
-  color_contacts(memory_.balls, manifolds.headers, std::as_const(bodies.mobility).view(), contacts_.coloring);
+  load_solver_bodies(bodies_, solver_);
+  color_contacts(memory_.balls, manifolds.headers, std::as_const(bodies_.mobility).view(),
+                 contacts_.coloring);
   const double scale = last_substep_ > 0 ? h / last_substep_ : 1.0;
   prepare_contacts(manifolds, contact_laws(), memory_, scale, parameters_, contacts_);
-  impacts_.mark_flights(impact_problem({}, h, 0), parameters_, manifolds, view_of(bodies), contacts_,
+  impacts_.mark_flights(impact_problem({}, h, 0), parameters_, manifolds, view_of(bodies_), contacts_,
                         memory_.balls);
   ledger =
       ledger + response_.solve(manifolds, h, parameters_, memory_.balls, parameters_.warm_start ? scale : 0.0,
-                               view_of(bodies), solver_, contacts_, counters);
+                               view_of(bodies_), solver_, contacts_, counters);
   if (any_late_) contacts_.list_pairs(solver_.view());
-  ledger = ledger + impacts_.shift_late(impact_problem({}, h, 0), parameters_, view_of(bodies), contacts_);
+  ledger = ledger + impacts_.shift_late(impact_problem({}, h, 0), parameters_, view_of(bodies_), contacts_);
 }
 
+/// For the state as it is, with its margins. Valid until the next call.
 ConstView<Pair> Substepper::pairs_now() {
-  contact_margins(bodies, 0, tolerance::contact_slack, parameters_, contact_margin_);
-  return kept_pairs_.covering(bodies, contact_margin_, 0, parameters_);
+  contact_margins(bodies_, 0, tolerance::contact_slack, parameters_, contact_margin_);
+  return kept_pairs_.covering(bodies_, contact_margin_, 0, parameters_);
 }
 
 ImpactProblem Substepper::impact_problem(ConstView<Pair> pairs, double h, double from) const {
   return {.pairs = pairs,
-          .laws = contact_laws(),
           .memory = memory_,
-          .step = h,
-          .from = from,
-          .bounces = from == 0};
+          .terms = {.laws = contact_laws(), .step = h, .from = from, .bounces = from == 0}};
 }
 
 ContactLaws Substepper::contact_laws() const {
-  return {bodies.shape.view(),    bodies.size.view(), bodies.mobility.view(),
-          bodies.material.view(), laws_.view(),       materials_};
+  return {bodies_.shape.view(),    bodies_.size.view(), bodies_.mobility.view(),
+          bodies_.material.view(), laws_.view(),        materials_};
 }
 
 /// The impulse of j, and reversed of i.
 void Substepper::add_impulse_on_driven_bodies(std::int32_t i, std::int32_t j, const Vec3& impulse) {
-  const ConstView<Mobility> mobility = std::as_const(bodies.mobility).view();
+  const ConstView<Mobility> mobility = std::as_const(bodies_.mobility).view();
   if (mobility[i] != Mobility::free) contact_impulse_[static_cast<std::size_t>(i)] -= impulse;
   if (mobility[j] != Mobility::free) contact_impulse_[static_cast<std::size_t>(j)] += impulse;
 }
 
-const ContactSet& Substepper::contacts() {
+SteppedBody Substepper::body(std::int32_t id) const {
+  const ConstBodyView views = view_of(bodies_);
+  return {.mobility = views.mobility[id],
+          .inverse_mass = views.inverse_mass[id],
+          .position = views.position[id],
+          .orientation = views.orientation[id],
+          .velocity = views.velocity[id],
+          .spin = views.spin[id],
+          .velocity_before = start_.velocity.view()[id],
+          .acceleration = parameters_.acceleration_of(id),
+          .contact_impulse = contact_impulse_[static_cast<std::size_t>(id)]};
+}
+
+std::int32_t Substepper::non_finite_body() const { return first_non_finite<Host>(bodies_); }
+
+Totals Substepper::totals(const Vec3& reference) const {
+  return totals_of<Host>(bodies_, parameters_.gravity, reference);
+}
+
+std::vector<BodyPair> Substepper::pairs() {
+  std::vector<BodyPair> pairs;
+  const ConstView<Shape> shape = std::as_const(bodies_.shape).view();
+  for (const Pair& pair : pairs_now()) {
+    if (shape[pair.i] != Shape::plane && shape[pair.j] != Shape::plane) pairs.push_back({pair.i, pair.j});
+  }
+  return pairs;
+}
+
+GridOccupancy Substepper::grid_occupancy() {
+  pairs_now();
+  return kept_pairs_.grid_occupancy();
+}
+
+void Substepper::measure_overlaps(Observation& out) {
+  const ConstView<Pair> pairs = pairs_now();
+  out.pairs = kept_pairs_.size();
+  const ConstBodyView views = view_of(std::as_const(bodies_));
+  measure_penetration(end_narrow_phase_.find(views, pairs, contact_margin_.view()), views, out.penetration);
+}
+
+void Substepper::measure_contacts(std::int64_t free_bodies, Observation& out) const {
+  scree::measure_contacts(listed_contacts(), free_bodies, out);
+}
+
+const ContactSet& Substepper::listed_contacts() const {
   contacts_.list_pairs(solver_.view());
   return contacts_;
 }
 
-std::vector<ContactForce> Substepper::contact_forces() {
-  const ConstView<Contact> contacts = this->contacts().contacts.view();
-  const ConstView<ContactRow> rows = this->contacts().rows.view();
-  const ConstBodyView views = view_of(std::as_const(bodies));
+std::vector<ContactForce> Substepper::contact_forces() const {
+  const ConstView<Contact> contacts = listed_contacts().contacts.view();
+  const ConstView<ContactRow> rows = listed_contacts().rows.view();
+  const ConstBodyView views = view_of(bodies_);
   std::vector<ContactForce> forces;
   for (std::int64_t c = 0; c < contacts.size(); ++c) {
     const Contact& contact = contacts[c];
@@ -263,8 +295,9 @@ std::vector<ContactForce> Substepper::contact_forces() {
   return forces;
 }
 
-ContactProblem Substepper::contact_problem() {
-  return contact_problem_of(contacts(), solver_.view(), response_.free_velocity(), response_.free_spin());
+ContactProblem Substepper::contact_problem() const {
+  return contact_problem_of(listed_contacts(), solver_.view(), response_.free_velocity(),
+                            response_.free_spin());
 }
 
 }  // namespace scree

@@ -17,52 +17,52 @@
 #include "sim/pair_finder.hpp"
 #include "sim/scene/scene.hpp"
 #include "sim/scene/time_grid.hpp"
+#include "sim/stepper.hpp"
 
 #include <cstdint>
+#include <functional>
 #include <vector>
 
 namespace scree {
 
-class Substepper {
+/// Bodies and contacts are on Host; the PCS is made in the space of choice.
+class Substepper final : public Stepper {
  public:
   /// The bodies as the scene starts. `origin`: the local origin of the broad phase (m).
-  Substepper(const Scene& scene, const TimeGrid& grid, bool on_device, const Vec3& origin);
+  Substepper(const Scene& scene, const TimeGrid& grid, const std::vector<PrescribedPath>& paths,
+             bool on_device, const Vec3& origin);
 
-  /// To be called at the start of each step: sets the forces that act in it.
-  void start_step(std::int64_t step);
-  /// A substep of length h (s), after `done` of the step went by (s); in the accurate mode in parts that end
-  /// where contacts come to stick.
-  void substep(double h, double done);
+  void start_step(std::int64_t step) override;
+  /// In the accurate mode in parts that end where contacts come to stick.
+  void substep(double h, double done) override;
+  double overlap() const override { return corrector_.overlap(); }
+  void undo_step() override;
+  void change_bodies(const std::function<void(Bodies<Host>&)>& change) override;
 
-  /// For the state as it is, with their margins(). Valid until the next call.
-  ConstView<Pair> pairs_now();
-  ConstView<double> margins() const { return contact_margin_.view(); }
-  /// Deepest overlap that the last substep found (of the smaller body's smallest_size).
-  double overlap() const { return corrector_.overlap(); }
-  const KeptPairs& kept_pairs() const { return kept_pairs_; }
-  /// Bodies have come or gone.
-  void forget_pairs() { kept_pairs_.forget(); }
-
-  const ResponseParameters& parameters() const { return parameters_; }
-  /// Of the last substep.
-  const ContactSet& contacts();
-  /// Of the last substep, those that carried a force.
-  std::vector<ContactForce> contact_forces();
-  ContactProblem contact_problem();
-  /// On a body that is not free, over the step (N s).
-  const Vec3& contact_impulse(std::int32_t body) const {
-    return contact_impulse_[static_cast<std::size_t>(body)];
+  void copy_state(BodyTable& out) const override { copy_bodies(out, bodies_); }
+  SteppedBody body(std::int32_t id) const override;
+  std::int32_t non_finite_body() const override;
+  Totals totals(const Vec3& reference) const override;
+  double largest_speed() const override { return scree::largest_speed<Host>(bodies_); }
+  RegionContents contents_of(const Region& region) const override {
+    return scree::contents_of<Host>(region, bodies_);
   }
 
-  Bodies<Host> bodies;
-  Array<PrescribedPath, Host> paths;
-  Ledger ledger;
-  Counters counters;
+  std::vector<BodyPair> pairs() override;
+  GridOccupancy grid_occupancy() override;
+  std::vector<BodyBox> boxes() const override { return kept_pairs_.boxes(); }
+  void measure_overlaps(Observation& out) override;
+
+  ContactProblem contact_problem() const override;
+  std::vector<ContactForce> contact_forces() const override;
+  void measure_contacts(std::int64_t free_bodies, Observation& out) const override;
+
+  const char* space_name() const override { return kept_pairs_.space_name(); }
 
  private:
   /// What the first half of a substep changes.
   struct Restart {
-    MovingState state;
+    MovingState<Host> state;
     Ledger ledger;
     std::int64_t impacts = 0, unfinished_impacts = 0;
     std::vector<Vec3> contact_impulse;
@@ -80,28 +80,35 @@ class Substepper {
   void resolve_impacts(double h, double from, double reach);
   Manifolds find_contacts(double h, double reach);
   void respond(const Manifolds& manifolds, double h);
+  ConstView<Pair> pairs_now();
+  const ContactSet& listed_contacts() const;
   void add_impulse_on_driven_bodies(std::int32_t i, std::int32_t j, const Vec3& impulse);
 
   TimeGrid grid_;
   std::int64_t step_ = 0;
+  Bodies<Host> bodies_;
+  Array<PrescribedPath, Host> paths_;
   ResponseParameters parameters_;
   Array<PairLaw, Host> laws_;
   std::int64_t materials_;
-  AppliedForces forces_;
-  KeptPairs kept_pairs_;
+  AppliedForces<Host> forces_;
+  KeptPairs<Host> kept_pairs_;
   NarrowPhase narrow_phase_;
+  NarrowPhase end_narrow_phase_;  // for the penetration at the end of a step
   ImpactSolver impacts_;
   ResponseSolver response_;
   PositionCorrector corrector_;
 
   double last_substep_ = 0;  // its length; scales the remembered impulses
-  Restart before_;           // of the last substep, in the accurate mode
+  MovingState<Host> start_;  // of the step
+  Ledger start_ledger_;
+  Restart before_;  // of the last substep, in the accurate mode
   std::vector<Vec3> contact_impulse_;
   Array<double, Host> contact_margin_;
   Array<SolverBody, Host> solver_;
-  std::vector<Impact> struck_;  // in the last substep
-  bool any_late_ = false;       // of these after the midpoint
-  ContactSet contacts_;
+  std::vector<Impact> struck_;   // in the last substep
+  bool any_late_ = false;        // of these after the midpoint
+  mutable ContactSet contacts_;  // listed one by one when somebody asks
   ImpulseMemory memory_;
 };
 

@@ -39,7 +39,7 @@ Energy energy_of(const BodyTable& state, const Vec3& gravity) {
 Judge::Judge(const Scene& scene)
     : gravity_(scene.gravity),
       first_place_(scene.bodies.position.back()),
-      pair_finder_(make_pair_finder({}, false, Vec3::Zero())),
+      pair_finder_(make_pair_finder<Host>({}, false, Vec3::Zero())),
       narrow_phase_(NarrowPhaseSettings{}) {
   first_energy_ = energy_of(scene.bodies, gravity_).total();
   see(scene.bodies, 0);

@@ -40,8 +40,8 @@ class Judge {
   Findings findings_;
   double first_energy_ = 0;
   Vec3 first_place_;  // of the last body
-  std::unique_ptr<PairFinder> pair_finder_;
-  Candidates candidates_;
+  std::unique_ptr<PairFinder<Host>> pair_finder_;
+  Candidates<Host> candidates_;
   NarrowPhase narrow_phase_;
 };
 

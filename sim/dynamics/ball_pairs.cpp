@@ -116,11 +116,11 @@ void BallPairs::take(const ConstBodyView& bodies, ConstView<Pair> candidates, co
   }
   std::ranges::fill(carried_.view(), ~std::uint64_t{0});
   for (const int kind : {0, 1}) {
-    std::vector<std::int64_t>& begin = begin_[kind];
-    begin.assign(static_cast<std::size_t>(nobody_) + 2, first[kind]);
-    for (std::int64_t k = first[kind]; k < next[kind]; ++k)
-      begin[static_cast<std::size_t>(pairs_.view()[k].i) + 1] = k + 1;
-    for (std::size_t i = 1; i < begin.size(); ++i) begin[i] = std::max(begin[i], begin[i - 1]);
+    begin_[kind].resize(nobody_ + 1);
+    const View<std::int64_t> begin = begin_[kind].view();
+    std::ranges::fill(begin, first[kind]);
+    for (std::int64_t k = first[kind]; k < next[kind]; ++k) begin[pairs_.view()[k].i + 1] = k + 1;
+    for (std::int64_t i = 1; i < begin.size(); ++i) begin[i] = std::max(begin[i], begin[i - 1]);
   }
 }
 
@@ -161,18 +161,6 @@ void BallPairs::find(const ConstBodyView& bodies, ConstView<double> margin, cons
 Vec3 BallPairs::impulse(std::int64_t candidate) const {
   const lanes::Triple& p = impulse_.view()[candidate];
   return {p.x, p.y, p.z};
-}
-
-std::int32_t BallPairs::candidate_of(std::int32_t i, std::int32_t j) const {
-  for (const std::vector<std::int64_t>& begin : begin_) {
-    if (begin.empty()) continue;
-    const lanes::Two* const first = pairs_.data() + begin[static_cast<std::size_t>(i)];
-    const lanes::Two* const last = pairs_.data() + begin[static_cast<std::size_t>(i) + 1];
-    // A floor may have as many as there are bodies.
-    const lanes::Two* const found = std::ranges::lower_bound(first, last, j, {}, &lanes::Two::j);
-    if (found != last && found->j == j) return static_cast<std::int32_t>(found - pairs_.data());
-  }
-  return lanes::none;
 }
 
 void BallPairs::remember(std::int32_t candidate, const Vec3& impulse) {

@@ -34,10 +34,37 @@ class BallPairs {
   std::int64_t size() const { return pairs_.size(); }
   /// Of a candidate.
   lanes::Two pair(std::int32_t candidate) const { return pairs_.view()[candidate]; }
-  bool is_loaded(std::int32_t candidate) const { return loaded_.view()[candidate] != 0; }
   Vec3 impulse(std::int64_t candidate) const;
-  /// The candidate of two bodies, i < j, or lanes::none.
-  std::int32_t candidate_of(std::int32_t i, std::int32_t j) const;
+  /// Where the candidates are, for functors.
+  struct Index {
+    const lanes::Two* pairs;
+    const std::uint8_t* loaded;
+    ConstView<std::int64_t> begin[2];
+
+    /// The candidate of two bodies, i < j, or lanes::none.
+    SCREE_HD std::int32_t candidate_of(std::int32_t i, std::int32_t j) const {
+      for (const ConstView<std::int64_t>& kind : begin) {
+        if (kind.size() == 0) continue;
+        // A floor may have as many as there are bodies.
+        std::int64_t first = kind[i];
+        for (std::int64_t last = kind[i + 1]; first < last;) {
+          const std::int64_t middle = first + (last - first) / 2;
+          if (pairs[middle].j < j) {
+            first = middle + 1;
+          } else {
+            last = middle;
+          }
+        }
+        if (first < kind[i + 1] && pairs[first].j == j) return static_cast<std::int32_t>(first);
+      }
+      return lanes::none;
+    }
+    /// False of none.
+    SCREE_HD bool is_loaded(std::int32_t candidate) const {
+      return candidate != lanes::none && loaded[candidate] != 0;
+    }
+  };
+  Index index() const { return {pairs_.data(), loaded_.data(), {begin_[0].view(), begin_[1].view()}}; }
 
   std::int64_t tested() const { return tested_; }
   void set_flying(std::int32_t candidate, bool flying) { flying_.view()[candidate] = flying ? 1 : 0; }
@@ -58,7 +85,7 @@ class BallPairs {
   std::int64_t tested_ = 0;       // candidates that are somebody
   std::int64_t first_plane_ = 0;  // before it pairs of two balls, then of a ball and a plane
   std::int32_t nobody_ = 0;
-  std::vector<std::int64_t> begin_[2];  // of either kind, those of each first body
+  Array<std::int64_t, Host> begin_[2];  // of either kind, those of each first body
   std::vector<Pair> others_, with_late_;
   // Of each body, and of nobody.
   Array<lanes::Reach, Host> reach_;

@@ -106,15 +106,26 @@ SCREE_HD inline ContactRow make_row(const Vec3& normal, const Vec3& arm_i, const
   return row;
 }
 
-/// The same for a contact of balls (a body that is not free counts as one): their arms lie along the normal,
-/// so that W is diagonal with equal tangents and nothing couples.
+/// Inverses of the normal and of the tangential share of W for a contact of balls (a body that is not free
+/// counts as one): their arms lie along the normal, so that W is diagonal with equal tangents and nothing
+/// couples.
+struct BallMasses {
+  double normal, tangent;  ///< kg
+};
+SCREE_HD inline BallMasses ball_masses(double inverse_mass_i, double inverse_inertia_i, double arm_square_i,
+                                       double inverse_mass_j, double inverse_inertia_j, double arm_square_j) {
+  const double normal = inverse_mass_i + inverse_mass_j;
+  return {1.0 / normal, 1.0 / (normal + inverse_inertia_i * arm_square_i + inverse_inertia_j * arm_square_j)};
+}
+
+/// The same as make_row() for a contact of balls.
 SCREE_HD inline ContactRow make_ball_row(const Vec3& arm_i, const Vec3& arm_j, double gap,
                                          const SolverBody& i, const SolverBody& j) {
   ContactRow row = row_at(arm_i, arm_j, gap);
-  const double normal = i.inverse_mass + j.inverse_mass;
-  row.normal_mass = 1.0 / normal;
-  row.tangent_mass = 1.0 / (normal + i.inverse_inertia(0, 0) * arm_i.squaredNorm() +
-                            j.inverse_inertia(0, 0) * arm_j.squaredNorm());
+  const BallMasses masses = ball_masses(i.inverse_mass, i.inverse_inertia(0, 0), arm_i.squaredNorm(),
+                                        j.inverse_mass, j.inverse_inertia(0, 0), arm_j.squaredNorm());
+  row.normal_mass = masses.normal;
+  row.tangent_mass = masses.tangent;
   return row;
 }
 

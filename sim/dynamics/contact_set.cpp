@@ -3,39 +3,17 @@
 #include "core/parallel.hpp"
 #include "core/tolerances.hpp"
 
-#include <algorithm>
-#include <utility>
-
 namespace scree {
-
-ConstView<ImpulseMemory::Entry> ImpulseMemory::entries_of(std::int32_t i, std::int32_t j,
-                                                          std::int32_t part) const {
-  if (begin_.empty()) return {};
-  const auto place = [](const Entry& entry) { return std::pair(entry.j, entry.part); };
-  // A floor may have as many entries as there are bodies.
-  const auto range =
-      std::ranges::equal_range(entries_.data() + begin_.view()[i], entries_.data() + begin_.view()[i + 1],
-                               std::pair(j, part), {}, place);
-  return {range.data(), static_cast<std::int64_t>(range.size())};
-}
-
-bool ImpulseMemory::is_loaded(std::int32_t i, std::int32_t j, std::int32_t part) const {
-  const ConstView<Entry> entries = entries_of(i, j, part);
-  if (entries.size() == 0 && balls.size() > 0) {
-    const std::int32_t candidate = balls.candidate_of(i, j);
-    return candidate != lanes::none && balls.is_loaded(candidate);
-  }
-  return std::any_of(entries.begin(), entries.end(), [](const Entry& entry) { return entry.loaded; });
-}
 
 bool ImpulseMemory::recall(const ManifoldHeader& manifold, const ContactPoint* points, Vec3* impulses) const {
   for (int k = 0; k < manifold.count; ++k) impulses[k].setZero();
   bool loaded = false;
-  const ConstView<Entry> entries = entries_of(manifold.i, manifold.j, manifold.part);
-  if (entries.size() == 0 && balls.size() > 0) {
-    const std::int32_t candidate = balls.candidate_of(manifold.i, manifold.j);
-    if (candidate != lanes::none) impulses[0] = balls.impulse(candidate);
-    return candidate != lanes::none && balls.is_loaded(candidate);
+  const ConstView<Entry> entries = index().of(manifold.i, manifold.j, manifold.part);
+  if (entries.size() == 0) {
+    const std::int32_t candidate = balls.index().candidate_of(manifold.i, manifold.j);
+    if (candidate == lanes::none) return false;
+    impulses[0] = balls.impulse(candidate);
+    return balls.index().is_loaded(candidate);
   }
   for (const Entry& entry : entries) {
     loaded = loaded || entry.loaded;
@@ -197,7 +175,7 @@ void ImpulseMemory::remember(const Manifolds& manifolds, const ContactSet& set, 
   balls.remember(set.batches);
   // Pairs of which one was struck late are among the manifolds.
   for (const ManifoldHeader& m : manifolds.headers) {
-    const std::int32_t candidate = balls.candidate_of(m.i, m.j);
+    const std::int32_t candidate = balls.index().candidate_of(m.i, m.j);
     if (candidate != lanes::none) balls.remember(candidate, set.rows.view()[m.first_point].impulse);
   }
 }

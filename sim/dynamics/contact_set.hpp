@@ -6,6 +6,7 @@
 #include "narrowphase/contact.hpp"
 #include "sim/dynamics/ball_pairs.hpp"
 #include "sim/dynamics/coloring.hpp"
+#include "sim/dynamics/contact_laws.hpp"
 #include "sim/dynamics/contact_row.hpp"
 #include "sim/dynamics/lanes/batches.hpp"
 #include "sim/dynamics/state.hpp"
@@ -42,10 +43,21 @@ SCREE_HD inline ImpulseChange natural_residual(const Contact& contact, const Con
   return residual;
 }
 
-/// Restitution and friction of a pair of materials.
-struct PairLaw {
-  double restitution;
-  double friction;
+/// So many points that solving them to the end in every substep is not worth what it costs: what is left is
+/// for the next ones, which start from there.
+SCREE_HD inline bool is_heap(std::int64_t points) {
+  constexpr std::int64_t fewest = 2500;
+  return points >= fewest;
+}
+/// Whether contacts have several points, among which the load moves slowly.
+SCREE_HD inline bool shares_loads(std::int64_t contacts, std::int64_t points) { return points > contacts; }
+
+struct ContactCounts {
+  std::int64_t contacts = 0;
+  std::int64_t points = 0;  ///< of theirs
+  SCREE_HD friend ContactCounts operator+(const ContactCounts& a, const ContactCounts& b) {
+    return {a.contacts + b.contacts, a.points + b.points};
+  }
 };
 
 /// What the response works on.
@@ -66,14 +78,8 @@ struct ContactSet {
   /// one.
   void list_pairs(ConstView<SolverBody> bodies);
 
-  /// So many points that solving them to the end in every substep is not worth what it costs: what is left is
-  /// for the next ones, which start from there.
-  bool is_heap() const {
-    constexpr std::int64_t fewest = 2500;
-    return point_count() >= fewest;
-  }
-  /// Whether contacts have several points, among which the load moves slowly.
-  bool shares_loads() const { return point_count() > contact_count(); }
+  bool is_heap() const { return scree::is_heap(point_count()); }
+  bool shares_loads() const { return scree::shares_loads(contact_count(), point_count()); }
   /// All that a contact's rows gave to its body j in the last substep (N s).
   Vec3 impulse_of(const Contact& contact) const {
     Vec3 impulse = Vec3::Zero();
@@ -91,8 +97,6 @@ class ImpulseMemory {
   /// Finds the last impulses of a manifold's points (N s, world frame). False if none of the pair's points on
   /// that part carried any: where one corner rests, the others do not bounce.
   bool recall(const ManifoldHeader& manifold, const ContactPoint* points, Vec3* impulses) const;
-  /// Whether a part of the pair i, j carried an impulse.
-  bool is_loaded(std::int32_t i, std::int32_t j, std::int32_t part) const;
   /// Takes the impulses of the rows and of the batches; `bodies` is their number.
   void remember(const Manifolds& manifolds, const ContactSet& set, std::int64_t bodies);
 
@@ -103,39 +107,53 @@ class ImpulseMemory {
     std::int32_t count;
     bool loaded;
     std::int64_t first_point;
+
+    SCREE_HD bool is_before(std::int32_t other_j, std::int32_t other_part) const {
+      return j != other_j ? j < other_j : part < other_part;
+    }
   };
   struct Point {
     Vec3 impulse;
     std::uint32_t feature;
   };
+  /// Where the entries are, for functors.
+  struct Index {
+    ConstView<Entry> entries;
+    ConstView<std::int64_t> begin;
+    BallPairs::Index balls;
+
+    /// Those of a part of a pair.
+    SCREE_HD ConstView<Entry> of(std::int32_t i, std::int32_t j, std::int32_t part) const {
+      if (begin.size() == 0) return {};
+      // A floor may have as many entries as there are bodies.
+      std::int64_t first = begin[i];
+      for (std::int64_t last = begin[i + 1]; first < last;) {
+        const std::int64_t middle = first + (last - first) / 2;
+        if (entries[middle].is_before(j, part)) {
+          first = middle + 1;
+        } else {
+          last = middle;
+        }
+      }
+      std::int64_t end = first;
+      while (end < begin[i + 1] && entries[end].j == j && entries[end].part == part) ++end;
+      return {entries.data() + first, end - first};
+    }
+    /// Whether a part of the pair i, j carried an impulse.
+    SCREE_HD bool is_loaded(std::int32_t i, std::int32_t j, std::int32_t part) const {
+      const ConstView<Entry> those = of(i, j, part);
+      for (const Entry& entry : those) {
+        if (entry.loaded) return true;
+      }
+      return those.size() == 0 && balls.is_loaded(balls.candidate_of(i, j));
+    }
+  };
+  Index index() const { return {entries_.view(), begin_.view(), balls.index()}; }
 
  private:
-  /// Those of a part of a pair.
-  ConstView<Entry> entries_of(std::int32_t i, std::int32_t j, std::int32_t part) const;
-
   Array<Entry, Host> entries_;
   Array<Point, Host> points_;
   Array<std::int64_t, Host> begin_;  ///< of the entries of each i; one more than bodies, empty at first
-};
-
-/// Which law holds between two bodies, and what they are.
-struct ContactLaws {
-  ConstView<Shape> shape;            ///< of each body
-  ConstView<Vec3> size;              ///< of each body (m)
-  ConstView<Mobility> mobility;      ///< of each body
-  ConstView<std::int32_t> material;  ///< of each body
-  ConstView<PairLaw> table;          ///< materials x materials
-  std::int64_t materials = 0;
-
-  bool is_free(std::int32_t body) const { return mobility[body] == Mobility::free; }
-  bool acts_as_ball(std::int32_t body) const { return shape[body] == Shape::sphere || !is_free(body); }
-  /// The smaller smallest_size of two bodies (m).
-  double smaller_size(std::int32_t i, std::int32_t j) const {
-    return fmin(smallest_size(shape[i], size[i]), smallest_size(shape[j], size[j]));
-  }
-  const PairLaw& between(std::int32_t i, std::int32_t j) const {
-    return table[material[i] * materials + material[j]];
-  }
 };
 
 /// Fills the contacts of the manifolds with their laws, and the rows with the impulses remembered, scaled by

@@ -2,8 +2,8 @@
 
 #include "core/parallel.hpp"
 #include "core/tolerances.hpp"
+#include "sim/dynamics/displace.hpp"
 #include "sim/dynamics/lanes/colored.hpp"
-#include "sim/dynamics/rotation.hpp"
 
 #include <utility>
 
@@ -136,25 +136,7 @@ struct PositionCorrector::Apply {
   SCREE_HD Ledger operator()(std::int64_t k) const {
     const lanes::Body& d = stage.displacement[k];
     if (!stage.solver[k].is_free()) return {};
-    const double mass = 1.0 / stage.solver[k].inverse_mass;
-    const Vec3& spin = stage.bodies.spin[k];
-    const Vec3& inverse_inertia = stage.bodies.inverse_inertia[k];
-    Quat& q = stage.bodies.orientation[k];
-    Ledger ledger;
-    Vec3& position = stage.bodies.position[k];
-    const Vec3 before = position;
-    position += d.velocity;
-    const Vec3 moved = position - before;  // far from the origin rounding drops some
-    ledger.correction = mass * gravity.dot(moved);
-    ledger.angular_correction = mass * moved.cross(stage.bodies.velocity[k]);
-    if (rotation && !d.spin.isZero(0)) {
-      const double energy = rotational_energy(q, spin, inverse_inertia);
-      const Vec3 momentum = spin_momentum(q, spin, inverse_inertia);
-      q = (rotation_of(d.spin) * q).normalized();
-      ledger.correction -= rotational_energy(q, spin, inverse_inertia) - energy;
-      ledger.angular_correction += spin_momentum(q, spin, inverse_inertia) - momentum;
-    }
-    return ledger;
+    return displace(stage.bodies, k, d.velocity, d.spin, gravity, rotation);
   }
 };
 

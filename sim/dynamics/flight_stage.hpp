@@ -1,13 +1,14 @@
-// The bodies of one flight, as the search for their impacts sees them.
+// The bodies of one flight, as the search for their impacts sees them, in either space.
 #pragma once
 
 #include "core/array.hpp"
 #include "core/bodies.hpp"
-#include "narrowphase/narrow_phase.hpp"
-#include "sim/dynamics/contact_set.hpp"
+#include "core/tolerances.hpp"
+#include "sim/dynamics/contact_laws.hpp"
 #include "sim/dynamics/meeting.hpp"
 #include "sim/dynamics/state.hpp"
 
+#include <algorithm>
 #include <cstdint>
 
 namespace scree {
@@ -16,26 +17,31 @@ namespace scree {
 inline constexpr std::int32_t most_bounces = 64;
 inline constexpr std::int32_t most_hits = 256;
 
-/// What may meet, and how, in one flight.
-struct ImpactProblem {
-  ConstView<Pair> pairs;  ///< candidates, among which are all that may meet
+/// What holds in one flight. It ends with the substep.
+struct FlightTerms {
   ContactLaws laws;
-  const ImpulseMemory& memory;  ///< contacts that carried a load do not bounce
-  double step;                  ///< length of the substep (s)
-  double from;   ///< start of the flight, into the substep (s); it ends with the substep. If not 0, the
-                 ///< last one began at 0 (who was struck later in it starts then), and the response
-                 ///< has kicked the bodies since
+  double step;   ///< length of the substep (s)
+  double from;   ///< start of the flight, into the substep (s). If not 0, the last one began at 0 (who was
+                 ///< struck later in it starts then), and the response has kicked the bodies since
   bool bounces;  ///< whether approaches faster than the threshold count; else only those that would go deep
 };
 
+/// Which parts of a pair carried an impulse in the last substep: these do not bounce.
+struct LoadedParts {
+  std::uint8_t bits = 0;  ///< one for each part
+
+  SCREE_HD bool is_loaded(int part) const { return (bits >> part & 1) != 0; }
+};
+
 /// Of each body in a flight.
+template <class Space>
 struct FlightLog {
-  Array<double, Host> clock;       ///< time of its last impact (s); the start if it had none
-  Array<std::int32_t, Host> hits;  ///< its impacts so far
-  Array<double, Host> turn;        ///< bound on the speed that turning gives its surface (m/s)
-  Array<double, Host> top_speed;   ///< bound on that of its surface, but for what gravity adds (m/s)
-  Array<double, Host> reach;       ///< of its surface from the midpoint, to either end of the substep (m)
-  Array<double, Host> extent;  ///< how far from its centre it may be in the substep (m); infinite: boundary
+  Array<double, Space> clock;       ///< time of its last impact (s); the start if it had none
+  Array<std::int32_t, Space> hits;  ///< its impacts so far
+  Array<double, Space> turn;        ///< bound on the speed that turning gives its surface (m/s)
+  Array<double, Space> top_speed;   ///< bound on that of its surface, but for what gravity adds (m/s)
+  Array<double, Space> reach;       ///< of its surface from the midpoint, to either end of the substep (m)
+  Array<double, Space> extent;  ///< how far from its centre it may be in the substep (m); infinite: boundary
 
   void resize(std::int64_t bodies) {
     clock.resize(bodies);
@@ -47,10 +53,23 @@ struct FlightLog {
   }
 };
 
+/// What counts as an impact of two bodies.
+struct ImpactLimits {
+  double earliest;  ///< into the substep (s)
+  double left;      ///< from then to its end (s)
+  double slowest;   ///< approach that bounces (m/s)
+  double farthest;  ///< approach until the end that is shallow enough to be none (m)
+
+  SCREE_HD bool may_bounce(double speed) const { return speed > slowest; }
+  SCREE_HD bool may_go_deep(double speed) const { return speed * left > farthest; }
+  SCREE_HD bool may_count(double speed) const { return may_bounce(speed) || may_go_deep(speed); }
+};
+
 /// The bodies in flight, and what has become of them. Cheap to copy; the bodies and the log are the caller's.
 struct FlightStage {
-  FlightStage(const ImpactProblem& p, const ResponseParameters& r, const BodyView& b, FlightLog& log)
-      : problem(p),
+  template <class Space>
+  FlightStage(const FlightTerms& t, const ResponseParameters& r, const BodyView& b, FlightLog<Space>& log)
+      : terms(t),
         parameters(r),
         bodies(b),
         clock(log.clock.view()),
@@ -60,7 +79,7 @@ struct FlightStage {
         reach(log.reach.view()),
         extent(log.extent.view()) {}
 
-  ImpactProblem problem;
+  FlightTerms terms;
   ResponseParameters parameters;
   BodyView bodies;
   View<double> clock;
@@ -71,36 +90,129 @@ struct FlightStage {
   View<double> extent;
   double harmless = -1;  ///< two bodies whose top speeds sum to no more have no impact (m/s)
 
-  bool is_free(std::int32_t body) const { return bodies.mobility[body] == Mobility::free; }
+  SCREE_HD bool is_free(std::int32_t body) const { return bodies.mobility[body] == Mobility::free; }
+  SCREE_HD bool is_late(std::int32_t body) const { return clock[body] > 0.5 * terms.step; }
 
-  BodyFlight flight(std::int32_t body) const;
   /// What the bodies' velocities have of the substep's kick already (m/s).
-  Vec3 kick_of(std::int32_t body) const {
-    return problem.from > 0 && is_free(body) ? Vec3(problem.step * parameters.acceleration_of(body))
-                                             : Vec3(Vec3::Zero());
+  SCREE_HD Vec3 kick_of(std::int32_t body) const {
+    return terms.from > 0 && is_free(body) ? Vec3(terms.step * parameters.acceleration_of(body))
+                                           : Vec3(Vec3::Zero());
+  }
+
+  SCREE_HD BodyFlight flight(std::int32_t body) const {
+    return {.shape = bodies.shape[body],
+            .size = bodies.size[body],
+            .inverse_inertia = bodies.inverse_inertia[body],
+            .position = bodies.position[body],
+            .orientation = bodies.orientation[body],
+            .velocity = bodies.velocity[body] - kick_of(body),
+            .spin = parameters.rotation || !is_free(body) ? bodies.spin[body] : Vec3(Vec3::Zero()),
+            .acceleration = is_free(body) ? parameters.acceleration_of(body) : Vec3(Vec3::Zero()),
+            .midpoint = 0.5 * terms.step};
   }
 
   /// The slowest approach that bounces on a part without load (m/s).
-  double slowest_bounce(std::int32_t i, std::int32_t j) const;
+  SCREE_HD double slowest_bounce(std::int32_t i, std::int32_t j) const {
+    const double restitution = terms.laws.between(i, j).restitution;
+    if (!parameters.restitution || restitution == 0) return HUGE_VAL;
+    const double rounding =
+        tolerance::closing_speed * (bodies.velocity[i].norm() + bodies.velocity[j].norm());
+    return std::max(parameters.restitution_threshold.of(restitution), rounding);
+  }
 
   /// Two bodies until the end of the substep; no meeting of theirs counts yet.
-  PairFlight pair_of(std::int32_t i, std::int32_t j, double until) const;
+  SCREE_HD PairFlight pair_of(std::int32_t i, std::int32_t j, double until) const {
+    PairFlight pair{.i = flight(i), .j = flight(j), .until = until, .slowest = {}};
+    for (double& slowest : pair.slowest) slowest = HUGE_VAL;
+    return pair;
+  }
 
   /// Sets the turn and the reach of a body as it flies now.
-  void bound(std::int32_t body) const;
+  SCREE_HD void bound(std::int32_t body) const {
+    const bool absent = bodies.mobility[body] == Mobility::absent;
+    turn[body] = absent ? 0.0 : fastest_turn(flight(body));
+    const double linear = (bodies.velocity[body] - kick_of(body)).norm();
+    const double gained = is_free(body) ? parameters.acceleration_of(body).norm() * terms.step : 0.0;
+    top_speed[body] =
+        absent ? 0.0 : linear + turn[body] + (parameters.acceleration.size() > 0 ? gained : 0.0);
+    reach[body] = absent ? 0.0 : (linear + gained + turn[body]) * (0.5 * terms.step);
+    extent[body] = is_boundary(bodies.shape[body])
+                       ? HUGE_VAL
+                       : bounding_radius(bodies.shape[body], bodies.size[body]) + reach[body];
+  }
+
+  /// The length to which the tolerances of a body that is there are relative (m); infinite for others.
+  SCREE_HD double size_of(std::int64_t body) const {
+    return bodies.mobility[body] == Mobility::absent ? HUGE_VAL
+                                                     : smallest_size(bodies.shape[body], bodies.size[body]);
+  }
 
   /// What `harmless` may be, for the bodies as bound() has seen them (m/s): such two neither go deep, nor do
-  /// they close as fast as what bounces, even if gravity adds to it.
-  double harmless_speed() const;
+  /// they close as fast as what bounces, even if gravity adds to it. `smallest`: the smallest size_of() (m);
+  /// `restitution`: the largest of the laws.
+  SCREE_HD double harmless_speed(double smallest, double restitution) const {
+    double speed = HUGE_VAL;
+    if (parameters.continuous) speed = tolerance::deep_approach * smallest / terms.step;
+    if (terms.bounces && parameters.restitution)
+      speed = std::min(speed, parameters.restitution_threshold.of(restitution));
+    return speed - terms.step * parameters.gravity.norm();
+  }
 
-  /// The next impact of two bodies, of which one is free.
-  Meeting next(std::int32_t i, std::int32_t j) const;
+  /// Whether two bodies, of which one is free, may meet in an impact, told without a look at their shapes;
+  /// then sets what counts as one.
+  SCREE_HD bool may_meet(std::int32_t i, std::int32_t j, ImpactLimits& limits) const {
+    if (top_speed[i] + top_speed[j] <= harmless || are_far(i, j) || std::max(hits[i], hits[j]) >= most_hits)
+      return false;
+    limits.earliest = std::max(clock[i], clock[j]);
+    if (!(limits.earliest < terms.step)) return false;
+    limits.left = terms.step - limits.earliest;
+    limits.slowest = terms.bounces ? slowest_bounce(i, j) : HUGE_VAL;
+    limits.farthest =
+        parameters.continuous ? tolerance::deep_approach * terms.laws.smaller_size(i, j) : HUGE_VAL;
+    return limits.may_count(fastest(i, j));
+  }
+
+  /// The next impact of two bodies, of which one is free. `loads` are those of the pair, as LoadedParts.
+  template <class Loads>
+  SCREE_HD Meeting next(std::int32_t i, std::int32_t j, const Loads& loads) const {
+    ImpactLimits limits;
+    if (!may_meet(i, j, limits)) return {};
+    PairFlight pair = pair_of(i, j, terms.step);
+    const double speed = fastest_approach(pair);
+    if (!limits.may_count(speed)) return {};
+    if (limits.may_bounce(speed)) {
+      for (int part = 0; part < PairFlight::parts; ++part) {
+        if (!loads.is_loaded(part)) pair.slowest[part] = limits.slowest;
+      }
+    }
+    if (limits.may_go_deep(speed)) pair.farthest = limits.farthest;
+    return next_meeting(pair, limits.earliest);
+  }
 
  private:
-  /// True if two bodies do not come near one another in the substep.
-  bool are_far(std::int32_t i, std::int32_t j) const;
   /// Bound on how fast two bodies come closer in the substep (m/s).
-  double fastest(std::int32_t i, std::int32_t j) const;
+  SCREE_HD double fastest(std::int32_t i, std::int32_t j) const {
+    Vec3 velocity = bodies.velocity[j] - bodies.velocity[i];
+    Vec3 gained = Vec3::Zero();
+    if (is_free(i) != is_free(j) || parameters.acceleration.size() > 0) {
+      velocity += kick_of(i) - kick_of(j);
+      if (is_free(i)) gained -= terms.step * parameters.acceleration_of(i);
+      if (is_free(j)) gained += terms.step * parameters.acceleration_of(j);
+    }
+    return velocity.norm() + gained.norm() + turn[i] + turn[j];
+  }
+
+  /// True if two bodies do not come near one another in the substep.
+  SCREE_HD bool are_far(std::int32_t i, std::int32_t j) const {
+    const double near = extent[i] + extent[j];
+    const Vec3 offset = bodies.position[j] - bodies.position[i];
+    if (near < HUGE_VAL) return offset.squaredNorm() > near * near;
+    const bool boundary_i = is_boundary(bodies.shape[i]);
+    const std::int32_t boundary = boundary_i ? i : j;
+    if (bodies.shape[boundary] == Shape::tube) return false;
+    const Vec3 up = bodies.orientation[boundary] * Vec3::UnitZ();
+    return (boundary_i ? 1.0 : -1.0) * up.dot(offset) > extent[boundary_i ? j : i] + reach[boundary];
+  }
 };
 
 }  // namespace scree

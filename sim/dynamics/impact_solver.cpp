@@ -10,13 +10,22 @@ namespace scree {
 
 namespace {
 
+/// The loads of a pair, as the last substep left them.
+struct RememberedLoads {
+  ImpulseMemory::Index memory;
+  std::int32_t i, j;
+  SCREE_HD bool is_loaded(int part) const { return memory.is_loaded(i, j, part); }
+};
+
 /// The first impact of each pair.
 struct FindFirst {
   FlightStage stage;
+  ConstView<Pair> pairs;
+  ImpulseMemory::Index memory;
   View<Meeting> first;
   void operator()(std::int64_t k) const {
-    const Pair& pair = stage.problem.pairs[k];
-    first[k] = stage.next(pair.i, pair.j);
+    const auto [i, j] = pairs[k];
+    first[k] = stage.next(i, j, RememberedLoads{memory, i, j});
   }
 };
 
@@ -32,6 +41,22 @@ struct SetReach {
   void operator()(std::int64_t k) const { stage.bound(static_cast<std::int32_t>(k)); }
 };
 
+struct MinusSize {
+  FlightStage stage;
+  double operator()(std::int64_t k) const { return -stage.size_of(k); }
+};
+
+/// FlightStage::harmless of the bodies in flight.
+double harmless_speed(const FlightStage& stage) {
+  const std::int64_t n = stage.bodies.count();
+  const double size = stage.parameters.continuous
+                          ? -parallel::max<double, Host>("impact.size", n, MinusSize{stage}, -HUGE_VAL)
+                          : HUGE_VAL;
+  double restitution = 0;
+  for (const PairLaw& law : stage.terms.laws.table) restitution = std::max(restitution, law.restitution);
+  return stage.harmless_speed(size, restitution);
+}
+
 struct LoadSpeed {
   View<double> speed;
   SCREE_HD double operator()(std::int64_t k) const { return speed[k]; }
@@ -43,19 +68,20 @@ Ledger ImpactSolver::resolve(const ImpactProblem& problem, const ResponseParamet
                              BodyView bodies) {
   const std::int64_t n = bodies.count();
   log_.resize(n);
-  parallel::for_each<Host>("impact.reset", n, StartClock{log_.clock.view(), problem.from});
+  parallel::for_each<Host>("impact.reset", n, StartClock{log_.clock.view(), problem.terms.from});
   parallel::fill("impact.reset", log_.hits, std::int32_t{0});
   impacts_.clear();
   saved_.clear();
   hit_bound_ = false;
-  FlightStage stage(problem, parameters, bodies, log_);
+  FlightStage stage(problem.terms, parameters, bodies, log_);
   parallel::for_each<Host>("impact.reach", n, SetReach{stage});
-  stage.harmless = stage.harmless_speed();
+  stage.harmless = harmless_speed(stage);
   if (2 * parallel::max<double, Host>("impact.speed", n, LoadSpeed{stage.top_speed}, 0.0) <= stage.harmless)
     return {};
   const ConstView<Pair> pairs = problem.pairs;
+  const ImpulseMemory::Index memory = problem.memory.index();
   first_.resize(pairs.size());
-  parallel::for_each<Host>("impact.first", pairs.size(), FindFirst{stage, first_.view()});
+  parallel::for_each<Host>("impact.first", pairs.size(), FindFirst{stage, pairs, memory, first_.view()});
 
   events_.clear();
   for (std::int64_t k = 0; k < pairs.size(); ++k) foresee(stage, pairs[k].i, pairs[k].j, first_.view()[k]);
@@ -67,15 +93,14 @@ Ledger ImpactSolver::resolve(const ImpactProblem& problem, const ResponseParamet
     const auto look_at = [&](std::int32_t other) {
       if (other == body || other == but) return;
       const auto [i, j] = std::minmax(body, other);
-      foresee(stage, i, j, stage.next(i, j));
+      foresee(stage, i, j, stage.next(i, j, RememberedLoads{memory, i, j}));
     };
     const auto k = static_cast<std::size_t>(body);
     for (std::int64_t p = begin_[k]; p < begin_[k + 1]; ++p) look_at(partners_[static_cast<std::size_t>(p)]);
   };
   const auto save = [&](std::int32_t body) {
     if (!stage.is_free(body) || stage.hits[body] > 0) return;
-    saved_.push_back({body, bodies.position[body], bodies.orientation[body], bodies.velocity[body],
-                      bodies.spin[body], stage.clock[body]});
+    saved_.push_back(before_impacts(stage, body));
   };
   Ledger ledger;
   while (!events_.empty()) {
@@ -87,14 +112,15 @@ Ledger ImpactSolver::resolve(const ImpactProblem& problem, const ResponseParamet
     const std::size_t saved = saved_.size();
     save(i);
     save(j);
+    const RememberedLoads loads{memory, i, j};
     Impact impact;
-    if (!resolve_impact(stage, i, j, meeting, impact, ledger)) {
+    if (!resolve_impact(stage, i, j, meeting, loads, impact, ledger)) {
       saved_.resize(saved);
       continue;
     }
     impacts_.push_back(impact);
     hit_bound_ = hit_bound_ || std::max(stage.hits[i], stage.hits[j]) >= most_bounces;
-    foresee(stage, i, j, stage.next(i, j));
+    foresee(stage, i, j, stage.next(i, j, loads));
     foresee_all_of(i, j);
     foresee_all_of(j, i);
   }
@@ -102,7 +128,7 @@ Ledger ImpactSolver::resolve(const ImpactProblem& problem, const ResponseParamet
 }
 
 void ImpactSolver::foresee(const FlightStage& stage, std::int32_t i, std::int32_t j, const Meeting& meeting) {
-  if (meeting.time > stage.problem.step) return;
+  if (meeting.time > stage.terms.step) return;
   events_.push_back({meeting, i, j, stage.hits[i], stage.hits[j]});
   std::push_heap(events_.begin(), events_.end(), std::greater<>());
 }
@@ -123,20 +149,14 @@ void ImpactSolver::list_partners(ConstView<Pair> pairs, std::int64_t bodies) {
 }
 
 void ImpactSolver::undo(BodyView bodies) {
-  for (const StruckBody& saved : saved_) {
-    bodies.position[saved.body] = saved.position;
-    bodies.orientation[saved.body] = saved.orientation;
-    bodies.velocity[saved.body] = saved.velocity;
-    bodies.spin[saved.body] = saved.spin;
-    log_.clock.view()[saved.body] = saved.clock;
-  }
+  for (const StruckBody& saved : saved_) restore(saved, bodies, log_.clock.view());
   saved_.clear();
   impacts_.clear();
 }
 
 const LateBodies* ImpactSolver::late_bodies(const ImpactProblem& problem,
                                             const ResponseParameters& parameters, BodyView bodies) {
-  const FlightStage stage(problem, parameters, bodies, log_);
+  const FlightStage stage(problem.terms, parameters, bodies, log_);
   if (!any_is_late(stage, saved_)) return nullptr;
   return &late_.emplace(stage);
 }
@@ -144,12 +164,12 @@ const LateBodies* ImpactSolver::late_bodies(const ImpactProblem& problem,
 void ImpactSolver::mark_flights(const ImpactProblem& problem, const ResponseParameters& parameters,
                                 const Manifolds& manifolds, BodyView bodies, ContactSet& set,
                                 BallPairs& balls) {
-  scree::mark_flights(FlightStage(problem, parameters, bodies, log_), manifolds, set, balls);
+  scree::mark_flights(FlightStage(problem.terms, parameters, bodies, log_), manifolds, set, balls);
 }
 
 Ledger ImpactSolver::shift_late(const ImpactProblem& problem, const ResponseParameters& parameters,
                                 BodyView bodies, const ContactSet& set) {
-  return scree::shift_late(FlightStage(problem, parameters, bodies, log_), saved_, set, impulse_);
+  return scree::shift_late(FlightStage(problem.terms, parameters, bodies, log_), saved_, set, impulse_);
 }
 
 }  // namespace scree

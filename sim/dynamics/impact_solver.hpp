@@ -1,4 +1,4 @@
-// All impacts of a flight: in the order of their times, each one's outcome before the next.
+// All impacts of a flight on the host: in the order of their times, each one's outcome before the next.
 #pragma once
 
 #include "sim/dynamics/impact.hpp"
@@ -9,6 +9,13 @@
 #include <vector>
 
 namespace scree {
+
+/// What may meet, and how, in one flight.
+struct ImpactProblem {
+  ConstView<Pair> pairs;        ///< candidates, among which are all that may meet
+  const ImpulseMemory& memory;  ///< contacts that carried a load do not bounce
+  FlightTerms terms;
+};
 
 class ImpactSolver {
  public:
@@ -59,7 +66,7 @@ class ImpactSolver {
   void foresee(const FlightStage& stage, std::int32_t i, std::int32_t j, const Meeting& meeting);
   void list_partners(ConstView<Pair> pairs, std::int64_t bodies);
 
-  FlightLog log_;
+  FlightLog<Host> log_;
   Array<Meeting, Host> first_;       // of each candidate
   std::vector<std::int64_t> begin_;  // of the partners of each body
   std::vector<std::int32_t> partners_;

@@ -1,36 +1,26 @@
-// Contacts of bodies that have had an impact after the midpoint.
+// Contacts of bodies that have had an impact after the midpoint, on the host.
 #pragma once
 
 #include "narrowphase/narrow_phase.hpp"
-#include "sim/dynamics/flight_stage.hpp"
+#include "sim/dynamics/contact_flight.hpp"
+#include "sim/dynamics/contact_set.hpp"
+#include "sim/dynamics/impact.hpp"
 
 #include <vector>
 
 namespace scree {
 
-/// A body before its first impact of the flight.
-struct StruckBody {
-  std::int32_t body;
-  Vec3 position;
-  Quat orientation;
-  Vec3 velocity, spin;
-  double clock;
-};
-
-/// Pairs of bodies after their impacts. What the response will do comes after: their flight is straight, with
-/// all of the substep's kick.
+/// Pairs of bodies after their impacts, for the narrow phase.
 class StruckBodies final : public LateBodies {
  public:
-  explicit StruckBodies(const FlightStage& stage) : stage_(stage) {}
+  explicit StruckBodies(const FlightStage& stage) : struck_{stage} {}
 
-  double time_of(std::int32_t i, std::int32_t j) const override;
-  double now() const override { return 0.5 * stage_.problem.step; }
-  Solid solid_at(std::int32_t body, double time) const override { return at(body, time).solid; }
-
-  BodyInstant at(std::int32_t body, double time) const;
+  double time_of(std::int32_t i, std::int32_t j) const override { return struck_.time_of(i, j); }
+  double now() const override { return 0.5 * struck_.stage.terms.step; }
+  Solid solid_at(std::int32_t body, double time) const override { return struck_.at(body, time).solid; }
 
  private:
-  FlightStage stage_;
+  StruckFlights struck_;
 };
 
 /// Whether one of them was struck after the midpoint.
@@ -39,9 +29,7 @@ bool any_is_late(const FlightStage& stage, const std::vector<StruckBody>& struck
 /// Sets Contact::flying and Contact::lead, and which of the pairs that touch fly.
 void mark_flights(const FlightStage& stage, const Manifolds& manifolds, ContactSet& set, BallPairs& balls);
 
-/// After the response: a body that was struck late has been where it was until then, so its midpoint moves
-/// to that from which its new flight leads on from its last impact. Returns what that moved. `total`:
-/// scratch.
+/// As the function of this name, of all bodies struck. `total`: scratch.
 Ledger shift_late(const FlightStage& stage, const std::vector<StruckBody>& struck, const ContactSet& set,
                   std::vector<Vec3>& total);
 

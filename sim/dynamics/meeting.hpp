@@ -1,82 +1,113 @@
-// When two bodies in flight meet: at any speed, linear or angular.
+// When two bodies in flight meet, and where: at any speed, linear or angular.
 #pragma once
 
-#include "core/bodies.hpp"
-#include "narrowphase/contact.hpp"
-#include "narrowphase/solid.hpp"
-
-#include <cmath>
+#include "narrowphase/tube.hpp"
+#include "sim/dynamics/flight.hpp"
+#include "sim/dynamics/meeting_search.hpp"
 
 namespace scree {
 
-/// Free flight of a body through a substep, told by where it is at the midpoint.
-struct BodyFlight {
-  Shape shape;
-  Vec3 size;             ///< see Shape (m)
-  Vec3 inverse_inertia;  ///< principal, 1/(kg m^2)
-  Vec3 position;         ///< at the midpoint, without what the acceleration moves it (m)
-  Quat orientation;      ///< at the midpoint
-  Vec3 velocity;         ///< at the start (m/s)
-  Vec3 spin;             ///< at the midpoint (rad/s)
-  Vec3 acceleration;     ///< m/s^2
-  double midpoint;       ///< time of the midpoint, into the substep (s)
+namespace detail {
 
-  /// At the time s into the substep (s).
-  Vec3 position_at(double s) const {
-    return position + (s - midpoint) * velocity + (0.5 * s * s) * acceleration;
+/// Position, velocity and acceleration of j relative to i.
+SCREE_HD inline Flight relative_flight(const BodyFlight& i, const BodyFlight& j) {
+  return {j.position - i.position, j.acceleration - i.acceleration};
+}
+
+SCREE_HD inline Meeting next_of_balls(const PairFlight& pair, double earliest) {
+  const double step = 2 * pair.i.midpoint;
+  const BallImpact next = next_ball_impact({.flight = relative_flight(pair.i, pair.j),
+                                            .velocity = pair.j.velocity - pair.i.velocity,
+                                            .touching = pair.i.size.x() + pair.j.size.x()},
+                                           step, earliest);
+  if (!(next.time <= pair.until) || !pair.counts(0, -next.speed, next.time)) return {};
+  return {.time = next.time, .part = 0};
+}
+
+/// A ball and a plane that moves along but keeps its normal.
+SCREE_HD inline Meeting next_of_ball_and_plane(const PairFlight& pair, int part, const BodyFlight& ball,
+                                               const Vec3& point, const Vec3& normal, const BodyFlight& plane,
+                                               double earliest) {
+  const Flight flight = relative_flight(plane, ball);
+  const Vec3 velocity = ball.velocity - plane.velocity;
+  const double a = normal.dot(flight.acceleration);
+  const double u = normal.dot(velocity) + a * earliest;
+  const Vec3 offset = ball.position - point + (earliest - ball.midpoint) * velocity +
+                      (0.5 * earliest * earliest) * flight.acceleration;
+  const double gap = normal.dot(offset) - ball.size.x();
+  // A ball that leaves is at the surface at the latest now, whatever rounding says: it may come back.
+  const double s = earliest + time_of_impact(u > 0 ? std::max(gap, DBL_MIN) : gap, u, a);
+  if (!(s <= pair.until) || !pair.counts(part, -(u + a * (s - earliest)), s)) return {};
+  return {.time = s, .part = part};
+}
+
+SCREE_HD inline Meeting next_of_ball_in_tube(const PairFlight& pair, const BodyFlight& ball,
+                                             const BodyFlight& tube, double earliest) {
+  const Vec3 axis = tube.axis();
+  const auto across = [&axis](const Vec3& v) { return Vec3(v - axis.dot(v) * axis); };
+  const Flight flight = relative_flight(tube, ball);
+  const Vec3 velocity = ball.velocity - tube.velocity;
+  const double step = 2 * ball.midpoint;
+  const Vec3 start = flight.at(velocity, step, earliest);
+  const double slack = tolerance::contact_slack * ball.size.x();
+  if (across(start).norm() > tube.size.x() + slack || fabs(axis.dot(start)) > tube.size.z() + slack)
+    return {};
+  Meeting first;
+  const WallImpact wall = next_wall_impact({.flight = {across(flight.position), across(flight.acceleration)},
+                                            .velocity = across(velocity),
+                                            .reach = tube.size.x() - ball.size.x()},
+                                           step, earliest);
+  if (wall.time <= pair.until && pair.counts(tube_wall, wall.speed, wall.time))
+    first = {.time = wall.time, .part = tube_wall};
+  for (const TubePart cap : {tube_cap_below, tube_cap_above}) {
+    const double side = cap == tube_cap_below ? -1.0 : 1.0;
+    const Meeting meeting = next_of_ball_and_plane(
+        pair, cap, ball, tube.position + side * tube.size.z() * axis, -side * axis, tube, earliest);
+    if (meeting.time < first.time) first = meeting;
   }
-  Vec3 velocity_at(double s) const { return velocity + s * acceleration; }
-};
+  return first;
+}
 
-/// A body at one instant of its flight.
-struct BodyInstant {
-  Solid solid;
-  Vec3 velocity;  ///< m/s
-  Vec3 spin;      ///< rad/s
-
-  Vec3 velocity_at(const Vec3& point) const { return velocity + spin.cross(point - solid.position); }
-};
-BodyInstant instant_of(const BodyFlight& flight, double s);
-
-/// Two bodies in flight, and which of their meetings count.
-struct PairFlight {
-  static constexpr int parts = 3;  ///< most surfaces of a pair, Manifold::part
-
-  BodyFlight i, j;
-  double until;           ///< end of the search, into the substep (s)
-  double slowest[parts];  ///< approach that counts at each part (m/s); infinite: none does
-  double farthest =
-      HUGE_VAL;  ///< an approach that would go on for more than this until the end counts too (m)
-
-  bool counts(int part, double approach, double s) const {
-    return approach > slowest[part] || approach * (until - s) > farthest;
-  }
-};
-
-struct Meeting {
-  double time = HUGE_VAL;  ///< into the substep (s); infinite: none
-  int part = 0;            ///< Manifold::part
-};
-
-/// Bound on how fast any two points of the bodies near one another approach, until the search ends (m/s).
-double fastest_approach(const PairFlight& pair);
-
-/// Bound on the speed that turning gives any point of a body's surface (m/s); infinite for a boundary that
-/// turns over.
-double fastest_turn(const BodyFlight& flight);
+}  // namespace detail
 
 /// The first meeting that counts, at `earliest` (s) or later. Balls, and balls with planes and tubes that do
-/// not turn over, have closed forms. For the others it is conservative advancement (Mirtich 1996, sec. 2.3):
-/// no step is longer than the gap over the fastest approach; near the contact Newton's steps replace it, and
-/// an overlap is bisected.
-Meeting next_meeting(const PairFlight& pair, double earliest);
+/// not turn over, have closed forms; for the others it is a search.
+SCREE_HD inline Meeting next_meeting(const PairFlight& pair, double earliest) {
+  if (pair.i.is_ball() && pair.j.is_ball()) return detail::next_of_balls(pair, earliest);
+  const bool ball_first = pair.i.is_ball();
+  const BodyFlight& ball = ball_first ? pair.i : pair.j;
+  const BodyFlight& other = ball_first ? pair.j : pair.i;
+  if (ball.is_ball() && is_boundary(other.shape) && other.tilting_spin().isZero(0)) {
+    if (other.shape == Shape::tube) return detail::next_of_ball_in_tube(pair, ball, other, earliest);
+    return detail::next_of_ball_and_plane(pair, 0, ball, other.position, other.axis(), other, earliest);
+  }
+  const double fastest = fastest_approach(pair);
+  if (!(fastest * (pair.until - earliest) > 0)) return {};
+  return MeetingSearch(pair, fastest).run(earliest);
+}
 
 /// The contact of two bodies at an instant, on the part given: of its manifolds the one with the smallest gap
 /// at a point that closes, or of all if none does. False if there is none within `reach` (m).
-bool contact_at(const BodyInstant& i, Shape shape_i, const BodyInstant& j, Shape shape_j, int part,
-                double reach, Manifold& out);
-
-/// Speed at which the bodies close at a point along the normal (m/s); negative: they part.
-double closing_speed(const Vec3& normal, const Vec3& point, const BodyInstant& i, const BodyInstant& j);
+SCREE_HD inline bool contact_at(const BodyInstant& i, Shape shape_i, const BodyInstant& j, Shape shape_j,
+                                int part, double reach, Manifold& out) {
+  Manifold manifolds[max_pair_manifolds];
+  const int count = find_pair_contacts(shape_i, i.solid, shape_j, j.solid, reach, manifolds);
+  bool found = false;
+  bool found_closing = false;
+  double least = HUGE_VAL;
+  for (int m = 0; m < count; ++m) {
+    if (manifolds[m].part != part) continue;
+    for (int k = 0; k < manifolds[m].count; ++k) {
+      const bool closes = closing_speed(manifolds[m].normal, manifolds[m].points[k].position, i, j) > 0;
+      const double gap = manifolds[m].points[k].gap;
+      if (closes < found_closing || (closes == found_closing && gap >= least)) continue;
+      out = manifolds[m];
+      found = true;
+      found_closing = closes;
+      least = gap;
+    }
+  }
+  return found;
+}
 
 }  // namespace scree

@@ -4,6 +4,8 @@
 #include "core/tolerances.hpp"
 #include "sim/dynamics/rotation.hpp"
 
+#include <limits>
+
 namespace scree {
 
 namespace {
@@ -124,65 +126,109 @@ struct Speed {
   }
 };
 
+SCREE_HD bool is_finite(const Vec3& v) {
+  return fabs(v.x()) < HUGE_VAL && fabs(v.y()) < HUGE_VAL && fabs(v.z()) < HUGE_VAL;
+}
+
+/// The id of a body whose state is no longer finite; `none` for the others.
+struct NonFinite {
+  static constexpr std::int32_t none = std::numeric_limits<std::int32_t>::max();
+  ConstBodyView bodies;
+  SCREE_HD std::int32_t operator()(std::int64_t k) const {
+    const bool finite =
+        is_finite(bodies.position[k]) && is_finite(bodies.velocity[k]) && is_finite(bodies.spin[k]);
+    return finite ? none : bodies.id[k];
+  }
+};
+
 }  // namespace
 
-double advance(Bodies<Host>& bodies, double dt, const ResponseParameters& parameters) {
+template <class Space>
+double advance(Bodies<Space>& bodies, double dt, const ResponseParameters& parameters) {
   const std::int64_t n = bodies.count();
   const BodyView views = view_of(bodies);
-  parallel::for_each<Host>("motion.translate", n, Translate{views, dt});
+  parallel::for_each<Space>("motion.translate", n, Translate{views, dt});
   if (!parameters.rotation) return 0;
   const Rotate rotate{views, dt, parameters.accurate ? RotationOrder::fourth : RotationOrder::second};
-  if (parameters.gyroscopic) return parallel::sum<double, Host>("motion.rotate", n, rotate);
-  parallel::for_each<Host>("motion.rotate", n, rotate);
+  if (parameters.gyroscopic) return parallel::sum<double, Space>("motion.rotate", n, rotate);
+  parallel::for_each<Space>("motion.rotate", n, rotate);
   return 0;
 }
 
-void contact_margins(const Bodies<Host>& bodies, double dt, double slack,
-                     const ResponseParameters& parameters, Array<double, Host>& margin) {
+template <class Space>
+void contact_margins(const Bodies<Space>& bodies, double dt, double slack,
+                     const ResponseParameters& parameters, Array<double, Space>& margin) {
   margin.resize(bodies.count());
-  parallel::for_each<Host>("motion.margins", bodies.count(),
-                           SetMargin{view_of(bodies), margin.view(), dt, slack, parameters});
+  parallel::for_each<Space>("motion.margins", bodies.count(),
+                            SetMargin{view_of(bodies), margin.view(), dt, slack, parameters});
 }
 
-void FatBoxes::put_around(const Bodies<Host>& bodies, double dt, const ResponseParameters& parameters,
-                          const Array<double, Host>& contact_margin) {
+template <class Space>
+void FatBoxes<Space>::put_around(const Bodies<Space>& bodies, double dt, const ResponseParameters& parameters,
+                                 const Array<double, Space>& contact_margin) {
   contact_margins(bodies, dt, tolerance::contact_slack + tolerance::pair_skin, parameters, margin_);
-  parallel::for_each<Host>("motion.margins", bodies.count(),
-                           RaiseMargin{view_of(bodies), contact_margin.view(), margin_.view()});
+  parallel::for_each<Space>("motion.margins", bodies.count(),
+                            RaiseMargin{view_of(bodies), contact_margin.view(), margin_.view()});
   copy(position_, bodies.position);
   copy(orientation_, bodies.orientation);
 }
 
-bool FatBoxes::hold(const Bodies<Host>& bodies, const Array<double, Host>& contact_margin) const {
+template <class Space>
+bool FatBoxes<Space>::hold(const Bodies<Space>& bodies, const Array<double, Space>& contact_margin) const {
   const IsOut is_out{
       {view_of(bodies), position_.view(), orientation_.view()}, margin_.view(), contact_margin.view()};
-  return parallel::max<int, Host>("motion.out", bodies.count(), is_out, 0) == 0;
+  return parallel::max<int, Space>("motion.out", bodies.count(), is_out, 0) == 0;
 }
 
-void FatBoxes::add_travel(const Bodies<Host>& bodies, Array<double, Host>& contact_margin) const {
-  parallel::for_each<Host>(
+template <class Space>
+void FatBoxes<Space>::add_travel(const Bodies<Space>& bodies, Array<double, Space>& contact_margin) const {
+  parallel::for_each<Space>(
       "motion.travel", bodies.count(),
       AddTravel{{view_of(bodies), position_.view(), orientation_.view()}, contact_margin.view()});
 }
 
-double work_of_forces(const Bodies<Host>& bodies, const Array<Vec3, Host>& start,
+template <class Space>
+double work_of_forces(const Bodies<Space>& bodies, const Array<Vec3, Space>& start,
                       ConstView<Vec3> acceleration) {
-  return parallel::sum<double, Host>("motion.work", bodies.count(),
-                                     WorkOfForce{view_of(bodies), start.view(), acceleration});
+  return parallel::sum<double, Space>("motion.work", bodies.count(),
+                                      WorkOfForce{view_of(bodies), start.view(), acceleration});
 }
 
-void load_solver_bodies(const Bodies<Host>& bodies, Array<SolverBody, Host>& solver) {
+template <class Space>
+void load_solver_bodies(const Bodies<Space>& bodies, Array<SolverBody, Space>& solver) {
   solver.resize(bodies.count());
-  parallel::for_each<Host>("motion.load", bodies.count(), LoadSolverBody{view_of(bodies), solver.view()});
+  parallel::for_each<Space>("motion.load", bodies.count(), LoadSolverBody{view_of(bodies), solver.view()});
 }
 
-Totals totals_of(const Bodies<Host>& bodies, const Vec3& gravity, const Vec3& reference) {
-  return parallel::sum<Totals, Host>("motion.totals", bodies.count(),
-                                     BodyTotals{view_of(bodies), gravity, reference});
+template <class Space>
+Totals totals_of(const Bodies<Space>& bodies, const Vec3& gravity, const Vec3& reference) {
+  return parallel::sum<Totals, Space>("motion.totals", bodies.count(),
+                                      BodyTotals{view_of(bodies), gravity, reference});
 }
 
-double largest_speed(const Bodies<Host>& bodies) {
-  return parallel::max<double, Host>("motion.speed", bodies.count(), Speed{view_of(bodies)}, 0.0);
+template <class Space>
+double largest_speed(const Bodies<Space>& bodies) {
+  return parallel::max<double, Space>("motion.speed", bodies.count(), Speed{view_of(bodies)}, 0.0);
 }
+
+template <class Space>
+std::int32_t first_non_finite(const Bodies<Space>& bodies) {
+  const std::int32_t first = parallel::min<std::int32_t, Space>("motion.finite", bodies.count(),
+                                                                NonFinite{view_of(bodies)}, NonFinite::none);
+  return first == NonFinite::none ? -1 : first;
+}
+
+#define SCREE_INSTANTIATE(Space)                                                                    \
+  template double advance<Space>(Bodies<Space>&, double, const ResponseParameters&);                \
+  template void contact_margins(const Bodies<Space>&, double, double, const ResponseParameters&,    \
+                                Array<double, Space>&);                                             \
+  template class FatBoxes<Space>;                                                                   \
+  template double work_of_forces(const Bodies<Space>&, const Array<Vec3, Space>&, ConstView<Vec3>); \
+  template void load_solver_bodies(const Bodies<Space>&, Array<SolverBody, Space>&);                \
+  template Totals totals_of<Space>(const Bodies<Space>&, const Vec3&, const Vec3&);                 \
+  template double largest_speed<Space>(const Bodies<Space>&);                                       \
+  template std::int32_t first_non_finite<Space>(const Bodies<Space>&);
+SCREE_FOR_EACH_SPACE(SCREE_INSTANTIATE)
+#undef SCREE_INSTANTIATE
 
 }  // namespace scree

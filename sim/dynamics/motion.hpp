@@ -10,39 +10,44 @@ namespace scree {
 
 /// Moves every free body by its velocity and spin for the time dt (s), in place. Returns the drift of their
 /// rotational energy (J), which the ledger books as integration.
-double advance(Bodies<Host>& bodies, double dt, const ResponseParameters& parameters);
+template <class Space>
+double advance(Bodies<Space>& bodies, double dt, const ResponseParameters& parameters);
 
 /// How far contacts of each body must reach so that nothing it can meet within dt is missed (m):
 /// its travel, and a slack as a share of its smallest_size.
-void contact_margins(const Bodies<Host>& bodies, double dt, double slack,
-                     const ResponseParameters& parameters, Array<double, Host>& margin);
+template <class Space>
+void contact_margins(const Bodies<Space>& bodies, double dt, double slack,
+                     const ResponseParameters& parameters, Array<double, Space>& margin);
 
 /// Boxes around the bodies, fat enough that pairs found with them last while nobody moves far.
+template <class Space>
 class FatBoxes {
  public:
   /// Around the bodies where they are, with room for their travel within dt (s), and for contacts that reach
   /// as far as given (m).
-  void put_around(const Bodies<Host>& bodies, double dt, const ResponseParameters& parameters,
-                  const Array<double, Host>& contact_margin);
+  void put_around(const Bodies<Space>& bodies, double dt, const ResponseParameters& parameters,
+                  const Array<double, Space>& contact_margin);
   /// Whether every body, wherever it is now, and with contacts that reach as far as given (m), is still in
   /// its box.
-  bool hold(const Bodies<Host>& bodies, const Array<double, Host>& contact_margin) const;
+  bool hold(const Bodies<Space>& bodies, const Array<double, Space>& contact_margin) const;
   /// Raises the margins (m) by what each body has moved since the boxes were put around it.
-  void add_travel(const Bodies<Host>& bodies, Array<double, Host>& contact_margin) const;
-  const Array<double, Host>& margin() const { return margin_; }  ///< (m)
+  void add_travel(const Bodies<Space>& bodies, Array<double, Space>& contact_margin) const;
+  const Array<double, Space>& margin() const { return margin_; }  ///< (m)
 
  private:
-  Array<double, Host> margin_;
-  Array<Vec3, Host> position_;
-  Array<Quat, Host> orientation_;
+  Array<double, Space> margin_;
+  Array<Vec3, Space> position_;
+  Array<Quat, Space> orientation_;
 };
 
 /// Work of the forces that accelerate the bodies so (m/s^2) on their way from `start` to where they are (J).
-double work_of_forces(const Bodies<Host>& bodies, const Array<Vec3, Host>& start,
+template <class Space>
+double work_of_forces(const Bodies<Space>& bodies, const Array<Vec3, Space>& start,
                       ConstView<Vec3> acceleration);
 
 /// Velocities and inverse masses at the present orientation, as the solver wants them.
-void load_solver_bodies(const Bodies<Host>& bodies, Array<SolverBody, Host>& solver);
+template <class Space>
+void load_solver_bodies(const Bodies<Space>& bodies, Array<SolverBody, Space>& solver);
 
 /// Sums over the free bodies.
 struct Totals {
@@ -93,7 +98,12 @@ SCREE_HD inline Totals totals_of_body(const ConstBodyView& bodies, std::int64_t 
   return t;
 }
 
-Totals totals_of(const Bodies<Host>& bodies, const Vec3& gravity, const Vec3& reference);
-double largest_speed(const Bodies<Host>& bodies);
+template <class Space>
+Totals totals_of(const Bodies<Space>& bodies, const Vec3& gravity, const Vec3& reference);
+template <class Space>
+double largest_speed(const Bodies<Space>& bodies);
+/// The smallest id of a body whose state is no longer finite; -1 if there is none.
+template <class Space>
+std::int32_t first_non_finite(const Bodies<Space>& bodies);
 
 }  // namespace scree

@@ -32,8 +32,14 @@ std::vector<PrescribedPath> prescribed_paths(const Scene& scene) {
   return paths;
 }
 
-void place_prescribed(const Array<PrescribedPath, Host>& paths, double time, Bodies<Host>& bodies) {
-  parallel::for_each<Host>("motion.prescribed", paths.size(), Place{paths.view(), time, view_of(bodies)});
+template <class Space>
+void place_prescribed(const Array<PrescribedPath, Space>& paths, double time, Bodies<Space>& bodies) {
+  parallel::for_each<Space>("motion.prescribed", paths.size(), Place{paths.view(), time, view_of(bodies)});
 }
+
+#define SCREE_INSTANTIATE(Space) \
+  template void place_prescribed(const Array<PrescribedPath, Space>&, double, Bodies<Space>&);
+SCREE_FOR_EACH_SPACE(SCREE_INSTANTIATE)
+#undef SCREE_INSTANTIATE
 
 }  // namespace scree

@@ -38,6 +38,7 @@ struct PrescribedPath {
 std::vector<PrescribedPath> prescribed_paths(const Scene& scene);
 
 /// Places every prescribed body for a time (s).
-void place_prescribed(const Array<PrescribedPath, Host>& paths, double time, Bodies<Host>& bodies);
+template <class Space>
+void place_prescribed(const Array<PrescribedPath, Space>& paths, double time, Bodies<Space>& bodies);
 
 }  // namespace scree

@@ -20,9 +20,15 @@ struct BodyContents {
 
 }  // namespace
 
-RegionContents contents_of(const Region& region, const Bodies<Host>& bodies) {
-  return parallel::sum<RegionContents, Host>("region.contents", bodies.count(),
-                                             BodyContents{view_of(bodies), region.from, region.to});
+template <class Space>
+RegionContents contents_of(const Region& region, const Bodies<Space>& bodies) {
+  return parallel::sum<RegionContents, Space>("region.contents", bodies.count(),
+                                              BodyContents{view_of(bodies), region.from, region.to});
 }
+
+#define SCREE_INSTANTIATE(Space) \
+  template RegionContents contents_of<Space>(const Region&, const Bodies<Space>&);
+SCREE_FOR_EACH_SPACE(SCREE_INSTANTIATE)
+#undef SCREE_INSTANTIATE
 
 }  // namespace scree

@@ -19,6 +19,7 @@ struct RegionContents {
   }
 };
 
-RegionContents contents_of(const Region& region, const Bodies<Host>& bodies);
+template <class Space>
+RegionContents contents_of(const Region& region, const Bodies<Space>& bodies);
 
 }  // namespace scree

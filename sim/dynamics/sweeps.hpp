@@ -25,20 +25,21 @@ struct SweepPlan {
 /// sweeps a point once, since news travels one contact per sweep however well each is solved, and the least
 /// number of sweeps sees to the slow modes, of which one sweep's change tells nothing (docs/decisions/0005,
 /// 0014).
-inline SweepPlan plan_sweeps(const ResponseParameters& parameters, const ContactSet& set) {
+inline SweepPlan plan_sweeps(const ResponseParameters& parameters, std::int64_t contacts,
+                             std::int64_t all_points) {
   constexpr std::int64_t visits = 400000;  // of points in a substep
   constexpr std::int64_t fewest = 60, most = 10000;
-  const bool heap = set.is_heap();
+  const bool heap = is_heap(all_points);
   SweepPlan plan{
-      .least = !heap                ? 1
-               : set.shares_loads() ? 12
-                                    : 6,
+      .least = !heap                                ? 1
+               : shares_loads(contacts, all_points) ? 12
+                                                    : 6,
       .most = 0,
       .block_sweeps = heap ? 1 : 4,
       .tolerance = heap && !parameters.accurate ? tolerance::heap_change : tolerance::response_change,
       .direct = !heap,
       .smooth = !parameters.friction};
-  const std::int64_t points = std::max<std::int64_t>(set.point_count(), 1);
+  const std::int64_t points = std::max<std::int64_t>(all_points, 1);
   plan.most = static_cast<int>(std::clamp(visits / (plan.block_sweeps * points), fewest, most));
   if (parameters.block_sweeps > 0) plan.block_sweeps = parameters.block_sweeps;
   if (parameters.iterations > 0) {
@@ -50,6 +51,10 @@ inline SweepPlan plan_sweeps(const ResponseParameters& parameters, const Contact
     plan.least = 1;
   }
   return plan;
+}
+
+inline SweepPlan plan_sweeps(const ResponseParameters& parameters, const ContactSet& set) {
+  return plan_sweeps(parameters, set.contact_count(), set.point_count());
 }
 
 /// Sequential impulses over coloured contacts, with momentum: a sweep starts where the last one would be if

@@ -126,7 +126,7 @@ std::string manifest_of(const Scene& scene, const RunSummary& run) {
                      {"compiler", build.compiler}};
   json["machine"] = machine();
   json["space"] = run.space;
-  json["precision"] = "double";
+  json["precision"] = scene.precision == Precision::mixed ? "mixed" : "double";
   json["model"] = json_of(run.model);
   json["steps"] = run.steps;
   json["steps_total"] = run.steps_total;

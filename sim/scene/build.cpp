@@ -253,6 +253,7 @@ Scene build_scene(SceneEntry entry, const std::filesystem::path& source, Reader&
   scene.response = entry.response;
   scene.broadphase = entry.broadphase;
   scene.narrowphase = entry.narrowphase;
+  scene.precision = entry.precision;
   scene.model = entry.model;
   scene.render = entry.render;
   scene.record = entry.record;

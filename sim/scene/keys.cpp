@@ -178,14 +178,18 @@ const Codec<SceneEntry>& scene_codec() {
           key<T>("broadphase", &T::broadphase, broadphase_section(), optionally, "how pairs are found"),
           key<T>("narrowphase", &T::narrowphase, narrowphase_section(), optionally, "how contacts are found"),
           key<T>("precision", &T::precision,
-                 word<Precision>({{"double", Precision::double_precision}}, {"mixed"}), optionally,
-                 "of the state"),
+                 word<Precision>({{"double", Precision::double_precision}, {"mixed", Precision::mixed}}),
+                 optionally,
+                 "of the response. mixed: impulses and their velocities in float, faster and to 1e-7 of "
+                 "them; the "
+                 "state stays in double. Not in the accurate mode"),
           key<T>("model", &T::model, model_section(), optionally, "features to compute"),
           key<T>("render", &T::render, render_section(), optionally, "the pictures"),
           key<T>("record", &T::record, record_section(), optionally, "what is written besides"),
           key<T>("checks", &T::checks, list_of(check_section()), optionally, "the scene's own test"),
           future<T>("crosscheck", "the run again by other means, compared"),
-      });
+      },
+      check_precision);
   return codec;
 }
 

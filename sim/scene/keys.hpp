@@ -104,7 +104,6 @@ struct CheckEntry : Check {
   const Node* node = nullptr;
 };
 
-enum class Precision { double_precision };
 enum class Trajectory { none };
 
 struct RecordEntry : RecordSettings {

@@ -206,6 +206,11 @@ void check_distribution(const Distribution<T>& sizes, const Node& node, Reader& 
   }
 }
 
+void check_precision(const SceneEntry& scene, const Node& node, Reader& reader) {
+  if (scene.precision == Precision::mixed && scene.response.mode == ResponseMode::accurate)
+    reader.fail_at("precision", node, "cannot be mixed in the accurate mode, whose tolerance is beyond it");
+}
+
 template void check_distribution(const Distribution<double>&, const Node&, Reader&);
 template void check_distribution(const Distribution<Vec3>&, const Node&, Reader&);
 

@@ -18,6 +18,7 @@ void check_force(const ForceEntry& force, const Node& node, Reader& reader);
 void check_region(const Region& region, const Node& node, Reader& reader);
 void check_orbit(const OrbitSettings& orbit, const Node& node, Reader& reader);
 void check_keyframe(const CameraKeySettings& key, const Node& node, Reader& reader);
+void check_precision(const SceneEntry& scene, const Node& node, Reader& reader);
 void check_render(const RenderSettings& render, const Node& node, Reader& reader);
 void check_camera(const CameraSettings& camera, const Node& node, Reader& reader);
 void check_check(const CheckEntry& check, const Node& node, Reader& reader);

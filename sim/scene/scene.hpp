@@ -30,6 +30,9 @@ struct ContactLaw {
   double friction = 0;
 };
 
+/// Of impulses and of the velocities that they are found with; the state is in double.
+enum class Precision { double_precision, mixed };
+
 struct TimeSettings {
   double end = 0;   ///< s
   double step = 0;  ///< s; the last step is shorter if `end` is no multiple
@@ -184,6 +187,7 @@ struct Scene {
   ResponseSettings response;
   BroadPhaseSettings broadphase;
   NarrowPhaseSettings narrowphase;
+  Precision precision = Precision::double_precision;
   ModelSettings model;
   RenderSettings render;
   RecordSettings record;

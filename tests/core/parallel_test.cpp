@@ -165,6 +165,31 @@ TYPED_TEST(ParallelTest, MaxOfNegativeValuesIsNotItsStart) {
   EXPECT_EQ((parallel::max<std::int64_t, TypeParam>("test.max", 3, Load{values.data()}, lowest)), -3);
 }
 
+TYPED_TEST(ParallelTest, MinFindsTheSmallest) {
+  for (const std::int64_t n : sizes) {
+    double smallest = 3;
+    for (std::int64_t i = 0; i < n; ++i) smallest = std::min(smallest, Wild()(i));
+    EXPECT_EQ((parallel::min<double, TypeParam>("test.min", n, Wild(), 3)), smallest) << "n = " << n;
+  }
+}
+
+struct SomeOfSeven {
+  SCREE_HD std::int32_t operator()(std::int64_t i) const {
+    return i * i % 7 == 4 ? static_cast<std::int32_t>(i) : -1;
+  }
+};
+
+TYPED_TEST(ParallelTest, SelectKeepsTheOrder) {
+  Array<std::int32_t, TypeParam> found;
+  for (const std::int64_t n : sizes) {
+    std::vector<std::int32_t> expected;
+    for (std::int64_t i = 0; i < n; ++i)
+      if (SomeOfSeven()(i) >= 0) expected.push_back(static_cast<std::int32_t>(i));
+    parallel::select("test.select", n, SomeOfSeven(), -1, found);
+    EXPECT_EQ(to_vector(found), expected) << "n = " << n;
+  }
+}
+
 TYPED_TEST(ParallelTest, ExclusiveScanOffsets) {
   for (const std::int64_t n : sizes) {
     std::vector<std::uint32_t> counts(static_cast<std::size_t>(n));
@@ -207,14 +232,17 @@ void check_sort(std::int64_t n, int bits) {
     return keys[static_cast<std::size_t>(a)] < keys[static_cast<std::size_t>(b)];
   });
 
-  Array<Key, Space> keys_there;
+  Array<Key, Space> keys_there, keys_alone;
   Array<std::int32_t, Space> values;
   copy(keys_there, keys);
   copy(values, order);
   parallel::sort_by_key("test.sort", keys_there, values, bits);
   EXPECT_EQ(to_vector(values), expected) << "n = " << n << ", bits = " << bits;
+  copy(keys_alone, keys);
+  parallel::sort("test.sort", keys_alone, bits);
   std::sort(keys.begin(), keys.end());
   EXPECT_EQ(to_vector(keys_there), keys) << "n = " << n << ", bits = " << bits;
+  EXPECT_EQ(to_vector(keys_alone), keys) << "n = " << n << ", bits = " << bits;
 }
 
 TYPED_TEST(ParallelTest, SortIsStable) {

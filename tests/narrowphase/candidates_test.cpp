@@ -1,8 +1,9 @@
-// The candidates against a double loop.
+// The candidates against a double loop, in each space.
 #include "narrowphase/candidates.hpp"
 
 #include "core/parallel.hpp"
 #include "core/rng.hpp"
+#include "tests/core/spaces.hpp"
 
 #include <gtest/gtest.h>
 
@@ -11,6 +12,10 @@
 
 namespace scree {
 namespace {
+
+template <class Space>
+class CandidatesTest : public test::InSpace<Space> {};
+TYPED_TEST_SUITE(CandidatesTest, test::Spaces, test::SpaceName);
 
 constexpr std::int32_t count = 120;
 
@@ -42,7 +47,7 @@ Bodies<Host> crowd() {
   return bodies;
 }
 
-TEST(Candidates, AreThePcsAndThePlanesInOrder) {
+TYPED_TEST(CandidatesTest, AreThePcsAndThePlanesInOrder) {
   const Bodies<Host> bodies = crowd();
   const ConstBodyView b = view_of(bodies);
   Array<double, Host> margin(count);
@@ -76,20 +81,30 @@ TEST(Candidates, AreThePcsAndThePlanesInOrder) {
     }
   }
   ASSERT_GT(near, 20);
-  Candidates candidates;
+  Bodies<TypeParam> bodies_there;
+  Array<Pair, TypeParam> pcs_there;
+  Array<double, TypeParam> margin_there;
+  copy_bodies(bodies_there, bodies);
+  copy(pcs_there, pcs);
+  copy(margin_there, margin);
+  Candidates<TypeParam> candidates;
   for (int again = 0; again < 2; ++again) {
-    const auto found =
-        candidates.list(b, {pcs.data(), static_cast<std::int64_t>(pcs.size())}, std::as_const(margin).view());
+    const ConstView<Pair> found =
+        candidates.list(view_of(std::as_const(bodies_there)), std::as_const(pcs_there).view(),
+                        std::as_const(margin_there).view());
     ASSERT_EQ(found.size(), static_cast<std::int64_t>(expected.size()));
-    for (std::int64_t k = 0; k < found.size(); ++k)
-      ASSERT_EQ(std::pair(found[k].i, found[k].j), expected[static_cast<std::size_t>(k)]);
+    std::vector<Pair> pairs(expected.size());
+    copy_bytes<Host, TypeParam>(pairs.data(), found.data(), pairs.size() * sizeof(Pair));
+    for (std::size_t k = 0; k < pairs.size(); ++k) ASSERT_EQ(std::pair(pairs[k].i, pairs[k].j), expected[k]);
   }
 }
 
-TEST(Candidates, OfNothingAreNone) {
-  Bodies<Host> bodies;
-  Array<double, Host> margin;
-  EXPECT_EQ(Candidates().list(view_of(std::as_const(bodies)), {}, std::as_const(margin).view()).size(), 0);
+TYPED_TEST(CandidatesTest, OfNothingAreNone) {
+  Bodies<TypeParam> bodies;
+  Array<double, TypeParam> margin;
+  EXPECT_EQ(
+      Candidates<TypeParam>().list(view_of(std::as_const(bodies)), {}, std::as_const(margin).view()).size(),
+      0);
 }
 
 }  // namespace

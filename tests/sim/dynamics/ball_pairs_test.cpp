@@ -183,8 +183,8 @@ TEST(BallPairs, RememberByPairWhateverTheCandidates) {
   for (const Contact& c : std::as_const(s.set.contacts).view()) {
     if (!c.aligned) continue;
     const Vec3 impulse = c.i % 3 != 0 ? s.set.impulse_of(c) : Vec3(Vec3::Zero());
-    EXPECT_EQ(s.memory.is_loaded(c.i, c.j, 0), !impulse.isZero(0));
-    const std::int32_t candidate = s.memory.balls.candidate_of(c.i, c.j);
+    EXPECT_EQ(s.memory.index().is_loaded(c.i, c.j, 0), !impulse.isZero(0));
+    const std::int32_t candidate = s.memory.balls.index().candidate_of(c.i, c.j);
     ASSERT_EQ(candidate != lanes::none, c.i % 3 != 0);
     if (candidate == lanes::none) continue;
     EXPECT_EQ(s.memory.balls.impulse(candidate), impulse);

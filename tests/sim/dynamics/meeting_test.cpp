@@ -3,7 +3,7 @@
 #include "sim/dynamics/meeting.hpp"
 
 #include "core/rng.hpp"
-#include "narrowphase/narrow_phase.hpp"
+#include "narrowphase/pair_contacts.hpp"
 #include "sim/dynamics/rotation.hpp"
 
 #include <gtest/gtest.h>

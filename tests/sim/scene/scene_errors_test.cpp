@@ -139,7 +139,7 @@ constexpr BadScene bad_scenes[] = {
     {"range_of_kinds", 7, 28, "render.range: needs a color that is a number"},
     {"overlay_word", 7, 20, "render.overlay[0]: must be one of grid, pairs, forces, not girds"},
     {"later_trajectory", 7, 22, "record.trajectory: true is part of the scene language but not in this version"},
-    {"later_precision", 7, 12, "precision: mixed is part of the scene language but not in this version"},
+    {"mixed_accurate", 7, 12, "precision: cannot be mixed in the accurate mode, whose tolerance is beyond it"},
     {"body_beyond_end", 8, 65, "bodies[2].from: must be before the end, 1 s, not 1 s"},
     {"body_gone_first", 8, 77, "bodies[2].until: must be at least a step after from, 0.5 s, not 0.501 s"},
     {"check_absent", 10, 36, "checks[0].at: the body is not there at 0.7 s; see its from and until"},

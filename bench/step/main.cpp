@@ -1,0 +1,149 @@
+// Steps of a settled scene: how long one takes, and with which error.
+//
+//   scree bench step SCENE [--settle S] [--steps N] [--space auto|host|cuda] [--threads N] [--set
+//   key=value;...]
+//                          [--calls no|yes]
+//
+// Runs until S seconds have passed, then times N steps. One JSON object: medians over these steps, and the
+// state after the last. With --calls yes each parallel call is waited for, and its share printed; steps then
+// take longer.
+#include "bench/options.hpp"
+#include "core/error.hpp"
+#include "core/space.hpp"
+#include "core/timing.hpp"
+#include "sim/record/build_info.hpp"
+#include "sim/scene/reader.hpp"
+#include "sim/simulation.hpp"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <sstream>
+
+namespace {
+
+using namespace scree;
+using Clock = std::chrono::steady_clock;
+using Json = nlohmann::ordered_json;
+
+double median(std::vector<double> values) {
+  std::ranges::sort(values);
+  return values.empty() ? NAN : values[values.size() / 2];
+}
+
+double seconds_since(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+Scene scene_of(const std::string& file, const std::string& settings) {
+  std::vector<Override> overrides;
+  std::istringstream list(settings);
+  for (std::string item; std::getline(list, item, ';');) {
+    const std::size_t equals = item.find('=');
+    if (equals == std::string::npos) throw InputError("--set " + item + ": needs key=value");
+    overrides.push_back({item.substr(0, equals), item.substr(equals + 1)});
+  }
+  return read_scene(file, overrides);
+}
+
+SpaceChoice space_of(const std::string& name) {
+  if (name == "auto") return SpaceChoice::automatic;
+  if (name == "host") return SpaceChoice::host;
+  if (name == "cuda") return SpaceChoice::cuda;
+  throw InputError("--space " + name + ": auto, host or cuda");
+}
+
+double median_speed(const Simulation& simulation) {
+  Snapshot snapshot;
+  simulation.snapshot(snapshot);
+  std::vector<double> speeds;
+  for (std::size_t k = 0; k < snapshot.bodies.velocity.size(); ++k)
+    if (snapshot.bodies.mobility[k] == Mobility::free) speeds.push_back(snapshot.bodies.velocity[k].norm());
+  return median(std::move(speeds));
+}
+
+Json entries(const std::vector<timing::Entry>& list) {
+  Json json;
+  for (const timing::Entry& entry : list) json[entry.label] = entry.seconds;
+  return json;
+}
+
+int run(int argc, char** argv) {
+  std::vector<std::string> words;
+  const bench::Options options = bench::parse(argc, argv,
+                                              {{"--settle", "0"},
+                                               {"--steps", "100"},
+                                               {"--space", "auto"},
+                                               {"--threads", "0"},
+                                               {"--set", ""},
+                                               {"--calls", "no"}},
+                                              &words);
+  if (words.size() != 1) throw InputError("needs one scene; see --help");
+  const Scene scene = scene_of(words.front(), options.at("--set"));
+  const auto building = Clock::now();
+  Simulation simulation(scene, {space_of(options.at("--space")), std::stoi(options.at("--threads"))});
+  const double built = seconds_since(building);
+  const auto settling = Clock::now();
+  while (!simulation.finished() && simulation.time() < std::stod(options.at("--settle"))) simulation.step();
+  const double settled = seconds_since(settling);
+  const std::int64_t first = simulation.steps();
+  const Counters before = simulation.observe(false).counters;
+  timing::reset();
+  timing::time_calls(options.at("--calls") == "yes");
+  std::vector<double> times;
+  while (!simulation.finished() && static_cast<int>(times.size()) < std::stoi(options.at("--steps"))) {
+    const auto start = Clock::now();
+    simulation.step();
+    times.push_back(seconds_since(start));
+  }
+  if (times.empty()) throw InputError("the scene ends before there is a step to time");
+  const Json stages = entries(timing::entries());
+  const Json calls = entries(timing::calls());
+  const Observation& seen = simulation.observe();
+  const auto n = static_cast<double>(simulation.steps() - first);
+  double total = 0;
+  for (const double time : times) total += time;
+  const double typical = median(times);
+  Json json{{"scene", scene.name},
+            {"space", simulation.space_name()},
+            {"precision", scene.precision == Precision::mixed ? "mixed" : "double"},
+            {"commit", build_info().commit},
+            {"bodies", seen.bodies},
+            {"contacts", seen.contacts},
+            {"pairs", seen.pairs},
+            {"time", simulation.time()},
+            {"steps", n},
+            {"median_ms", 1e3 * typical},
+            {"mean_ms", 1e3 * total / n},
+            {"steps_per_s", 1 / typical},
+            {"substeps", static_cast<double>(seen.counters.substeps - before.substeps) / n},
+            {"sweeps", static_cast<double>(seen.counters.sweeps - before.sweeps) / n},
+            {"unconverged", seen.counters.unconverged - before.unconverged},
+            {"impacts", static_cast<double>(seen.counters.impacts - before.impacts) / n},
+            {"pcs_made", seen.counters.pcs_made - before.pcs_made},
+            {"penetration_relative_mean", seen.penetration.relative_mean},
+            {"penetration_relative_max", seen.penetration.relative_max},
+            {"gap_mean", seen.gap_mean},
+            {"speed_median", median_speed(simulation)},
+            {"speed_rms", seen.speed_rms},
+            {"speed_max", seen.speed_max},
+            {"centre_z", seen.centre.z()},
+            {"unexplained", seen.unexplained},
+            {"built_s", built},
+            {"settled_s", settled},
+            {"settling_steps", first},
+            {"state_hash", fmt::format("{:016x}", simulation.state_hash())},
+            {"stages_s", stages}};
+  if (options.at("--calls") == "yes") json["calls_s"] = calls;
+  fmt::print("{}\n", json.dump(1));
+  return 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  return scree::bench::status_of("scree_bench_step", [&] { return run(argc, argv); });
+}

@@ -1,0 +1,68 @@
+// The contacts of one pair, whatever its shapes: for code that finds them at instants of its own, in either
+// space.
+#pragma once
+
+#include "core/bodies.hpp"
+#include "narrowphase/box_box.hpp"
+#include "narrowphase/box_plane.hpp"
+#include "narrowphase/box_tube.hpp"
+#include "narrowphase/sphere_box.hpp"
+#include "narrowphase/sphere_plane.hpp"
+#include "narrowphase/sphere_sphere.hpp"
+#include "narrowphase/sphere_tube.hpp"
+
+namespace scree {
+
+namespace detail {
+
+/// The count of a test that has at most one manifold.
+SCREE_HD inline int single(bool found, Manifold& out) {
+  out.part = 0;
+  return found ? 1 : 0;
+}
+
+/// What a test has found with its bodies in the other order.
+SCREE_HD inline int swapped(int count, Manifold* out) {
+  for (int m = 0; m < count; ++m) out[m].normal = -out[m].normal;
+  return count;
+}
+
+constexpr int kind_of(Shape a, Shape b) { return 4 * static_cast<int>(a) + static_cast<int>(b); }
+
+/// Of shapes in the order of Shape.
+SCREE_HD inline int find_ordered_contacts(Shape shape_a, const Solid& a, Shape shape_b, const Solid& b,
+                                          double margin, Manifold* out) {
+  switch (kind_of(shape_a, shape_b)) {
+    case kind_of(Shape::sphere, Shape::sphere):
+      return single(sphere_sphere(a, b, margin, *out), *out);
+    case kind_of(Shape::sphere, Shape::box):
+      return single(sphere_box(a, b, margin, *out), *out);
+    case kind_of(Shape::sphere, Shape::plane):
+      return single(sphere_plane(a, b, margin, *out), *out);
+    case kind_of(Shape::sphere, Shape::tube):
+      return sphere_tube(a, b, margin, out);
+    case kind_of(Shape::box, Shape::box):
+      return single(box_box(a, b, margin, *out), *out);
+    case kind_of(Shape::box, Shape::plane):
+      return single(box_plane(a, b, margin, *out), *out);
+    case kind_of(Shape::box, Shape::tube):
+      return box_tube(a, b, margin, out);
+    default:
+      return 0;
+  }
+}
+
+}  // namespace detail
+
+/// The contacts of one pair by the closed forms and the 15 axes, with gaps of at most `margin` (m): sets
+/// everything of its manifolds but i and j, and returns their number, at most max_pair_manifolds. Boundaries
+/// (planes and tubes) make no contact with each other.
+SCREE_HD inline int find_pair_contacts(Shape shape_a, const Solid& a, Shape shape_b, const Solid& b,
+                                       double margin, Manifold* out) {
+  const bool ordered = shape_a <= shape_b;
+  const int count = detail::find_ordered_contacts(ordered ? shape_a : shape_b, ordered ? a : b,
+                                                  ordered ? shape_b : shape_a, ordered ? b : a, margin, out);
+  return ordered ? count : detail::swapped(count, out);
+}
+
+}  // namespace scree

@@ -1,0 +1,39 @@
+// Which law holds between two bodies.
+#pragma once
+
+#include "core/array.hpp"
+#include "core/bodies.hpp"
+
+#include <cstdint>
+
+namespace scree {
+
+/// Restitution and friction of a pair of materials.
+struct PairLaw {
+  double restitution;
+  double friction;
+};
+
+/// Which law holds between two bodies, and what they are.
+struct ContactLaws {
+  ConstView<Shape> shape;            ///< of each body
+  ConstView<Vec3> size;              ///< of each body (m)
+  ConstView<Mobility> mobility;      ///< of each body
+  ConstView<std::int32_t> material;  ///< of each body
+  ConstView<PairLaw> table;          ///< materials x materials
+  std::int64_t materials = 0;
+
+  SCREE_HD bool is_free(std::int32_t body) const { return mobility[body] == Mobility::free; }
+  SCREE_HD bool acts_as_ball(std::int32_t body) const {
+    return shape[body] == Shape::sphere || !is_free(body);
+  }
+  /// The smaller smallest_size of two bodies (m).
+  SCREE_HD double smaller_size(std::int32_t i, std::int32_t j) const {
+    return fmin(smallest_size(shape[i], size[i]), smallest_size(shape[j], size[j]));
+  }
+  SCREE_HD const PairLaw& between(std::int32_t i, std::int32_t j) const {
+    return table[material[i] * materials + material[j]];
+  }
+};
+
+}  // namespace scree

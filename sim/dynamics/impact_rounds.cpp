@@ -1,0 +1,372 @@
+#include "sim/dynamics/impact_rounds.hpp"
+
+#include "core/parallel.hpp"
+#include "core/space_atomic.hpp"
+
+#include <algorithm>
+#include <bit>
+
+namespace scree {
+
+namespace {
+
+using detail::FirstMeeting;
+using detail::Foreseen;
+using detail::ImpactProgress;
+using detail::Resolved;
+
+SCREE_HD std::uint64_t ordered_bits(double x) { return std::bit_cast<std::uint64_t>(x + 0.0); }
+
+constexpr FirstMeeting none{detail::infinite, ~std::uint64_t{0}};
+
+/// Who has had an impact later than the flight begins has been where it was before that. Also looks at the
+/// laws.
+struct StartFlight {
+  FlightStage stage;
+  ImpactProgress* progress;
+  SCREE_HD void operator()(std::int64_t k) const {
+    const ConstView<PairLaw> laws = stage.terms.laws.table;
+    if (k < laws.size()) raise(&progress->restitution, ordered_bits(laws[k].restitution));
+    if (k >= stage.clock.size()) return;
+    const double from = stage.terms.from;
+    stage.clock[k] = from > 0 ? fmax(stage.clock[k], from) : 0.0;
+    stage.hits[k] = 0;
+    stage.bound(static_cast<std::int32_t>(k));
+    raise(&progress->top_speed, ordered_bits(stage.top_speed[k]));
+    lower(&progress->smallest, ordered_bits(stage.size_of(k)));
+  }
+};
+
+struct SetHarmless {
+  FlightStage stage;
+  ImpactProgress* progress;
+  SCREE_HD void operator()(std::int64_t) const {
+    const double harmless = stage.harmless_speed(std::bit_cast<double>(progress->smallest),
+                                                 std::bit_cast<double>(progress->restitution));
+    const bool nobody = 2 * std::bit_cast<double>(progress->top_speed) <= harmless;
+    progress->harmless = nobody ? HUGE_VAL : harmless;
+  }
+};
+
+/// Lists the pairs that may meet, in the first round all, then those of bodies that the last one has struck.
+struct Suspect {
+  FlightStage stage;
+  ConstView<Pair> pairs;
+  ConstView<std::uint32_t> struck_in;
+  std::uint32_t round;
+  ImpactProgress* progress;
+  View<std::int64_t> suspects;
+  SCREE_HD void operator()(std::int64_t k) const {
+    const double harmless = progress->harmless;
+    if (harmless == HUGE_VAL) return;
+    const auto [i, j] = pairs[k];
+    if (round > 1 && struck_in[i] != round - 1 && struck_in[j] != round - 1) return;
+    if (stage.top_speed[i] + stage.top_speed[j] <= harmless) return;
+    ImpactLimits limits;
+    if (!stage.may_meet(i, j, limits)) return;
+    const auto place = static_cast<std::int64_t>(count_up(&progress->round.suspects));
+    if (place < suspects.size()) suspects[place] = k;
+  }
+};
+
+/// The meetings of a round, in any order.
+struct MeetingList {
+  ImpactProgress* progress;
+  View<Foreseen> list;
+  SCREE_HD void add(const Foreseen& meeting) const {
+    list[static_cast<std::int64_t>(count_up(&progress->round.meetings))] = meeting;
+  }
+};
+
+SCREE_HD LoadedParts loads_of(ConstView<LoadedParts> loaded, std::int64_t pair) {
+  return loaded.size() > 0 ? loaded[pair] : LoadedParts{};
+}
+
+struct Foresee {
+  FlightStage stage;
+  ConstView<Pair> pairs;
+  ConstView<LoadedParts> loaded;
+  ConstView<std::int64_t> suspects;
+  MeetingList meetings;
+  SCREE_HD void operator()(std::int64_t s) const {
+    if (static_cast<std::uint64_t>(s) >= meetings.progress->round.suspects) return;
+    const std::int64_t k = suspects[s];
+    const auto [i, j] = pairs[k];
+    const Meeting meeting = stage.next(i, j, loads_of(loaded, k));
+    if (meeting.time <= stage.terms.step) meetings.add({meeting.time, k, meeting.part});
+  }
+};
+
+/// Of the last round's meetings those that have stayed as they were.
+struct KeepMeetings {
+  ConstView<Foreseen> last;
+  ConstView<Pair> pairs;
+  ConstView<std::uint32_t> struck_in;
+  std::uint32_t round;
+  MeetingList meetings;
+  SCREE_HD void operator()(std::int64_t e) const {
+    const Foreseen& meeting = last[e];
+    const auto [i, j] = pairs[meeting.pair];
+    if (meeting.time == HUGE_VAL || struck_in[i] == round - 1 || struck_in[j] == round - 1) return;
+    meetings.add(meeting);
+  }
+};
+
+/// What the steps of one round share.
+struct Round {
+  FlightStage stage;
+  ConstView<Pair> pairs;
+  View<Foreseen> meetings;
+  View<FirstMeeting> first;
+  View<std::uint32_t> waits_in;
+  std::uint32_t number;
+};
+
+struct FindFirstTimes {
+  Round round;
+  SCREE_HD void operator()(std::int64_t e) const {
+    const Foreseen& meeting = round.meetings[e];
+    const auto [i, j] = round.pairs[meeting.pair];
+    for (const std::int32_t body : {i, j}) {
+      if (round.stage.is_free(body)) lower(&round.first[body].time, ordered_bits(meeting.time));
+    }
+  }
+};
+
+struct FindFirstPairs {
+  Round round;
+  SCREE_HD void operator()(std::int64_t e) const {
+    const Foreseen& meeting = round.meetings[e];
+    const auto [i, j] = round.pairs[meeting.pair];
+    for (const std::int32_t body : {i, j}) {
+      FirstMeeting& first = round.first[body];
+      if (first.time == ordered_bits(meeting.time))
+        lower(&first.pair, static_cast<std::uint64_t>(meeting.pair));
+    }
+  }
+};
+
+/// Of two bodies that could meet, one may have to wait for the other.
+struct MakeWait {
+  Round round;
+  SCREE_HD void operator()(std::int64_t k) const {
+    const auto [i, j] = round.pairs[k];
+    const std::uint64_t time_i = round.first[i].time;
+    const std::uint64_t time_j = round.first[j].time;
+    if (time_i == time_j) return;
+    const std::int32_t later = time_i < time_j ? j : i;
+    if (round.first[later].time != detail::infinite) raise(&round.waits_in[later], round.number);
+  }
+};
+
+/// Resolves the meetings that are first. No two of them share a body that is free.
+struct ResolveFirst {
+  Round round;
+  ConstView<LoadedParts> loaded;
+  View<std::uint32_t> struck_in;
+  ImpactProgress* progress;
+  View<Resolved> resolved;
+  View<std::uint64_t> key;
+  View<StruckBody> struck;
+
+  SCREE_HD void operator()(std::int64_t e) const {
+    Foreseen& meeting = round.meetings[e];
+    const auto [i, j] = round.pairs[meeting.pair];
+    if (!is_first(meeting, i) || !is_first(meeting, j)) return;
+    const FlightStage& stage = round.stage;
+    const StruckBody before_i = before_impacts(stage, i);
+    const StruckBody before_j = before_impacts(stage, j);
+    Resolved outcome;
+    if (!resolve_impact(stage, i, j, {.time = meeting.time, .part = meeting.part},
+                        loads_of(loaded, meeting.pair), outcome.impact, outcome.moved)) {
+      meeting.time = HUGE_VAL;
+      return;
+    }
+    mark(before_i);
+    mark(before_j);
+    const auto place = static_cast<std::int64_t>(count_up(&progress->impacts));
+    resolved[place] = outcome;
+    key[place] = static_cast<std::uint64_t>(round.number) * static_cast<std::uint64_t>(round.pairs.size()) +
+                 static_cast<std::uint64_t>(meeting.pair);
+    if (meeting.time > 0.5 * stage.terms.step) raise(&progress->late, 1u);
+    if (std::max(stage.hits[i], stage.hits[j]) >= most_bounces) raise(&progress->hit_bound, 1u);
+  }
+
+ private:
+  SCREE_HD bool is_first(const Foreseen& meeting, std::int32_t body) const {
+    if (!round.stage.is_free(body)) return true;
+    return round.first[body].pair == static_cast<std::uint64_t>(meeting.pair) &&
+           round.waits_in[body] != round.number;
+  }
+
+  SCREE_HD void mark(const StruckBody& before) const {
+    if (!round.stage.is_free(before.body)) return;
+    struck_in[before.body] = round.number;
+    if (round.stage.hits[before.body] > 1) return;
+    struck[static_cast<std::int64_t>(count_up(&progress->struck))] = before;
+  }
+};
+
+struct LoadOrdered {
+  ConstView<std::int64_t> order;
+  ConstView<Resolved> resolved;
+  SCREE_HD Ledger operator()(std::int64_t k) const { return resolved[order[k]].moved; }
+};
+
+struct PutInOrder {
+  ConstView<std::int64_t> order;
+  ConstView<Resolved> resolved;
+  View<Impact> impacts;
+  SCREE_HD void operator()(std::int64_t k) const { impacts[k] = resolved[order[k]].impact; }
+};
+
+struct CountOff {
+  View<std::int64_t> order;
+  SCREE_HD void operator()(std::int64_t k) const { order[k] = k; }
+};
+
+struct Restore {
+  ConstView<StruckBody> struck;
+  BodyView bodies;
+  View<double> clock;
+  SCREE_HD void operator()(std::int64_t k) const { restore(struck[k], bodies, clock); }
+};
+
+/// Makes room for so many, and keeps the `used` first.
+template <class T, class Space>
+void make_room(Array<T, Space>& list, std::int64_t used, std::int64_t needed) {
+  if (needed > list.capacity()) {
+    Array<T, Space> larger(std::max(needed, 2 * list.capacity()));
+    copy_bytes<Space, Space>(larger.data(), list.data(), static_cast<std::size_t>(used) * sizeof(T));
+    list.swap(larger);
+  }
+  list.resize(list.capacity());
+}
+
+std::int64_t signed_count(std::uint64_t count) { return static_cast<std::int64_t>(count); }
+
+}  // namespace
+
+template <class Space>
+Ledger ImpactRounds<Space>::resolve(const Problem& problem, const ResponseParameters& parameters,
+                                    BodyView bodies) {
+  constexpr std::int64_t most_rounds = 1 << 16;
+  log_.resize(bodies.count());
+  const FlightStage stage(problem.terms, parameters, bodies, log_);
+  start(stage);
+  for (;;) {
+    foresee(stage, problem);
+    if (meetings_.empty()) break;
+    if (rounds_ == most_rounds) {
+      progress_.hit_bound = 1;
+      break;
+    }
+    resolve_first(stage, problem);
+  }
+  struck_.resize(signed_count(progress_.struck));
+  return put_in_order(problem.pairs.size());
+}
+
+template <class Space>
+void ImpactRounds<Space>::start(const FlightStage& stage) {
+  meetings_.resize(0);
+  rounds_ = 0;
+  progress_ = {};
+  shared_progress_.resize(1);
+  ImpactProgress* progress = shared_progress_.data();
+  copy_bytes<Space, Host>(progress, &progress_, sizeof(progress_));
+  parallel::for_each<Space>("impact.start", std::max(stage.bodies.count(), stage.terms.laws.table.size()),
+                            StartFlight{stage, progress});
+  parallel::for_each<Space>("impact.harmless", 1, SetHarmless{stage, progress});
+}
+
+/// Lists the meetings of the next round.
+template <class Space>
+void ImpactRounds<Space>::foresee(const FlightStage& stage, const Problem& problem) {
+  constexpr std::int64_t least_room = 4096;
+  const auto round = static_cast<std::uint32_t>(rounds_ + 1);
+  const ConstView<Pair> pairs = problem.pairs;
+  const ConstView<std::uint32_t> struck_in = struck_in_.view();
+  ImpactProgress* progress = shared_progress_.data();
+  last_.swap(meetings_);
+  for (std::int64_t room = std::max(suspects_.capacity(), least_room);;
+       room = signed_count(progress_.round.suspects)) {
+    suspects_.resize(room);
+    meetings_.resize(room + last_.size());
+    const MeetingList meetings{progress, meetings_.view()};
+    const detail::RoundCounts nothing;
+    copy_bytes<Space, Host>(&progress->round, &nothing, sizeof(nothing));
+    parallel::for_each<Space>("impact.keep", last_.size(),
+                              KeepMeetings{last_.view(), pairs, struck_in, round, meetings});
+    parallel::for_each<Space>("impact.suspect", pairs.size(),
+                              Suspect{stage, pairs, struck_in, round, progress, suspects_.view()});
+    // As many as there is room for: how many there are is read once, with what comes of them.
+    parallel::for_each<Space>("impact.foresee", room,
+                              Foresee{stage, pairs, problem.loaded, suspects_.view(), meetings});
+    copy_bytes<Host, Space>(&progress_, progress, sizeof(progress_));
+    if (signed_count(progress_.round.suspects) <= room) break;
+  }
+  meetings_.resize(signed_count(progress_.round.meetings));
+}
+
+template <class Space>
+void ImpactRounds<Space>::resolve_first(const FlightStage& stage, const Problem& problem) {
+  const std::int64_t n = stage.bodies.count();
+  if (++rounds_ == 1) {
+    struck_in_.resize(n);
+    waits_in_.resize(n);
+    first_.resize(n);
+    parallel::fill("impact.reset", struck_in_, std::uint32_t{0});
+    parallel::fill("impact.reset", waits_in_, std::uint32_t{0});
+  }
+  parallel::fill("impact.reset", first_, none);
+  const std::int64_t count = meetings_.size();
+  const std::int64_t impacts = signed_count(progress_.impacts);
+  const std::int64_t struck = signed_count(progress_.struck);
+  make_room(resolved_, impacts, impacts + count);
+  make_room(key_, impacts, impacts + count);
+  make_room(struck_, struck, struck + 2 * count);
+  const Round round{.stage = stage,
+                    .pairs = problem.pairs,
+                    .meetings = meetings_.view(),
+                    .first = first_.view(),
+                    .waits_in = waits_in_.view(),
+                    .number = static_cast<std::uint32_t>(rounds_)};
+  parallel::for_each<Space>("impact.times", count, FindFirstTimes{round});
+  parallel::for_each<Space>("impact.pairs", count, FindFirstPairs{round});
+  parallel::for_each<Space>("impact.wait", round.pairs.size(), MakeWait{round});
+  parallel::for_each<Space>("impact.resolve", count,
+                            ResolveFirst{round, problem.loaded, struck_in_.view(), shared_progress_.data(),
+                                         resolved_.view(), key_.view(), struck_.view()});
+}
+
+/// Returns the sum of what the impacts moved.
+template <class Space>
+Ledger ImpactRounds<Space>::put_in_order(std::int64_t pairs) {
+  const std::int64_t n = signed_count(progress_.impacts);
+  impacts_.resize(n);
+  if (n == 0) return {};
+  key_.resize(n);
+  order_.resize(n);
+  parallel::for_each<Space>("impact.order", n, CountOff{order_.view()});
+  parallel::sort_by_key("impact.order", key_, order_,
+                        std::bit_width(static_cast<std::uint64_t>((rounds_ + 1) * pairs)));
+  const ConstView<std::int64_t> order = order_.view();
+  parallel::for_each<Space>("impact.order", n, PutInOrder{order, resolved_.view(), impacts_.view()});
+  return parallel::sum<Ledger, Space>("impact.moved", n, LoadOrdered{order, resolved_.view()});
+}
+
+template <class Space>
+void ImpactRounds<Space>::undo(BodyView bodies) {
+  parallel::for_each<Space>("impact.undo", struck_.size(),
+                            Restore{struck_.view(), bodies, log_.clock.view()});
+  struck_.resize(0);
+  impacts_.resize(0);
+  progress_ = {};
+}
+
+#define SCREE_INSTANTIATE(Space) template class ImpactRounds<Space>;
+SCREE_FOR_EACH_SPACE(SCREE_INSTANTIATE)
+#undef SCREE_INSTANTIATE
+
+}  // namespace scree

@@ -1,0 +1,137 @@
+// When two bodies of any shape meet: a search along their flights.
+#pragma once
+
+#include "core/tolerances.hpp"
+#include "narrowphase/pair_contacts.hpp"
+#include "sim/dynamics/body_flight.hpp"
+
+#include <algorithm>
+
+namespace scree {
+
+struct Meeting {
+  double time = HUGE_VAL;  ///< into the substep (s); infinite: none
+  int part = 0;            ///< Manifold::part
+};
+
+/// The first meeting that counts, by conservative advancement (Mirtich 1996, sec. 2.3): no step is longer
+/// than the gap over the fastest approach; near the contact Newton's steps replace it, and an overlap is
+/// bisected.
+class MeetingSearch {
+ public:
+  /// `fastest`: fastest_approach() of the pair (m/s).
+  SCREE_HD MeetingSearch(const PairFlight& pair, double fastest)
+      : pair_(pair), fastest_(fastest), size_(pair.smaller_size()) {}
+
+  /// At `earliest` (s) or later.
+  SCREE_HD Meeting run(double earliest) {
+    double s = earliest;
+    Look now = look(s);
+    for (int iteration = 0; now.near && iteration < most_iterations; ++iteration) {
+      if (now.hit) return {.time = s, .part = now.part};
+      settle(now);
+      if (s >= pair_.until) return {};
+      const double next = std::min(s + step_from(now), pair_.until);
+      const Look then = look(next);
+      const double level = std::min(now.gap, 0.0);
+      if (then.hit) {
+        if (then.gap >= level - touching()) return {.time = next, .part = then.part};
+        // Where it reaches that gap, unless it is not fast enough there yet.
+        double touch = next;
+        const Look at = bisect(s, now, touch, then, level);
+        return at.hit ? Meeting{.time = touch, .part = at.part} : Meeting{.time = next, .part = then.part};
+      }
+      s = next;
+      now = then;
+    }
+    return {};
+  }
+
+ private:
+  static constexpr int most_iterations = 1000;
+  static constexpr int most_bisections = 60;
+
+  /// The pair at one instant.
+  struct Look {
+    bool near = false;                   // within reach
+    double gap = HUGE_VAL;               // smallest of the points whose part may count (m)
+    double closing = 0;                  // approach there (m/s)
+    bool hit = false;                    // at some point that touches the approach counts
+    int part = 0;                        // of that point
+    bool rests[PairFlight::parts] = {};  // parts where a point touches whose approach does not count
+  };
+
+  SCREE_HD double touching() const { return tolerance::touching_gap * size_; }
+
+  /// A part that has touched slowly bears load from then on, and does not bounce.
+  SCREE_HD void settle(const Look& now) {
+    for (int part = 0; part < PairFlight::parts; ++part) {
+      if (now.rests[part]) pair_.slowest[part] = HUGE_VAL;
+    }
+  }
+
+  SCREE_HD Look look(double s) const {
+    const BodyInstant i = instant_of(pair_.i, s);
+    const BodyInstant j = instant_of(pair_.j, s);
+    Manifold manifolds[max_pair_manifolds];
+    const double reach = fastest_ * (pair_.until - s) + 2 * touching();
+    const int count = find_pair_contacts(pair_.i.shape, i.solid, pair_.j.shape, j.solid, reach, manifolds);
+    Look look;
+    for (int m = 0; m < count; ++m) {
+      const int part = manifolds[m].part;
+      if (pair_.slowest[part] == HUGE_VAL && pair_.farthest == HUGE_VAL) continue;
+      for (int k = 0; k < manifolds[m].count; ++k) {
+        const ContactPoint& point = manifolds[m].points[k];
+        const double gap = point.gap;
+        const double closing = closing_speed(manifolds[m].normal, point.position, i, j);
+        look.near = true;
+        if (gap < look.gap) {
+          look.gap = gap;
+          look.closing = closing;
+        }
+        if (gap > touching()) continue;
+        if (!look.hit && pair_.counts(part, closing, s)) {
+          look.hit = true;
+          look.part = part;
+        }
+        look.rests[part] = look.rests[part] || (closing > 0 && !pair_.counts(part, closing, s));
+      }
+    }
+    return look;
+  }
+
+  /// As far as the gap lasts at the fastest approach; more where that is next to nothing.
+  SCREE_HD double step_from(const Look& now) const {
+    const double safe = std::max(now.gap, 0.0) / fastest_;
+    const double least = tolerance::search_advance * size_ / fastest_;
+    if (now.closing > 0 && now.gap > touching())
+      return std::max(safe, std::min(now.gap / now.closing, least));
+    return std::max(safe, least);
+  }
+
+  /// Where the gap falls through the level between two instants, from above: moves `to` there.
+  SCREE_HD Look bisect(double from, const Look& before, double& to, Look after, double level) const {
+    double excess = before.gap - level;
+    for (int k = 0; k < most_bisections && after.gap < level - touching(); ++k) {
+      // Every other one is a secant's, kept off the ends.
+      const double share = k % 2 == 0 ? std::clamp(excess / (excess + level - after.gap), 0.05, 0.95) : 0.5;
+      const double middle = from + share * (to - from);
+      if (!(middle > from && middle < to)) break;
+      const Look at = look(middle);
+      if (at.gap > level) {
+        from = middle;
+        excess = at.gap - level;
+      } else {
+        to = middle;
+        after = at;
+      }
+    }
+    return after;
+  }
+
+  PairFlight pair_;
+  double fastest_;
+  double size_;
+};
+
+}  // namespace scree

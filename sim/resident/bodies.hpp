@@ -1,0 +1,204 @@
+// Work on each body within a substep: what the contacts and the sweeps want to know of it, and what they have
+// made of it.
+#pragma once
+
+#include "core/bodies.hpp"
+#include "sim/dynamics/displace.hpp"
+#include "sim/dynamics/rotation.hpp"
+#include "sim/dynamics/state.hpp"
+#include "sim/observation.hpp"
+#include "sim/resident/layout.hpp"
+#include "sim/resident/slots.hpp"
+#include "sim/resident/sweeps.hpp"
+
+#include <cstdint>
+
+namespace scree::resident {
+
+inline ConstBodyView read_only(const BodyView& bodies) {
+  ConstBodyView views;
+  for_each_field([](const char*, auto& to, const auto& from) { to = from; }, views, bodies);
+  return views;
+}
+
+/// A body at the midpoint, and its velocities after the kick.
+template <class Real>
+struct LoadBody {
+  ConstBodyView bodies;
+  ConstView<double> margin;
+  ResponseParameters parameters;
+  double step;
+  View<MidBody<Real>> mid;
+  View<BodyRecord<Real>> solver;
+  View<InertiaRecord<Real>> inertia;  ///< empty if all contacts are of balls
+
+  SCREE_HD void operator()(std::int64_t k) const {
+    const Vec3& v = bodies.velocity[k];
+    const bool free = bodies.mobility[k] == Mobility::free;
+    const auto real = [](double value) { return static_cast<Real>(value); };
+    mid[k] = {.position = bodies.position[k],
+              .size = smallest_size(bodies.shape[k], bodies.size[k]),
+              .velocity = v3<Real>(v),
+              .margin = real(margin[k]),
+              .inverse_mass = real(bodies.inverse_mass[k]),
+              .inverse_inertia = real(bodies.inverse_inertia[k].x()),
+              .material = bodies.material[k],
+              .shape = bodies.shape[k],
+              .mobility = bodies.mobility[k]};
+    Vec3 spin = bodies.spin[k];
+    if (inertia.size() > 0 || parameters.torque.size() > 0) {
+      const Mat3 world = world_inverse_inertia(bodies.orientation[k], bodies.inverse_inertia[k]);
+      if (inertia.size() > 0) {
+        inertia[k] = {real(world(0, 0)), real(world(1, 1)), real(world(2, 2)),
+                      real(world(0, 1)), real(world(0, 2)), real(world(1, 2))};
+      }
+      if (free && parameters.torque.size() > 0) spin += step * (world * parameters.torque[k]).eval();
+    }
+    BodyRecord<Real>& body = solver[k];
+    body.velocity = v3<Real>(free ? Vec3(v + step * parameters.acceleration_of(k)) : v);
+    body.inverse_mass = real(bodies.inverse_mass[k]);
+    body.spin = v3<Real>(spin);
+    body.inverse_inertia = real(bodies.inverse_inertia[k].x());
+  }
+};
+
+/// The parts of a hub share its mass, and start as it does.
+template <class Real>
+struct LoadPart {
+  ConstView<Hub> hubs;
+  ConstView<std::int32_t> hub_of;
+  std::int64_t bodies;
+  View<BodyRecord<Real>> solver;
+  View<InertiaRecord<Real>> inertia;
+  SCREE_HD void operator()(std::int64_t p) const {
+    const Hub& hub = hubs[hub_of[p]];
+    const auto parts = static_cast<Real>(hub.parts);
+    BodyRecord<Real> part = solver[hub.body];
+    part.inverse_mass *= parts;
+    part.inverse_inertia *= parts;
+    solver[bodies + p] = part;
+    if (inertia.size() == 0) return;
+    const InertiaRecord<Real>& whole = inertia[hub.body];
+    inertia[bodies + p] = {parts * whole.xx, parts * whole.yy, parts * whole.zz,
+                           parts * whole.xy, parts * whole.xz, parts * whole.yz};
+  }
+};
+
+/// Sum of two vectors of each part of a hub; a tile to each hub.
+struct PartsSum {
+  Vec3 velocity = Vec3::Zero();
+  Vec3 spin = Vec3::Zero();
+  SCREE_HD friend PartsSum operator+(const PartsSum& a, const PartsSum& b) {
+    return {a.velocity + b.velocity, a.spin + b.spin};
+  }
+};
+template <class Record>
+SCREE_HD inline Vec3 spin_of(const Record& body) {
+  if constexpr (requires { body.spin; }) return vec3(body.spin);
+  return Vec3::Zero();
+}
+template <class Record>
+struct SumParts {
+  ConstView<Hub> hubs;
+  const Record* bodies;
+  SCREE_HD PartsSum operator()(std::int64_t item) const {
+    const Hub& hub = hubs[item / parallel_tile];
+    PartsSum sum;
+    for (std::int64_t p = item % parallel_tile; p < hub.parts; p += parallel_tile) {
+      const Record& body = bodies[hub.first + p];
+      sum = sum + PartsSum{vec3(body.velocity), spin_of(body)};
+    }
+    return sum;
+  }
+  static constexpr std::int64_t parallel_tile = 256;
+};
+/// The parts of a hub, and the hub itself, get their mean.
+template <class Record>
+struct JoinParts {
+  ConstView<Hub> hubs;
+  ConstView<std::int32_t> hub_of;
+  ConstView<PartsSum> sums;
+  std::int64_t count;
+  Record* bodies;
+  SCREE_HD void operator()(std::int64_t p) const {
+    using Real = decltype(bodies->inverse_mass);
+    const std::int32_t h = hub_of[p];
+    const Hub& hub = hubs[h];
+    const auto mean = [&](const Vec3& sum) { return v3<Real>(sum / static_cast<double>(hub.parts)); };
+    const auto set = [&](Record& body) {
+      body.velocity = mean(sums[h].velocity);
+      if constexpr (requires { body.spin; }) body.spin = mean(sums[h].spin);
+    };
+    set(bodies[count + p]);
+    if (count + p == hub.first) set(bodies[hub.body]);
+  }
+};
+
+/// What the contacts have made of the velocities.
+template <class Real>
+struct StoreVelocities {
+  ConstView<BodyRecord<Real>> free;  ///< without contacts
+  ConstView<BodyRecord<Real>> solver;
+  ResponseParameters parameters;
+  double step;
+  BodyView bodies;
+  SCREE_HD void operator()(std::int64_t k) const {
+    if (bodies.mobility[k] != Mobility::free) return;
+    // As changes, so that what no contact touches is not rounded.
+    const BodyRecord<Real>& before = free[k];
+    const BodyRecord<Real>& after = solver[k];
+    bodies.velocity[k] += step * parameters.acceleration_of(k) + vec3(after.velocity - before.velocity);
+    bodies.spin[k] += vec3(after.spin - before.spin);
+    if (parameters.torque.size() > 0) {
+      const Mat3 world = world_inverse_inertia(bodies.orientation[k], bodies.inverse_inertia[k]);
+      bodies.spin[k] += step * (world * parameters.torque[k]);
+    }
+  }
+};
+
+/// Work of the torques: by the mean of the spins before and after, as that of impulses. Before the velocities
+/// are stored.
+template <class Real>
+struct WorkOfTorque {
+  ConstBodyView bodies;
+  ConstView<BodyRecord<Real>> solver;
+  ConstView<Vec3> torque;
+  double step;
+  SCREE_HD double operator()(std::int64_t k) const {
+    if (bodies.mobility[k] != Mobility::free) return 0;
+    return 0.5 * step * torque[k].dot(bodies.spin[k] + vec3(solver[k].spin));
+  }
+};
+
+/// Nobody is displaced yet.
+template <class Real>
+struct ResetDisplacement {
+  ConstView<BodyRecord<Real>> solver;
+  View<CentreRecord<Real>> displacement;
+  View<CentreRecord<Real>> turn;  ///< empty if all contacts are of balls
+  SCREE_HD void operator()(std::int64_t k) const {
+    displacement[k].velocity = {};
+    displacement[k].inverse_mass = solver[k].inverse_mass;
+    if (turn.size() == 0) return;
+    turn[k].velocity = {};
+    turn[k].inverse_mass = solver[k].inverse_inertia;
+  }
+};
+
+/// Moves a body and says what that changed, at velocities that stay.
+template <class Real>
+struct Displace {
+  ConstView<CentreRecord<Real>> displacement;
+  ConstView<CentreRecord<Real>> turn;
+  ResponseParameters parameters;
+  BodyView bodies;
+
+  SCREE_HD Ledger operator()(std::int64_t k) const {
+    if (bodies.mobility[k] != Mobility::free) return {};
+    const Vec3 by = vec3(displacement[k].velocity);
+    const Vec3 angle = turn.size() > 0 ? vec3(turn[k].velocity) : Vec3(Vec3::Zero());
+    return displace(bodies, k, by, angle, parameters.gravity, parameters.rotation);
+  }
+};
+
+}  // namespace scree::resident

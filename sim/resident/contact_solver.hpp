@@ -1,0 +1,104 @@
+// Contacts and their response with everything in one space: slots, contacts, sweeps, books, correction.
+#pragma once
+
+#include "core/array.hpp"
+#include "core/bodies.hpp"
+#include "sim/dynamics/contact_set.hpp"
+#include "sim/dynamics/state.hpp"
+#include "sim/dynamics/sweeps.hpp"
+#include "sim/resident/bodies.hpp"
+#include "sim/resident/books.hpp"
+#include "sim/resident/contact_store.hpp"
+#include "sim/resident/find_contacts.hpp"
+#include "sim/resident/flights.hpp"
+#include "sim/resident/inspection.hpp"
+#include "sim/resident/slots.hpp"
+
+#include <cstdint>
+
+namespace scree::resident {
+
+/// The bodies are the caller's: at the midpoint for find() and solve(), at the end of the substep for
+/// correct().
+template <class Space, class Real>
+class ContactSolver {
+ public:
+  /// The candidates have been made anew; impulses are remembered.
+  void take_candidates(ConstView<Pair> candidates, const ConstBodyView& bodies);
+  void forget();
+
+  /// Contacts that may close by the next midpoint: gaps of at most the sum of the two margins (m). Impulses
+  /// start from what they were, `scale` times.
+  /// `flight`: the bodies after the impacts of the first half; `any_is_late`: one came after the midpoint.
+  void find(ConstView<double> margin, double scale, const FlightStage& flight, bool any_is_late);
+
+  /// Impulses with e = 0, by sweeps; the bodies get their velocities, and those that were struck late their
+  /// places. Returns what was moved.
+  Ledger solve(const FlightStage& flight, bool any_is_late, Counters& counters);
+
+  /// Impacts after the response have changed velocities.
+  void take_velocities(const ConstBodyView& bodies);
+
+  /// Parts what would overlap, velocities stay. Returns what that moved.
+  Ledger correct(const FlightStage& flight, bool any_is_late);
+  /// Deepest overlap that the last correct() has found (of the smaller smallest_size).
+  double overlap() const { return overlap_; }
+
+  /// Of the last solve().
+  const Books& books() const { return books_; }
+  const ContactCounts& counts() const { return counts_; }
+  /// For each candidate a bit for each part that is loaded.
+  ConstView<LoadedParts> loads() const {
+    static_assert(sizeof(LoadedParts) == 1);
+    return {reinterpret_cast<const LoadedParts*>(loads_.data()), slots_.candidates()};
+  }
+  const Slots<Space, Real>& slots() const { return slots_; }
+
+  /// Of the last substep, brought to Host.
+  Inspection<Real> inspect() const;
+  /// What the contacts of the last substep gave to a body (N s).
+  Vec3 impulse_on(std::int32_t body);
+
+ private:
+  void load_bodies(const ConstBodyView& bodies, ConstView<double> margin,
+                   const ResponseParameters& parameters);
+  void count();
+  void sweep(const SweepPlan& plan);
+  template <class Record>
+  void join_parts(Array<Record, Space>& bodies);
+  void part_sweep();
+  void find_impulses(const ResponseParameters& parameters, Counters& counters);
+  Ledger book(const ConstBodyView& bodies, const ResponseParameters& parameters);
+  Ledger shift_late_bodies(const FlightStage& flight);
+  void fly_late(const FlightStage& flight);
+
+  Slots<Space, Real> slots_;
+  double step_ = 0;
+
+  Array<MidBody<Real>, Space> mid_;
+  Array<BodyRecord<Real>, Space> solver_, free_, last_;
+  Array<InertiaRecord<Real>, Space> inertia_;
+  Array<CentreRecord<Real>, Space> displacement_, turn_;
+  Array<PartsSum, Space> parts_;
+
+  ContactStore<Space, Real> store_;
+
+  ContactCounts counts_;
+  Books books_;
+  double overlap_ = 0;
+  Array<std::uint32_t, Space> loads_, next_loads_;
+
+  Array<SweepChange, Space> change_;  // of each tile
+  Array<SweepState, Space> state_;
+  Array<SweepChange, Space> total_;
+  Array<Deepest, Space> deepest_;
+  Array<PartState, Space> part_state_;
+  Array<Deepest, Space> deepest_of_all_;
+  Array<Books, Space> book_sums_;
+  Array<Books, Space> book_total_;
+  Array<Ledger, Space> ledger_scratch_, ledger_total_;
+  Array<SweepChange, Space> change_scratch_;
+  Array<Deepest, Space> deepest_scratch_;
+};
+
+}  // namespace scree::resident

@@ -1,0 +1,79 @@
+// Memory for the contacts of a substep, a place for each slot.
+#pragma once
+
+#include "core/array.hpp"
+#include "sim/resident/layout.hpp"
+
+#include <cstdint>
+
+namespace scree::resident {
+
+template <class Space, class Real>
+class ContactStore {
+ public:
+  /// Whole tiles of `tile` places: those of balls, and the others.
+  void resize(std::int64_t balls, std::int64_t others, int tile) {
+    tile_ = tile;
+    balls_ = balls;
+    found_.resize((balls + others) / tile);
+    ends_.resize(balls + others);
+    slot_.resize(balls + others);
+    flags_.resize(balls + others);
+    points_.resize(others);
+    ball_fields_.resize(balls * BallContacts<Real>::count);
+    contact_fields_.resize(others * PointContacts<Real>::count);
+    point_fields_.resize(others * PointContacts<Real>::point_count * Manifold::max_points);
+  }
+
+  /// Places.
+  std::int64_t ball_places() const { return balls_; }
+  std::int64_t point_places() const { return points_.size(); }
+  /// How many each tile has found; first the tiles of balls.
+  std::int32_t* found() { return found_.data(); }
+
+  BallContacts<Real> balls() {
+    return {.found = found_.data(),
+            .ends = {ends_.data(), balls_},
+            .slot = {slot_.data(), balls_},
+            .flags = {flags_.data(), balls_},
+            .fields = {ball_fields_.data(), balls_}};
+  }
+  PointContacts<Real> points() {
+    const std::int64_t places = points_.size();
+    return {.found = found_.data() + balls_ / tile_,
+            .ends = {ends_.data() + balls_, places},
+            .slot = {slot_.data() + balls_, places},
+            .flags = {flags_.data() + balls_, places},
+            .points = points_.view(),
+            .fields = {contact_fields_.data(), places},
+            .point_fields = {point_fields_.data(), places}};
+  }
+
+  template <class From>
+  void copy_from(const ContactStore<From, Real>& from) {
+    tile_ = from.tile_;
+    balls_ = from.balls_;
+    copy(found_, from.found_);
+    copy(ends_, from.ends_);
+    copy(slot_, from.slot_);
+    copy(flags_, from.flags_);
+    copy(points_, from.points_);
+    copy(ball_fields_, from.ball_fields_);
+    copy(contact_fields_, from.contact_fields_);
+    copy(point_fields_, from.point_fields_);
+  }
+
+ private:
+  template <class, class>
+  friend class ContactStore;
+
+  int tile_ = 1;
+  std::int64_t balls_ = 0;
+  Array<std::int32_t, Space> found_;
+  Array<Ends, Space> ends_;
+  Array<std::uint8_t, Space> slot_, flags_;
+  Array<std::int32_t, Space> points_;
+  Array<Real, Space> ball_fields_, contact_fields_, point_fields_;
+};
+
+}  // namespace scree::resident

@@ -1,0 +1,430 @@
+#include "sim/resident/slots.hpp"
+
+#include "core/parallel.hpp"
+#include "core/space_atomic.hpp"
+#include "core/space_tiles.hpp"
+
+#include <algorithm>
+#include <utility>
+
+namespace scree::resident {
+
+namespace {
+
+/// Slots that a free body of the solver may have. Two such bodies leave one of 64 colours for what they
+/// share.
+constexpr std::int32_t most_slots = 32;
+constexpr int colors = 64;
+constexpr std::uint8_t uncolored = 255;
+
+/// Manifolds that a pair can have: a ball in a tube touches wall and caps, a box the wall with each corner.
+constexpr int tube_surfaces = 3;
+constexpr int box_tube_surfaces = 10;
+
+SCREE_HD int surfaces_of(Shape a, Shape b) {
+  if (a != Shape::tube && b != Shape::tube) return 1;
+  return a == Shape::box || b == Shape::box ? box_tube_surfaces : tube_surfaces;
+}
+
+struct CountSurfaces {
+  ConstBodyView bodies;
+  ConstView<Pair> pairs;
+  View<std::uint8_t> counts;
+  SCREE_HD void operator()(std::int64_t k) const {
+    counts[k] = static_cast<std::uint8_t>(surfaces_of(bodies.shape[pairs[k].i], bodies.shape[pairs[k].j]));
+  }
+};
+
+struct ListSlots {
+  ConstView<Pair> pairs;
+  ConstView<std::int64_t> first;
+  View<Slot> slots;
+  SCREE_HD void operator()(std::int64_t k) const {
+    const Pair& pair = pairs[k];
+    for (std::int64_t s = first[k]; s < first[k + 1]; ++s) {
+      slots[s] = {.i = pair.i,
+                  .j = pair.j,
+                  .end_i = pair.i,
+                  .end_j = pair.j,
+                  .candidate = static_cast<std::int32_t>(k),
+                  .surface = static_cast<std::int32_t>(s - first[k])};
+    }
+  }
+};
+
+struct CountSlots {
+  ConstView<Slot> slots;
+  ConstView<Mobility> mobility;
+  View<std::int32_t> counts;
+  SCREE_HD void operator()(std::int64_t s) const {
+    if (mobility[slots[s].i] == Mobility::free) add(&counts[slots[s].i], 1);
+    if (mobility[slots[s].j] == Mobility::free) add(&counts[slots[s].j], 1);
+  }
+};
+
+struct MarkHubs {
+  ConstView<std::int32_t> counts;
+  View<std::uint8_t> is_hub;
+  SCREE_HD void operator()(std::int64_t b) const { is_hub[b] = counts[b] > most_slots ? 1 : 0; }
+};
+
+struct ListHubs {
+  ConstView<std::int32_t> counts;
+  ConstView<std::int64_t> number;
+  View<Hub> hubs;
+  View<std::int32_t> parts;
+  SCREE_HD void operator()(std::int64_t b) const {
+    if (number[b] == number[b + 1]) return;
+    parts[number[b]] = (counts[b] + most_slots - 1) / most_slots;
+    hubs[number[b]] = {.body = static_cast<std::int32_t>(b), .first = 0, .parts = parts[number[b]]};
+  }
+};
+
+struct PlaceHubs {
+  ConstView<std::int64_t> first;
+  std::int64_t bodies;
+  View<Hub> hubs;
+  View<std::int32_t> hub_of;
+  SCREE_HD void operator()(std::int64_t h) const {
+    hubs[h].first = static_cast<std::int32_t>(bodies + first[h]);
+    for (std::int64_t p = first[h]; p < first[h + 1]; ++p) hub_of[p] = static_cast<std::int32_t>(h);
+  }
+};
+
+/// Ends of slots on hubs: 2 s for i, 2 s + 1 for j.
+struct MarkHubEnds {
+  ConstView<Slot> slots;
+  ConstView<std::int64_t> number;
+  View<std::uint8_t> on_hub;
+  SCREE_HD void operator()(std::int64_t e) const {
+    const Slot& slot = slots[e / 2];
+    const std::int32_t body = e % 2 == 0 ? slot.i : slot.j;
+    on_hub[e] = number[body + 1] > number[body] ? 1 : 0;
+  }
+};
+struct ListHubEnds {
+  ConstView<Slot> slots;
+  ConstView<std::int64_t> number;
+  ConstView<std::int64_t> to;
+  View<std::uint32_t> hub;
+  View<std::uint64_t> ends;
+  SCREE_HD void operator()(std::int64_t e) const {
+    if (to[e] == to[e + 1]) return;
+    const Slot& slot = slots[e / 2];
+    hub[to[e]] = static_cast<std::uint32_t>(number[e % 2 == 0 ? slot.i : slot.j]);
+    ends[to[e]] = static_cast<std::uint64_t>(e);
+  }
+};
+/// The ends of a hub, in their order, are dealt to its parts.
+struct DealHubEnds {
+  ConstView<std::uint32_t> hub;
+  ConstView<std::uint64_t> ends;
+  ConstView<Hub> hubs;
+  View<Slot> slots;
+  SCREE_HD void operator()(std::int64_t k) const {
+    std::int64_t low = 0, high = k;  // where those of the hub begin
+    while (low < high) {
+      const std::int64_t middle = (low + high) / 2;
+      if (hub[middle] < hub[k]) {
+        low = middle + 1;
+      } else {
+        high = middle;
+      }
+    }
+    const Hub& of = hubs[hub[k]];
+    const auto part = static_cast<std::int32_t>(of.first + (k - low) / most_slots);
+    Slot& slot = slots[static_cast<std::int64_t>(ends[k] / 2)];
+    (ends[k] % 2 == 0 ? slot.end_i : slot.end_j) = part;
+  }
+};
+
+/// A slot's rank among its neighbours: as good as random, and never the same twice.
+SCREE_HD std::uint64_t rank_of(std::int64_t slot) {
+  auto x = static_cast<std::uint64_t>(slot) * 0x9e3779b97f4a7c15u;
+  x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9u;
+  x ^= x >> 31;
+  return (x & 0xffffffff00000000u) | static_cast<std::uint32_t>(slot);
+}
+
+/// Rounds of colouring: of the uncoloured slots of each body the first in rank stands, and a slot that stands
+/// at both its bodies takes the lowest colour that both have left (Jones, Plassmann 1993, "A parallel graph
+/// coloring heuristic").
+struct Stand {
+  ConstView<Slot> slots;
+  ConstView<Mobility> mobility;
+  ConstView<std::uint8_t> color;
+  View<std::uint64_t> standing;
+  SCREE_HD void operator()(std::int64_t s) const {
+    if (color[s] != uncolored) return;
+    const Slot& slot = slots[s];
+    if (mobility[slot.i] == Mobility::free) lower(&standing[slot.end_i], rank_of(s));
+    if (mobility[slot.j] == Mobility::free) lower(&standing[slot.end_j], rank_of(s));
+  }
+};
+struct TakeColor {
+  ConstView<Slot> slots;
+  ConstView<Mobility> mobility;
+  View<std::uint8_t> color;
+  View<std::uint64_t> standing;
+  View<std::uint64_t> taken;
+  std::uint32_t* left;
+  SCREE_HD void operator()(std::int64_t s) const {
+    if (color[s] != uncolored) return;
+    const Slot& slot = slots[s];
+    const bool free_i = mobility[slot.i] == Mobility::free;
+    const bool free_j = mobility[slot.j] == Mobility::free;
+    if ((free_i && standing[slot.end_i] != rank_of(s)) || (free_j && standing[slot.end_j] != rank_of(s))) {
+      add(left, 1u);
+      return;
+    }
+    const std::uint64_t used = (free_i ? taken[slot.end_i] : 0) | (free_j ? taken[slot.end_j] : 0);
+    int lowest = 0;
+    while ((used >> lowest & 1) != 0) ++lowest;
+    color[s] = static_cast<std::uint8_t>(lowest);
+    if (free_i) taken[slot.end_i] |= std::uint64_t{1} << lowest;
+    if (free_j) taken[slot.end_j] |= std::uint64_t{1} << lowest;
+    // Nobody else stands here, so the next round may begin.
+    if (free_i) standing[slot.end_i] = ~std::uint64_t{0};
+    if (free_j) standing[slot.end_j] = ~std::uint64_t{0};
+  }
+};
+
+/// Balls on balls, or on what is not free and does not turn.
+SCREE_HD bool is_of_balls(const ConstBodyView& bodies, const Slot& slot) {
+  for (const std::int32_t body : {slot.i, slot.j}) {
+    const bool free = bodies.mobility[body] == Mobility::free;
+    if (free ? bodies.shape[body] != Shape::sphere : !bodies.spin[body].isZero(0)) return false;
+  }
+  return true;
+}
+
+struct KeyOf {
+  ConstBodyView bodies;
+  ConstView<Slot> slots;
+  ConstView<std::uint8_t> color;
+  View<std::uint32_t> key;
+  View<std::uint32_t> slot;
+  SCREE_HD void operator()(std::int64_t s) const {
+    key[s] = color[s] + (is_of_balls(bodies, slots[s]) ? 0u : static_cast<std::uint32_t>(colors));
+    slot[s] = static_cast<std::uint32_t>(s);
+  }
+};
+struct LoadKey {
+  ConstView<std::uint32_t> key;
+  SCREE_HD int operator()(std::int64_t k) const { return static_cast<int>(key[k]); }
+};
+
+/// Where the slots of a colour begin, among all in their order, and their places.
+struct ColorStart {
+  std::int64_t first;
+  std::int64_t place;
+};
+struct PlaceSlots {
+  ConstView<Slot> slots;
+  ConstView<std::uint32_t> key;
+  ConstView<std::uint32_t> slot;
+  ConstView<ColorStart> start;
+  View<Slot> places;
+  View<std::int64_t> place;
+  SCREE_HD void operator()(std::int64_t k) const {
+    const ColorStart& color = start[key[k]];
+    const std::int64_t to = color.place + (k - color.first);
+    places[to] = slots[slot[k]];
+    place[slot[k]] = to;
+  }
+};
+
+/// Looks its slot up among the old ones.
+template <class Real>
+struct Recall {
+  ConstView<Slot> places;
+  ConstView<Pair> old_pairs;
+  ConstView<std::int64_t> old_first;
+  ConstView<std::int64_t> old_place;
+  std::int64_t ball_places, old_ball_places;
+  ConstView<BallMemory<Real>> old_balls;
+  ConstView<PointMemory<Real>> old_points;
+  View<BallMemory<Real>> balls;
+  View<PointMemory<Real>> points;
+
+  SCREE_HD void operator()(std::int64_t place) const {
+    const std::int64_t old = old_place_of(places[place]);
+    if (place < ball_places) {
+      balls[place] = old >= 0 && old < old_ball_places ? old_balls[old] : BallMemory<Real>{};
+    } else {
+      points[place - ball_places] =
+          old >= old_ball_places ? old_points[old - old_ball_places] : PointMemory<Real>{};
+    }
+  }
+  SCREE_HD std::int64_t old_place_of(const Slot& slot) const {
+    if (slot.i == Slot::empty) return -1;
+    std::int64_t low = 0, high = old_pairs.size();
+    while (low < high) {
+      const std::int64_t middle = (low + high) / 2;
+      const Pair& pair = old_pairs[middle];
+      if (pair.i < slot.i || (pair.i == slot.i && pair.j < slot.j)) {
+        low = middle + 1;
+      } else {
+        high = middle;
+      }
+    }
+    if (low == old_pairs.size() || old_pairs[low].i != slot.i || old_pairs[low].j != slot.j) return -1;
+    return old_place[old_first[low] + slot.surface];
+  }
+};
+
+}  // namespace
+
+template <class Space, class Real>
+void Slots<Space, Real>::build(ConstView<Pair> candidates, const ConstBodyView& bodies) {
+  old_pairs_.swap(pairs_);
+  old_first_.swap(first_);
+  old_place_.swap(place_);
+  old_ball_memory_.swap(ball_memory_);
+  old_point_memory_.swap(point_memory_);
+  old_ball_places_ = balls_.tiles() * parallel::tile;
+  pairs_.resize(candidates.size());
+  copy_bytes<Space, Space>(pairs_.data(), candidates.data(),
+                           static_cast<std::size_t>(candidates.size()) * sizeof(Pair));
+  list_slots(bodies);
+  split_hubs(bodies);
+  color_slots(bodies);
+  place_slots(bodies);
+  recall();
+}
+
+template <class Space, class Real>
+void Slots<Space, Real>::clear() {
+  for (auto* pairs : {&pairs_, &old_pairs_}) pairs->resize(0);
+  places_.resize(0);
+  ball_memory_.resize(0);
+  point_memory_.resize(0);
+  balls_ = others_ = ColorTiles{{0}};
+}
+
+template <class Space, class Real>
+void Slots<Space, Real>::list_slots(const ConstBodyView& bodies) {
+  Array<std::uint8_t, Space> counts(pairs_.size());
+  parallel::for_each<Space>("slots.count", pairs_.size(),
+                            CountSurfaces{bodies, std::as_const(pairs_).view(), counts.view()});
+  slots_.resize(parallel::exclusive_scan("slots.count", counts, first_));
+  parallel::for_each<Space>(
+      "slots.list", pairs_.size(),
+      ListSlots{std::as_const(pairs_).view(), std::as_const(first_).view(), slots_.view()});
+}
+
+template <class Space, class Real>
+void Slots<Space, Real>::split_hubs(const ConstBodyView& bodies) {
+  const std::int64_t n = bodies.count();
+  const std::int64_t ends = 2 * slots_.size();
+  const ConstView<Slot> slots = std::as_const(slots_).view();
+  Array<std::int32_t, Space> counts(n);
+  Array<std::uint8_t, Space> marks(n);
+  Array<std::int64_t, Space> number, to;
+  parallel::fill("slots.degree", counts, 0);
+  parallel::for_each<Space>("slots.degree", slots.size(), CountSlots{slots, bodies.mobility, counts.view()});
+  parallel::for_each<Space>("slots.hubs", n, MarkHubs{std::as_const(counts).view(), marks.view()});
+  hubs_.resize(parallel::exclusive_scan("slots.hubs", marks, number));
+  solver_bodies_ = n;
+  hub_of_.resize(0);
+  if (hubs_.empty()) return;
+  Array<std::int32_t, Space> parts(hubs_.size());
+  parallel::for_each<Space>(
+      "slots.hubs", n,
+      ListHubs{std::as_const(counts).view(), std::as_const(number).view(), hubs_.view(), parts.view()});
+  hub_of_.resize(parallel::exclusive_scan("slots.hubs", parts, to));
+  solver_bodies_ += hub_of_.size();
+  parallel::for_each<Space>("slots.hubs", hubs_.size(),
+                            PlaceHubs{std::as_const(to).view(), n, hubs_.view(), hub_of_.view()});
+  marks.resize(ends);
+  parallel::for_each<Space>("slots.hub ends", ends,
+                            MarkHubEnds{slots, std::as_const(number).view(), marks.view()});
+  const std::int64_t on_hubs = parallel::exclusive_scan("slots.hub ends", marks, to);
+  Array<std::uint32_t, Space> hub(on_hubs);
+  Array<std::uint64_t, Space> end(on_hubs);
+  parallel::for_each<Space>(
+      "slots.hub ends", ends,
+      ListHubEnds{slots, std::as_const(number).view(), std::as_const(to).view(), hub.view(), end.view()});
+  parallel::sort_by_key("slots.hub ends", hub, end);
+  parallel::for_each<Space>("slots.hub ends", on_hubs,
+                            DealHubEnds{std::as_const(hub).view(), std::as_const(end).view(),
+                                        std::as_const(hubs_).view(), slots_.view()});
+}
+
+template <class Space, class Real>
+void Slots<Space, Real>::color_slots(const ConstBodyView& bodies) {
+  constexpr int rounds_at_once = 8;
+  const ConstView<Slot> slots = std::as_const(slots_).view();
+  color_.resize(slots.size());
+  Array<std::uint64_t, Space> standing(solver_bodies_), taken(solver_bodies_);
+  Array<std::uint32_t, Space> left(1);
+  parallel::fill("slots.color", color_, uncolored);
+  parallel::fill("slots.color", standing, ~std::uint64_t{0});
+  parallel::fill("slots.color", taken, std::uint64_t{0});
+  // In each round the first in rank of all that are left finds its colour.
+  std::uint32_t uncolored_left = slots.size() > 0 ? 1 : 0;
+  while (uncolored_left > 0) {
+    for (int round = 0; round < rounds_at_once; ++round) {
+      parallel::fill("slots.color", left, 0u);
+      parallel::for_each<Space>("slots.color", slots.size(),
+                                Stand{slots, bodies.mobility, std::as_const(color_).view(), standing.view()});
+      parallel::for_each<Space>(
+          "slots.color", slots.size(),
+          TakeColor{slots, bodies.mobility, color_.view(), standing.view(), taken.view(), left.data()});
+    }
+    copy_bytes<Host, Space>(&uncolored_left, left.data(), sizeof(uncolored_left));
+  }
+}
+
+template <class Space, class Real>
+void Slots<Space, Real>::place_slots(const ConstBodyView& bodies) {
+  constexpr int keys = 2 * colors;
+  const ConstView<Slot> slots = std::as_const(slots_).view();
+  Array<std::uint32_t, Space> key(slots.size()), slot(slots.size()), counts;
+  parallel::for_each<Space>("slots.place", slots.size(),
+                            KeyOf{bodies, slots, std::as_const(color_).view(), key.view(), slot.view()});
+  parallel::sort_by_key("slots.place", key, slot, 7);
+  parallel::histogram<Space>("slots.place", slots.size(), LoadKey{std::as_const(key).view()}, keys, counts);
+  const std::vector<std::uint32_t> count = to_vector(counts);
+  std::vector<ColorStart> start;
+  std::int64_t first = 0;
+  std::int64_t tiles = 0;
+  balls_.begin.assign(1, 0);
+  for (int k = 0; k < keys; ++k) {
+    ColorTiles& kind = k < colors ? balls_ : others_;
+    if (k == colors) others_.begin.assign(1, tiles);
+    start.push_back({first, tiles * parallel::tile});
+    first += count[static_cast<std::size_t>(k)];
+    if (count[static_cast<std::size_t>(k)] == 0) continue;
+    tiles += parallel::tiles_of(count[static_cast<std::size_t>(k)]);
+    kind.begin.push_back(tiles);
+  }
+  Array<ColorStart, Space> starts;
+  copy(starts, start);
+  places_.resize(tiles * parallel::tile);
+  place_.resize(slots.size());
+  parallel::fill("slots.place", places_, Slot{});
+  parallel::for_each<Space>("slots.place", slots.size(),
+                            PlaceSlots{slots, std::as_const(key).view(), std::as_const(slot).view(),
+                                       std::as_const(starts).view(), places_.view(), place_.view()});
+}
+
+template <class Space, class Real>
+void Slots<Space, Real>::recall() {
+  const std::int64_t ball_places = balls_.tiles() * parallel::tile;
+  ball_memory_.resize(ball_places);
+  point_memory_.resize(places_.size() - ball_places);
+  parallel::for_each<Space>(
+      "slots.recall", places_.size(),
+      Recall<Real>{std::as_const(places_).view(), std::as_const(old_pairs_).view(),
+                   std::as_const(old_first_).view(), std::as_const(old_place_).view(), ball_places,
+                   old_ball_places_, std::as_const(old_ball_memory_).view(),
+                   std::as_const(old_point_memory_).view(), ball_memory_.view(), point_memory_.view()});
+}
+
+#define SCREE_INSTANTIATE(Space)       \
+  template class Slots<Space, double>; \
+  template class Slots<Space, float>;
+SCREE_FOR_EACH_SPACE(SCREE_INSTANTIATE)
+
+}  // namespace scree::resident

@@ -1,0 +1,76 @@
+// Slots: where contacts may arise while the candidates stay, colour by colour, and what each remembers.
+#pragma once
+
+#include "broadphase/broad_phase.hpp"
+#include "core/array.hpp"
+#include "core/bodies.hpp"
+#include "sim/resident/layout.hpp"
+
+#include <cstdint>
+#include <vector>
+
+namespace scree::resident {
+
+/// A free body with so many slots that they would make too many colours. It is solved as several equal parts
+/// that share its mass, and that move alike after each sweep (mass splitting: Tonge, Benevolenski, Voroshilov
+/// 2012, "Mass splitting for jitter-free parallel rigid body simulation", sec. 4).
+struct Hub {
+  std::int32_t body;
+  std::int32_t first;  ///< of its parts among the bodies of the solver
+  std::int32_t parts;
+};
+
+/// Tiles of one colour after the other: slots of one colour share no free body.
+struct ColorTiles {
+  std::vector<std::int64_t> begin;  ///< first tile of each colour; one more than colours
+
+  std::int64_t colors() const { return static_cast<std::int64_t>(begin.size()) - 1; }
+  std::int64_t tiles() const { return begin.back() - begin.front(); }
+};
+
+template <class Space, class Real>
+class Slots {
+ public:
+  /// Slots for the candidates (ordered by (i, j), each with a free body); those that were there before keep
+  /// what they remember. Places are given in tiles of parallel::tile: first those of balls, colour by colour,
+  /// then the others. The result does not depend on the order of threads.
+  void build(ConstView<Pair> candidates, const ConstBodyView& bodies);
+  /// Forgets slots and memory.
+  void clear();
+
+  ConstView<Slot> places() const { return places_.view(); }
+  const ColorTiles& balls() const { return balls_; }
+  const ColorTiles& others() const { return others_; }
+  View<BallMemory<Real>> ball_memory() { return ball_memory_.view(); }
+  View<PointMemory<Real>> point_memory() { return point_memory_.view(); }
+
+  ConstView<Hub> hubs() const { return hubs_.view(); }
+  /// Number of its hub, of each part of hubs.
+  ConstView<std::int32_t> hub_of_parts() const { return hub_of_.view(); }
+  /// Of the solver: all bodies, then the parts of the hubs.
+  std::int64_t solver_bodies() const { return solver_bodies_; }
+  std::int64_t candidates() const { return pairs_.size(); }
+
+ private:
+  void list_slots(const ConstBodyView& bodies);
+  void split_hubs(const ConstBodyView& bodies);
+  void color_slots(const ConstBodyView& bodies);
+  void place_slots(const ConstBodyView& bodies);
+  void recall();
+
+  Array<Pair, Space> pairs_, old_pairs_;          // the candidates
+  Array<std::int64_t, Space> first_, old_first_;  // slot of each; one more than candidates
+  Array<Slot, Space> slots_;                      // in the order of the candidates
+  Array<std::uint8_t, Space> color_;              // of each slot
+  Array<Slot, Space> places_;                     // the same slots, tile by tile
+  Array<std::int64_t, Space> place_, old_place_;  // of each slot
+  ColorTiles balls_{{0}}, others_{{0}};
+  Array<BallMemory<Real>, Space> ball_memory_, old_ball_memory_;     // of each place
+  Array<PointMemory<Real>, Space> point_memory_, old_point_memory_;  // of each place after those of balls
+  std::int64_t old_ball_places_ = 0;
+  Array<Hub, Space> hubs_;
+  Array<std::int32_t, Space> hub_of_;
+  std::int64_t solver_bodies_ = 0;
+};
+
+}  // namespace scree::resident

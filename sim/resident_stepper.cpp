@@ -1,0 +1,358 @@
+#include "sim/resident_stepper.hpp"
+
+#include "core/error.hpp"
+#include "core/timing.hpp"
+#include "core/tolerances.hpp"
+#include "sim/applied_forces.hpp"
+#include "sim/dynamics/impact_rounds.hpp"
+#include "sim/dynamics/motion.hpp"
+#include "sim/moving_state.hpp"
+#include "sim/pair_finder.hpp"
+#include "sim/resident/contact_solver.hpp"
+#include "sim/resident/inspection.hpp"
+#include "sim/resident/overlaps.hpp"
+#include "sim/response_parameters.hpp"
+#include "sim/scene/measure.hpp"
+
+#include <cmath>
+#include <cstdint>
+#include <map>
+#include <type_traits>
+#include <utility>
+
+namespace scree {
+
+namespace {
+
+/// Bodies that are not free, on which the scene's checks ask for the force.
+std::vector<std::int32_t> driven_bodies_asked_for(const Scene& scene) {
+  std::vector<std::int32_t> bodies;
+  for (const Check& check : scene.checks) {
+    const Measure measure = parse_measure(check.measure, scene);
+    if (measure.kind != MeasureKind::force) continue;
+    if (scene.bodies.mobility[static_cast<std::size_t>(measure.body)] != Mobility::free)
+      bodies.push_back(measure.body);
+  }
+  return bodies;
+}
+
+/// Real: of impulses and of the velocities that they are found with.
+template <class Space, class Real>
+class ResidentStepper final : public Stepper {
+ public:
+  ResidentStepper(const Scene& scene, const TimeGrid& grid, const std::vector<PrescribedPath>& paths,
+                  const Vec3& origin)
+      : grid_(grid),
+        parameters_(response_parameters_of(scene)),
+        forces_(scene, grid),
+        kept_pairs_(scene.broadphase, is_device, origin),
+        seen_pairs_(scene.broadphase, is_device, origin) {
+    copy_bodies(bodies_, scene.bodies);
+    copy(paths_, paths);
+    copy(laws_, pair_laws_of(scene));
+    materials_ = static_cast<std::int64_t>(scene.materials.size());
+    for (const std::int32_t body : driven_bodies_asked_for(scene)) driven_impulse_[body] = Vec3::Zero();
+    start_.save(bodies_);
+  }
+
+  void start_step(std::int64_t step) override {
+    step_ = step;
+    start_.save(bodies_);
+    start_ledger_ = ledger;
+    for (auto& [body, impulse] : driven_impulse_) impulse.setZero();
+    forces_.act(step, bodies_, parameters_);
+  }
+
+  void substep(double h, double done) override;
+  double overlap() const override { return contacts_.overlap(); }
+
+  void undo_step() override {
+    start_.restore(bodies_);
+    ledger = start_ledger_;
+  }
+
+  void change_bodies(const std::function<void(Bodies<Host>&)>& change) override {
+    Bodies<Host> on_host;
+    copy_bodies(on_host, bodies_);
+    change(on_host);
+    copy_bodies(bodies_, on_host);
+    forces_.forget();
+    kept_pairs_.forget();
+    seen_pairs_.forget();
+  }
+
+  void copy_state(BodyTable& out) const override { copy_bodies(out, bodies_); }
+  SteppedBody body(std::int32_t id) const override;
+  std::int32_t non_finite_body() const override { return first_non_finite<Space>(bodies_); }
+  Totals totals(const Vec3& reference) const override {
+    return totals_of<Space>(bodies_, parameters_.gravity, reference);
+  }
+  double largest_speed() const override { return scree::largest_speed<Space>(bodies_); }
+  RegionContents contents_of(const Region& region) const override {
+    return scree::contents_of<Space>(region, bodies_);
+  }
+
+  std::vector<BodyPair> pairs() override;
+  GridOccupancy grid_occupancy() override {
+    pairs_now();
+    return pairs_seen().grid_occupancy();
+  }
+  std::vector<BodyBox> boxes() const override { return kept_pairs_.boxes(); }
+  void measure_overlaps(Observation& out) override {
+    const ConstView<Pair> pairs = pairs_now();
+    out.pairs = pairs_seen().size();
+    out.penetration = resident::measure_overlaps<Space>(view_of(std::as_const(bodies_)), pairs);
+  }
+
+  ContactProblem contact_problem() const override;
+  std::vector<ContactForce> contact_forces() const override;
+  void measure_contacts(std::int64_t free_bodies, Observation& out) const override;
+
+  const char* space_name() const override { return Space::name; }
+
+ private:
+  static constexpr bool is_device = !std::is_same_v<Space, Host>;
+
+  BodyView views() { return view_of(bodies_); }
+  FlightTerms terms(double h, double from) const {
+    return {.laws = {bodies_.shape.view(), bodies_.size.view(), bodies_.mobility.view(),
+                     bodies_.material.view(), laws_.view(), materials_},
+            .step = h,
+            .from = from,
+            .bounces = from == 0};
+  }
+  double reach_from(double h, double done) const { return grid_.length(step_ + 1) - done + h; }
+
+  void fly(double time, double dt) {
+    const timing::Region region("integration");
+    ledger.integration += advance<Space>(bodies_, dt, parameters_);
+    place_prescribed<Space>(paths_, time, bodies_);
+  }
+  ConstView<Pair> cover(double reach);
+  bool resolve_impacts(double h, double from, double reach);
+  void add_impulse_on_driven(const Impact& impact);
+  void add_impulses_on_driven();
+
+  /// For the state as it is; which pairs the step keeps must not hang on who looks at it.
+  ConstView<Pair> pairs_now();
+  const KeptPairs<Space>& pairs_seen() const { return sees_kept_ ? kept_pairs_ : seen_pairs_; }
+  TimeGrid grid_;
+  std::int64_t step_ = 0;
+  Bodies<Space> bodies_;
+  Array<PrescribedPath, Space> paths_;
+  ResponseParameters parameters_;
+  Array<PairLaw, Space> laws_;
+  std::int64_t materials_ = 0;
+  AppliedForces<Space> forces_;
+  KeptPairs<Space> kept_pairs_;
+  KeptPairs<Space> seen_pairs_;
+  bool sees_kept_ = true;
+  std::int64_t pairs_taken_ = 0;  // how often they had been made when the contacts last took them
+  ImpactRounds<Space> impacts_;
+  resident::ContactSolver<Space, Real> contacts_;
+
+  double last_substep_ = 0;  // its length; scales the remembered impulses
+  MovingState<Space> start_;
+  Ledger start_ledger_;
+  std::map<std::int32_t, Vec3> driven_impulse_;  // on bodies that are not free and that the scene asks for
+  Array<double, Space> contact_margin_;
+  std::vector<Impact> struck_;  // in the last substep
+};
+
+/// Moreau's midpoint step: as Substepper's, without cuts.
+template <class Space, class Real>
+void ResidentStepper<Space, Real>::substep(double h, double done) {
+  struck_.clear();
+  forces_.start_substep(bodies_);
+  fly(grid_.time(step_) + done + 0.5 * h, 0.5 * h);
+  resolve_impacts(h, 0, reach_from(h, done));
+  const bool late = impacts_.any_is_late();
+
+  contact_margins<Space>(bodies_, h, tolerance::contact_slack, parameters_, contact_margin_);
+  cover(reach_from(h, done));
+  counters.pcs_made = kept_pairs_.times_made();
+  const double scale = last_substep_ > 0 ? h / last_substep_ : 1.0;
+  const FlightStage flight = impacts_.stage(terms(h, 0), parameters_, views());
+  {
+    const timing::Region region("narrowphase");
+    contacts_.find(std::as_const(contact_margin_).view(), scale, flight, late);
+    counters.narrowphase.tested += contacts_.slots().candidates();
+  }
+  {
+    const timing::Region region("response");
+    ledger = ledger + contacts_.solve(flight, late, counters);
+  }
+  if (resolve_impacts(h, 0.5 * h, reach_from(h, done)))
+    contacts_.take_velocities(view_of(std::as_const(bodies_)));
+  fly(grid_.time(step_) + done + h, 0.5 * h);
+  ledger.work += forces_.work(bodies_);
+  {
+    const timing::Region region("correction");
+    ledger = ledger + contacts_.correct(flight, late);
+  }
+  add_impulses_on_driven();
+  last_substep_ = h;
+}
+
+/// Candidates for the margins as they are; the contacts know of them.
+template <class Space, class Real>
+ConstView<Pair> ResidentStepper<Space, Real>::cover(double reach) {
+  const ConstView<Pair> pairs = kept_pairs_.covering(bodies_, contact_margin_, reach, parameters_);
+  if (std::exchange(pairs_taken_, kept_pairs_.times_made()) != kept_pairs_.times_made()) {
+    const timing::Region region("slots");
+    contacts_.take_candidates(pairs, view_of(std::as_const(bodies_)));
+  }
+  return pairs;
+}
+
+/// Impacts of the flight of a substep from `from` on; whether there were any. `reach`: to the end of the step
+/// (s).
+template <class Space, class Real>
+bool ResidentStepper<Space, Real>::resolve_impacts(double h, double from, double reach) {
+  constexpr int most_attempts = 8;
+  const auto set_margins = [&] {
+    contact_margins<Space>(bodies_, 0.5 * h, tolerance::contact_slack, parameters_, contact_margin_);
+  };
+  set_margins();
+  for (int attempt = 1;; ++attempt) {
+    const ConstView<Pair> pairs = cover(reach);
+    const timing::Region region("impacts");
+    const Ledger moved = impacts_.resolve(
+        {.pairs = pairs, .loaded = contacts_.loads(), .terms = terms(h, from)}, parameters_, views());
+    if (impacts_.impacts().size() == 0) return false;
+    // What was struck may have left the boxes: others that it can meet now are not among the pairs.
+    set_margins();
+    if (attempt == most_attempts || kept_pairs_.cover(bodies_, contact_margin_)) {
+      ledger = ledger + moved;
+      break;
+    }
+    kept_pairs_.add_travel(bodies_, contact_margin_);
+    impacts_.undo(views());
+  }
+  counters.impacts += impacts_.impacts().size();
+  if (impacts_.hit_bound()) ++counters.unfinished_impacts;
+  const std::size_t before = struck_.size();
+  struck_.resize(before + static_cast<std::size_t>(impacts_.impacts().size()));
+  copy_bytes<Host, Space>(struck_.data() + before, impacts_.impacts().data(),
+                          (struck_.size() - before) * sizeof(Impact));
+  for (std::size_t k = before; k < struck_.size(); ++k) add_impulse_on_driven(struck_[k]);
+  return true;
+}
+
+template <class Space, class Real>
+void ResidentStepper<Space, Real>::add_impulse_on_driven(const Impact& impact) {
+  if (const auto i = driven_impulse_.find(impact.i); i != driven_impulse_.end()) i->second -= impact.impulse;
+  if (const auto j = driven_impulse_.find(impact.j); j != driven_impulse_.end()) j->second += impact.impulse;
+}
+
+template <class Space, class Real>
+void ResidentStepper<Space, Real>::add_impulses_on_driven() {
+  for (auto& [body, impulse] : driven_impulse_) impulse += contacts_.impulse_on(body);
+}
+
+template <class Space, class Real>
+SteppedBody ResidentStepper<Space, Real>::body(std::int32_t id) const {
+  const auto at = [id](const auto& field) {
+    std::remove_cvref_t<decltype(field.view()[0])> value;
+    copy_bytes<Host, Space>(&value, field.data() + id, sizeof(value));
+    return value;
+  };
+  SteppedBody body{.mobility = at(bodies_.mobility),
+                   .inverse_mass = at(bodies_.inverse_mass),
+                   .position = at(bodies_.position),
+                   .orientation = at(bodies_.orientation),
+                   .velocity = at(bodies_.velocity),
+                   .spin = at(bodies_.spin),
+                   .velocity_before = at(start_.velocity),
+                   .acceleration = parameters_.gravity,
+                   .contact_impulse = Vec3::Zero()};
+  if (parameters_.acceleration.size() > 0) {
+    Vec3 more;
+    copy_bytes<Host, Space>(&more, parameters_.acceleration.data() + id, sizeof(more));
+    body.acceleration += more;
+  }
+  if (const auto driven = driven_impulse_.find(id); driven != driven_impulse_.end())
+    body.contact_impulse = driven->second;
+  return body;
+}
+
+template <class Space, class Real>
+ConstView<Pair> ResidentStepper<Space, Real>::pairs_now() {
+  contact_margins<Space>(bodies_, 0, tolerance::contact_slack, parameters_, contact_margin_);
+  sees_kept_ = kept_pairs_.cover(bodies_, contact_margin_);
+  return (sees_kept_ ? kept_pairs_ : seen_pairs_).covering(bodies_, contact_margin_, 0, parameters_);
+}
+
+template <class Space, class Real>
+std::vector<BodyPair> ResidentStepper<Space, Real>::pairs() {
+  const ConstView<Pair> found = pairs_now();
+  std::vector<Pair> on_host(static_cast<std::size_t>(found.size()));
+  copy_bytes<Host, Space>(on_host.data(), found.data(), on_host.size() * sizeof(Pair));
+  const std::vector<Shape> shape = to_vector(bodies_.shape);
+  std::vector<BodyPair> pairs;
+  for (const Pair& pair : on_host) {
+    if (shape[static_cast<std::size_t>(pair.i)] != Shape::plane &&
+        shape[static_cast<std::size_t>(pair.j)] != Shape::plane)
+      pairs.push_back({pair.i, pair.j});
+  }
+  return pairs;
+}
+
+template <class Space, class Real>
+ContactProblem ResidentStepper<Space, Real>::contact_problem() const {
+  resident::Inspection<Real> seen = contacts_.inspect();
+  BodyTable bodies;
+  copy_bodies(bodies, bodies_);
+  return problem_of(seen, bodies);
+}
+
+template <class Space, class Real>
+std::vector<ContactForce> ResidentStepper<Space, Real>::contact_forces() const {
+  resident::Inspection<Real> seen = contacts_.inspect();
+  BodyTable bodies;
+  copy_bodies(bodies, bodies_);
+  std::vector<ContactForce> forces = forces_of(seen, bodies);
+  for (const Impact& impact : struck_)
+    forces.push_back({impact.i, impact.j, impact.impulse / last_substep_, impact.point});
+  return forces;
+}
+
+template <class Space, class Real>
+void ResidentStepper<Space, Real>::measure_contacts(std::int64_t free_bodies, Observation& out) const {
+  const resident::Books& books = contacts_.books();
+  const auto mean = [](double sum, std::int64_t of) { return of > 0 ? sum / static_cast<double>(of) : 0.0; };
+  out.contacts = books.loaded;
+  out.gap_mean = mean(books.gaps, books.loaded);
+  out.coordination_mean = mean(static_cast<double>(books.ends), free_bodies);
+}
+
+template <class Space>
+std::unique_ptr<Stepper> make_in(const Scene& scene, const TimeGrid& grid,
+                                 const std::vector<PrescribedPath>& paths, const Vec3& origin) {
+  if (scene.precision == Precision::mixed)
+    return std::make_unique<ResidentStepper<Space, float>>(scene, grid, paths, origin);
+  return std::make_unique<ResidentStepper<Space, double>>(scene, grid, paths, origin);
+}
+
+/// The last of several types: Device where the build has it, Host elsewhere.
+template <class First, class... Rest>
+struct Last {
+  using type = typename Last<Rest...>::type;
+};
+template <class Only>
+struct Last<Only> {
+  using type = Only;
+};
+
+}  // namespace
+
+std::unique_ptr<Stepper> make_resident_stepper(const Scene& scene, const TimeGrid& grid,
+                                               const std::vector<PrescribedPath>& paths, bool on_device,
+                                               const Vec3& origin) {
+  if (!on_device) return make_in<Host>(scene, grid, paths, origin);
+  const DeviceInfo info = device_info();
+  if (!info.available) throw InputError("--device cuda: there is no GPU to run on: " + info.name);
+  return make_in<Last<SCREE_SPACES>::type>(scene, grid, paths, origin);
+}
+
+}  // namespace scree

@@ -1,0 +1,31 @@
+#include "sim/response_parameters.hpp"
+
+#include "sim/model.hpp"
+
+namespace scree {
+
+ResponseParameters response_parameters_of(const Scene& scene) {
+  const ModelPlan plan = plan_model(scene);
+  return {.gravity = scene.gravity,
+          .acceleration = {},
+          .torque = {},
+          .friction = plan.friction.on,
+          .restitution = plan.restitution.on,
+          .rotation = plan.rotation.on,
+          .gyroscopic = plan.gyroscopic.on,
+          .continuous = plan.continuous.on,
+          .warm_start = scene.response.warm_start,
+          .accurate = scene.response.mode == ResponseMode::accurate,
+          .iterations = scene.response.iterations.value_or(0),
+          .block_sweeps = scene.response.block_sweeps.value_or(0),
+          .tolerance = scene.response.tolerance.value_or(0),
+          .restitution_threshold = plan.restitution_threshold};
+}
+
+std::vector<PairLaw> pair_laws_of(const Scene& scene) {
+  std::vector<PairLaw> table;
+  for (const ContactLaw& law : scene.laws) table.push_back({law.restitution, law.friction});
+  return table;
+}
+
+}  // namespace scree

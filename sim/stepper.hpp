@@ -1,0 +1,77 @@
+// What a running scene asks of whoever takes its bodies through a step, in whatever space they are. Free of
+// Thrust, so that any part of the program can include it.
+#pragma once
+
+#include "core/bodies.hpp"
+#include "sim/dynamics/motion.hpp"
+#include "sim/dynamics/region.hpp"
+#include "sim/inspection.hpp"
+#include "sim/observation.hpp"
+#include "sim/scene/scene.hpp"
+
+#include <cstdint>
+#include <functional>
+#include <vector>
+
+namespace scree {
+
+/// A body as it is now, and what the last step did to it.
+struct SteppedBody {
+  Mobility mobility;
+  double inverse_mass;  ///< 1/kg
+  Vec3 position;        ///< m
+  Quat orientation;
+  Vec3 velocity;         ///< m/s
+  Vec3 spin;             ///< rad/s
+  Vec3 velocity_before;  ///< at the start of the step (m/s)
+  Vec3 acceleration;     ///< by gravity and applied forces, of a free body (m/s^2)
+  Vec3 contact_impulse;  ///< over the step, on a body that is not free (N s)
+};
+
+/// The bodies, and the stages that move them. Bodies are known by their ids.
+class Stepper {
+ public:
+  virtual ~Stepper() = default;
+
+  /// To be called at the start of each step: keeps the state, which is that of `step`, and sets the forces
+  /// that act from there to the next.
+  virtual void start_step(std::int64_t step) = 0;
+  /// A substep of length h (s), after `done` of the step went by (s). Throws RunError where it cannot go on.
+  virtual void substep(double h, double done) = 0;
+  /// Deepest overlap that the last substep found (of the smaller body's smallest_size).
+  virtual double overlap() const = 0;
+  /// Back to the state at the start of the step, ledger included.
+  virtual void undo_step() = 0;
+  /// Lets bodies come, go, or become others between two steps. It may copy all of them to Host and back.
+  virtual void change_bodies(const std::function<void(Bodies<Host>&)>& change) = 0;
+
+  // The state.
+  virtual void copy_state(BodyTable& out) const = 0;
+  virtual SteppedBody body(std::int32_t id) const = 0;
+  /// The first body whose state is no longer finite; -1 if there is none.
+  virtual std::int32_t non_finite_body() const = 0;
+  virtual Totals totals(const Vec3& reference) const = 0;
+  virtual double largest_speed() const = 0;
+  virtual RegionContents contents_of(const Region& region) const = 0;
+
+  // The pairs that may touch, for the state as it is; and the boxes in which the last broad phase looked for
+  // them, by body.
+  virtual std::vector<BodyPair> pairs() = 0;
+  virtual GridOccupancy grid_occupancy() = 0;
+  virtual std::vector<BodyBox> boxes() const = 0;
+  /// The penetration, and the size of the PCS.
+  virtual void measure_overlaps(Observation& out) = 0;
+
+  // The contacts of the last substep: all that the response has solved, and those that carried a force.
+  virtual ContactProblem contact_problem() const = 0;
+  virtual std::vector<ContactForce> contact_forces() const = 0;
+  /// Counts and gaps of the latter.
+  virtual void measure_contacts(std::int64_t free_bodies, Observation& out) const = 0;
+
+  virtual const char* space_name() const = 0;  ///< of the broad phase
+
+  Ledger ledger;
+  Counters counters;
+};
+
+}  // namespace scree

@@ -1,0 +1,342 @@
+// Impacts in rounds beside those in the order of their times: the same for every body, to rounding.
+#include "sim/dynamics/impact_rounds.hpp"
+
+#include "sim/dynamics/impact_solver.hpp"
+#include "tests/core/spaces.hpp"
+#include "tests/sim/dynamics/flight_scenes.hpp"
+
+#include <gtest/gtest.h>
+#include <tbb/global_control.h>
+#include <tbb/task_arena.h>
+
+#include <algorithm>
+#include <utility>
+#include <vector>
+
+namespace scree {
+namespace {
+
+struct Outcome {
+  BodyTable bodies;
+  Ledger moved;
+  std::vector<Impact> impacts;
+  std::int64_t rounds = 0;
+  bool late = false;
+};
+
+Outcome in_time_order(const FlightScene& scene, const std::vector<Pair>& pairs) {
+  World<Host> world(scene);
+  const ImpulseMemory memory;
+  const ImpactProblem problem{.pairs = {pairs.data(), static_cast<std::int64_t>(pairs.size())},
+                              .memory = memory,
+                              .terms = world.terms(0)};
+  ImpactSolver solver;
+  Outcome outcome;
+  outcome.moved = solver.resolve(problem, scene.parameters, view_of(world.bodies));
+  outcome.impacts = solver.impacts();
+  outcome.late = solver.late_bodies(problem, scene.parameters, view_of(world.bodies)) != nullptr;
+  copy_bodies(outcome.bodies, world.bodies);
+  return outcome;
+}
+
+template <class Space>
+std::vector<Impact> impacts_of(const ImpactRounds<Space>& rounds) {
+  std::vector<Impact> impacts(static_cast<std::size_t>(rounds.impacts().size()));
+  copy_bytes<Host, Space>(impacts.data(), rounds.impacts().data(), impacts.size() * sizeof(Impact));
+  return impacts;
+}
+
+/// The pairs in another order than the solver's.
+template <class Space>
+Outcome in_rounds(const FlightScene& scene, std::vector<Pair> pairs) {
+  World<Space> world(scene);
+  std::reverse(pairs.begin(), pairs.end());
+  Array<Pair, Space> candidates;
+  copy(candidates, pairs);
+  ImpactRounds<Space> rounds;
+  Outcome outcome;
+  outcome.moved = rounds.resolve({std::as_const(candidates).view(), {}, world.terms(0)}, scene.parameters,
+                                 view_of(world.bodies));
+  outcome.impacts = impacts_of(rounds);
+  outcome.rounds = rounds.rounds();
+  outcome.late = rounds.any_is_late();
+  copy_bodies(outcome.bodies, world.bodies);
+  return outcome;
+}
+
+/// The impacts of each body, in their order.
+std::vector<std::vector<Impact>> by_body(const Outcome& outcome) {
+  std::vector<std::vector<Impact>> of_body(static_cast<std::size_t>(outcome.bodies.count()));
+  for (const Impact& impact : outcome.impacts) {
+    for (const std::int32_t body : {impact.i, impact.j})
+      if (outcome.bodies.mobility[static_cast<std::size_t>(body)] == Mobility::free)
+        of_body[static_cast<std::size_t>(body)].push_back(impact);
+  }
+  return of_body;
+}
+
+void expect_same(const Outcome& rounds, const Outcome& order, double tolerance) {
+  ASSERT_EQ(rounds.impacts.size(), order.impacts.size());
+  const auto got = by_body(rounds);
+  const auto expected = by_body(order);
+  for (std::size_t k = 0; k < got.size(); ++k) {
+    ASSERT_EQ(got[k].size(), expected[k].size()) << "body " << k;
+    for (std::size_t n = 0; n < got[k].size(); ++n) {
+      ASSERT_EQ(got[k][n].i, expected[k][n].i) << "impact " << n << " of body " << k;
+      ASSERT_EQ(got[k][n].j, expected[k][n].j) << "impact " << n << " of body " << k;
+      ASSERT_LE((got[k][n].impulse - expected[k][n].impulse).norm(), tolerance);
+      ASSERT_LE((got[k][n].point - expected[k][n].point).norm(), tolerance);
+    }
+    ASSERT_LE((rounds.bodies.position[k] - order.bodies.position[k]).norm(), tolerance) << "body " << k;
+    ASSERT_LE((rounds.bodies.velocity[k] - order.bodies.velocity[k]).norm(), tolerance) << "body " << k;
+    ASSERT_LE((rounds.bodies.spin[k] - order.bodies.spin[k]).norm(), tolerance) << "body " << k;
+    ASSERT_LE(rounds.bodies.orientation[k].angularDistance(order.bodies.orientation[k]), 1e-7) << k;
+  }
+  const double energy = 1 + order.moved.restitution + order.moved.friction;
+  EXPECT_NEAR(rounds.moved.restitution, order.moved.restitution, tolerance * energy);
+  EXPECT_NEAR(rounds.moved.friction, order.moved.friction, tolerance * energy);
+  EXPECT_NEAR(rounds.moved.integration, order.moved.integration, tolerance * energy);
+  EXPECT_EQ(rounds.late, order.late);
+}
+
+template <class Space>
+class Rounds : public test::InSpace<Space> {};
+TYPED_TEST_SUITE(Rounds, test::Spaces, test::SpaceName);
+
+TYPED_TEST(Rounds, TwoBallsMeetOnce) {
+  FlightScene scene;
+  scene.law.restitution = 0.5;
+  scene.add_ball(0.1, Vec3(0, 0, 0), Vec3(1, 0, 0));
+  scene.add_ball(0.1, Vec3(0.201, 0, 0), Vec3(-1, 0, 0));
+  const Outcome rounds = in_rounds<TypeParam>(scene, {{0, 1}});
+  expect_same(rounds, in_time_order(scene, {{0, 1}}), 1e-15);
+  EXPECT_EQ(rounds.rounds, 1);
+  EXPECT_NEAR(rounds.bodies.velocity[0].x(), -0.5, 1e-15);
+  EXPECT_NEAR(rounds.moved.restitution, 0.75, 1e-15);
+  EXPECT_TRUE(rounds.late);  // 0.5 ms after the midpoint
+}
+
+TYPED_TEST(Rounds, ACradlePassesOnOneBall) {
+  constexpr int balls = 20;
+  FlightScene scene;
+  for (int k = 0; k < balls; ++k)
+    scene.add_ball(0.1, Vec3(0.2 * k - (k == 0 ? 1e-3 : 0), 0, 0), Vec3(k == 0 ? 1.0 : 0.0, 0, 0));
+  const std::vector<Pair> pairs = scene.pairs(0.01);
+  const Outcome rounds = in_rounds<TypeParam>(scene, pairs);
+  expect_same(rounds, in_time_order(scene, pairs), 1e-15);
+  EXPECT_EQ(rounds.rounds, balls - 1);
+  for (int k = 0; k < balls; ++k)
+    EXPECT_NEAR(rounds.bodies.velocity[static_cast<std::size_t>(k)].x(), k == balls - 1 ? 1.0 : 0.0, 1e-14);
+}
+
+TYPED_TEST(Rounds, OfAGasAreTheSame) {
+  FlightScene scene = gas(0.05);
+  scene.parameters.rotation = false;
+  const double energy = scene.kinetic_energy();
+  std::size_t impacts = 0;
+  std::int64_t rounds = 0;
+  for (int substep = 0; substep < 100; ++substep) {
+    scene.fly(0.5 * scene.step);
+    const std::vector<Pair> pairs = scene.pairs(0.05);
+    const Outcome outcome = in_rounds<TypeParam>(scene, pairs);
+    ASSERT_NO_FATAL_FAILURE(expect_same(outcome, in_time_order(scene, pairs), 1e-12)) << substep;
+    impacts += outcome.impacts.size();
+    rounds += outcome.rounds;
+    scene.bodies = outcome.bodies;
+    scene.fly(0.5 * scene.step);
+  }
+  EXPECT_NEAR(scene.kinetic_energy(), energy, 1e-12 * energy);
+  EXPECT_GT(impacts, 1000u);
+  EXPECT_LT(rounds, 400);
+}
+
+/// The balls whose impacts come in another order than by their times.
+std::size_t count_differences(const Outcome& rounds, const Outcome& order) {
+  const auto pair_of = [](const Impact& impact) { return std::pair(impact.i, impact.j); };
+  const auto got = by_body(rounds);
+  const auto expected = by_body(order);
+  std::size_t differ = 0;
+  for (std::size_t k = 0; k < got.size(); ++k)
+    differ += std::ranges::equal(got[k], expected[k], {}, pair_of, pair_of) ? 0 : 1;
+  return differ;
+}
+
+TYPED_TEST(Rounds, OfADenseGasHardlyDiffer) {
+  FlightScene scene = gas(0.4);
+  scene.parameters.rotation = false;
+  const double energy = scene.kinetic_energy();
+  std::size_t differ = 0;
+  std::size_t impacts = 0;
+  for (int substep = 0; substep < 60; ++substep) {
+    scene.fly(0.5 * scene.step);
+    const std::vector<Pair> pairs = scene.pairs(0.05);
+    const Outcome outcome = in_rounds<TypeParam>(scene, pairs);
+    differ += count_differences(outcome, in_time_order(scene, pairs));
+    impacts += outcome.impacts.size();
+    scene.bodies = outcome.bodies;
+    scene.fly(0.5 * scene.step);
+  }
+  EXPECT_NEAR(scene.kinetic_energy(), energy, 1e-12 * energy);
+  EXPECT_GT(impacts, 20000u);
+  EXPECT_LE(differ, 10u);  // of 60,000
+}
+
+TYPED_TEST(Rounds, BallsOnAPlaneDoNotWaitForEachOther) {
+  FlightScene scene;
+  scene.law = {.restitution = 0.7, .friction = 0.3};
+  scene.parameters.gravity = Vec3(0, 0, -9.81);
+  scene.add_plane(Vec3::UnitZ(), 0);
+  for (int k = 0; k < 400; ++k) {
+    Random random(7, static_cast<std::uint64_t>(k));
+    scene.add_ball(0.1, Vec3(k % 20, k / 20, random.uniform(0.098, 0.102)),
+                   Vec3(random.uniform(-1, 1), 0, random.uniform(-3, -2)));
+    scene.bodies.spin.back() = vector_in(random, 5);
+  }
+  const std::vector<Pair> pairs = scene.pairs(0.05);
+  const Outcome rounds = in_rounds<TypeParam>(scene, pairs);
+  expect_same(rounds, in_time_order(scene, pairs), 1e-14);
+  EXPECT_EQ(rounds.impacts.size(), 400u);
+  EXPECT_EQ(rounds.rounds, 1);
+}
+
+TYPED_TEST(Rounds, BoxesDropOnAPlane) {
+  FlightScene scene;
+  scene.law = {.restitution = 0.6, .friction = 0.4};
+  scene.parameters.gravity = Vec3(0, 0, -9.81);
+  scene.add_plane(Vec3::UnitZ(), 0);
+  for (int k = 0; k < 100; ++k) {
+    Random random(9, static_cast<std::uint64_t>(k));
+    const Vec3 size(random.uniform(0.05, 0.1), random.uniform(0.05, 0.1), random.uniform(0.05, 0.1));
+    scene.add(Shape::box, size, Vec3(k % 10, k / 10, 0.9 * size.norm()), Vec3(0, 0, -4));
+    scene.bodies.orientation.back() = rotation_of(vector_in(random, 3));
+    scene.bodies.spin.back() = vector_in(random, 20);
+  }
+  scene.step = 1.0 / 60;
+  const std::vector<Pair> pairs = scene.pairs(0.2);
+  const Outcome rounds = in_rounds<TypeParam>(scene, pairs);
+  expect_same(rounds, in_time_order(scene, pairs), 1e-10);
+  EXPECT_GT(rounds.impacts.size(), 100u);
+}
+
+TYPED_TEST(Rounds, BulletsMeetThinPlates) {
+  constexpr int lanes = 50;
+  FlightScene scene;
+  scene.parameters.restitution = false;
+  scene.step = 1.0 / 60;
+  for (int k = 0; k < lanes; ++k) {
+    Random random(13, static_cast<std::uint64_t>(k));
+    scene.add_ball(0.01, Vec3(0, k, 0), Vec3(random.uniform(50, 400), 0, 0));
+    scene.add(Shape::box, Vec3(0.002, 0.2, 0.2), Vec3(0.2, k + random.uniform(-0.1, 0.1), 0), Vec3::Zero());
+  }
+  const std::vector<Pair> pairs = scene.pairs(0.1);
+  const Outcome rounds = in_rounds<TypeParam>(scene, pairs);
+  expect_same(rounds, in_time_order(scene, pairs), 1e-9);
+  EXPECT_GE(rounds.impacts.size(), static_cast<std::size_t>(lanes));
+}
+
+TYPED_TEST(Rounds, SlowBodiesHaveNone) {
+  FlightScene scene = gas(0.05);
+  scene.parameters.restitution_threshold = {.any = 4, .lossy = 0};
+  const Outcome rounds = in_rounds<TypeParam>(scene, scene.pairs(0.05));
+  EXPECT_TRUE(rounds.impacts.empty());
+  EXPECT_EQ(rounds.rounds, 0);
+  EXPECT_FALSE(rounds.late);
+}
+
+TYPED_TEST(Rounds, WhatWasLoadedDoesNotBounce) {
+  FlightScene scene;
+  for (int k = 0; k < 2; ++k) {
+    scene.add_ball(0.1, Vec3(0, k, 0), Vec3(1, 0, 0));
+    scene.add_ball(0.1, Vec3(0.201, k, 0), Vec3(-1, 0, 0));
+  }
+  World<TypeParam> world(scene);
+  Array<Pair, TypeParam> pairs;
+  Array<LoadedParts, TypeParam> loaded;
+  copy(pairs, std::vector<Pair>{{0, 1}, {2, 3}});
+  copy(loaded, std::vector<LoadedParts>{{.bits = 1}, {.bits = 2}});
+  ImpactRounds<TypeParam> rounds;
+  rounds.resolve({std::as_const(pairs).view(), std::as_const(loaded).view(), world.terms(0)},
+                 scene.parameters, view_of(world.bodies));
+  const std::vector<Impact> impacts = impacts_of(rounds);
+  ASSERT_EQ(impacts.size(), 1u);
+  EXPECT_EQ(impacts[0].i, 2);
+}
+
+TYPED_TEST(Rounds, UndoneAreAsIfTheyHadNotBeen) {
+  FlightScene scene = gas(0.2);
+  scene.step = 1.0 / 20;
+  World<TypeParam> world(scene);
+  Array<Pair, TypeParam> pairs;
+  copy(pairs, scene.pairs(0.1));
+  ImpactRounds<TypeParam> rounds;
+  const auto resolve = [&] {
+    rounds.resolve({std::as_const(pairs).view(), {}, world.terms(0)}, scene.parameters,
+                   view_of(world.bodies));
+    BodyTable after;
+    copy_bodies(after, world.bodies);
+    return hash_of(after);
+  };
+  const std::uint64_t first = resolve();
+  EXPECT_GT(rounds.struck().size(), 100);
+  rounds.undo(view_of(world.bodies));
+  BodyTable undone;
+  copy_bodies(undone, world.bodies);
+  EXPECT_EQ(hash_of(undone), hash_of(scene.bodies));
+  EXPECT_TRUE(rounds.impacts().size() == 0 && !rounds.any_is_late());
+  EXPECT_EQ(resolve(), first);
+}
+
+TYPED_TEST(Rounds, TheSecondHalfGoesOnFromTheFirst) {
+  FlightScene scene = gas(0.02);
+  scene.step = 1.0 / 60;  // some go deep
+  for (Vec3& velocity : scene.bodies.velocity) velocity *= 2;
+  const std::vector<Pair> pairs = scene.pairs(0.3);
+  World<TypeParam> world(scene);
+  World<Host> host(scene);
+  Array<Pair, TypeParam> candidates;
+  copy(candidates, pairs);
+  const ImpulseMemory memory;
+  ImpactRounds<TypeParam> rounds;
+  ImpactSolver solver;
+  Outcome outcome, order;
+  for (const double from : {0.0, 0.5 * scene.step}) {
+    outcome.moved = rounds.resolve({std::as_const(candidates).view(), {}, world.terms(from)},
+                                   scene.parameters, view_of(world.bodies));
+    order.moved = solver.resolve({.pairs = {pairs.data(), static_cast<std::int64_t>(pairs.size())},
+                                  .memory = memory,
+                                  .terms = host.terms(from)},
+                                 scene.parameters, view_of(host.bodies));
+    outcome.impacts = impacts_of(rounds);
+    order.impacts = solver.impacts();
+    copy_bodies(outcome.bodies, world.bodies);
+    copy_bodies(order.bodies, host.bodies);
+    ASSERT_NO_FATAL_FAILURE(expect_same(outcome, order, 1e-11)) << "from " << from;
+    ASSERT_GT(outcome.impacts.size(), 10u);
+    // What the response might do.
+    if (from > 0) continue;
+    BodyTable turned = order.bodies;
+    for (Vec3& velocity : turned.velocity) velocity = Vec3(velocity.y(), velocity.z(), velocity.x());
+    copy_bodies(host.bodies, turned);
+    copy_bodies(world.bodies, turned);
+  }
+}
+
+TYPED_TEST(Rounds, DoNotDependOnTheThreads) {
+  const FlightScene scene = gas(0.3);
+  const std::vector<Pair> pairs = scene.pairs(0.05);
+  std::vector<Outcome> outcomes;
+  for (const int threads : {1, 4}) {
+    const tbb::global_control limit(tbb::global_control::max_allowed_parallelism,
+                                    static_cast<std::size_t>(threads));
+    tbb::task_arena arena(threads);
+    outcomes.push_back(arena.execute([&] { return in_rounds<TypeParam>(scene, pairs); }));
+  }
+  EXPECT_EQ(hash_of(outcomes[0].bodies), hash_of(outcomes[1].bodies));
+  EXPECT_EQ(outcomes[0].moved.restitution, outcomes[1].moved.restitution);
+  ASSERT_EQ(outcomes[0].impacts.size(), outcomes[1].impacts.size());
+  for (std::size_t k = 0; k < outcomes[0].impacts.size(); ++k)
+    ASSERT_EQ(outcomes[0].impacts[k].impulse, outcomes[1].impacts[k].impulse);
+}
+
+}  // namespace
+}  // namespace scree

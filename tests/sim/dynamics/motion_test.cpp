@@ -1,0 +1,216 @@
+// Free and prescribed motion and what is summed over bodies, in each space, against loops and closed forms.
+#include "sim/dynamics/motion.hpp"
+
+#include "core/rng.hpp"
+#include "core/tolerances.hpp"
+#include "sim/dynamics/prescribed.hpp"
+#include "sim/dynamics/region.hpp"
+#include "tests/core/spaces.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+#include <vector>
+
+namespace scree {
+namespace {
+
+template <class Space>
+class MotionTest : public test::InSpace<Space> {};
+TYPED_TEST_SUITE(MotionTest, test::Spaces, test::SpaceName);
+
+constexpr std::size_t count = 1000;  // more than a leaf of the sums
+
+Vec3 vector_in(Random& random, double reach) {
+  const double x = random.uniform(-reach, reach);
+  const double y = random.uniform(-reach, reach);
+  return {x, y, random.uniform(-reach, reach)};
+}
+
+/// Balls and cubes of all mobilities.
+BodyTable crowd() {
+  BodyTable table;
+  for (std::size_t k = 0; k < count; ++k) {
+    Random random(7, k);
+    const Mobility mobility = k % 5 == 1   ? Mobility::fixed
+                              : k % 7 == 2 ? Mobility::absent
+                              : k % 9 == 3 ? Mobility::prescribed
+                                           : Mobility::free;
+    const bool free = mobility == Mobility::free;
+    table.position.push_back(vector_in(random, 5));
+    table.orientation.push_back(rotation_of(vector_in(random, 2)));
+    table.velocity.push_back(vector_in(random, 3));
+    table.spin.push_back(vector_in(random, 4));
+    table.size.push_back(Vec3::Constant(random.uniform(0.1, 0.3)));
+    table.inverse_mass.push_back(free ? random.uniform(0.5, 2) : 0);
+    table.inverse_inertia.push_back(free ? Vec3(Vec3::Constant(random.uniform(1, 3))) : Vec3::Zero());
+    table.shape.push_back(k % 2 == 0 ? Shape::sphere : Shape::box);
+    table.mobility.push_back(mobility);
+    table.material.push_back(0);
+    table.id.push_back(static_cast<std::int32_t>(k));
+  }
+  return table;
+}
+
+template <class Space>
+Bodies<Space> in_space(const BodyTable& table) {
+  Bodies<Space> bodies;
+  copy_bodies(bodies, table);
+  return bodies;
+}
+
+TYPED_TEST(MotionTest, FreeBodiesFlyOnAndTurn) {
+  const BodyTable before = crowd();
+  Bodies<TypeParam> bodies = in_space<TypeParam>(before);
+  constexpr double dt = 0.01;
+  EXPECT_EQ(advance<TypeParam>(bodies, dt, {}), 0) << "equal moments: the energy does not drift";
+  BodyTable after;
+  copy_bodies(after, bodies);
+  for (std::size_t k = 0; k < count; ++k) {
+    const double time = before.mobility[k] == Mobility::free ? dt : 0;
+    const Quat turned = rotation_of(time * before.spin[k]) * before.orientation[k];
+    ASSERT_LT((after.position[k] - before.position[k] - time * before.velocity[k]).norm(), 1e-14);
+    ASSERT_LT(after.orientation[k].angularDistance(turned), 1e-14);
+    ASSERT_EQ(after.spin[k], before.spin[k]);
+  }
+}
+
+TYPED_TEST(MotionTest, SumsAndExtremesAreThoseOfALoop) {
+  BodyTable table = crowd();
+  Bodies<TypeParam> bodies = in_space<TypeParam>(table);
+  const Vec3 gravity(0.3, -0.2, -9.81);
+  const Vec3 reference(1, 2, 3);
+  const Region region{.name = "a", .from = Vec3(-3, -2, -4), .to = Vec3(2, 4, 1)};
+  long double kinetic = 0, potential = 0, mass = 0, inside = 0;
+  Vec3 momentum = Vec3::Zero();
+  std::int64_t free = 0, inside_count = 0;
+  double fastest = 0;
+  for (std::size_t k = 0; k < count; ++k) {
+    if (table.mobility[k] != Mobility::free) continue;
+    const double m = 1 / table.inverse_mass[k];
+    const Vec3& x = table.position[k];
+    ++free;
+    mass += m;
+    kinetic += 0.5L * m * table.velocity[k].squaredNorm();
+    potential -= m * gravity.dot(x - reference);
+    momentum += m * table.velocity[k];
+    fastest = std::max(fastest, table.velocity[k].norm());
+    if ((x - region.from).minCoeff() < 0 || (region.to - x).minCoeff() < 0) continue;
+    ++inside_count;
+    inside += m;
+  }
+  const Totals totals = totals_of<TypeParam>(bodies, gravity, reference);
+  EXPECT_EQ(totals.count, free);
+  EXPECT_NEAR(totals.mass, static_cast<double>(mass), 1e-11);
+  EXPECT_NEAR(totals.kinetic_linear, static_cast<double>(kinetic), 1e-10);
+  EXPECT_NEAR(totals.potential, static_cast<double>(potential), 1e-9);
+  EXPECT_LT((totals.momentum - momentum).norm(), 1e-11);
+  EXPECT_NEAR(largest_speed<TypeParam>(bodies), fastest, 1e-14);
+  const RegionContents contents = contents_of<TypeParam>(region, bodies);
+  EXPECT_GT(inside_count, 50);
+  EXPECT_EQ(contents.count, inside_count);
+  EXPECT_NEAR(contents.mass, static_cast<double>(inside), 1e-11);
+}
+
+TYPED_TEST(MotionTest, TheFirstNonFiniteBodyIsNamed) {
+  BodyTable table = crowd();
+  EXPECT_EQ(first_non_finite<TypeParam>(in_space<TypeParam>(table)), -1);
+  table.spin[900].y() = std::numeric_limits<double>::infinity();
+  EXPECT_EQ(first_non_finite<TypeParam>(in_space<TypeParam>(table)), 900);
+  table.position[400].z() = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_EQ(first_non_finite<TypeParam>(in_space<TypeParam>(table)), 400);
+  table.velocity[30].x() = -std::numeric_limits<double>::infinity();
+  EXPECT_EQ(first_non_finite<TypeParam>(in_space<TypeParam>(table)), 30);
+}
+
+TYPED_TEST(MotionTest, BoxesHoldUntilABodyLeavesIts) {
+  const BodyTable start = crowd();
+  Bodies<TypeParam> bodies = in_space<TypeParam>(start);
+  Array<double, TypeParam> margin;
+  contact_margins(bodies, 0, tolerance::contact_slack, {}, margin);
+  FatBoxes<TypeParam> boxes;
+  boxes.put_around(bodies, 0, {}, margin);
+  EXPECT_TRUE(boxes.hold(bodies, margin));
+  const auto hold_when_moved = [&](std::size_t body, double share) {
+    BodyTable moved = start;
+    moved.position[body].x() += share * tolerance::pair_skin * moved.size[body].x();
+    copy_bodies(bodies, moved);
+    return boxes.hold(bodies, margin);
+  };
+  const auto is_free = [&](std::size_t k) { return start.mobility[k] == Mobility::free; };
+  ASSERT_TRUE(is_free(0) && is_free(999) && start.mobility[1] == Mobility::fixed);
+  for (const std::size_t body : {0, 999}) {
+    EXPECT_TRUE(hold_when_moved(body, 0.99));
+    EXPECT_FALSE(hold_when_moved(body, 1.01));
+  }
+  EXPECT_TRUE(hold_when_moved(1, 100)) << "fixed bodies have no room, and need none";
+
+  hold_when_moved(999, 1);
+  const std::vector<double> before = to_vector(margin);
+  boxes.add_travel(bodies, margin);
+  const std::vector<double> after = to_vector(margin);
+  for (std::size_t k = 0; k < count; ++k)
+    ASSERT_NEAR(after[k] - before[k], k == 999 ? tolerance::pair_skin * start.size[k].x() : 0, 1e-14);
+}
+
+TYPED_TEST(MotionTest, SolverBodiesAreThoseOfTheFormula) {
+  const BodyTable table = crowd();
+  Array<SolverBody, TypeParam> solver;
+  load_solver_bodies(in_space<TypeParam>(table), solver);
+  const std::vector<SolverBody> bodies = to_vector(solver);
+  for (std::size_t k = 0; k < count; ++k) {
+    const Mat3 turn = table.orientation[k].toRotationMatrix();
+    const Mat3 inertia = rotated_diagonal(turn, table.inverse_inertia[k]);
+    ASSERT_EQ(bodies[k].velocity, table.velocity[k]);
+    ASSERT_EQ(bodies[k].spin, table.spin[k]);
+    ASSERT_EQ(bodies[k].inverse_mass, table.inverse_mass[k]);
+    ASSERT_LT((Mat3(bodies[k].inverse_inertia) - inertia).norm(), 1e-14);
+  }
+}
+
+TYPED_TEST(MotionTest, WorkIsForceTimesWay) {
+  const BodyTable table = crowd();
+  Bodies<TypeParam> bodies = in_space<TypeParam>(table);
+  Array<Vec3, TypeParam> start, acceleration;
+  copy(start, std::vector<Vec3>(count, Vec3(1, 0, 0)));
+  copy(acceleration, table.velocity);
+  long double work = 0;
+  for (std::size_t k = 0; k < count; ++k)
+    if (table.mobility[k] == Mobility::free)
+      work += table.velocity[k].dot(table.position[k] - Vec3(1, 0, 0)) / table.inverse_mass[k];
+  EXPECT_NEAR(work_of_forces(bodies, start, std::as_const(acceleration).view()), static_cast<double>(work),
+              1e-10);
+}
+
+TYPED_TEST(MotionTest, PrescribedBodiesAreWhereTheirPathsSay) {
+  const BodyTable start = crowd();
+  Bodies<TypeParam> bodies = in_space<TypeParam>(start);
+  std::vector<PrescribedPath> paths;
+  for (std::int32_t k = 0; k < static_cast<std::int32_t>(count); ++k)
+    paths.push_back({.body = k,
+                     .pivot = Vec3(1, 0, 2),
+                     .arm = Vec3(0, 1, 0),
+                     .orientation = Quat::Identity(),
+                     .velocity = Vec3(0, 0, 3),
+                     .spin = Vec3(0, 0, 2),
+                     .start = 0.1});
+  Array<PrescribedPath, TypeParam> paths_there;
+  copy(paths_there, paths);
+  place_prescribed(paths_there, 0.6, bodies);
+  BodyTable placed;
+  copy_bodies(placed, bodies);
+  const Vec3 arm(-std::sin(1.0), std::cos(1.0), 0);
+  for (std::size_t k = 0; k < count; ++k) {
+    const bool moves = start.mobility[k] == Mobility::prescribed;
+    const Vec3 position = moves ? Vec3(Vec3(1, 0, 3.5) + arm) : start.position[k];
+    const Vec3 velocity = moves ? Vec3(-2 * arm.y(), 2 * arm.x(), 3) : start.velocity[k];
+    ASSERT_LT((placed.position[k] - position).norm(), 1e-14);
+    ASSERT_LT((placed.velocity[k] - velocity).norm(), 1e-14);
+  }
+}
+
+}  // namespace
+}  // namespace scree
