@@ -168,16 +168,46 @@ void BallPairs::remember(std::int32_t candidate, const Vec3& impulse) {
   loaded_.view()[candidate] = impulse.isZero(0) ? 0 : 1;
 }
 
+/// In the order of the candidates, which are side by side here; of the lanes they come to, few are open at
+/// once.
+struct BallPairs::Put {
+  const BallPairs* pairs;
+  double warm_start;
+  ConstView<std::int32_t> lane_of;
+  View<lanes::BallBatch> batches;
+  View<lanes::BallParting> partings;
+  void operator()(std::int64_t place) const {
+    const std::int32_t k = pairs->touching_[static_cast<std::size_t>(place)];
+    const int l = lane_of[place] % lanes::width;
+    lanes::BallBatch& batch = batches[lane_of[place] / lanes::width];
+    lanes::BallParting& parting = partings[lane_of[place] / lanes::width];
+    const lanes::Two& pair = pairs->pairs_.view()[k];
+    const lanes::Triple& impulse = pairs->impulse_.view()[k];
+    batch.ends.i[l] = pair.i;
+    batch.ends.j[l] = pair.j;
+    batch.friction.at[l] = pairs->friction_.view()[k];
+    batch.impulse.impulse.x.at[l] = warm_start * impulse.x;
+    batch.impulse.impulse.y.at[l] = warm_start * impulse.y;
+    batch.impulse.impulse.z.at[l] = warm_start * impulse.z;
+    parting.loaded[l] = pairs->loaded_.view()[k];
+    parting.flying[l] = parting.loaded[l] != 0 ? 0 : pairs->flying_.view()[k];
+  }
+};
+
+void BallPairs::put_into(double warm_start, lanes::Batches& batches) const {
+  parallel::for_each<Host>(
+      "balls.put", batches.lane_of.size(),
+      Put{this, warm_start, batches.lane_of.view(), batches.balls.view(), batches.partings.view()});
+}
+
 struct BallPairs::Remember {
-  ConstView<lanes::Members> members;
-  ConstView<lanes::BallBatch> batches;
   BallPairs* pairs;
-  void operator()(std::int64_t b) const {
-    const lanes::LaneVec& p = batches[b].impulse.impulse;
-    for (int l = 0; l < lanes::width; ++l) {
-      const std::int32_t k = members[b].candidate[l];
-      if (k != lanes::none) pairs->remember(k, {p.x.at[l], p.y.at[l], p.z.at[l]});
-    }
+  ConstView<std::int32_t> lane_of;
+  ConstView<lanes::BallBatch> batches;
+  void operator()(std::int64_t place) const {
+    const lanes::LaneVec& p = batches[lane_of[place] / lanes::width].impulse.impulse;
+    const int l = lane_of[place] % lanes::width;
+    pairs->remember(pairs->touching_[static_cast<std::size_t>(place)], {p.x.at[l], p.y.at[l], p.z.at[l]});
   }
 };
 
@@ -189,8 +219,9 @@ void BallPairs::remember(const lanes::Batches& batches) {
       remember(static_cast<std::int32_t>(look * lanes::look + std::countr_zero(left)), Vec3::Zero());
   }
   copy(carried_, looks_);
-  parallel::for_each<Host>("balls.remember", batches.balls.size(),
-                           Remember{batches.ball_members.view(), batches.balls.view(), this});
+  if (touching_.empty()) return;
+  parallel::for_each<Host>("balls.remember", batches.lane_of.size(),
+                           Remember{this, batches.lane_of.view(), batches.balls.view()});
 }
 
 /// And nobody's.
@@ -231,16 +262,8 @@ lanes::BallSource BallPairs::source(const BodyView& bodies, double step,
           .up = up_.data(),
           .kick = kick_.data(),
           .forces = parameters.acceleration.size() > 0,
-          .pairs = pairs_.data(),
-          .friction = friction_.data(),
-          .impulse = impulse_.data(),
-          .loaded = loaded_.data(),
-          .flying = flying_.data(),
-          .first_plane = static_cast<std::int32_t>(first_plane_),
-          .nobody = nobody_,
           .step = step,
-          .noise = 0,
-          .warm_start = 0};
+          .noise = 0};
 }
 
 }  // namespace scree

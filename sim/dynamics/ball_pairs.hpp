@@ -73,6 +73,8 @@ class BallPairs {
   /// And what the contacts in the lanes did; what does not touch carries nothing.
   void remember(const lanes::Batches& batches);
 
+  /// Puts into the lanes who touches, with the share given of the impulses remembered.
+  void put_into(double warm_start, lanes::Batches& batches) const;
   /// Prepares the making of contacts, at the midpoint before gravity's kick.
   lanes::BallSource source(const BodyView& bodies, double step, const ResponseParameters& parameters);
 
@@ -80,6 +82,7 @@ class BallPairs {
   struct SetReach;
   struct LoadBall;
   struct Look;
+  struct Put;
   struct Remember;
 
   std::int64_t tested_ = 0;       // candidates that are somebody

@@ -95,48 +95,47 @@ struct MarkBegins {
   }
 };
 
-/// One contact of each lane, behind the others, in the order of the candidates.
+/// Those of BallPairs, in the order of the candidates, behind the others.
 struct ListPairs {
   lanes::Batches* batches;
   ConstView<SolverBody> bodies;
   std::int64_t first_contact, first_row;
   View<Contact> contacts;
   View<ContactRow> rows;
-  void operator()(std::int64_t b) const {
+  void operator()(std::int64_t place) const {
+    const std::int32_t lane = batches->lane_of.view()[place];
+    const std::int32_t b = lane / lanes::width;
+    const int l = lane % lanes::width;
     const lanes::BallBatch& batch = batches->balls.view()[b];
     const lanes::BallParting& parting = batches->partings.view()[b];
     lanes::Members& members = batches->ball_members.view()[b];
-    if (!members.are_pairs()) return;
-    for (int l = 0; l < lanes::width; ++l) {
-      if (members.candidate[l] == lanes::none) continue;
-      const std::int64_t c = first_contact + members.place[l];
-      const std::int64_t r = first_row + members.place[l];
-      members.contact[l] = static_cast<std::int32_t>(c);
-      members.row[l] = r;
-      const Vec3 normal(batch.normal.x.at[l], batch.normal.y.at[l], batch.normal.z.at[l]);
-      const lanes::LaneVec& p = batch.impulse.impulse;
-      ContactRow& row = rows[r];
-      row = row_at(batch.arm_i.at[l] * normal, batch.arm_j.at[l] * normal, parting.gap.at[l]);
-      row.bend = parting.bend.at[l];
-      row.target = batch.target.at[l];
-      row.impulse = Vec3(p.x.at[l], p.y.at[l], p.z.at[l]);
-      row.normal_mass = batch.normal_mass.at[l];
-      row.tangent_mass = batch.tangent_mass.at[l];
-      contacts[c] = {.i = batch.ends.i[l],
-                     .j = batch.ends.j[l],
-                     .first_row = r,
-                     .count = 1,
-                     .loaded = (parting.loaded >> l & 1) != 0,
-                     .flying = (parting.flying >> l & 1) != 0,
-                     .balls = true,
-                     .aligned = true,
-                     .free_ends = static_cast<std::int8_t>(bodies[batch.ends.i[l]].is_free() +
-                                                           bodies[batch.ends.j[l]].is_free()),
-                     .normal = normal,
-                     .friction = batch.friction.at[l],
-                     .lead = 0,
-                     .size = parting.cap.at[l] / tolerance::correction_cap};
-    }
+    const std::int64_t c = first_contact + place;
+    const std::int64_t r = first_row + place;
+    members.contact[l] = static_cast<std::int32_t>(c);
+    members.row[l] = r;
+    const Vec3 normal(batch.normal.x.at[l], batch.normal.y.at[l], batch.normal.z.at[l]);
+    const lanes::LaneVec& p = batch.impulse.impulse;
+    ContactRow& row = rows[r];
+    row = row_at(batch.arm_i.at[l] * normal, batch.arm_j.at[l] * normal, parting.gap.at[l]);
+    row.bend = parting.bend.at[l];
+    row.target = batch.target.at[l];
+    row.impulse = Vec3(p.x.at[l], p.y.at[l], p.z.at[l]);
+    row.normal_mass = batch.normal_mass.at[l];
+    row.tangent_mass = batch.tangent_mass.at[l];
+    contacts[c] = {.i = batch.ends.i[l],
+                   .j = batch.ends.j[l],
+                   .first_row = r,
+                   .count = 1,
+                   .loaded = parting.loaded[l] != 0,
+                   .flying = parting.flying[l] != 0,
+                   .balls = true,
+                   .aligned = true,
+                   .free_ends = static_cast<std::int8_t>(bodies[batch.ends.i[l]].is_free() +
+                                                         bodies[batch.ends.j[l]].is_free()),
+                   .normal = normal,
+                   .friction = batch.friction.at[l],
+                   .lead = 0,
+                   .size = parting.cap.at[l] / tolerance::correction_cap};
   }
 };
 
@@ -159,7 +158,7 @@ void ContactSet::list_pairs(ConstView<SolverBody> bodies) {
   extend(rows, first_row + pairs);
   pairs_are_listed = true;
   parallel::for_each<Host>(
-      "contacts.list", batches.balls.size(),
+      "contacts.list", pairs,
       ListPairs{&batches, bodies, first_contact, first_row, contacts.view(), rows.view()});
 }
 

@@ -263,7 +263,7 @@ bool ResponseSolver::an_island_gains(const SolveStage& stage, std::int64_t other
                                      const lanes::Batches& batches) {
   const auto any_gains = [](const lanes::Losses& losses) { return losses.gaining != 0; };
   if (!std::ranges::any_of(gaining_.view(), [](std::uint8_t gains) { return gains != 0; }) &&
-      (stage.touching.size() == 0 || !std::ranges::any_of(pair_loss_.view(), any_gains)))
+      (stage.balls == nullptr || !std::ranges::any_of(pair_loss_.view(), any_gains)))
     return false;
   islands_.start(stage.solver.size());
   // Calls act(i, j, loss, gains) for each contact.
@@ -273,12 +273,11 @@ bool ResponseSolver::an_island_gains(const SolveStage& stage, std::int64_t other
       act(contact.i, contact.j, loss_.view()[c], gaining_.view()[c] != 0);
     }
     for (std::int64_t b = 0; b < batches.balls.size(); ++b) {
-      const lanes::Members& members = batches.ball_members.view()[b];
-      if (!members.are_pairs()) continue;
+      if (!batches.ball_members.view()[b].are_pairs) continue;
       const lanes::Ends& ends = batches.balls.view()[b].ends;
       const lanes::Losses& losses = pair_loss_.view()[b];
       for (int l = 0; l < lanes::width; ++l) {
-        if (members.candidate[l] != lanes::none)
+        if (ends.i[l] != batches.nobody)
           act(ends.i[l], ends.j[l], losses.at[l], (losses.gaining >> l & 1) != 0);
       }
     }
@@ -317,11 +316,11 @@ Ledger ResponseSolver::solve(const Manifolds& manifolds, double step, const Resp
                    .free_spin = free_spin_.view(),
                    .step = step,
                    .noise = tolerance::parting_speed * step * parameters.gravity.norm(),
-                   .touching = {balls.touching().data(), std::ssize(balls.touching())}};
-  if (stage.touching.size() > 0) {
+                   .warm_start = warm_start};
+  if (!balls.touching().empty()) {
+    stage.balls = &balls;
     stage.pairs = balls.source(bodies, step, parameters);
     stage.pairs.noise = stage.noise;
-    stage.pairs.warm_start = warm_start;
   }
   parallel::for_each<Host>("response.kick", solver.size(), Kick{stage, parameters});
   Ledger ledger;

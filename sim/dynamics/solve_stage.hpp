@@ -23,8 +23,9 @@ struct SolveStage {
   View<Vec3> free_spin;
   double step;
   double noise = 0;                  ///< parting speeds that count as none (m/s)
-  ConstView<std::int32_t> touching;  ///< candidates of BallPairs, whose contacts are made in the lanes
+  const BallPairs* balls = nullptr;  ///< whose contacts are made in the lanes; null: there are none
   lanes::BallSource pairs = {};      ///< of these
+  double warm_start = 0;             ///< share of the impulses remembered that they start from
 
   /// Relative velocity of a row of a contact: before the kick,
   SCREE_HD Vec3 velocity_before(const Contact& c, const ContactRow& row) const {

@@ -90,8 +90,9 @@ void Sweeps::load(const SolveStage& stage, const Coloring& coloring, lanes::Batc
   const auto nobody = static_cast<std::int32_t>(stage.solver.size());
   free_.resize(nobody + 1);
   parallel::for_each<Host>("response.release", free_.size(), Release{stage, free_.view()});
-  lanes::arrange(coloring, stage.touching, stage.contacts, batches);
-  lanes::load(stage.contacts, stage.rows, stage.couplings, stage.solver, stage.pairs, nobody, batches);
+  lanes::arrange(coloring, stage.contacts, nobody, batches);
+  if (stage.balls != nullptr) stage.balls->put_into(stage.warm_start, batches);
+  lanes::load(stage.contacts, stage.rows, stage.couplings, stage.solver, stage.pairs, batches);
   change_.resize(batches.balls.size() + batches.points.size());
 }
 
@@ -135,7 +136,7 @@ struct BookPairs {
   View<lanes::Losses> losses;
   PairBooks operator()(std::int64_t b) const {
     losses[b].gaining = 0;
-    if (!batches->ball_members.view()[b].are_pairs()) return {};
+    if (!batches->ball_members.view()[b].are_pairs) return {};
     return {lanes::kernels().book_balls(batches->balls.view()[b], mean, kicked, after,
                                         tolerance::response_gain, losses[b])};
   }
@@ -145,7 +146,7 @@ struct BookPairs {
 
 lanes::Books Sweeps::book_pairs(Array<lanes::Losses, Host>& losses) {
   losses.resize(batches_->balls.size());
-  if (stage_->touching.size() == 0) return {};
+  if (stage_->balls == nullptr) return {};
   last_.resize(bodies_.size());
   parallel::for_each<Host>("response.mean", bodies_.size(),
                            LoadMean{*stage_, std::as_const(bodies_).view(), last_.view()});

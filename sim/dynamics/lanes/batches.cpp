@@ -16,10 +16,7 @@ constexpr int kinds = most_points + 2;
 static_assert(most_points == Manifold::max_points);
 int kind_of(const Contact& contact) { return contact.aligned ? 1 : 1 + contact.count; }
 
-constexpr Members nothing = {{none, none, none, none, none, none, none, none},
-                             {},
-                             {none, none, none, none, none, none, none, none},
-                             {}};
+constexpr Members nothing = {{none, none, none, none, none, none, none, none}, {}, false};
 
 void put(Lane& lane, int l, double value) { lane.at[l] = value; }
 void put(LaneVec& lanes, int l, const Vec3& value) {
@@ -61,15 +58,16 @@ struct LoadBalls {
   void operator()(std::int64_t b) const {
     BallBatch& batch = batches[b];
     BallParting& parting = partings[b];
-    if (members[b].are_pairs()) {
-      kernels().prepare_balls(pairs, members[b].candidate, batch, parting);
+    if (members[b].are_pairs) {
+      kernels().prepare_balls(pairs, batch, parting);
       return;
     }
-    parting.loaded = parting.flying = parting.apart = parting.driven = 0;
+    parting.apart = parting.driven = 0;
     parting.pushed = {};
     for (int l = 0; l < width; ++l) {
       const std::int32_t c = members[b].contact[l];
       from.put_ends(batch.ends, l, c);
+      parting.loaded[l] = parting.flying[l] = 0;
       if (c == none) {
         put(batch.normal, l, Vec3::Zero());
         for (Lane* lane : {&batch.arm_i, &batch.arm_j, &batch.friction, &batch.target, &batch.tangent_mass})
@@ -228,11 +226,22 @@ struct StorePointImpulses {
   }
 };
 
+/// Lanes of pairs that nobody takes.
+void leave(BallBatch& batch, BallParting& parting, std::int32_t nobody) {
+  for (int l = 0; l < width; ++l) {
+    batch.ends.i[l] = batch.ends.j[l] = nobody;
+    put(batch.friction, l, 0);
+    put(batch.impulse.impulse, l, Vec3::Zero());
+    parting.loaded[l] = parting.flying[l] = 0;
+  }
+}
+
 }  // namespace
 
-void arrange(const Coloring& coloring, ConstView<std::int32_t> touching, ConstView<Contact> contacts,
-             Batches& batches) {
+void arrange(const Coloring& coloring, ConstView<Contact> contacts, std::int32_t nobody, Batches& batches) {
   const auto colors = static_cast<std::size_t>(coloring.colors());
+  batches.nobody = nobody;
+  batches.lane_of.resize(std::ssize(coloring.order) - contacts.size());
   batches.last_is_serial = coloring.last_is_serial;
   batches.ball_begin.assign(1, 0);
   batches.point_begin.assign(1, 0);
@@ -263,6 +272,7 @@ void arrange(const Coloring& coloring, ConstView<std::int32_t> touching, ConstVi
     batches.point_begin.push_back(points);
   }
   batches.balls.resize(batches.ball_begin.back());
+  batches.partings.resize(batches.balls.size());
   batches.ball_members.resize(batches.balls.size());
   batches.points.resize(batches.point_begin.back());
   batches.point_members.resize(batches.points.size());
@@ -277,9 +287,10 @@ void arrange(const Coloring& coloring, ConstView<std::int32_t> touching, ConstVi
       Array<Members, Host>& members = kind < 2 ? batches.ball_members : batches.point_members;
       Members& group = members.view()[lane / width];
       if (kind == 0) {
-        const auto place = static_cast<std::int32_t>(c - contacts.size());
-        group.candidate[lane % width] = touching[place];
-        group.place[lane % width] = place;
+        if (lane % width == 0)
+          leave(batches.balls.view()[lane / width], batches.partings.view()[lane / width], nobody);
+        group.are_pairs = true;
+        batches.lane_of.view()[c - contacts.size()] = static_cast<std::int32_t>(lane);
       } else {
         group.contact[lane % width] = c;
         group.row[lane % width] = contacts[c].first_row;
@@ -296,9 +307,8 @@ void arrange(const Coloring& coloring, ConstView<std::int32_t> touching, ConstVi
 }
 
 void load(ConstView<Contact> contacts, ConstView<ContactRow> rows, ConstView<RowCoupling> couplings,
-          ConstView<SolverBody> bodies, const BallSource& balls, std::int32_t nobody, Batches& batches) {
-  const Source from{contacts, rows, couplings, bodies, nobody};
-  batches.partings.resize(batches.balls.size());
+          ConstView<SolverBody> bodies, const BallSource& balls, Batches& batches) {
+  const Source from{contacts, rows, couplings, bodies, batches.nobody};
   parallel::for_each<Host>(
       "lanes.load", batches.balls.size(),
       LoadBalls{from, balls, batches.ball_members.view(), batches.balls.view(), batches.partings.view()});

@@ -160,15 +160,16 @@ std::uint64_t touch_balls(const Reach* reach, const Two* pairs) {
   return touching;
 }
 
-V3 gather(const Triple* up, const Two* pairs) {
-  V3 normal;
+/// Of i less that of j.
+V3 gather(const Triple* of, const std::int32_t* at_i, const std::int32_t* at_j) {
+  V3 lanes;
   for (int l = 0; l < width; ++l) {
-    const Triple &i = up[pairs[l].i], &j = up[pairs[l].j];
-    normal.x[l] = i.x - j.x;
-    normal.y[l] = i.y - j.y;
-    normal.z[l] = i.z - j.z;
+    const Triple &i = of[at_i[l]], &j = of[at_j[l]];
+    lanes.x[l] = i.x - j.x;
+    lanes.y[l] = i.y - j.y;
+    lanes.z[l] = i.z - j.z;
   }
-  return normal;
+  return lanes;
 }
 
 std::uint64_t touch_planes(const Reach* reach, const Triple* up, const Two* pairs) {
@@ -177,15 +178,20 @@ std::uint64_t touch_planes(const Reach* reach, const Triple* up, const Two* pair
     V at[half];
     load_offsets(reach, pairs + first, at);
     const V3 offset{at[0], at[1], at[2]};
-    touching |= bits_of(dot(gather(up, pairs + first), offset) <= at[3]) << first;
+    std::int32_t i[width], j[width];
+    for (int l = 0; l < width; ++l) {
+      i[l] = pairs[first + l].i;
+      j[l] = pairs[first + l].j;
+    }
+    touching |= bits_of(dot(gather(up, i, j), offset) <= at[3]) << first;
   }
   return touching;
 }
 
-/// A lane that is 1 where the bit of it is set.
-V spread(std::int32_t bits) {
+/// A lane that is 1 where a byte is.
+V spread(const std::uint8_t* bytes) {
   V lanes;
-  for (int l = 0; l < width; ++l) lanes[l] = bits >> l & 1;
+  for (int l = 0; l < width; ++l) lanes[l] = bytes[l];
   return lanes;
 }
 
@@ -205,45 +211,24 @@ V spread(std::int32_t bits) {
   return ball;
 }
 
-void prepare_balls(const BallSource& from, const std::int32_t* candidates, BallBatch& batch,
-                   BallParting& parting) {
-  const Two empty{from.nobody, from.nobody};
-  Two pairs[width];
-  V friction;
-  V3 impulse;
-  bool planes = false;
-  parting.loaded = parting.flying = 0;
-  for (int l = 0; l < width; ++l) {
-    const std::int32_t k = candidates[l];
-    pairs[l] = k == none ? empty : from.pairs[k];
-    batch.ends.i[l] = pairs[l].i;
-    batch.ends.j[l] = pairs[l].j;
-    const Triple p = k == none ? Triple{0, 0, 0} : from.impulse[k];
-    impulse.x[l] = p.x;
-    impulse.y[l] = p.y;
-    impulse.z[l] = p.z;
-    friction[l] = k == none ? 0 : from.friction[k];
-    if (k == none) continue;
-    planes |= k >= from.first_plane;
-    parting.loaded |= from.loaded[k] << l;
-    parting.flying |= (from.flying[k] & ~from.loaded[k]) << l;
-  }
+void prepare_balls(const BallSource& from, BallBatch& batch, BallParting& parting) {
   V3 x_i, x_j;
   const auto i = load(from.balls, from.inverse_inertia, batch.ends.i, x_i);
   const auto j = load(from.balls, from.inverse_inertia, batch.ends.j, x_j);
   parting.driven = static_cast<std::int32_t>(bits_of((i.inverse_mass == 0) | (j.inverse_mass == 0)));
   // Two free bodies fall alike, unless forces are applied.
   V3 kick{};
-  if (from.forces || parting.driven != 0) kick = V3{} - gather(from.kick, pairs);
-  const V3 up = planes ? gather(from.up, pairs) : V3{};
+  if (from.forces || parting.driven != 0) kick = V3{} - gather(from.kick, batch.ends.i, batch.ends.j);
+  const bool planes = bits_of((i.radius == 0) | (j.radius == 0)) != 0;
+  const V3 up = planes ? gather(from.up, batch.ends.i, batch.ends.j) : V3{};
+  const V friction = get(batch.friction);
   const auto contact = contact_of<Lanes>(facing<Lanes>(x_j - x_i, i.radius + j.radius, up), friction, i, j,
                                          kick, from.step, from.noise, spread(parting.flying) > 0);
   const Balls& law = contact.law;
-  const V3 start = in_cone<Lanes>(all(from.warm_start) * impulse, law.normal, friction);
+  const V3 start = in_cone<Lanes>(get(batch.impulse.impulse), law.normal, friction);
   set(batch.normal, law.normal);
   set(batch.arm_i, law.arm_i);
   set(batch.arm_j, law.arm_j);
-  set(batch.friction, friction);
   set(batch.target, law.target);
   set(batch.normal_mass, law.normal_mass);
   set(batch.tangent_mass, law.tangent_mass);
@@ -424,11 +409,9 @@ double fly_balls(const BallBatch& batch, BallParting& parting, const Body* veloc
   const Centres j = load_centres(velocities, parting.ends.j);
   V gap = get(parting.gap) +
           0.5 * step * (dot(get(parting.normal), j.velocity - i.velocity) + 0.25 * step * get(parting.bend));
-  if (parting.flying != 0) {
-    // What flies past is nearer to the other's tangent plane than to the other.
-    const V3 p = get(batch.impulse.impulse);
-    gap = (spread(parting.flying) > 0) & (dot(p, p) == 0) ? all(__builtin_huge_val()) : gap;
-  }
+  // What flies past is nearer to the other's tangent plane than to the other.
+  const V3 p = get(batch.impulse.impulse);
+  gap = (spread(parting.flying) > 0) & (dot(p, p) == 0) ? all(__builtin_huge_val()) : gap;
   set(parting.flown, gap);
   double least = 0;
   for (int l = 0; l < width; ++l) least = gap[l] < least ? gap[l] : least;

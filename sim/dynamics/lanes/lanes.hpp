@@ -99,15 +99,15 @@ struct BallParting {
   Ends ends;
   LaneVec normal;
   Lane normal_mass;
-  Lane gap;     ///< at the midpoint (m)
-  Lane bend;    ///< of ContactRow
-  Lane flown;   ///< gap at the end of the substep without displacements (m)
-  Lane pushed;  ///< impulse so far (kg m)
-  Lane cap;     ///< most that one visit parts (m)
+  Lane gap;                                   ///< at the midpoint (m)
+  Lane bend;                                  ///< of ContactRow
+  Lane flown;                                 ///< gap at the end of the substep without displacements (m)
+  Lane pushed;                                ///< impulse so far (kg m)
+  Lane cap;                                   ///< most that one visit parts (m)
+  std::uint8_t loaded[width], flying[width];  ///< of Contact
   // A bit for each lane:
-  std::int32_t loaded, flying;  ///< of Contact
-  std::int32_t apart;           ///< its gap at the end is not told by the flight from the midpoint
-  std::int32_t driven;          ///< one of the two bodies is not free
+  std::int32_t apart;   ///< its gap at the end is not told by the flight from the midpoint
+  std::int32_t driven;  ///< one of the two bodies is not free
 };
 
 /// And of one point of each contact of a PointBatch.
@@ -140,16 +140,8 @@ struct BallSource {
   const Triple* up;    ///< normals of planes
   const Triple* kick;  ///< what the substep's forces add to the velocity (m/s)
   bool forces;         ///< whether it differs between free bodies
-  // Of each candidate:
-  const Two* pairs;
-  const double* friction;
-  const Triple* impulse;  ///< remembered (N s)
-  const std::uint8_t *loaded, *flying;
-  std::int32_t first_plane;  ///< from there on pairs of a ball and a plane
-  std::int32_t nobody;
-  double step;        ///< s
-  double noise;       ///< parting speeds that count as none (m/s)
-  double warm_start;  ///< share of the impulses remembered that contacts start from
+  double step;         ///< s
+  double noise;        ///< parting speeds that count as none (m/s)
 };
 /// One visit. Going on by beta of what the last sweep has changed, which the bodies have done already, waits
 /// for it. The local law is that of coulomb_update() and natural_map().
@@ -168,8 +160,8 @@ struct Kernels {
   /// A bit for each of `look` pairs that come as close as they reach.
   std::uint64_t (*touch_balls)(const Reach*, const Two* pairs);
   std::uint64_t (*touch_planes)(const Reach*, const Triple* up, const Two* pairs);
-  /// Prepares the contacts of the candidates given, or none.
-  void (*prepare_balls)(const BallSource&, const std::int32_t* candidates, BallBatch&, BallParting&);
+  /// Prepares contacts that know their bodies, friction, and the impulses that they start from.
+  void (*prepare_balls)(const BallSource&, BallBatch&, BallParting&);
   /// `mean`: velocities halfway between those before and after the substep; `kicked`: without impulses. A
   /// contact gains that gains more than `rounding` of what the impulses do after the kick.
   Books (*book_balls)(const BallBatch&, const Body* mean, const Body* kicked, const Body* after,

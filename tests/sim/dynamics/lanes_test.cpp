@@ -34,9 +34,9 @@ struct Problem {
     coloring.color_begin = {0, count};
     coloring.order.resize(static_cast<std::size_t>(count));
     std::iota(coloring.order.begin(), coloring.order.end(), 0);
-    lanes::arrange(coloring, {}, contact_view(), batches);
+    lanes::arrange(coloring, contact_view(), static_cast<std::int32_t>(bodies.size()), batches);
     lanes::load(contact_view(), row_view(), {couplings.data(), size(couplings)},
-                {bodies.data(), size(bodies)}, {}, static_cast<std::int32_t>(bodies.size()), batches);
+                {bodies.data(), size(bodies)}, {}, batches);
   }
 
   template <class T>
@@ -275,7 +275,7 @@ TEST(Lanes, SmoothKernelsDoWhatRoughOnesDoWithoutFriction) {
 TEST(Lanes, TheSerialColourSharesNoBatch) {
   Problem p(odd_count);
   p.coloring.last_is_serial = true;
-  lanes::arrange(p.coloring, {}, p.contact_view(), p.batches);
+  lanes::arrange(p.coloring, p.contact_view(), static_cast<std::int32_t>(p.bodies.size()), p.batches);
   std::int64_t alone = 0;
   const auto count = [&alone](const lanes::Members& members) {
     alone += members.contact[0] >= 0 ? 1 : 0;
