@@ -9,7 +9,9 @@
 
 #include <gtest/gtest.h>
 
+#include <cstring>
 #include <utility>
+#include <vector>
 
 namespace scree {
 namespace {
@@ -200,6 +202,78 @@ TEST(BallPairs, ForgetWhatNoLongerTouches) {
   for (Vec3& x : s.bodies.position.view()) x *= 1000;
   s.respond(true);
   for (const std::int32_t candidate : touched) EXPECT_EQ(s.memory.balls.impulse(candidate), Vec3(0, 0, 0));
+}
+
+/// What a kernel makes of eight contacts, with every byte.
+struct Made {
+  lanes::BallBatch batch;
+  lanes::BallParting parting;
+  lanes::Books books;
+  lanes::Losses losses;
+  double deepest;
+};
+
+TEST(BallPairs, AreTheSameBitsOnEveryInstructionSet) {
+  constexpr int bodies = 2 * lanes::width;
+  for (std::uint64_t seed = 0; seed < 200; ++seed) {
+    Random random(seed, 0);
+    const auto vector = [&random](double size) {
+      const double x = random.uniform(-size, size);
+      const double y = random.uniform(-size, size);
+      return Vec3(x, y, random.uniform(-size, size));
+    };
+    std::vector<lanes::Ball> balls;
+    std::vector<lanes::Reach> reach;
+    std::vector<lanes::Body> mean, free, after;
+    std::vector<double> inertia;
+    std::vector<lanes::Triple> up, kick;
+    for (int k = 0; k < bodies; ++k) {
+      const bool plane = k % 7 == 3;
+      const Vec3 normal = plane ? vector(1).normalized() : Vec3(Vec3::Zero());
+      balls.push_back({vector(0.1), plane ? 0 : random.uniform(0.01, 0.1), vector(1), plane ? 0 : 1.3});
+      reach.push_back({balls.back().position, balls.back().radius + 0.01});
+      inertia.push_back(plane ? 0 : 2000);
+      up.push_back({normal.x(), normal.y(), normal.z()});
+      kick.push_back({0, 0, plane ? 0 : -0.04});
+      for (std::vector<lanes::Body>* list : {&mean, &free, &after})
+        list->push_back({vector(1), balls.back().inverse_mass, vector(2), inertia.back()});
+    }
+    std::vector<lanes::Two> pairs;
+    for (int k = 0; k < lanes::look; ++k) pairs.push_back({k % bodies, (3 * k + 1) % bodies});
+    Made start{};
+    for (int l = 0; l < lanes::width; ++l) {
+      const Vec3 p = vector(0.1);
+      start.batch.ends.i[l] = 2 * l;
+      start.batch.ends.j[l] = 2 * l + 1;
+      start.batch.friction.at[l] = random.uniform(0, 1);
+      start.batch.impulse.impulse.x.at[l] = p.x();
+      start.batch.impulse.impulse.y.at[l] = p.y();
+      start.batch.impulse.impulse.z.at[l] = p.z();
+      start.parting.flying[l] = l % 3 == 0;
+    }
+    const lanes::BallSource source{.balls = balls.data(),
+                                   .inverse_inertia = inertia.data(),
+                                   .up = up.data(),
+                                   .kick = kick.data(),
+                                   .forces = seed % 2 == 0,
+                                   .step = step,
+                                   .noise = 1e-7};
+    std::vector<Made> made;
+    std::vector<std::uint64_t> touching;
+    for (const auto& [name, kernels] : lanes::supported_kernels()) {
+      Made m = start;
+      kernels->prepare_balls(source, m.batch, m.parting);
+      m.books = kernels->book_balls(m.batch, mean.data(), free.data(), after.data(), 1e-10, m.losses);
+      m.deepest = kernels->fly_balls(m.batch, m.parting, after.data(), step);
+      made.push_back(m);
+      touching.push_back(kernels->touch_balls(reach.data(), pairs.data()) ^
+                         kernels->touch_planes(reach.data(), up.data(), pairs.data()));
+    }
+    for (std::size_t k = 1; k < made.size(); ++k) {
+      EXPECT_EQ(std::memcmp(&made[k], &made[0], sizeof(Made)), 0) << seed;
+      EXPECT_EQ(touching[k], touching[0]) << seed;
+    }
+  }
 }
 
 }  // namespace
