@@ -26,12 +26,13 @@ namespace scree::parallel {
 inline constexpr std::int64_t few = 256;
 
 /// Calls f(i) for 0 <= i < n, in any order and at once. f is a copyable function object over views; on
-/// Device the call returns before the work is done. `label` names the work to a profiler.
+/// Device the call returns before the work is done. `label` names the work to a profiler. `fewest`: items
+/// worth waking threads for, on the host, where each is much work.
 template <class Space, class F>
-void for_each(const char* label, std::int64_t n, F f) {
+void for_each(const char* label, std::int64_t n, F f, [[maybe_unused]] std::int64_t fewest = few) {
   const timing::Call<Space> call(label);
   if constexpr (std::is_same_v<Space, Host>) {
-    if (n < few) {
+    if (n < fewest) {
       for (std::int64_t i = 0; i < n; ++i) f(i);
       return;
     }

@@ -113,9 +113,13 @@ void Substepper::fly_on(const Manifolds& manifolds, double h, double done) {
   ledger.work += forces_.work(bodies_);
   ledger = ledger + corrector_.correct(h, parameters_, view_of(bodies_), solver_, contacts_);
   memory_.remember(manifolds, contacts_, bodies_.count());
-  for (const Contact& c : std::as_const(contacts_.contacts).view()) {
+  for (std::int64_t k = 0; k < contacts_.others(); ++k) {
+    const Contact& c = std::as_const(contacts_.contacts).view()[k];
     if (c.free_ends < 2) add_impulse_on_driven_bodies(c.i, c.j, contacts_.impulse_of(c));
   }
+  contacts_.batches.for_each_driven_pair([this](std::int32_t i, std::int32_t j, const Vec3& impulse) {
+    add_impulse_on_driven_bodies(i, j, impulse);
+  });
   last_substep_ = h;
 }
 
@@ -162,24 +166,35 @@ void Substepper::resolve_impacts(double h, double from, double reach) {
 Manifolds Substepper::find_contacts(double h, double reach) {
   contact_margins(bodies_, h, tolerance::contact_slack, parameters_, contact_margin_);
   const ConstView<Pair> pairs = kept_pairs_.covering(bodies_, contact_margin_, reach, parameters_);
+  const ConstBodyView views = view_of(std::as_const(bodies_));
+  BallPairs& balls = memory_.balls;
+  if (counters.pcs_made != kept_pairs_.times_made())
+    balls.take(views, pairs, contact_laws(), parameters_.friction);
   counters.pcs_made = kept_pairs_.times_made();
   const timing::Region region("narrowphase");
+  const LateBodies* late = impacts_.late_bodies(impact_problem(pairs, h, 0), parameters_, view_of(bodies_));
+  any_late_ = late != nullptr;
+  balls.find(views, contact_margin_.view(), late);
   const Manifolds manifolds =
-      narrow_phase_.find(view_of(std::as_const(bodies_)), pairs, contact_margin_.view(),
-                         impacts_.late_bodies(impact_problem(pairs, h, 0), parameters_, view_of(bodies_)));
+      narrow_phase_.find(views, balls.others(pairs, late), contact_margin_.view(), late);
   counters.narrowphase += narrow_phase_.stats();
+  counters.narrowphase.tested += balls.tested();
   return manifolds;
 }
 
 void Substepper::respond(const Manifolds& manifolds, double h) {
   const timing::Region region("response");
   load_solver_bodies(bodies_, solver_);
-  color_contacts(manifolds.headers, std::as_const(bodies_.mobility).view(), contacts_.coloring);
+  color_contacts(memory_.balls, manifolds.headers, std::as_const(bodies_.mobility).view(),
+                 contacts_.coloring);
   const double scale = last_substep_ > 0 ? h / last_substep_ : 1.0;
   prepare_contacts(manifolds, contact_laws(), memory_, scale, parameters_, contacts_);
-  impacts_.mark_flights(impact_problem({}, h, 0), parameters_, manifolds, view_of(bodies_), contacts_);
+  impacts_.mark_flights(impact_problem({}, h, 0), parameters_, manifolds, view_of(bodies_), contacts_,
+                        memory_.balls);
   ledger =
-      ledger + response_.solve(manifolds, h, parameters_, view_of(bodies_), solver_, contacts_, counters);
+      ledger + response_.solve(manifolds, h, parameters_, memory_.balls, parameters_.warm_start ? scale : 0.0,
+                               view_of(bodies_), solver_, contacts_, counters);
+  if (any_late_) contacts_.list_pairs(solver_.view());
   ledger = ledger + impacts_.shift_late(impact_problem({}, h, 0), parameters_, view_of(bodies_), contacts_);
 }
 
@@ -248,12 +263,17 @@ void Substepper::measure_overlaps(Observation& out) {
 }
 
 void Substepper::measure_contacts(std::int64_t free_bodies, Observation& out) const {
-  scree::measure_contacts(contacts_, free_bodies, out);
+  scree::measure_contacts(listed_contacts(), free_bodies, out);
+}
+
+const ContactSet& Substepper::listed_contacts() const {
+  contacts_.list_pairs(solver_.view());
+  return contacts_;
 }
 
 std::vector<ContactForce> Substepper::contact_forces() const {
-  const ConstView<Contact> contacts = contacts_.contacts.view();
-  const ConstView<ContactRow> rows = contacts_.rows.view();
+  const ConstView<Contact> contacts = listed_contacts().contacts.view();
+  const ConstView<ContactRow> rows = listed_contacts().rows.view();
   const ConstBodyView views = view_of(bodies_);
   std::vector<ContactForce> forces;
   for (std::int64_t c = 0; c < contacts.size(); ++c) {
@@ -276,7 +296,8 @@ std::vector<ContactForce> Substepper::contact_forces() const {
 }
 
 ContactProblem Substepper::contact_problem() const {
-  return contact_problem_of(contacts_, solver_.view(), response_.free_velocity(), response_.free_spin());
+  return contact_problem_of(listed_contacts(), solver_.view(), response_.free_velocity(),
+                            response_.free_spin());
 }
 
 }  // namespace scree

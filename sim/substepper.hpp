@@ -81,6 +81,7 @@ class Substepper final : public Stepper {
   Manifolds find_contacts(double h, double reach);
   void respond(const Manifolds& manifolds, double h);
   ConstView<Pair> pairs_now();
+  const ContactSet& listed_contacts() const;
   void add_impulse_on_driven_bodies(std::int32_t i, std::int32_t j, const Vec3& impulse);
 
   TimeGrid grid_;
@@ -105,8 +106,9 @@ class Substepper final : public Stepper {
   std::vector<Vec3> contact_impulse_;
   Array<double, Host> contact_margin_;
   Array<SolverBody, Host> solver_;
-  std::vector<Impact> struck_;  // in the last substep
-  ContactSet contacts_;
+  std::vector<Impact> struck_;   // in the last substep
+  bool any_late_ = false;        // of these after the midpoint
+  mutable ContactSet contacts_;  // listed one by one when somebody asks
   ImpulseMemory memory_;
 };
 

@@ -71,8 +71,8 @@ class Replay {
       header.i = c.i;
       header.j = c.j;
     }
-    color_contacts({headers.data(), std::ssize(headers)}, {mobility.data(), std::ssize(mobility)},
-                   set_.coloring);
+    color_contacts(BallPairs(), {headers.data(), std::ssize(headers)},
+                   {mobility.data(), std::ssize(mobility)}, set_.coloring);
   }
 
   Contact contact_of(const ContactProblem::Contact& c) const {

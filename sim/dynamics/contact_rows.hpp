@@ -12,7 +12,6 @@ namespace scree {
 /// Arms, gaps and targets at the midpoint.
 struct PrepareRows {
   SolveStage stage;
-  double noise;  ///< parting speeds that count as none (m/s)
   SCREE_HD void operator()(std::int64_t c) const {
     Contact& contact = stage.contacts[c];
     const ManifoldHeader& m = stage.manifolds.headers[c];
@@ -44,7 +43,7 @@ struct PrepareRows {
       }
       // Held, a contact that was parting before the kick would gain energy, p.(u- + u+)/2: it may close as
       // fast.
-      row.target = fmin(row.target, noise - contact.normal.dot(stage.velocity_before(contact, row)));
+      row.target = fmin(row.target, stage.noise - contact.normal.dot(stage.velocity_before(contact, row)));
       if (contact.flying) row.target = fmin(row.target, flight_speed(contact, row));
     }
   }

@@ -1,13 +1,21 @@
 #include "sim/dynamics/contact_set.hpp"
 
 #include "core/parallel.hpp"
+#include "core/tolerances.hpp"
 
 namespace scree {
 
 bool ImpulseMemory::recall(const ManifoldHeader& manifold, const ContactPoint* points, Vec3* impulses) const {
   for (int k = 0; k < manifold.count; ++k) impulses[k].setZero();
   bool loaded = false;
-  for (const Entry& entry : index().of(manifold.i, manifold.j, manifold.part)) {
+  const ConstView<Entry> entries = index().of(manifold.i, manifold.j, manifold.part);
+  if (entries.size() == 0) {
+    const std::int32_t candidate = balls.index().candidate_of(manifold.i, manifold.j);
+    if (candidate == lanes::none) return false;
+    impulses[0] = balls.impulse(candidate);
+    return balls.index().is_loaded(candidate);
+  }
+  for (const Entry& entry : entries) {
     loaded = loaded || entry.loaded;
     for (int old = 0; old < entry.count; ++old) {
       const Point& point = points_.view()[entry.first_point + old];
@@ -87,7 +95,72 @@ struct MarkBegins {
   }
 };
 
+/// Those of BallPairs, in the order of the candidates, behind the others.
+struct ListPairs {
+  lanes::Batches* batches;
+  ConstView<SolverBody> bodies;
+  std::int64_t first_contact, first_row;
+  View<Contact> contacts;
+  View<ContactRow> rows;
+  void operator()(std::int64_t place) const {
+    const std::int32_t lane = batches->lane_of.view()[place];
+    const std::int32_t b = lane / lanes::width;
+    const int l = lane % lanes::width;
+    const lanes::BallBatch& batch = batches->balls.view()[b];
+    const lanes::BallParting& parting = batches->partings.view()[b];
+    lanes::Members& members = batches->ball_members.view()[b];
+    const std::int64_t c = first_contact + place;
+    const std::int64_t r = first_row + place;
+    members.contact[l] = static_cast<std::int32_t>(c);
+    members.row[l] = r;
+    const Vec3 normal(batch.normal.x.at[l], batch.normal.y.at[l], batch.normal.z.at[l]);
+    const lanes::LaneVec& p = batch.impulse.impulse;
+    ContactRow& row = rows[r];
+    row = row_at(batch.arm_i.at[l] * normal, batch.arm_j.at[l] * normal, parting.gap.at[l]);
+    row.bend = parting.bend.at[l];
+    row.target = batch.target.at[l];
+    row.impulse = Vec3(p.x.at[l], p.y.at[l], p.z.at[l]);
+    row.normal_mass = batch.normal_mass.at[l];
+    row.tangent_mass = batch.tangent_mass.at[l];
+    contacts[c] = {.i = batch.ends.i[l],
+                   .j = batch.ends.j[l],
+                   .first_row = r,
+                   .count = 1,
+                   .loaded = parting.loaded[l] != 0,
+                   .flying = parting.flying[l] != 0,
+                   .balls = true,
+                   .aligned = true,
+                   .free_ends = static_cast<std::int8_t>(bodies[batch.ends.i[l]].is_free() +
+                                                         bodies[batch.ends.j[l]].is_free()),
+                   .normal = normal,
+                   .friction = batch.friction.at[l],
+                   .lead = 0,
+                   .size = parting.cap.at[l] / tolerance::correction_cap};
+  }
+};
+
+/// Makes an array larger and keeps what is in it.
+template <class T>
+void extend(Array<T, Host>& values, std::int64_t n) {
+  Array<T, Host> longer(n);
+  copy_bytes<Host, Host>(longer.data(), values.data(), static_cast<std::size_t>(values.size()) * sizeof(T));
+  values.swap(longer);
+}
+
 }  // namespace
+
+void ContactSet::list_pairs(ConstView<SolverBody> bodies) {
+  if (pairs_are_listed) return;
+  const std::int64_t first_contact = contacts.size();
+  const std::int64_t first_row = rows.size();
+  extend(contacts, first_contact + pairs);
+  extend(couplings, first_row + pairs);
+  extend(rows, first_row + pairs);
+  pairs_are_listed = true;
+  parallel::for_each<Host>(
+      "contacts.list", pairs,
+      ListPairs{&batches, bodies, first_contact, first_row, contacts.view(), rows.view()});
+}
 
 void ImpulseMemory::remember(const Manifolds& manifolds, const ContactSet& set, std::int64_t bodies) {
   entries_.resize(manifolds.size());
@@ -97,10 +170,20 @@ void ImpulseMemory::remember(const Manifolds& manifolds, const ContactSet& set, 
                            StoreEntry{manifolds, set.rows.view(), entries_.view(), points_.view()});
   parallel::for_each<Host>("contacts.remember", manifolds.size() + 1,
                            MarkBegins{manifolds.headers, begin_.view()});
+  if (balls.size() == 0) return;
+  balls.remember(set.batches);
+  // Pairs of which one was struck late are among the manifolds.
+  for (const ManifoldHeader& m : manifolds.headers) {
+    const std::int32_t candidate = balls.index().candidate_of(m.i, m.j);
+    if (candidate != lanes::none) balls.remember(candidate, set.rows.view()[m.first_point].impulse);
+  }
 }
 
 void prepare_contacts(const Manifolds& manifolds, const ContactLaws& laws, const ImpulseMemory& memory,
                       double scale, const ResponseParameters& parameters, ContactSet& set) {
+  set.pairs = static_cast<std::int64_t>(memory.balls.touching().size());
+  set.pairs_are_listed = false;
+  set.batches.clear();
   set.contacts.resize(manifolds.size());
   set.rows.resize(manifolds.points.size());
   set.couplings.resize(manifolds.points.size());

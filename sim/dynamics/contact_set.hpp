@@ -4,6 +4,7 @@
 #include "core/array.hpp"
 #include "core/bodies.hpp"
 #include "narrowphase/contact.hpp"
+#include "sim/dynamics/ball_pairs.hpp"
 #include "sim/dynamics/coloring.hpp"
 #include "sim/dynamics/contact_laws.hpp"
 #include "sim/dynamics/contact_row.hpp"
@@ -66,9 +67,19 @@ struct ContactSet {
   Array<ContactRow, Host> rows;        ///< of one contact after the other
   Array<RowCoupling, Host> couplings;  ///< of the rows; not set for those of balls
   lanes::Batches batches;              ///< the same for the kernels, colour by colour
+  std::int64_t pairs = 0;              ///< contacts of BallPairs: only in the batches, until they are listed
+  bool pairs_are_listed = false;       ///< among the contacts and rows, after the others
 
-  bool is_heap() const { return scree::is_heap(rows.size()); }
-  bool shares_loads() const { return scree::shares_loads(contacts.size(), rows.size()); }
+  std::int64_t contact_count() const { return contacts.size() + (pairs_are_listed ? 0 : pairs); }
+  std::int64_t point_count() const { return rows.size() + (pairs_are_listed ? 0 : pairs); }
+  /// How many contacts are not of BallPairs.
+  std::int64_t others() const { return contact_count() - pairs; }
+  /// Lists the contacts of BallPairs too, as the batches have them, for those who look at contacts one by
+  /// one.
+  void list_pairs(ConstView<SolverBody> bodies);
+
+  bool is_heap() const { return scree::is_heap(point_count()); }
+  bool shares_loads() const { return scree::shares_loads(contact_count(), point_count()); }
   /// All that a contact's rows gave to its body j in the last substep (N s).
   Vec3 impulse_of(const Contact& contact) const {
     Vec3 impulse = Vec3::Zero();
@@ -81,10 +92,12 @@ struct ContactSet {
 /// the place where those of each i begin.
 class ImpulseMemory {
  public:
+  BallPairs balls;  ///< which remember their own
+
   /// Finds the last impulses of a manifold's points (N s, world frame). False if none of the pair's points on
   /// that part carried any: where one corner rests, the others do not bounce.
   bool recall(const ManifoldHeader& manifold, const ContactPoint* points, Vec3* impulses) const;
-  /// Takes the impulses of the rows; `bodies` is their number.
+  /// Takes the impulses of the rows and of the batches; `bodies` is their number.
   void remember(const Manifolds& manifolds, const ContactSet& set, std::int64_t bodies);
 
   /// A manifold.
@@ -107,6 +120,7 @@ class ImpulseMemory {
   struct Index {
     ConstView<Entry> entries;
     ConstView<std::int64_t> begin;
+    BallPairs::Index balls;
 
     /// Those of a part of a pair.
     SCREE_HD ConstView<Entry> of(std::int32_t i, std::int32_t j, std::int32_t part) const {
@@ -127,13 +141,14 @@ class ImpulseMemory {
     }
     /// Whether a part of the pair i, j carried an impulse.
     SCREE_HD bool is_loaded(std::int32_t i, std::int32_t j, std::int32_t part) const {
-      for (const Entry& entry : of(i, j, part)) {
+      const ConstView<Entry> those = of(i, j, part);
+      for (const Entry& entry : those) {
         if (entry.loaded) return true;
       }
-      return false;
+      return those.size() == 0 && balls.is_loaded(balls.candidate_of(i, j));
     }
   };
-  Index index() const { return {entries_.view(), begin_.view()}; }
+  Index index() const { return {entries_.view(), begin_.view(), balls.index()}; }
 
  private:
   Array<Entry, Host> entries_;
@@ -141,8 +156,8 @@ class ImpulseMemory {
   Array<std::int64_t, Host> begin_;  ///< of the entries of each i; one more than bodies, empty at first
 };
 
-/// Fills the contacts with their laws, and the rows with the impulses remembered, scaled by `scale` (ratio of
-/// the substeps' lengths) and projected on the cone at the new normal.
+/// Fills the contacts of the manifolds with their laws, and the rows with the impulses remembered, scaled by
+/// `scale` (ratio of the substeps' lengths) and projected on the cone at the new normal.
 void prepare_contacts(const Manifolds& manifolds, const ContactLaws& laws, const ImpulseMemory& memory,
                       double scale, const ResponseParameters& parameters, ContactSet& set);
 

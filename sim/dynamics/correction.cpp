@@ -42,23 +42,17 @@ struct PositionCorrector::Stage {
 struct PositionCorrector::FlyBalls {
   Stage stage;
   ConstView<lanes::Members> members;
+  ConstView<lanes::BallBatch> batches;
   View<lanes::BallParting> partings;
+  const lanes::Body* velocities;
   double operator()(std::int64_t b) const {
     lanes::BallParting& parting = partings[b];
-    double deepest = 0;
+    double deepest = lanes::kernels().fly_balls(batches[b], parting, velocities, stage.step);
     for (int l = 0; l < lanes::width; ++l) {
-      const std::int32_t c = members[b].contact[l];
-      if (c == lanes::none) continue;
-      double& flown = parting.flown.at[l];
-      if ((parting.apart >> l & 1) != 0) {
-        flown = stage.flown_gap(stage.contacts[c], stage.rows[members[b].row[l]]);
-      } else {
-        const Vec3 normal(parting.normal.x.at[l], parting.normal.y.at[l], parting.normal.z.at[l]);
-        flown +=
-            0.5 * stage.step *
-            normal.dot(stage.solver[parting.ends.j[l]].velocity - stage.solver[parting.ends.i[l]].velocity);
-      }
-      deepest = fmax(deepest, -flown);
+      if ((parting.apart >> l & 1) == 0) continue;
+      parting.flown.at[l] =
+          stage.flown_gap(stage.contacts[members[b].contact[l]], stage.rows[members[b].row[l]]);
+      deepest = fmax(deepest, -parting.flown.at[l]);
     }
     return deepest;
   }
@@ -88,11 +82,21 @@ struct PositionCorrector::FlyPoints {
   }
 };
 
+/// Puts the velocities where the displacements will be.
+struct PositionCorrector::LoadVelocity {
+  Stage stage;
+  void operator()(std::int64_t k) const {
+    const bool exists = k < stage.solver.size();
+    stage.displacement[k].velocity = exists ? stage.solver[k].velocity : Vec3::Zero();
+    stage.displacement[k].inverse_mass = exists ? stage.solver[k].inverse_mass : 0;
+  }
+};
+
 struct PositionCorrector::Reset {
   Stage stage;
   void operator()(std::int64_t k) const {
-    const bool nobody = k == stage.solver.size();
-    stage.displacement[k] = {Vec3::Zero(), nobody ? 0.0 : stage.solver[k].inverse_mass, Vec3::Zero(), 0};
+    lanes::Body& body = stage.displacement[k];
+    body = {Vec3::Zero(), body.inverse_mass, Vec3::Zero(), 0};
   }
 };
 
@@ -139,13 +143,15 @@ struct PositionCorrector::Apply {
 Ledger PositionCorrector::correct(double step, const ResponseParameters& parameters, BodyView bodies,
                                   const Array<SolverBody, Host>& solver, ContactSet& set) {
   overlap_ = 0;
-  if (set.contacts.empty()) return {};
+  if (set.contact_count() == 0) return {};
   lanes::Batches& batches = set.batches;
   displacement_.resize(solver.size() + 1);
   points_.resize(batches.rows.size());
   caps_.resize(batches.points.size());
   const Stage stage{bodies, solver.view(), set.contacts.view(), set.rows.view(), displacement_.view(), step};
-  const FlyBalls fly_balls{stage, batches.ball_members.view(), batches.partings.view()};
+  parallel::for_each<Host>("correction.velocities", displacement_.size(), LoadVelocity{stage});
+  const FlyBalls fly_balls{stage, batches.ball_members.view(), batches.balls.view(), batches.partings.view(),
+                           displacement_.data()};
   const FlyPoints fly_points{stage, batches.point_members.view(), batches.points.view(), caps_.view(),
                              points_.view()};
   const double deepest =

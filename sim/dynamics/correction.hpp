@@ -23,6 +23,7 @@ class PositionCorrector {
   struct Stage;
   struct FlyBalls;
   struct FlyPoints;
+  struct LoadVelocity;
   struct Reset;
   struct PartBalls;
   struct PartPoints;

@@ -162,8 +162,9 @@ const LateBodies* ImpactSolver::late_bodies(const ImpactProblem& problem,
 }
 
 void ImpactSolver::mark_flights(const ImpactProblem& problem, const ResponseParameters& parameters,
-                                const Manifolds& manifolds, BodyView bodies, ContactSet& set) {
-  scree::mark_flights(FlightStage(problem.terms, parameters, bodies, log_), manifolds, set);
+                                const Manifolds& manifolds, BodyView bodies, ContactSet& set,
+                                BallPairs& balls) {
+  scree::mark_flights(FlightStage(problem.terms, parameters, bodies, log_), manifolds, set, balls);
 }
 
 Ledger ImpactSolver::shift_late(const ImpactProblem& problem, const ResponseParameters& parameters,

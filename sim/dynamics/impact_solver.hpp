@@ -39,7 +39,7 @@ class ImpactSolver {
                                 BodyView bodies);
   /// As the function of this name, after resolve().
   void mark_flights(const ImpactProblem& problem, const ResponseParameters& parameters,
-                    const Manifolds& manifolds, BodyView bodies, ContactSet& set);
+                    const Manifolds& manifolds, BodyView bodies, ContactSet& set, BallPairs& balls);
 
   /// As the function of this name.
   Ledger shift_late(const ImpactProblem& problem, const ResponseParameters& parameters, BodyView bodies,

@@ -14,19 +14,27 @@ std::int32_t Islands::root(std::int32_t body) {
   return static_cast<std::int32_t>(at);
 }
 
+void Islands::start(std::int64_t bodies) {
+  parent_.resize(static_cast<std::size_t>(bodies));
+  std::iota(parent_.begin(), parent_.end(), 0);
+}
+
+void Islands::unite(std::int32_t i, std::int32_t j) {
+  const std::int32_t a = root(i);
+  const std::int32_t b = root(j);
+  parent_[static_cast<std::size_t>(std::max(a, b))] = std::min(a, b);
+}
+
 void Islands::find(ConstView<Contact> contacts, ConstView<SolverBody> bodies) {
   const auto n = static_cast<std::size_t>(bodies.size());
-  parent_.resize(n);
-  std::iota(parent_.begin(), parent_.end(), 0);
+  start(bodies.size());
   place_.assign(n, -1);
   for (const Contact& c : contacts) {
     // Whoever has a contact takes part.
     if (bodies[c.i].is_free()) place_[static_cast<std::size_t>(c.i)] = 0;
     if (bodies[c.j].is_free()) place_[static_cast<std::size_t>(c.j)] = 0;
     if (!bodies[c.i].is_free() || !bodies[c.j].is_free()) continue;
-    const std::int32_t a = root(c.i);
-    const std::int32_t b = root(c.j);
-    parent_[static_cast<std::size_t>(std::max(a, b))] = std::min(a, b);
+    unite(c.i, c.j);
   }
 
   // Counted, scanned and filled.

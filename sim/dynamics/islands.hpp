@@ -14,6 +14,11 @@ class Islands {
   /// `bodies`: how many there are. Bodies that are not free connect nothing.
   void find(ConstView<Contact> contacts, ConstView<SolverBody> bodies);
 
+  /// The same by hand: each body alone, then united with others. The roots are the islands' first bodies.
+  void start(std::int64_t bodies);
+  void unite(std::int32_t i, std::int32_t j);
+  std::int32_t root(std::int32_t body);
+
   std::int64_t count() const { return static_cast<std::int64_t>(contact_begin_.size()) - 1; }
   ConstView<std::int32_t> contacts(std::int64_t island) const {
     return range(contacts_, contact_begin_, island);
@@ -29,7 +34,6 @@ class Islands {
     const std::int32_t* from = &begin[static_cast<std::size_t>(island)];
     return {list.data() + from[0], from[1] - from[0]};
   }
-  std::int32_t root(std::int32_t body);
 
   List parent_;  // of each body; its own at a root, which is the first body of its island
   List island_;  // of each body

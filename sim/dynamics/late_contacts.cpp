@@ -3,6 +3,7 @@
 #include "core/parallel.hpp"
 
 #include <algorithm>
+#include <iterator>
 
 namespace scree {
 
@@ -22,6 +23,41 @@ struct MarkFlights {
   }
 };
 
+struct MarkPairs {
+  StruckFlights struck;
+  BallPairs* balls;
+  void operator()(std::int64_t index) const {
+    const std::int32_t candidate = balls->fresh()[static_cast<std::size_t>(index)];
+    const auto [i, j] = balls->pair(candidate);
+    const BodyView& bodies = struck.stage.bodies;
+    if (!closes(i, j)) {
+      balls->set_flying(candidate, false);
+      return;
+    }
+    Manifold found[max_pair_manifolds];
+    find_pair_contacts(bodies.shape[i], solid(i), bodies.shape[j], solid(j), HUGE_VAL, found);
+    found[0].i = i;
+    found[0].j = j;
+    const double size = struck.stage.terms.laws.smaller_size(i, j);
+    balls->set_flying(candidate, flight_of_contact(struck, found[0], found[0].points, size, false).flying);
+  }
+  /// Whether two balls come closer in the flight after the kick: their turning closes nothing. Of a plane,
+  /// always.
+  bool closes(std::int32_t i, std::int32_t j) const {
+    const FlightStage& stage = struck.stage;
+    const BodyView& bodies = stage.bodies;
+    if (is_boundary(bodies.shape[i]) || is_boundary(bodies.shape[j])) return true;
+    Vec3 w = bodies.velocity[j] - bodies.velocity[i];
+    if (stage.is_free(i)) w -= stage.terms.step * stage.parameters.acceleration_of(i);
+    if (stage.is_free(j)) w += stage.terms.step * stage.parameters.acceleration_of(j);
+    return w.dot(bodies.position[j] - bodies.position[i]) < 0;
+  }
+  Solid solid(std::int32_t k) const {
+    const BodyView& bodies = struck.stage.bodies;
+    return {bodies.position[k], bodies.orientation[k], bodies.size[k]};
+  }
+};
+
 }  // namespace
 
 bool any_is_late(const FlightStage& stage, const std::vector<StruckBody>& struck) {
@@ -29,9 +65,11 @@ bool any_is_late(const FlightStage& stage, const std::vector<StruckBody>& struck
                      [&](const StruckBody& body) { return stage.is_late(body.body); });
 }
 
-void mark_flights(const FlightStage& stage, const Manifolds& manifolds, ContactSet& set) {
+void mark_flights(const FlightStage& stage, const Manifolds& manifolds, ContactSet& set, BallPairs& balls) {
+  const StruckFlights struck{stage};
   parallel::for_each<Host>("impact.flights", set.contacts.size(),
-                           MarkFlights{{stage}, manifolds, set.contacts.view()});
+                           MarkFlights{struck, manifolds, set.contacts.view()});
+  parallel::for_each<Host>("impact.flights", std::ssize(balls.fresh()), MarkPairs{struck, &balls});
 }
 
 Ledger shift_late(const FlightStage& stage, const std::vector<StruckBody>& struck, const ContactSet& set,

@@ -26,8 +26,8 @@ class StruckBodies final : public LateBodies {
 /// Whether one of them was struck after the midpoint.
 bool any_is_late(const FlightStage& stage, const std::vector<StruckBody>& struck);
 
-/// Sets Contact::flying and Contact::lead.
-void mark_flights(const FlightStage& stage, const Manifolds& manifolds, ContactSet& set);
+/// Sets Contact::flying and Contact::lead, and which of the pairs that touch fly.
+void mark_flights(const FlightStage& stage, const Manifolds& manifolds, ContactSet& set, BallPairs& balls);
 
 /// As the function of this name, of all bodies struck. `total`: scratch.
 Ledger shift_late(const FlightStage& stage, const std::vector<StruckBody>& struck, const ContactSet& set,

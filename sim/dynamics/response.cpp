@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <utility>
 
 namespace scree {
@@ -46,29 +47,21 @@ SCREE_HD Moved moved_by(const SolveStage& stage, const Contact& contact) {
   return moved;
 }
 
-/// The books of a substep, and how many contacts gain.
-struct Accounts {
-  Ledger ledger;
-  std::int64_t gaining = 0;
-  SCREE_HD friend Accounts operator+(const Accounts& a, const Accounts& b) {
-    return {a.ledger + b.ledger, a.gaining + b.gaining};
-  }
-};
-
 struct Account {
   SolveStage stage;
-  View<double> loss;  ///< of each contact (J)
-  SCREE_HD Accounts operator()(std::int64_t c) const {
+  View<double> loss;           ///< of each contact (J)
+  View<std::uint8_t> gaining;  ///< whether it gains
+  SCREE_HD Ledger operator()(std::int64_t c) const {
     const Contact& contact = stage.contacts[c];
-    Accounts accounts;
+    Ledger ledger;
     for (int k = 0; k < contact.count; ++k) {
       const ContactRow& row = stage.rows[contact.first_row + k];
-      accounts.ledger = accounts.ledger + account(row, contact.normal, stage.velocity_before(contact, row),
-                                                  stage.solver[contact.i], stage.solver[contact.j]);
+      ledger = ledger + account(row, contact.normal, stage.velocity_before(contact, row),
+                                stage.solver[contact.i], stage.solver[contact.j]);
     }
-    loss[c] = accounts.ledger.restitution + accounts.ledger.friction;
-    accounts.gaining = loss[c] < 0 && moved_by(stage, contact).gains(tolerance::response_gain) ? 1 : 0;
-    return accounts;
+    loss[c] = ledger.restitution + ledger.friction;
+    gaining[c] = loss[c] < 0 && moved_by(stage, contact).gains(tolerance::response_gain) ? 1 : 0;
+    return ledger;
   }
 };
 
@@ -217,16 +210,28 @@ bool ResponseSolver::count_outcomes(std::int64_t& solved, std::int64_t& failed) 
   return all_solved;
 }
 
+void ResponseSolver::list_pairs(ContactSet& set, SolveStage& stage) {
+  set.list_pairs(stage.solver);
+  stage.contacts = set.contacts.view();
+  stage.rows = set.rows.view();
+  stage.couplings = set.couplings.view();
+  sweeps_.look_at(stage);
+}
+
 bool ResponseSolver::find_impulses(SolveStage stage, const ResponseParameters& parameters, ContactSet& set,
                                    Counters& counters) {
   const SweepPlan plan = plan_sweeps(parameters, set);
+  sweeps_.load(stage, set.coloring, set.batches);
+  const bool one_by_one = plan.direct || parameters.accurate;
+  if (one_by_one) list_pairs(set, stage);
   change_.resize(plan.direct ? set.contacts.size() : 0);
   stage.change = change_.view();
-  sweeps_.load(stage, set.coloring, set.batches);
+  sweeps_.look_at(stage);
   sweeps_.set_velocities();
   const auto sweep = [&](int most) { return sweeps_.run(plan, most, counters.sweeps); };
   const auto solve_islands = [&](const DirectLimits& limits, std::int64_t& solved, std::int64_t& failed) {
     sweeps_.set_velocities();
+    sweeps_.store_velocities();
     parallel::for_each<Host>(
         "response.islands", islands_.count(),
         SolveIsland{stage, &islands_, plan.tolerance, parameters.accurate, limits, outcome_.view()});
@@ -248,41 +253,102 @@ bool ResponseSolver::find_impulses(SolveStage stage, const ResponseParameters& p
         converged = solve_islands(patient_limits, counters.patient, counters.patient_failed);
     }
   }
-  sweeps_.set_velocities();
+  // A few sweeps' rounding is none.
+  if (one_by_one) sweeps_.set_velocities();
+  sweeps_.store_velocities();
   return converged;
 }
 
+bool ResponseSolver::an_island_gains(const SolveStage& stage, std::int64_t others,
+                                     const lanes::Batches& batches) {
+  const auto any_gains = [](const lanes::Losses& losses) { return losses.gaining != 0; };
+  if (!std::ranges::any_of(gaining_.view(), [](std::uint8_t gains) { return gains != 0; }) &&
+      (stage.balls == nullptr || !std::ranges::any_of(pair_loss_.view(), any_gains)))
+    return false;
+  islands_.start(stage.solver.size());
+  // Calls act(i, j, loss, gains) for each contact.
+  const auto for_each_contact = [&](const auto& act) {
+    for (std::int64_t c = 0; c < others; ++c) {
+      const Contact& contact = stage.contacts[c];
+      act(contact.i, contact.j, loss_.view()[c], gaining_.view()[c] != 0);
+    }
+    for (std::int64_t b = 0; b < batches.balls.size(); ++b) {
+      if (!batches.ball_members.view()[b].are_pairs) continue;
+      const lanes::Ends& ends = batches.balls.view()[b].ends;
+      const lanes::Losses& losses = pair_loss_.view()[b];
+      for (int l = 0; l < lanes::width; ++l) {
+        if (ends.i[l] != batches.nobody)
+          act(ends.i[l], ends.j[l], losses.at[l], (losses.gaining >> l & 1) != 0);
+      }
+    }
+  };
+  const auto is_free = [&](std::int32_t body) { return sweeps_.is_free(body); };
+  for_each_contact([&](std::int32_t i, std::int32_t j, double, bool) {
+    if (is_free(i) && is_free(j)) islands_.unite(i, j);
+  });
+  const auto n = static_cast<std::size_t>(stage.solver.size());
+  island_loss_.assign(n, 0);
+  island_gains_.assign(n, false);
+  for_each_contact([&](std::int32_t i, std::int32_t j, double loss, bool gains) {
+    const auto island = static_cast<std::size_t>(islands_.root(is_free(i) ? i : j));
+    island_loss_[island] += loss;
+    if (gains) island_gains_[island] = true;
+  });
+  for (std::size_t k = 0; k < n; ++k) {
+    if (island_gains_[k] && island_loss_[k] <= 0) return true;
+  }
+  return false;
+}
+
 Ledger ResponseSolver::solve(const Manifolds& manifolds, double step, const ResponseParameters& parameters,
-                             BodyView bodies, Array<SolverBody, Host>& solver, ContactSet& set,
-                             Counters& counters) {
-  const std::int64_t n = set.contacts.size();
+                             BallPairs& balls, double warm_start, BodyView bodies,
+                             Array<SolverBody, Host>& solver, ContactSet& set, Counters& counters) {
   free_velocity_.resize(solver.size());
   free_spin_.resize(solver.size());
-  const SolveStage stage{.manifolds = manifolds,
-                         .bodies = bodies,
-                         .solver = solver.view(),
-                         .contacts = set.contacts.view(),
-                         .rows = set.rows.view(),
-                         .couplings = set.couplings.view(),
-                         .change = {},
-                         .free_velocity = free_velocity_.view(),
-                         .free_spin = free_spin_.view(),
-                         .step = step};
+  SolveStage stage{.manifolds = manifolds,
+                   .bodies = bodies,
+                   .solver = solver.view(),
+                   .contacts = set.contacts.view(),
+                   .rows = set.rows.view(),
+                   .couplings = set.couplings.view(),
+                   .change = {},
+                   .free_velocity = free_velocity_.view(),
+                   .free_spin = free_spin_.view(),
+                   .step = step,
+                   .noise = tolerance::parting_speed * step * parameters.gravity.norm(),
+                   .warm_start = warm_start};
+  if (!balls.touching().empty()) {
+    stage.balls = &balls;
+    stage.pairs = balls.source(bodies, step, parameters);
+    stage.pairs.noise = stage.noise;
+  }
   parallel::for_each<Host>("response.kick", solver.size(), Kick{stage, parameters});
   Ledger ledger;
   slip_end_ = 1;
-  if (n > 0) {
-    parallel::for_each<Host>("response.rows", n,
-                             PrepareRows{stage, tolerance::parting_speed * step * parameters.gravity.norm()});
+  if (set.contact_count() > 0) {
+    const std::int64_t others = set.contacts.size();
+    parallel::for_each<Host>("response.rows", others, PrepareRows{stage});
     if (!find_impulses(stage, parameters, set, counters)) ++counters.unconverged;
+    if (set.pairs_are_listed) list_pairs(set, stage);
     if (parameters.accurate) {
-      const auto left = parallel::sum<ImpulseChange, Host>("response.residual", n, LoadResidual{stage});
+      const auto left =
+          parallel::sum<ImpulseChange, Host>("response.residual", set.contacts.size(), LoadResidual{stage});
       if (left.size > 0) counters.residual = std::max(counters.residual, std::sqrt(left.step / left.size));
     }
-    loss_.resize(n);
-    const Account take_account{stage, loss_.view()};
-    Accounts accounts = parallel::sum<Accounts, Host>("response.ledger", n, take_account);
-    if (accounts.gaining > 0) {
+    const auto account_for = [&](std::int64_t contacts) {
+      loss_.resize(contacts);
+      gaining_.resize(contacts);
+      return parallel::sum<Ledger, Host>("response.ledger", contacts,
+                                         Account{stage, loss_.view(), gaining_.view()});
+    };
+    ledger = account_for(others);
+    const lanes::Books pairs = sweeps_.book_pairs(pair_loss_);
+    ledger.restitution += pairs.restitution;
+    ledger.friction += pairs.friction;
+    ledger.work += pairs.work;
+    if (an_island_gains(stage, others, set.batches)) {
+      list_pairs(set, stage);
+      ledger = account_for(set.contacts.size());
       islands_.find(set.contacts.view(), solver.view());
       int scaled = 0;
       for (std::int64_t island = 0; island < islands_.count(); ++island) {
@@ -292,12 +358,13 @@ Ledger ResponseSolver::solve(const Manifolds& manifolds, double step, const Resp
       if (scaled > 0) {
         sweeps_.take_impulses();
         sweeps_.set_velocities();
-        accounts = parallel::sum<Accounts, Host>("response.ledger", n, take_account);
+        sweeps_.store_velocities();
+        ledger = account_for(set.contacts.size());
       }
     }
-    ledger = accounts.ledger;
     if (parameters.accurate && parameters.friction && !set.is_heap())
-      slip_end_ = -parallel::max<double, Host>("response.slip", n, MinusSlipEnd{{stage}}, -1.0);
+      slip_end_ =
+          -parallel::max<double, Host>("response.slip", set.contacts.size(), MinusSlipEnd{{stage}}, -1.0);
   }
   if (parameters.torque.size() > 0) {
     ledger.work +=

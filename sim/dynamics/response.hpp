@@ -5,6 +5,8 @@
 #include "sim/dynamics/direct.hpp"
 #include "sim/dynamics/sweeps.hpp"
 
+#include <vector>
+
 namespace scree {
 
 /// Sweeps; for the islands on which they creep, the direct solver; then nobody gains.
@@ -15,8 +17,10 @@ class ResponseSolver {
   /// bound is hit. On entry `solver` holds the velocities after the impacts; on return those at the end of
   /// the substep. The bodies are at the midpoint and keep their positions; their velocities are set. Returns
   /// what it moved.
-  Ledger solve(const Manifolds& manifolds, double step, const ResponseParameters& parameters, BodyView bodies,
-               Array<SolverBody, Host>& solver, ContactSet& set, Counters& counters);
+  /// `balls`: what they remember is scaled by `warm_start` (ratio of the substeps' lengths, or 0).
+  Ledger solve(const Manifolds& manifolds, double step, const ResponseParameters& parameters,
+               BallPairs& balls, double warm_start, BodyView bodies, Array<SolverBody, Host>& solver,
+               ContactSet& set, Counters& counters);
 
   /// The part of solve() that finds the impulses: of rows that are prepared, from the impulses that they
   /// have, as far as `parameters` ask. Sets the velocities of the solver's bodies too; `stage.change` is set
@@ -33,13 +37,21 @@ class ResponseSolver {
   double slip_end() const { return slip_end_; }
 
  private:
+  /// Lists the contacts of BallPairs for those who look at contacts one by one.
+  void list_pairs(ContactSet& set, SolveStage& stage);
+  /// Whether an island may gain: one with contacts that do, and that loses nothing in all.
+  bool an_island_gains(const SolveStage& stage, std::int64_t others, const lanes::Batches& batches);
   /// Adds to `solved` and `failed`; true if no island is left to the sweeps.
   bool count_outcomes(std::int64_t& solved, std::int64_t& failed) const;
 
   Array<ImpulseChange, Host> change_;  // per contact, of the last sweep
   Sweeps sweeps_;
   Array<Vec3, Host> free_velocity_, free_spin_;  // of each body without contacts
-  Array<double, Host> loss_;                     // of each contact (J)
+  Array<double, Host> loss_;                     // of each contact that is listed (J)
+  Array<std::uint8_t, Host> gaining_;            // whether it gains
+  Array<lanes::Losses, Host> pair_loss_;         // of each batch of the others
+  std::vector<double> island_loss_;              // by root (J)
+  std::vector<bool> island_gains_;
   Islands islands_;
   Array<DirectOutcome, Host> outcome_;  // of each island
   double slip_end_ = 1;

@@ -22,6 +22,10 @@ struct SolveStage {
   View<Vec3> free_velocity;    ///< of each body without contacts
   View<Vec3> free_spin;
   double step;
+  double noise = 0;                  ///< parting speeds that count as none (m/s)
+  const BallPairs* balls = nullptr;  ///< whose contacts are made in the lanes; null: there are none
+  lanes::BallSource pairs = {};      ///< of these
+  double warm_start = 0;             ///< share of the impulses remembered that they start from
 
   /// Relative velocity of a row of a contact: before the kick,
   SCREE_HD Vec3 velocity_before(const Contact& c, const ContactRow& row) const {

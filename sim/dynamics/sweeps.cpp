@@ -3,6 +3,8 @@
 #include "core/parallel.hpp"
 #include "sim/dynamics/lanes/colored.hpp"
 
+#include <utility>
+
 namespace scree {
 
 namespace {
@@ -62,14 +64,14 @@ struct Accelerate {
 /// Bodies without contacts.
 struct Sweeps::Release {
   SolveStage stage;
-  View<lanes::Body> bodies;
+  View<lanes::Body> free;
   void operator()(std::int64_t k) const {
     if (k == stage.solver.size()) {
-      bodies[k] = {Vec3::Zero(), 0, Vec3::Zero(), 0};
+      free[k] = {Vec3::Zero(), 0, Vec3::Zero(), 0};
       return;
     }
-    bodies[k] = {stage.free_velocity[k], stage.solver[k].inverse_mass, stage.free_spin[k],
-                 stage.solver[k].inverse_inertia(0, 0)};
+    free[k] = {stage.free_velocity[k], stage.solver[k].inverse_mass, stage.free_spin[k],
+               stage.solver[k].inverse_inertia(0, 0)};
   }
 };
 
@@ -83,23 +85,74 @@ struct Sweeps::StoreVelocities {
 };
 
 void Sweeps::load(const SolveStage& stage, const Coloring& coloring, lanes::Batches& batches) {
-  stage_.emplace(stage);
+  stage_ = stage;
   batches_ = &batches;
-  lanes::arrange(coloring, stage.contacts, batches);
-  lanes::load(stage.contacts, stage.rows, stage.couplings, stage.solver,
-              static_cast<std::int32_t>(stage.solver.size()), stage.step, batches);
-  bodies_.resize(stage.solver.size() + 1);
+  const auto nobody = static_cast<std::int32_t>(stage.solver.size());
+  free_.resize(nobody + 1);
+  parallel::for_each<Host>("response.release", free_.size(), Release{stage, free_.view()});
+  lanes::arrange(coloring, stage.contacts, nobody, batches);
+  if (stage.balls != nullptr) stage.balls->put_into(stage.warm_start, batches);
+  lanes::load(stage.contacts, stage.rows, stage.couplings, stage.solver, stage.pairs, batches);
   change_.resize(batches.balls.size() + batches.points.size());
 }
 
 void Sweeps::take_impulses() { lanes::take_impulses(stage_->rows, *batches_); }
 
 void Sweeps::set_velocities() {
-  parallel::for_each<Host>("response.release", bodies_.size(), Release{*stage_, bodies_.view()});
+  copy(bodies_, free_);
   lanes::for_each_color("response.push", *batches_, PushBalls{batches_->balls.view(), bodies_.view()},
                         PushPoints{batches_->points.view(), batches_->rows.view(), bodies_.view()});
+}
+
+void Sweeps::store_velocities() const {
   parallel::for_each<Host>("response.velocities", stage_->solver.size(),
                            StoreVelocities{*stage_, bodies_.view()});
+}
+
+namespace {
+
+/// Halfway between before the kick and now.
+struct LoadMean {
+  SolveStage stage;
+  ConstView<lanes::Body> bodies;
+  View<lanes::Body> mean;
+  void operator()(std::int64_t k) const {
+    mean[k] = bodies[k];
+    if (k == stage.solver.size() || !stage.solver[k].is_free()) return;
+    mean[k].velocity = 0.5 * (mean[k].velocity + stage.bodies.velocity[k]);
+    mean[k].spin = 0.5 * (mean[k].spin + stage.bodies.spin[k]);
+  }
+};
+
+struct PairBooks : lanes::Books {
+  friend PairBooks operator+(const PairBooks& a, const PairBooks& b) {
+    return {{a.restitution + b.restitution, a.friction + b.friction, a.work + b.work}};
+  }
+};
+
+struct BookPairs {
+  const lanes::Batches* batches;
+  const lanes::Body *mean, *kicked, *after;
+  View<lanes::Losses> losses;
+  PairBooks operator()(std::int64_t b) const {
+    losses[b].gaining = 0;
+    if (!batches->ball_members.view()[b].are_pairs) return {};
+    return {lanes::kernels().book_balls(batches->balls.view()[b], mean, kicked, after,
+                                        tolerance::response_gain, losses[b])};
+  }
+};
+
+}  // namespace
+
+lanes::Books Sweeps::book_pairs(Array<lanes::Losses, Host>& losses) {
+  losses.resize(batches_->balls.size());
+  if (stage_->balls == nullptr) return {};
+  last_.resize(bodies_.size());
+  parallel::for_each<Host>("response.mean", bodies_.size(),
+                           LoadMean{*stage_, std::as_const(bodies_).view(), last_.view()});
+  return parallel::sum<PairBooks, Host>(
+      "response.books", batches_->balls.size(),
+      BookPairs{batches_, last_.data(), free_.data(), bodies_.data(), losses.view()});
 }
 
 bool Sweeps::run(const SweepPlan& plan, int most, std::int64_t& count) {

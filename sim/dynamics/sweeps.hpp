@@ -54,7 +54,7 @@ inline SweepPlan plan_sweeps(const ResponseParameters& parameters, std::int64_t 
 }
 
 inline SweepPlan plan_sweeps(const ResponseParameters& parameters, const ContactSet& set) {
-  return plan_sweeps(parameters, set.contacts.size(), set.rows.size());
+  return plan_sweeps(parameters, set.contact_count(), set.point_count());
 }
 
 /// Sequential impulses over coloured contacts, with momentum: a sweep starts where the last one would be if
@@ -68,15 +68,25 @@ class Sweeps {
   /// The contacts of one substep, with their rows and the impulses these have. What `stage` and `batches`
   /// name must stay until the last call about them.
   void load(const SolveStage& stage, const Coloring& coloring, lanes::Batches& batches);
+  /// The same contacts, listed anew.
+  void look_at(const SolveStage& stage) { stage_ = stage; }
 
   /// Takes the impulses that the rows have now.
   void take_impulses();
 
   /// Sets the velocities to what the impulses taken, or found since, give.
   void set_velocities();
+  /// Gives the solver's bodies their velocities.
+  void store_velocities() const;
+
+  bool is_free(std::int32_t body) const { return free_.view()[body].inverse_mass > 0; }
+
+  /// Of the contacts of BallPairs, with the velocities as they are; and what each loses, by batch.
+  lanes::Books book_pairs(Array<lanes::Losses, Host>& losses);
 
   /// From there on, until they converge, but at most so often. The last sweep stands as it is, so that every
-  /// impulse ends inside its cone. The velocities are for set_velocities(). `count` goes up with each sweep.
+  /// impulse ends inside its cone. The velocities go along, but for the rounding of every sweep. `count` goes
+  /// up with each.
   bool run(const SweepPlan& plan, int most, std::int64_t& count);
 
  private:
@@ -85,8 +95,9 @@ class Sweeps {
 
   std::optional<SolveStage> stage_;
   lanes::Batches* batches_ = nullptr;
-  Array<lanes::Body, Host> bodies_;    // and one that is nobody
-  Array<lanes::Body, Host> last_;      // bodies before the last sweep
+  Array<lanes::Body, Host> free_;      // bodies without contacts, and one that is nobody
+  Array<lanes::Body, Host> bodies_;    // with them
+  Array<lanes::Body, Host> last_;      // before the last sweep
   Array<lanes::Change, Host> change_;  // of each batch: the balls', then the others
 };
 

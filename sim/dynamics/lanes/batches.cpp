@@ -10,12 +10,13 @@ namespace scree::lanes {
 
 namespace {
 
-/// Batches of one kind and colour hold as many points each: kind 0 is balls, the others are their points.
-constexpr int kinds = most_points + 1;
+/// Batches of one kind and colour hold as many points each: kind 0 is pairs of balls, kind 1 other balls, the
+/// rest are one more than their points.
+constexpr int kinds = most_points + 2;
 static_assert(most_points == Manifold::max_points);
-int kind_of(const Contact& contact) { return contact.aligned ? 0 : contact.count; }
+int kind_of(const Contact& contact) { return contact.aligned ? 1 : 1 + contact.count; }
 
-constexpr Members nothing = {{none, none, none, none, none, none, none, none}, {}};
+constexpr Members nothing = {{none, none, none, none, none, none, none, none}, {}, false};
 
 void put(Lane& lane, int l, double value) { lane.at[l] = value; }
 void put(LaneVec& lanes, int l, const Vec3& value) {
@@ -41,7 +42,6 @@ struct Source {
   ConstView<RowCoupling> couplings;
   ConstView<SolverBody> bodies;
   std::int32_t nobody;
-  double step;
 
   void put_ends(Ends& ends, int l, std::int32_t c) const {
     ends.i[l] = c == none ? nobody : contacts[c].i;
@@ -51,24 +51,31 @@ struct Source {
 
 struct LoadBalls {
   Source from;
+  BallSource pairs;
   ConstView<Members> members;
   View<BallBatch> batches;
   View<BallParting> partings;
   void operator()(std::int64_t b) const {
     BallBatch& batch = batches[b];
     BallParting& parting = partings[b];
-    parting.apart = 0;
+    if (members[b].are_pairs) {
+      kernels().prepare_balls(pairs, batch, parting);
+      return;
+    }
+    parting.apart = parting.driven = 0;
     parting.pushed = {};
     for (int l = 0; l < width; ++l) {
       const std::int32_t c = members[b].contact[l];
       from.put_ends(batch.ends, l, c);
+      parting.loaded[l] = parting.flying[l] = 0;
       if (c == none) {
         put(batch.normal, l, Vec3::Zero());
         for (Lane* lane : {&batch.arm_i, &batch.arm_j, &batch.friction, &batch.target, &batch.tangent_mass})
           put(*lane, l, 0);
         put(batch.normal_mass, l, 1);
         start_from(batch.impulse, l, Vec3::Zero());
-        put(parting.flown, l, 0);
+        put(parting.gap, l, 0);
+        put(parting.bend, l, 0);
         put(parting.cap, l, 0);
         continue;
       }
@@ -82,9 +89,10 @@ struct LoadBalls {
       put(batch.normal_mass, l, row.normal_mass);
       put(batch.tangent_mass, l, row.tangent_mass);
       start_from(batch.impulse, l, row.impulse);
-      put(parting.flown, l, row.gap + 0.125 * from.step * from.step * row.bend);
+      put(parting.gap, l, row.gap);
+      put(parting.bend, l, row.bend);
       put(parting.cap, l, tolerance::correction_cap * contact.size);
-      if (contact.flying || contact.lead != 0) parting.apart |= std::int64_t{1} << l;
+      if (contact.flying || contact.lead != 0) parting.apart |= 1 << l;
     }
     parting.ends = batch.ends;
     parting.normal = batch.normal;
@@ -218,37 +226,53 @@ struct StorePointImpulses {
   }
 };
 
+/// Lanes of pairs that nobody takes.
+void leave(BallBatch& batch, BallParting& parting, std::int32_t nobody) {
+  for (int l = 0; l < width; ++l) {
+    batch.ends.i[l] = batch.ends.j[l] = nobody;
+    put(batch.friction, l, 0);
+    put(batch.impulse.impulse, l, Vec3::Zero());
+    parting.loaded[l] = parting.flying[l] = 0;
+  }
+}
+
 }  // namespace
 
-void arrange(const Coloring& coloring, ConstView<Contact> contacts, Batches& batches) {
+void arrange(const Coloring& coloring, ConstView<Contact> contacts, std::int32_t nobody, Batches& batches) {
   const auto colors = static_cast<std::size_t>(coloring.colors());
+  batches.nobody = nobody;
+  batches.lane_of.resize(std::ssize(coloring.order) - contacts.size());
   batches.last_is_serial = coloring.last_is_serial;
   batches.ball_begin.assign(1, 0);
   batches.point_begin.assign(1, 0);
   // Contacts that share a free body, in the serial colour, share no batch.
   const auto is_serial = [&](std::size_t color) { return coloring.last_is_serial && color + 1 == colors; };
+  const auto kind_at = [&](std::int64_t place) {
+    const std::int32_t c = coloring.order[static_cast<std::size_t>(place)];
+    return static_cast<std::size_t>(c < contacts.size() ? kind_of(contacts[c]) : 0);
+  };
   std::vector<std::array<std::int64_t, kinds>>& next = batches.next_lane;
   next.assign(colors, {});
   std::int64_t rows = 0;
   for (std::size_t color = 0; color < colors; ++color) {
     std::array<std::int64_t, kinds> counts{};
-    for (std::int64_t k = coloring.color_begin[color]; k < coloring.color_begin[color + 1]; ++k) {
-      ++counts[static_cast<std::size_t>(kind_of(contacts[coloring.order[static_cast<std::size_t>(k)]]))];
-    }
+    for (std::int64_t k = coloring.color_begin[color]; k < coloring.color_begin[color + 1]; ++k)
+      ++counts[kind_at(k)];
     std::int64_t balls = batches.ball_begin.back();
     std::int64_t points = batches.point_begin.back();
     for (std::size_t kind = 0; kind < kinds; ++kind) {
       const std::int64_t batches_of_kind =
           is_serial(color) ? counts[kind] : (counts[kind] + width - 1) / width;
-      std::int64_t& begin = kind == 0 ? balls : points;
+      std::int64_t& begin = kind < 2 ? balls : points;
       next[color][kind] = begin * width;
       begin += batches_of_kind;
-      rows += static_cast<std::int64_t>(kind) * batches_of_kind;
+      if (kind > 1) rows += static_cast<std::int64_t>(kind - 1) * batches_of_kind;
     }
     batches.ball_begin.push_back(balls);
     batches.point_begin.push_back(points);
   }
   batches.balls.resize(batches.ball_begin.back());
+  batches.partings.resize(batches.balls.size());
   batches.ball_members.resize(batches.balls.size());
   batches.points.resize(batches.point_begin.back());
   batches.point_members.resize(batches.points.size());
@@ -258,12 +282,20 @@ void arrange(const Coloring& coloring, ConstView<Contact> contacts, Batches& bat
   for (std::size_t color = 0; color < colors; ++color) {
     for (std::int64_t k = coloring.color_begin[color]; k < coloring.color_begin[color + 1]; ++k) {
       const std::int32_t c = coloring.order[static_cast<std::size_t>(k)];
-      const int kind = kind_of(contacts[c]);
-      std::int64_t& lane = next[color][static_cast<std::size_t>(kind)];
-      Array<Members, Host>& members = kind == 0 ? batches.ball_members : batches.point_members;
-      members.view()[lane / width].contact[lane % width] = c;
-      members.view()[lane / width].row[lane % width] = contacts[c].first_row;
-      if (kind > 0) batches.points.view()[lane / width].count = kind;
+      const std::size_t kind = kind_at(k);
+      std::int64_t& lane = next[color][kind];
+      Array<Members, Host>& members = kind < 2 ? batches.ball_members : batches.point_members;
+      Members& group = members.view()[lane / width];
+      if (kind == 0) {
+        if (lane % width == 0)
+          leave(batches.balls.view()[lane / width], batches.partings.view()[lane / width], nobody);
+        group.are_pairs = true;
+        batches.lane_of.view()[c - contacts.size()] = static_cast<std::int32_t>(lane);
+      } else {
+        group.contact[lane % width] = c;
+        group.row[lane % width] = contacts[c].first_row;
+      }
+      if (kind > 1) batches.points.view()[lane / width].count = static_cast<std::int32_t>(kind - 1);
       lane += is_serial(color) ? width : 1;
     }
   }
@@ -275,12 +307,11 @@ void arrange(const Coloring& coloring, ConstView<Contact> contacts, Batches& bat
 }
 
 void load(ConstView<Contact> contacts, ConstView<ContactRow> rows, ConstView<RowCoupling> couplings,
-          ConstView<SolverBody> bodies, std::int32_t nobody, double step, Batches& batches) {
-  const Source from{contacts, rows, couplings, bodies, nobody, step};
-  batches.partings.resize(batches.balls.size());
+          ConstView<SolverBody> bodies, const BallSource& balls, Batches& batches) {
+  const Source from{contacts, rows, couplings, bodies, batches.nobody};
   parallel::for_each<Host>(
       "lanes.load", batches.balls.size(),
-      LoadBalls{from, batches.ball_members.view(), batches.balls.view(), batches.partings.view()});
+      LoadBalls{from, balls, batches.ball_members.view(), batches.balls.view(), batches.partings.view()});
   parallel::for_each<Host>(
       "lanes.load", batches.points.size(),
       LoadPoints{from, batches.point_members.view(), batches.points.view(), batches.rows.view()});

@@ -17,13 +17,12 @@ struct Contact;
 
 namespace scree::lanes {
 
-/// In place of a contact, where a lane has none.
-inline constexpr std::int32_t none = -1;
-
 /// The contact in each lane, or none, and its first row.
 struct Members {
   std::int32_t contact[width];
   std::int64_t row[width];
+  bool are_pairs;  ///< of BallPairs, whose contacts are made in the lanes and are no others' until they are
+                   ///< listed
 };
 
 struct Batches {
@@ -35,15 +34,42 @@ struct Batches {
   Array<PointRow, Host> rows;
   std::vector<std::int64_t> ball_begin, point_begin;  ///< of each colour; one more than colours
   bool last_is_serial = false;
-  std::vector<std::array<std::int64_t, most_points + 1>> next_lane;  ///< scratch of arrange()
+  Array<std::int32_t, Host> lane_of;  ///< of each candidate of BallPairs that touches, in their order
+  std::int32_t nobody = 0;            ///< the body that lanes without contact name
+  std::vector<std::array<std::int64_t, most_points + 2>> next_lane;  ///< scratch of arrange()
+
+  void clear() {
+    balls.resize(0);
+    partings.resize(0);
+    ball_members.resize(0);
+    points.resize(0);
+    point_members.resize(0);
+    rows.resize(0);
+    lane_of.resize(0);
+  }
+
+  /// Calls act(i, j, impulse on j) for each contact of BallPairs with a body that is not free.
+  template <class F>
+  void for_each_driven_pair(F&& act) const {
+    for (std::int64_t b = 0; b < balls.size(); ++b) {
+      if (!ball_members.view()[b].are_pairs) continue;
+      const BallBatch& batch = balls.view()[b];
+      const LaneVec& p = batch.impulse.impulse;
+      for (int l = 0; partings.view()[b].driven >> l != 0; ++l) {
+        if ((partings.view()[b].driven >> l & 1) != 0 && batch.ends.i[l] != nobody)
+          act(batch.ends.i[l], batch.ends.j[l], Vec3(p.x.at[l], p.y.at[l], p.z.at[l]));
+      }
+    }
+  }
 };
 
-/// Says which contact is in which lane. The batches keep their storage from call to call.
-void arrange(const Coloring& coloring, ConstView<Contact> contacts, Batches& batches);
-/// Fills the batches; directions start anew. `nobody`: the body that lanes without contact name. `step`: of
-/// the substep (s).
+/// Says which contact is in which lane: the contacts given, and the rest that was coloured, which are those
+/// of BallPairs. The batches keep their storage from call to call. `nobody`: the body that lanes without
+/// contact name.
+void arrange(const Coloring& coloring, ConstView<Contact> contacts, std::int32_t nobody, Batches& batches);
+/// Fills the batches, but for what BallPairs puts into its own; directions start anew.
 void load(ConstView<Contact> contacts, ConstView<ContactRow> rows, ConstView<RowCoupling> couplings,
-          ConstView<SolverBody> bodies, std::int32_t nobody, double step, Batches& batches);
+          ConstView<SolverBody> bodies, const BallSource& balls, Batches& batches);
 /// Takes the impulses of the rows again; directions start anew.
 void take_impulses(ConstView<ContactRow> rows, Batches& batches);
 /// Gives the rows their impulses, and, unless `change` is empty, what the last sweep changed of each contact.

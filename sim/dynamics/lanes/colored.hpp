@@ -9,6 +9,7 @@ namespace scree::lanes {
 /// For each colour in turn: balls(k) for its batches k of balls, then points(k) for the others.
 template <class Balls, class Points>
 void for_each_color(const char* label, const Batches& batches, Balls balls, Points points) {
+  constexpr std::int64_t fewest = 48;  // batches worth waking threads for: some 5 us
   const std::size_t colors = batches.ball_begin.size() - 1;
   for (std::size_t c = 0; c < colors; ++c) {
     const bool serial = batches.last_is_serial && c + 1 == colors;
@@ -16,7 +17,8 @@ void for_each_color(const char* label, const Batches& batches, Balls balls, Poin
       if (serial) {
         for (std::int64_t k = first; k < last; ++k) work(k);
       } else {
-        parallel::for_each<Host>(label, last - first, [=](std::int64_t k) { work(first + k); });
+        parallel::for_each<Host>(
+            label, last - first, [=](std::int64_t k) { work(first + k); }, fewest);
       }
     };
     run(batches.ball_begin[c], batches.ball_begin[c + 1], balls);

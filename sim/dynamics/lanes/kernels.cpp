@@ -124,6 +124,151 @@ const Half& linear_half(const Body& body) { return reinterpret_cast<const Half&>
   }
 }
 
+/// Halves of eight lines side by side: two rows of four numbers become four lanes of eight.
+[[gnu::always_inline]] inline void interleave(const Half* low, V* rows) {
+  for (int l = 0; l < half; ++l)
+    rows[l] = __builtin_shufflevector(low[l], low[l + half], 0, 1, 2, 3, 4, 5, 6, 7);
+  transpose<half>(rows);
+}
+
+static_assert(sizeof(Reach) == sizeof(Half) && offsetof(Reach, extent) == 24);
+static_assert(sizeof(Ball) == sizeof(V) && offsetof(Ball, radius) == 24 && offsetof(Ball, velocity) == 32);
+
+std::uint64_t bits_of(const decltype(V{} > V{}) & lanes) {
+  std::uint64_t bits = 0;
+  for (int l = 0; l < width; ++l) bits |= static_cast<std::uint64_t>(lanes[l] & 1) << l;
+  return bits;
+}
+
+/// From i to j; the last number adds up.
+[[gnu::always_inline]] inline void load_offsets(const Reach* reach, const Two* pairs, V* rows) {
+  const Half sign = {-1, -1, -1, 1};
+  const auto at = [reach](std::int32_t k) { return *reinterpret_cast<const Half*>(reach + k); };
+  Half offset[width];
+  for (int l = 0; l < width; ++l) offset[l] = at(pairs[l].j) + sign * at(pairs[l].i);
+  interleave(offset, rows);
+}
+
+std::uint64_t touch_balls(const Reach* reach, const Two* pairs) {
+  std::uint64_t touching = 0;
+  for (int first = 0; first < look; first += width) {
+    V at[half];
+    load_offsets(reach, pairs + first, at);
+    const V3 offset{at[0], at[1], at[2]};
+    touching |= bits_of((at[3] > 0) & (dot(offset, offset) <= at[3] * at[3])) << first;
+  }
+  return touching;
+}
+
+/// Of i less that of j.
+V3 gather(const Triple* of, const std::int32_t* at_i, const std::int32_t* at_j) {
+  V3 lanes;
+  for (int l = 0; l < width; ++l) {
+    const Triple &i = of[at_i[l]], &j = of[at_j[l]];
+    lanes.x[l] = i.x - j.x;
+    lanes.y[l] = i.y - j.y;
+    lanes.z[l] = i.z - j.z;
+  }
+  return lanes;
+}
+
+std::uint64_t touch_planes(const Reach* reach, const Triple* up, const Two* pairs) {
+  std::uint64_t touching = 0;
+  for (int first = 0; first < look; first += width) {
+    V at[half];
+    load_offsets(reach, pairs + first, at);
+    const V3 offset{at[0], at[1], at[2]};
+    std::int32_t i[width], j[width];
+    for (int l = 0; l < width; ++l) {
+      i[l] = pairs[first + l].i;
+      j[l] = pairs[first + l].j;
+    }
+    touching |= bits_of(dot(gather(up, i, j), offset) <= at[3]) << first;
+  }
+  return touching;
+}
+
+/// A lane that is 1 where a byte is.
+V spread(const std::uint8_t* bytes) {
+  V lanes;
+  for (int l = 0; l < width; ++l) lanes[l] = bytes[l];
+  return lanes;
+}
+
+[[gnu::always_inline]] inline lanes::Round<Lanes> load(const Ball* balls, const double* inverse_inertia,
+                                                       const std::int32_t* at, V3& position) {
+  V rows[width];
+  lanes::Round<Lanes> ball;
+  for (int l = 0; l < width; ++l) {
+    rows[l] = *reinterpret_cast<const V*>(balls + at[l]);
+    ball.inverse_inertia[l] = inverse_inertia[at[l]];
+  }
+  transpose<width>(rows);
+  position = {rows[0], rows[1], rows[2]};
+  ball.radius = rows[3];
+  ball.velocity = {rows[4], rows[5], rows[6]};
+  ball.inverse_mass = rows[7];
+  return ball;
+}
+
+void prepare_balls(const BallSource& from, BallBatch& batch, BallParting& parting) {
+  V3 x_i, x_j;
+  const auto i = load(from.balls, from.inverse_inertia, batch.ends.i, x_i);
+  const auto j = load(from.balls, from.inverse_inertia, batch.ends.j, x_j);
+  parting.driven = static_cast<std::int32_t>(bits_of((i.inverse_mass == 0) | (j.inverse_mass == 0)));
+  // Two free bodies fall alike, unless forces are applied.
+  V3 kick{};
+  if (from.forces || parting.driven != 0) kick = V3{} - gather(from.kick, batch.ends.i, batch.ends.j);
+  const bool planes = bits_of((i.radius == 0) | (j.radius == 0)) != 0;
+  const V3 up = planes ? gather(from.up, batch.ends.i, batch.ends.j) : V3{};
+  const V friction = get(batch.friction);
+  const auto contact = contact_of<Lanes>(facing<Lanes>(x_j - x_i, i.radius + j.radius, up), friction, i, j,
+                                         kick, from.step, from.noise, spread(parting.flying) > 0);
+  const Balls& law = contact.law;
+  const V3 start = in_cone<Lanes>(get(batch.impulse.impulse), law.normal, friction);
+  set(batch.normal, law.normal);
+  set(batch.arm_i, law.arm_i);
+  set(batch.arm_j, law.arm_j);
+  set(batch.target, law.target);
+  set(batch.normal_mass, law.normal_mass);
+  set(batch.tangent_mass, law.tangent_mass);
+  set(batch.impulse.impulse, start);
+  set(batch.impulse.last, start);
+  parting.ends = batch.ends;
+  set(parting.normal, law.normal);
+  set(parting.normal_mass, law.normal_mass);
+  set(parting.gap, contact.gap);
+  set(parting.bend, contact.bend);
+  set(parting.pushed, all(0));
+  const V smaller = i.radius < j.radius ? i.radius : j.radius;
+  set(parting.cap, tolerance::correction_cap * (smaller > 0 ? smaller : i.radius + j.radius));
+  parting.apart = 0;
+}
+
+Books book_balls(const BallBatch& batch, const Body* mean, const Body* kicked, const Body* after,
+                 double rounding, Losses& losses) {
+  const Balls balls = get(batch);
+  const V3 p = get(batch.impulse.impulse);
+  const auto books = booked<Lanes>(balls, p, load(mean, batch.ends.i), load(mean, batch.ends.j));
+  const V loss = books.restitution + books.friction;
+  *reinterpret_cast<V*>(losses.at) = loss;
+  losses.gaining = 0;
+  if (bits_of(loss < 0) != 0) {
+    // As Moved::gains().
+    const V3 u_kicked = velocity_at(balls, load(kicked, batch.ends.i), load(kicked, batch.ends.j));
+    const V3 u_after = velocity_at(balls, load(after, batch.ends.i), load(after, batch.ends.j));
+    const V square = 0.5 * dot(p, u_after - u_kicked);
+    losses.gaining = static_cast<std::int32_t>(bits_of((loss < 0) & (-loss > rounding * square)));
+  }
+  Books sum{0, 0, 0};
+  for (int l = 0; l < width; ++l) {
+    sum.restitution += books.restitution[l];
+    sum.friction += books.friction[l];
+    sum.work += books.work[l];
+  }
+  return sum;
+}
+
 /// Goes on by beta of what the last sweep has changed.
 [[gnu::always_inline]] inline V3 accelerate(LaneImpulse& lanes, const V& beta) {
   const V3 p = get(lanes.impulse);
@@ -259,6 +404,20 @@ double deepest(const V& gap, const V& cap) {
   return deepest;
 }
 
+double fly_balls(const BallBatch& batch, BallParting& parting, const Body* velocities, double step) {
+  const Centres i = load_centres(velocities, parting.ends.i);
+  const Centres j = load_centres(velocities, parting.ends.j);
+  V gap = get(parting.gap) +
+          0.5 * step * (dot(get(parting.normal), j.velocity - i.velocity) + 0.25 * step * get(parting.bend));
+  // What flies past is nearer to the other's tangent plane than to the other.
+  const V3 p = get(batch.impulse.impulse);
+  gap = (spread(parting.flying) > 0) & (dot(p, p) == 0) ? all(__builtin_huge_val()) : gap;
+  set(parting.flown, gap);
+  double least = 0;
+  for (int l = 0; l < width; ++l) least = gap[l] < least ? gap[l] : least;
+  return -least;
+}
+
 double part_balls(BallParting& batch, double share, Body* bodies) {
   Centres i = load_centres(bodies, batch.ends.i);
   Centres j = load_centres(bodies, batch.ends.j);
@@ -292,6 +451,11 @@ double part_points(const PointBatch& batch, const PointRow* rows, PointParting* 
 
 extern const Kernels kernels = {.rough = {sweep_balls, sweep_points<true>},
                                 .smooth = {sweep_smooth_balls, sweep_points<false>},
+                                .touch_balls = touch_balls,
+                                .touch_planes = touch_planes,
+                                .prepare_balls = prepare_balls,
+                                .book_balls = book_balls,
+                                .fly_balls = fly_balls,
                                 .accelerate = accelerate,
                                 .push_balls = push_balls,
                                 .push_points = push_points,

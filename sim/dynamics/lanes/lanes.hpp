@@ -9,6 +9,9 @@
 
 namespace scree::lanes {
 
+/// In place of a contact or of a candidate, where a lane has none.
+inline constexpr std::int32_t none = -1;
+
 inline constexpr int width = 8;
 inline constexpr int most_points = 4;  ///< of a contact
 
@@ -26,6 +29,30 @@ struct alignas(64) Body {
   double inverse_mass;  ///< 0: not free, and never written
   Vec3 spin;
   double inverse_inertia;  ///< of a ball
+};
+
+/// How far a ball's contacts reach, or a plane's.
+struct alignas(32) Reach {
+  Vec3 position;
+  double extent;  ///< radius and margin; of a plane, the margin (m)
+};
+
+/// A ball at the midpoint before gravity's kick, or a plane that does not turn. One cache line.
+struct alignas(64) Ball {
+  Vec3 position;
+  double radius;  ///< 0: of a plane
+  Vec3 velocity;
+  double inverse_mass;  ///< 0: not free
+};
+
+/// Two bodies that may touch.
+struct Two {
+  std::int32_t i, j;
+};
+
+/// Three numbers that no function comes with.
+struct Triple {
+  double x, y, z;
 };
 
 /// The two bodies of each contact. A lane without contact names a body of its own that is not free.
@@ -72,11 +99,15 @@ struct BallParting {
   Ends ends;
   LaneVec normal;
   Lane normal_mass;
-  Lane flown;   ///< gap without displacements (m)
-  Lane pushed;  ///< impulse so far (kg m)
-  Lane cap;     ///< most that one visit parts (m)
-  std::int64_t
-      apart;  ///< a bit for each lane whose gap at the end is not told by the flight from the midpoint
+  Lane gap;                                   ///< at the midpoint (m)
+  Lane bend;                                  ///< of ContactRow
+  Lane flown;                                 ///< gap at the end of the substep without displacements (m)
+  Lane pushed;                                ///< impulse so far (kg m)
+  Lane cap;                                   ///< most that one visit parts (m)
+  std::uint8_t loaded[width], flying[width];  ///< of Contact
+  // A bit for each lane:
+  std::int32_t apart;   ///< its gap at the end is not told by the flight from the midpoint
+  std::int32_t driven;  ///< one of the two bodies is not free
 };
 
 /// And of one point of each contact of a PointBatch.
@@ -90,6 +121,28 @@ struct Change {
   double step, size;
 };
 
+/// Of a batch: what its impulses move (J), of Ledger.
+struct Books {
+  double restitution, friction, work;
+};
+
+/// What the impulses of a batch's contacts dissipate (J), and a bit for each that gains.
+struct alignas(64) Losses {
+  double at[width];
+  std::int32_t gaining;
+};
+
+/// What contacts of balls are made of.
+struct BallSource {
+  // Of each body, and of nobody:
+  const Ball* balls;
+  const double* inverse_inertia;
+  const Triple* up;    ///< normals of planes
+  const Triple* kick;  ///< what the substep's forces add to the velocity (m/s)
+  bool forces;         ///< whether it differs between free bodies
+  double step;         ///< s
+  double noise;        ///< parting speeds that count as none (m/s)
+};
 /// One visit. Going on by beta of what the last sweep has changed, which the bodies have done already, waits
 /// for it. The local law is that of coulomb_update() and natural_map().
 struct SweepKernels {
@@ -97,10 +150,25 @@ struct SweepKernels {
   Change (*points)(const PointBatch&, PointRow* rows, Body* bodies, double beta, int block_sweeps);
 };
 
+/// Candidates that touch() looks at in one call.
+inline constexpr int look = 64;
+
 /// Each works on one batch; batches of one colour may be worked on at once.
 struct Kernels {
   SweepKernels rough;   ///< any friction
   SweepKernels smooth;  ///< no friction in any contact: the same bits where balls do not spin
+  /// A bit for each of `look` pairs that come as close as they reach.
+  std::uint64_t (*touch_balls)(const Reach*, const Two* pairs);
+  std::uint64_t (*touch_planes)(const Reach*, const Triple* up, const Two* pairs);
+  /// Prepares contacts that know their bodies, friction, and the impulses that they start from.
+  void (*prepare_balls)(const BallSource&, BallBatch&, BallParting&);
+  /// `mean`: velocities halfway between those before and after the substep; `kicked`: without impulses. A
+  /// contact gains that gains more than `rounding` of what the impulses do after the kick.
+  Books (*book_balls)(const BallBatch&, const Body* mean, const Body* kicked, const Body* after,
+                      double rounding, Losses&);
+  /// Flies the gaps on to the end of the substep, half a step after the midpoint. Returns the deepest overlap
+  /// (m).
+  double (*fly_balls)(const BallBatch&, BallParting&, const Body* velocities, double step);
   /// Goes on by beta of what has changed since the last time.
   void (*accelerate)(Body& body, Body& last, double beta);
   /// Gives the bodies what the impulses are.

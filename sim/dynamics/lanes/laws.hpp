@@ -6,6 +6,7 @@
 #pragma once
 
 #include "core/space.hpp"
+#include "core/tolerances.hpp"
 
 #define SCREE_LAW [[gnu::always_inline]] SCREE_HD inline
 
@@ -19,6 +20,7 @@ struct V3 {
   SCREE_LAW friend V3 operator+(const V3& a, const V3& b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
   SCREE_LAW friend V3 operator-(const V3& a, const V3& b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
   SCREE_LAW friend V3 operator*(const V& s, const V3& a) { return {s * a.x, s * a.y, s * a.z}; }
+  SCREE_LAW friend V3 operator/(const V3& a, const V& s) { return {a.x / s, a.y / s, a.z / s}; }
   SCREE_LAW friend V dot(const V3& a, const V3& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
   SCREE_LAW friend V3 cross(const V3& a, const V3& b) {
     return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
@@ -83,6 +85,70 @@ struct PointLaw {
   typename A::V target, normal_mass, tangent_mass;
 };
 
+/// How two balls, or a ball and a plane, face each other.
+template <class A>
+struct Facing {
+  V3<A> normal;  ///< unit, from i to j
+  typename A::V gap;
+};
+
+/// `offset`: from the centre of i to that of j, or to or from a point of the plane; `reach`: the sum of the
+/// radii; `up`: normal of the plane, turned from i to j, 0 for two balls.
+template <class A>
+SCREE_LAW Facing<A> facing(const V3<A>& offset, const typename A::V& reach, const V3<A>& up) {
+  using V = typename A::V;
+  const V zero{};
+  const V distance = A::root(dot(offset, offset));
+  const auto plane = dot(up, up) > 0;
+  // Coincident centres have no direction of their own; any one does, if it is always the same.
+  const V3<A> direction =
+      where(distance > tolerance::coincident * reach, offset / distance, V3<A>{zero, zero, zero + 1.0});
+  return {where(plane, up, direction), (plane ? dot(up, offset) : distance) - reach};
+}
+
+/// What a contact of balls is besides its law.
+template <class A>
+struct BallContact {
+  Balls<A> law;
+  typename A::V gap, bend;  ///< of ContactRow
+};
+
+/// A ball, or a plane that does not turn.
+template <class A>
+struct Round {
+  typename A::V radius;  ///< 0: of a plane
+  V3<A> velocity;        ///< before the substep's kick
+  typename A::V inverse_mass, inverse_inertia;
+};
+
+/// A contact of balls as PrepareRows prepares it. `kick`: what the substep's forces add to the velocity of j
+/// relative to i; `flies`: where it does.
+template <class A, class Condition>
+SCREE_LAW BallContact<A> contact_of(const Facing<A>& at, const typename A::V& friction, const Round<A>& i,
+                                    const Round<A>& j, const V3<A>& kick, double step, double noise,
+                                    const Condition& flies) {
+  using V = typename A::V;
+  const V zero{};
+  const V arm_i = i.radius + 0.5 * at.gap;
+  const V arm_j = -(j.radius + 0.5 * at.gap);
+  const V3<A> before = j.velocity - i.velocity;
+  const V3<A> w = before + kick;
+  const V closing = dot(w, at.normal);
+  const V3<A> across = w - closing * at.normal;
+  const auto balls = (i.radius > 0) & (j.radius > 0);
+  const V bend = balls ? dot(across, across) / (i.radius + j.radius) : zero;
+  V target = (at.gap > 0 ? -at.gap / step : zero) - 0.5 * step * bend;
+  const V parting = noise - dot(before, at.normal);
+  target = parting < target ? parting : target;
+  const V flight = closing - tolerance::flight_margin * (closing < 0 ? -closing : closing);
+  target = flies & (flight < target) ? flight : target;
+  const V masses = i.inverse_mass + j.inverse_mass;
+  const V turning = i.inverse_inertia * (arm_i * arm_i) + j.inverse_inertia * (arm_j * arm_j);
+  const V normal_mass = masses > 0 ? 1.0 / masses : zero + 1.0;
+  const V tangent_mass = masses > 0 ? 1.0 / (masses + turning) : zero;
+  return {{at.normal, arm_i, arm_j, friction, target, normal_mass, tangent_mass}, at.gap, bend};
+}
+
 /// Impulse in Coulomb's cone: its normal part, and the tangential part cut to the disc.
 template <class A>
 SCREE_LAW V3<A> on_disc(const typename A::V& pn, const V3<A>& pt, const V3<A>& n,
@@ -115,12 +181,40 @@ SCREE_LAW void push(const Symmetric<A>& inertia_i, const Symmetric<A>& inertia_j
   j.spin = j.spin + inertia_j * cross(at.arm_j, p);
 }
 
+template <class A>
+SCREE_LAW V3<A> velocity_at(const Balls<A>& c, const Moving<A>& i, const Moving<A>& j) {
+  return j.velocity - i.velocity + cross(c.arm_j * j.spin - c.arm_i * i.spin, c.normal);
+}
+
+/// project_on_cone()
+template <class A>
+SCREE_LAW V3<A> in_cone(const V3<A>& p, const V3<A>& n, const typename A::V& friction) {
+  using V = typename A::V;
+  const V pn = dot(p, n);
+  return where(pn > 0, on_disc(pn, p - pn * n, n, friction), V3<A>{});
+}
+
+/// account() of a contact of balls that carries p: the bodies halfway between before and after.
+template <class A>
+struct Booked {
+  typename A::V restitution, friction, work;
+};
+template <class A>
+SCREE_LAW Booked<A> booked(const Balls<A>& c, const V3<A>& p, const Moving<A>& i, const Moving<A>& j) {
+  using V = typename A::V;
+  const V3<A> mean = velocity_at(c, i, j);
+  const V normal_part = dot(p, c.normal) * dot(mean, c.normal);
+  const V of_i = i.inverse_mass > 0 ? V{} : dot(p, i.velocity);
+  const V of_j = j.inverse_mass > 0 ? V{} : dot(p, j.velocity);
+  return {-normal_part, normal_part - dot(p, mean), of_i - of_j};
+}
+
 /// natural_map() of a contact that carries `last`; for balls it is the exact local solution.
 template <class A>
 SCREE_LAW V3<A> impulse_of(const Balls<A>& c, const V3<A>& last, const Moving<A>& i, const Moving<A>& j) {
   using V = typename A::V;
   const V3<A>& n = c.normal;
-  const V3<A> u = j.velocity - i.velocity + cross(c.arm_j * j.spin - c.arm_i * i.spin, n);
+  const V3<A> u = velocity_at(c, i, j);
   const V un = dot(u, n);
   const V pn_old = dot(last, n);
   const V pn = above_zero<A>(pn_old - (un - c.target) * c.normal_mass);

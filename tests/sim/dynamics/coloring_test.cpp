@@ -1,6 +1,7 @@
 #include "sim/dynamics/coloring.hpp"
 
 #include "core/rng.hpp"
+#include "sim/dynamics/ball_pairs.hpp"
 
 #include <gtest/gtest.h>
 
@@ -18,7 +19,7 @@ Coloring color(const std::vector<std::pair<int, int>>& pairs, const std::vector<
     manifolds[k].j = pairs[k].second;
   }
   Coloring coloring;
-  color_contacts({manifolds.data(), static_cast<std::int64_t>(manifolds.size())},
+  color_contacts(BallPairs(), {manifolds.data(), static_cast<std::int64_t>(manifolds.size())},
                  {mobility.data(), static_cast<std::int64_t>(mobility.size())}, coloring);
   return coloring;
 }

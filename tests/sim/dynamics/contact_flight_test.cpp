@@ -109,7 +109,8 @@ TYPED_TEST(ContactFlights, AsTheHostsStages) {
                                                 solver.late_bodies(problem, scene.parameters, bodies));
   ContactSet set;
   prepare_contacts(manifolds, problem.terms.laws, memory, 1, scene.parameters, set);
-  solver.mark_flights(problem, scene.parameters, manifolds, bodies, set);
+  BallPairs balls;
+  solver.mark_flights(problem, scene.parameters, manifolds, bodies, set, balls);
 
   // All at once, pair by pair.
   World<TypeParam> world(scene);

@@ -34,9 +34,9 @@ struct Problem {
     coloring.color_begin = {0, count};
     coloring.order.resize(static_cast<std::size_t>(count));
     std::iota(coloring.order.begin(), coloring.order.end(), 0);
-    lanes::arrange(coloring, contact_view(), batches);
+    lanes::arrange(coloring, contact_view(), static_cast<std::int32_t>(bodies.size()), batches);
     lanes::load(contact_view(), row_view(), {couplings.data(), size(couplings)},
-                {bodies.data(), size(bodies)}, static_cast<std::int32_t>(bodies.size()), 0.01, batches);
+                {bodies.data(), size(bodies)}, {}, batches);
   }
 
   template <class T>
@@ -196,7 +196,12 @@ TEST(Lanes, PartsByTheShareAndKeepsTheCentre) {
     }
     const double cap_units = 0.01 / 0.004;
     for (const lanes::BallBatch& batch : p.batches.balls.view()) {
-      lanes::BallParting parting{batch.ends, batch.normal, batch.normal_mass, points[0].flown, {}, cap, 0};
+      lanes::BallParting parting{};
+      parting.ends = batch.ends;
+      parting.normal = batch.normal;
+      parting.normal_mass = batch.normal_mass;
+      parting.flown = points[0].flown;
+      parting.cap = cap;
       EXPECT_NEAR(kernels->part_balls(parting, share, moved.data()), cap_units, rounding) << name;
     }
     for (const lanes::PointBatch& batch : p.batches.points.view()) {
@@ -270,7 +275,7 @@ TEST(Lanes, SmoothKernelsDoWhatRoughOnesDoWithoutFriction) {
 TEST(Lanes, TheSerialColourSharesNoBatch) {
   Problem p(odd_count);
   p.coloring.last_is_serial = true;
-  lanes::arrange(p.coloring, p.contact_view(), p.batches);
+  lanes::arrange(p.coloring, p.contact_view(), static_cast<std::int32_t>(p.bodies.size()), p.batches);
   std::int64_t alone = 0;
   const auto count = [&alone](const lanes::Members& members) {
     alone += members.contact[0] >= 0 ? 1 : 0;
