@@ -52,7 +52,7 @@ std::vector<PrescribedPath> paths_of(const Scene& scene, const TimeGrid& grid, c
   return paths;
 }
 
-/// Free bodies from which on a step on Device is the faster one (docs/performance.md).
+/// Free bodies from which on Device takes the steps unless told otherwise (docs/decisions/0022).
 constexpr std::int64_t few_for_device = 20000;
 
 /// The accurate mode, and few bodies, are for Host; its PCS may come from Device all the same.
