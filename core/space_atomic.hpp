@@ -32,33 +32,38 @@ using CudaWord = std::conditional_t<sizeof(T) == 8, unsigned long long, unsigned
 
 }  // namespace detail
 
-/// Lowers what is in a place to `value`, if that is smaller: exact, whatever the order of the threads.
+/// Lowers what is in a place to `value`, if that is smaller: exact, whatever the order of the threads. True
+/// for the thread that did.
 template <class T>
-SCREE_HD void lower(T* place, T value) {
+SCREE_HD bool lower(T* place, T value) {
 #if defined(__CUDA_ARCH__)
   using Word = detail::CudaWord<T>;
   auto* word = reinterpret_cast<Word*>(place);
-  if (value < *static_cast<volatile Word*>(word)) atomicMin(word, static_cast<Word>(value));
+  return value < *static_cast<volatile Word*>(word) && value < atomicMin(word, static_cast<Word>(value));
 #else
   const std::atomic_ref<T> shared(*place);
   T before = shared.load(std::memory_order_relaxed);
-  while (value < before && !shared.compare_exchange_weak(before, value, std::memory_order_relaxed)) {
+  while (value < before) {
+    if (shared.compare_exchange_weak(before, value, std::memory_order_relaxed)) return true;
   }
+  return false;
 #endif
 }
 
 /// Raises it, if `value` is larger.
 template <class T>
-SCREE_HD void raise(T* place, T value) {
+SCREE_HD bool raise(T* place, T value) {
 #if defined(__CUDA_ARCH__)
   using Word = detail::CudaWord<T>;
   auto* word = reinterpret_cast<Word*>(place);
-  if (value > *static_cast<volatile Word*>(word)) atomicMax(word, static_cast<Word>(value));
+  return value > *static_cast<volatile Word*>(word) && value > atomicMax(word, static_cast<Word>(value));
 #else
   const std::atomic_ref<T> shared(*place);
   T before = shared.load(std::memory_order_relaxed);
-  while (value > before && !shared.compare_exchange_weak(before, value, std::memory_order_relaxed)) {
+  while (value > before) {
+    if (shared.compare_exchange_weak(before, value, std::memory_order_relaxed)) return true;
   }
+  return false;
 #endif
 }
 

@@ -146,4 +146,14 @@ void sum_into(const char* label, std::int64_t n, const F& f, Array<T, Space>& sc
   }
 }
 
+/// The same, brought to the host: on Device faster than sum(), and on Host the same to the bit.
+template <class T, class Space, class F>
+T sum_by_tiles(const char* label, std::int64_t n, const F& f) {
+  Array<T, Space> scratch, out(1);
+  sum_into<T, Space>(label, n, f, scratch, out.data());
+  T sum;
+  copy_bytes<Host, Space>(&sum, out.data(), sizeof(sum));
+  return sum;
+}
+
 }  // namespace scree::parallel

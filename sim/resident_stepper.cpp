@@ -128,7 +128,8 @@ class ResidentStepper final : public Stepper {
     ledger.integration += advance<Space>(bodies_, dt, parameters_);
     place_prescribed<Space>(paths_, time, bodies_);
   }
-  ConstView<Pair> cover(double reach);
+  void give_candidates(ConstView<Pair> pairs);
+  ConstView<LoadedParts> loads_of(ConstView<Pair> pairs);
   bool resolve_impacts(double h, double from, double reach);
   void add_impulse_on_driven(const Impact& impact);
   void add_impulses_on_driven();
@@ -148,6 +149,7 @@ class ResidentStepper final : public Stepper {
   KeptPairs<Space> seen_pairs_;
   bool sees_kept_ = true;
   std::int64_t pairs_taken_ = 0;  // how often they had been made when the contacts last took them
+  Array<LoadedParts, Space> loads_;
   ImpactRounds<Space> impacts_;
   resident::ContactSolver<Space, Real> contacts_;
 
@@ -169,14 +171,14 @@ void ResidentStepper<Space, Real>::substep(double h, double done) {
   const bool late = impacts_.any_is_late();
 
   contact_margins<Space>(bodies_, h, tolerance::contact_slack, parameters_, contact_margin_);
-  cover(reach_from(h, done));
+  give_candidates(kept_pairs_.covering(bodies_, contact_margin_, reach_from(h, done), parameters_));
   counters.pcs_made = kept_pairs_.times_made();
   const double scale = last_substep_ > 0 ? h / last_substep_ : 1.0;
   const FlightStage flight = impacts_.stage(terms(h, 0), parameters_, views());
   {
     const timing::Region region("narrowphase");
     contacts_.find(std::as_const(contact_margin_).view(), scale, flight, late);
-    counters.narrowphase.tested += contacts_.slots().candidates();
+    counters.narrowphase.tested += contacts_.slots().candidates().size();
   }
   {
     const timing::Region region("response");
@@ -194,15 +196,21 @@ void ResidentStepper<Space, Real>::substep(double h, double done) {
   last_substep_ = h;
 }
 
-/// Candidates for the margins as they are; the contacts know of them.
+/// Lets the contacts know of candidates that were made anew.
 template <class Space, class Real>
-ConstView<Pair> ResidentStepper<Space, Real>::cover(double reach) {
-  const ConstView<Pair> pairs = kept_pairs_.covering(bodies_, contact_margin_, reach, parameters_);
-  if (std::exchange(pairs_taken_, kept_pairs_.times_made()) != kept_pairs_.times_made()) {
-    const timing::Region region("slots");
-    contacts_.take_candidates(pairs, view_of(std::as_const(bodies_)));
-  }
-  return pairs;
+void ResidentStepper<Space, Real>::give_candidates(ConstView<Pair> pairs) {
+  if (pairs_taken_ == kept_pairs_.times_made()) return;
+  const timing::Region region("slots");
+  contacts_.take_candidates(pairs, view_of(std::as_const(bodies_)));
+  pairs_taken_ = kept_pairs_.times_made();
+}
+
+/// Of the last substep. The contacts of this one must stay until its end, whatever candidates are made.
+template <class Space, class Real>
+ConstView<LoadedParts> ResidentStepper<Space, Real>::loads_of(ConstView<Pair> pairs) {
+  if (pairs_taken_ == kept_pairs_.times_made()) return contacts_.loads();
+  contacts_.look_up_loads(pairs, loads_);
+  return std::as_const(loads_).view();
 }
 
 /// Impacts of the flight of a substep from `from` on; whether there were any. `reach`: to the end of the step
@@ -215,10 +223,10 @@ bool ResidentStepper<Space, Real>::resolve_impacts(double h, double from, double
   };
   set_margins();
   for (int attempt = 1;; ++attempt) {
-    const ConstView<Pair> pairs = cover(reach);
+    const ConstView<Pair> pairs = kept_pairs_.covering(bodies_, contact_margin_, reach, parameters_);
     const timing::Region region("impacts");
     const Ledger moved = impacts_.resolve(
-        {.pairs = pairs, .loaded = contacts_.loads(), .terms = terms(h, from)}, parameters_, views());
+        {.pairs = pairs, .loaded = loads_of(pairs), .terms = terms(h, from)}, parameters_, views());
     if (impacts_.impacts().size() == 0) return false;
     // What was struck may have left the boxes: others that it can meet now are not among the pairs.
     set_margins();

@@ -52,18 +52,19 @@ std::vector<PrescribedPath> paths_of(const Scene& scene, const TimeGrid& grid, c
   return paths;
 }
 
-/// Free bodies from which on a step on Device is the faster one (docs/performance.md).
+/// Free bodies from which on Device takes the steps unless told otherwise (docs/decisions/0022).
 constexpr std::int64_t few_for_device = 20000;
 
 /// The accurate mode, and few bodies, are for Host; its PCS may come from Device all the same.
 std::unique_ptr<Stepper> make_stepper(const Scene& scene, const TimeGrid& grid, const Presence& presence,
-                                      SpaceChoice space, const Vec3& origin) {
+                                      const SimulationOptions& options, const Vec3& origin) {
+  const SpaceChoice space = options.space;
   const std::vector<PrescribedPath> paths = paths_of(scene, grid, presence);
   const bool accurate = scene.response.mode == ResponseMode::accurate;
   const bool device = space == SpaceChoice::cuda ||
                       (space == SpaceChoice::automatic && device_info().available &&
                        std::ranges::count(scene.bodies.mobility, Mobility::free) >= few_for_device);
-  if (!accurate && (device || scene.precision == Precision::mixed))
+  if (!accurate && (device || options.resident || scene.precision == Precision::mixed))
     return make_resident_stepper(scene, grid, paths, device, origin);
   return std::make_unique<Substepper>(scene, grid, paths, device, origin);
 }
@@ -99,7 +100,7 @@ struct Simulation::Parts {
                     ? static_cast<std::size_t>(options.threads)
                     : tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism)),
         origin(middle_of(s.bodies)),
-        stepper(make_stepper(s, grid, presence, options.space, origin)) {
+        stepper(make_stepper(s, grid, presence, options, origin)) {
     if (presence.count() < scene.bodies.count())
       stepper->change_bodies([this](Bodies<Host>& bodies) { presence.begin(bodies); });
     first_orientation = scene.bodies.orientation;

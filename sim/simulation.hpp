@@ -15,8 +15,10 @@ namespace scree {
 enum class SpaceChoice { automatic, host, cuda };
 
 struct SimulationOptions {
-  SpaceChoice space = SpaceChoice::automatic;  ///< automatic: Device if the machine has one, else Host
-  int threads = 0;                             ///< 0: all cores. Never changes the result.
+  /// automatic: Device if the machine has one and the scene has bodies enough for it, else Host.
+  SpaceChoice space = SpaceChoice::automatic;
+  int threads = 0;        ///< 0: all cores. Never changes the result.
+  bool resident = false;  ///< Host too takes the steps as Device does, with everything in one space
 };
 
 class Simulation {
@@ -34,11 +36,12 @@ class Simulation {
   double time() const;         ///< s
   std::int64_t steps() const;  ///< steps done
   std::int64_t steps_total() const;
-  const char* space_name() const;  ///< of the broad phase: "host" or "cuda"
+  const char* space_name() const;  ///< where the bodies and their contacts are: "host" or "cuda"
 
   /// The whole state, on the host.
   void snapshot(Snapshot& out) const;
-  /// 64-bit hash of the state: the same for any number of threads, and for any broad phase.
+  /// 64-bit hash of the state: the same for any number of threads, and for any broad phase. Each of the two
+  /// ways to take a step has its own, and each space where the bodies stay.
   std::uint64_t state_hash() const;
   BodyState body(std::int32_t id) const;
   /// The pairs of the last step's broad phase (before the first step, of the start), each once.

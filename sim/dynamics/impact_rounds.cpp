@@ -17,12 +17,14 @@ using detail::Resolved;
 
 SCREE_HD std::uint64_t ordered_bits(double x) { return std::bit_cast<std::uint64_t>(x + 0.0); }
 
+constexpr std::uint32_t not_yet = ~std::uint32_t{0};
 constexpr FirstMeeting none{detail::infinite, ~std::uint64_t{0}};
 
 /// Who has had an impact later than the flight begins has been where it was before that. Also looks at the
 /// laws.
 struct StartFlight {
   FlightStage stage;
+  View<std::uint32_t> joined_in;
   ImpactProgress* progress;
   SCREE_HD void operator()(std::int64_t k) const {
     const ConstView<PairLaw> laws = stage.terms.laws.table;
@@ -31,6 +33,7 @@ struct StartFlight {
     const double from = stage.terms.from;
     stage.clock[k] = from > 0 ? fmax(stage.clock[k], from) : 0.0;
     stage.hits[k] = 0;
+    joined_in[k] = not_yet;
     stage.bound(static_cast<std::int32_t>(k));
     raise(&progress->top_speed, ordered_bits(stage.top_speed[k]));
     lower(&progress->smallest, ordered_bits(stage.size_of(k)));
@@ -48,17 +51,20 @@ struct SetHarmless {
   }
 };
 
-/// Lists the pairs that may meet, in the first round all, then those of bodies that the last one has struck.
+/// Lists the pairs that may meet: in the first round of all, then of the busy ones whose bodies the last
+/// round has struck.
 struct Suspect {
   FlightStage stage;
   ConstView<Pair> pairs;
+  ConstView<std::int64_t> busy;
   ConstView<std::uint32_t> struck_in;
   std::uint32_t round;
   ImpactProgress* progress;
   View<std::int64_t> suspects;
-  SCREE_HD void operator()(std::int64_t k) const {
+  SCREE_HD void operator()(std::int64_t s) const {
     const double harmless = progress->harmless;
     if (harmless == HUGE_VAL) return;
+    const std::int64_t k = round > 1 ? busy[s] : s;
     const auto [i, j] = pairs[k];
     if (round > 1 && struck_in[i] != round - 1 && struck_in[j] != round - 1) return;
     if (stage.top_speed[i] + stage.top_speed[j] <= harmless) return;
@@ -87,13 +93,35 @@ struct Foresee {
   ConstView<Pair> pairs;
   ConstView<LoadedParts> loaded;
   ConstView<std::int64_t> suspects;
+  View<std::uint32_t> joined_in;
+  std::uint32_t round;
   MeetingList meetings;
   SCREE_HD void operator()(std::int64_t s) const {
     if (static_cast<std::uint64_t>(s) >= meetings.progress->round.suspects) return;
     const std::int64_t k = suspects[s];
     const auto [i, j] = pairs[k];
     const Meeting meeting = stage.next(i, j, loads_of(loaded, k));
-    if (meeting.time <= stage.terms.step) meetings.add({meeting.time, k, meeting.part});
+    if (!(meeting.time <= stage.terms.step)) return;
+    meetings.add({meeting.time, k, meeting.part});
+    for (const std::int32_t body : {i, j}) {
+      if (stage.is_free(body) && lower(&joined_in[body], round)) raise(&meetings.progress->last_join, round);
+    }
+  }
+};
+
+/// Lists the pairs of bodies that have joined in this round, but for those of bodies that had before.
+struct ListBusy {
+  ConstView<Pair> pairs;
+  ConstView<std::uint32_t> joined_in;
+  std::uint32_t round;
+  ImpactProgress* progress;
+  View<std::int64_t> busy;
+  SCREE_HD void operator()(std::int64_t k) const {
+    if (progress->last_join != round) return;
+    const auto [i, j] = pairs[k];
+    if (std::min(joined_in[i], joined_in[j]) != round) return;
+    const auto place = static_cast<std::int64_t>(count_up(&progress->round.busy));
+    if (place < busy.size()) busy[place] = k;
   }
 };
 
@@ -149,8 +177,9 @@ struct FindFirstPairs {
 /// Of two bodies that could meet, one may have to wait for the other.
 struct MakeWait {
   Round round;
-  SCREE_HD void operator()(std::int64_t k) const {
-    const auto [i, j] = round.pairs[k];
+  ConstView<std::int64_t> busy;
+  SCREE_HD void operator()(std::int64_t b) const {
+    const auto [i, j] = round.pairs[busy[b]];
     const std::uint64_t time_i = round.first[i].time;
     const std::uint64_t time_j = round.first[j].time;
     if (time_i == time_j) return;
@@ -232,6 +261,8 @@ struct Restore {
   SCREE_HD void operator()(std::int64_t k) const { restore(struck[k], bodies, clock); }
 };
 
+constexpr std::int64_t least_room = 4096;
+
 /// Makes room for so many, and keeps the `used` first.
 template <class T, class Space>
 void make_room(Array<T, Space>& list, std::int64_t used, std::int64_t needed) {
@@ -272,39 +303,49 @@ void ImpactRounds<Space>::start(const FlightStage& stage) {
   meetings_.resize(0);
   rounds_ = 0;
   progress_ = {};
+  joined_in_.resize(stage.bodies.count());
   shared_progress_.resize(1);
   ImpactProgress* progress = shared_progress_.data();
   copy_bytes<Space, Host>(progress, &progress_, sizeof(progress_));
   parallel::for_each<Space>("impact.start", std::max(stage.bodies.count(), stage.terms.laws.table.size()),
-                            StartFlight{stage, progress});
+                            StartFlight{stage, joined_in_.view(), progress});
   parallel::for_each<Space>("impact.harmless", 1, SetHarmless{stage, progress});
 }
 
 /// Lists the meetings of the next round.
 template <class Space>
 void ImpactRounds<Space>::foresee(const FlightStage& stage, const Problem& problem) {
-  constexpr std::int64_t least_room = 4096;
   const auto round = static_cast<std::uint32_t>(rounds_ + 1);
   const ConstView<Pair> pairs = problem.pairs;
   const ConstView<std::uint32_t> struck_in = struck_in_.view();
   ImpactProgress* progress = shared_progress_.data();
+  const std::int64_t busy = signed_count(progress_.round.busy);
+  const detail::RoundCounts start{.busy = progress_.round.busy};
+  make_room(suspects_, 0, least_room);
+  make_room(busy_, busy, least_room);
   last_.swap(meetings_);
-  for (std::int64_t room = std::max(suspects_.capacity(), least_room);;
-       room = signed_count(progress_.round.suspects)) {
-    suspects_.resize(room);
+  for (bool fits = false; !fits;) {
+    const std::int64_t room = suspects_.size();
     meetings_.resize(room + last_.size());
     const MeetingList meetings{progress, meetings_.view()};
-    const detail::RoundCounts nothing;
-    copy_bytes<Space, Host>(&progress->round, &nothing, sizeof(nothing));
+    copy_bytes<Space, Host>(&progress->round, &start, sizeof(start));
     parallel::for_each<Space>("impact.keep", last_.size(),
                               KeepMeetings{last_.view(), pairs, struck_in, round, meetings});
-    parallel::for_each<Space>("impact.suspect", pairs.size(),
-                              Suspect{stage, pairs, struck_in, round, progress, suspects_.view()});
+    parallel::for_each<Space>(
+        "impact.suspect", rounds_ > 0 ? busy : pairs.size(),
+        Suspect{stage, pairs, busy_.view(), struck_in, round, progress, suspects_.view()});
     // As many as there is room for: how many there are is read once, with what comes of them.
-    parallel::for_each<Space>("impact.foresee", room,
-                              Foresee{stage, pairs, problem.loaded, suspects_.view(), meetings});
+    parallel::for_each<Space>(
+        "impact.foresee", room,
+        Foresee{stage, pairs, problem.loaded, suspects_.view(), joined_in_.view(), round, meetings});
+    parallel::for_each<Space>("impact.busy", pairs.size(),
+                              ListBusy{pairs, joined_in_.view(), round, progress, busy_.view()});
     copy_bytes<Host, Space>(&progress_, progress, sizeof(progress_));
-    if (signed_count(progress_.round.suspects) <= room) break;
+    const std::int64_t suspects = signed_count(progress_.round.suspects);
+    const std::int64_t now_busy = signed_count(progress_.round.busy);
+    fits = suspects <= room && now_busy <= busy_.size();
+    make_room(suspects_, 0, suspects);
+    make_room(busy_, busy, now_busy);
   }
   meetings_.resize(signed_count(progress_.round.meetings));
 }
@@ -334,7 +375,7 @@ void ImpactRounds<Space>::resolve_first(const FlightStage& stage, const Problem&
                     .number = static_cast<std::uint32_t>(rounds_)};
   parallel::for_each<Space>("impact.times", count, FindFirstTimes{round});
   parallel::for_each<Space>("impact.pairs", count, FindFirstPairs{round});
-  parallel::for_each<Space>("impact.wait", round.pairs.size(), MakeWait{round});
+  parallel::for_each<Space>("impact.wait", signed_count(progress_.round.busy), MakeWait{round, busy_.view()});
   parallel::for_each<Space>("impact.resolve", count,
                             ResolveFirst{round, problem.loaded, struck_in_.view(), shared_progress_.data(),
                                          resolved_.view(), key_.view(), struck_.view()});

@@ -39,6 +39,7 @@ inline constexpr auto infinite = std::bit_cast<std::uint64_t>(HUGE_VAL);
 struct RoundCounts {
   std::uint64_t suspects = 0;
   std::uint64_t meetings = 0;
+  std::uint64_t busy = 0;  ///< pairs, with those of the rounds before
 };
 
 /// What the threads of a flight tell the host, which reads it once in a round.
@@ -49,8 +50,9 @@ struct ImpactProgress {
   std::uint64_t restitution = 0;      ///< the largest of the laws' (bits)
   double harmless = 0;                ///< FlightStage::harmless; infinite where nobody is faster (m/s)
   std::uint64_t impacts = 0;
-  std::uint64_t struck = 0;  ///< bodies
-  std::uint32_t late = 0;    ///< whether one of them was struck after the midpoint
+  std::uint64_t struck = 0;     ///< bodies
+  std::uint32_t last_join = 0;  ///< the last round in which a body first had a meeting to come
+  std::uint32_t late = 0;       ///< whether one of them was struck after the midpoint
   std::uint32_t hit_bound = 0;
 };
 
@@ -100,14 +102,16 @@ class ImpactRounds {
 
   FlightLog<Space> log_;
   detail::ImpactProgress progress_;                       ///< as the host last saw it
-  Array<detail::ImpactProgress, Space> shared_progress_;  ///< one
+  Array<detail::ImpactProgress, Space> shared_progress_;  // one
   std::int64_t rounds_ = 0;
-  Array<std::int64_t, Space> suspects_;               ///< pairs that are to be looked at in this round
-  Array<detail::Foreseen, Space> meetings_, last_;    ///< of this round, and of the one before
-  Array<detail::FirstMeeting, Space> first_;          ///< of each body
-  Array<std::uint32_t, Space> struck_in_, waits_in_;  ///< of each body: the last such round, 0 for none
-  Array<detail::Resolved, Space> resolved_;           ///< impacts, in any order
-  Array<std::uint64_t, Space> key_;                   ///< of each one's place
+  Array<std::int64_t, Space> suspects_;             // pairs that are to be looked at in this round
+  Array<std::int64_t, Space> busy_;                 // pairs of bodies that have joined
+  Array<detail::Foreseen, Space> meetings_, last_;  // of this round, and of the one before
+  Array<detail::FirstMeeting, Space> first_;        // of each body
+  Array<std::uint32_t, Space> joined_in_;  // of each body: the round that first foresaw one of its own
+  Array<std::uint32_t, Space> struck_in_, waits_in_;  // of each body: the last such round, 0 for none
+  Array<detail::Resolved, Space> resolved_;           // impacts, in any order
+  Array<std::uint64_t, Space> key_;                   // of each one's place
   Array<std::int64_t, Space> order_;
   Array<Impact, Space> impacts_;
   Array<StruckBody, Space> struck_;

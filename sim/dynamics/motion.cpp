@@ -1,6 +1,7 @@
 #include "sim/dynamics/motion.hpp"
 
 #include "core/parallel.hpp"
+#include "core/space_tiles.hpp"
 #include "core/tolerances.hpp"
 #include "sim/dynamics/rotation.hpp"
 
@@ -150,7 +151,7 @@ double advance(Bodies<Space>& bodies, double dt, const ResponseParameters& param
   parallel::for_each<Space>("motion.translate", n, Translate{views, dt});
   if (!parameters.rotation) return 0;
   const Rotate rotate{views, dt, parameters.accurate ? RotationOrder::fourth : RotationOrder::second};
-  if (parameters.gyroscopic) return parallel::sum<double, Space>("motion.rotate", n, rotate);
+  if (parameters.gyroscopic) return parallel::sum_by_tiles<double, Space>("motion.rotate", n, rotate);
   parallel::for_each<Space>("motion.rotate", n, rotate);
   return 0;
 }
@@ -190,8 +191,8 @@ void FatBoxes<Space>::add_travel(const Bodies<Space>& bodies, Array<double, Spac
 template <class Space>
 double work_of_forces(const Bodies<Space>& bodies, const Array<Vec3, Space>& start,
                       ConstView<Vec3> acceleration) {
-  return parallel::sum<double, Space>("motion.work", bodies.count(),
-                                      WorkOfForce{view_of(bodies), start.view(), acceleration});
+  return parallel::sum_by_tiles<double, Space>("motion.work", bodies.count(),
+                                               WorkOfForce{view_of(bodies), start.view(), acceleration});
 }
 
 template <class Space>
@@ -202,8 +203,8 @@ void load_solver_bodies(const Bodies<Space>& bodies, Array<SolverBody, Space>& s
 
 template <class Space>
 Totals totals_of(const Bodies<Space>& bodies, const Vec3& gravity, const Vec3& reference) {
-  return parallel::sum<Totals, Space>("motion.totals", bodies.count(),
-                                      BodyTotals{view_of(bodies), gravity, reference});
+  return parallel::sum_by_tiles<Totals, Space>("motion.totals", bodies.count(),
+                                               BodyTotals{view_of(bodies), gravity, reference});
 }
 
 template <class Space>

@@ -1,6 +1,7 @@
 #include "sim/dynamics/region.hpp"
 
 #include "core/parallel.hpp"
+#include "core/space_tiles.hpp"
 
 namespace scree {
 
@@ -22,8 +23,8 @@ struct BodyContents {
 
 template <class Space>
 RegionContents contents_of(const Region& region, const Bodies<Space>& bodies) {
-  return parallel::sum<RegionContents, Space>("region.contents", bodies.count(),
-                                              BodyContents{view_of(bodies), region.from, region.to});
+  return parallel::sum_by_tiles<RegionContents, Space>("region.contents", bodies.count(),
+                                                       BodyContents{view_of(bodies), region.from, region.to});
 }
 
 #define SCREE_INSTANTIATE(Space) \

@@ -40,6 +40,17 @@ void for_each_color(const ColorTiles& colors, std::int64_t first, Work work) {
     work(colors.begin[c] - first, colors.begin[c + 1] - colors.begin[c]);
 }
 
+/// What is known of pairs in another list.
+struct LookUpLoads {
+  ConstView<Pair> pairs, known;
+  ConstView<LoadedParts> loads;
+  View<LoadedParts> out;
+  SCREE_HD void operator()(std::int64_t k) const {
+    const std::int64_t at = find_pair(known, pairs[k].i, pairs[k].j);
+    out[k] = at < 0 ? LoadedParts{} : loads[at];
+  }
+};
+
 struct ImpulseSum {
   Vec3 impulse = Vec3::Zero();
   SCREE_HD friend ImpulseSum operator+(const ImpulseSum& a, const ImpulseSum& b) {
@@ -122,9 +133,11 @@ void ContactSolver<Space, Real>::take_candidates(ConstView<Pair> candidates, con
 }
 
 template <class Space, class Real>
-void ContactSolver<Space, Real>::forget() {
-  slots_.clear();
-  store_.resize(0, 0, tile);
+void ContactSolver<Space, Real>::look_up_loads(ConstView<Pair> candidates,
+                                               Array<LoadedParts, Space>& loads) const {
+  loads.resize(candidates.size());
+  parallel::for_each<Space>("contacts.loads", candidates.size(),
+                            LookUpLoads{candidates, slots_.candidates(), this->loads(), loads.view()});
 }
 
 template <class Space, class Real>
@@ -143,9 +156,9 @@ Vec3 ContactSolver<Space, Real>::impulse_on(std::int32_t body) {
   const std::int64_t first = store_.ball_places();
   const ConstView<Slot> places = slots_.places();
   if (step_ == 0 || places.size() == 0) return Vec3::Zero();
-  const auto on_balls = parallel::sum<ImpulseSum, Space>("contacts.impulse", first,
-                                                         BallImpulseOn<Real>{body, store_.balls(), places});
-  const auto on_points = parallel::sum<ImpulseSum, Space>(
+  const auto on_balls = parallel::sum_by_tiles<ImpulseSum, Space>(
+      "contacts.impulse", first, BallImpulseOn<Real>{body, store_.balls(), places});
+  const auto on_points = parallel::sum_by_tiles<ImpulseSum, Space>(
       "contacts.impulse", places.size() - first,
       PointImpulseOn<Real>{body, store_.points(), {places.data() + first, places.size() - first}});
   return (on_balls + on_points).impulse;
@@ -217,7 +230,7 @@ template <class Space, class Real>
 template <class Record>
 void ContactSolver<Space, Real>::join_parts(Array<Record, Space>& bodies) {
   const ConstView<Hub> hubs = slots_.hubs();
-  if (hubs.size() == 0) return;
+  if (hubs.size() == 0 || bodies.empty()) return;
   parts_.resize(hubs.size());
   parallel::sum_tiles<PartsSum, Space>("contacts.hubs", hubs.size(), SumParts<Record>{hubs, bodies.data()},
                                        parts_.data());
@@ -317,7 +330,7 @@ Ledger ContactSolver<Space, Real>::solve(const FlightStage& flight, bool any_is_
     ledger = book(bodies, parameters);
   }
   if (parameters.torque.size() > 0) {
-    ledger.work += parallel::sum<double, Space>(
+    ledger.work += parallel::sum_by_tiles<double, Space>(
         "books.torque", bodies.count(), WorkOfTorque<Real>{bodies, solver_.view(), parameters.torque, step_});
   }
   parallel::for_each<Space>(

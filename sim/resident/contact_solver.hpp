@@ -25,7 +25,6 @@ class ContactSolver {
  public:
   /// The candidates have been made anew; impulses are remembered.
   void take_candidates(ConstView<Pair> candidates, const ConstBodyView& bodies);
-  void forget();
 
   /// Contacts that may close by the next midpoint: gaps of at most the sum of the two margins (m). Impulses
   /// start from what they were, `scale` times.
@@ -50,8 +49,10 @@ class ContactSolver {
   /// For each candidate a bit for each part that is loaded.
   ConstView<LoadedParts> loads() const {
     static_assert(sizeof(LoadedParts) == 1);
-    return {reinterpret_cast<const LoadedParts*>(loads_.data()), slots_.candidates()};
+    return {reinterpret_cast<const LoadedParts*>(loads_.data()), slots_.candidates().size()};
   }
+  /// The same of other candidates (ordered likewise), for those that it knows.
+  void look_up_loads(ConstView<Pair> candidates, Array<LoadedParts, Space>& loads) const;
   const Slots<Space, Real>& slots() const { return slots_; }
 
   /// Of the last substep, brought to Host.

@@ -258,18 +258,8 @@ struct Recall {
   }
   SCREE_HD std::int64_t old_place_of(const Slot& slot) const {
     if (slot.i == Slot::empty) return -1;
-    std::int64_t low = 0, high = old_pairs.size();
-    while (low < high) {
-      const std::int64_t middle = (low + high) / 2;
-      const Pair& pair = old_pairs[middle];
-      if (pair.i < slot.i || (pair.i == slot.i && pair.j < slot.j)) {
-        low = middle + 1;
-      } else {
-        high = middle;
-      }
-    }
-    if (low == old_pairs.size() || old_pairs[low].i != slot.i || old_pairs[low].j != slot.j) return -1;
-    return old_place[old_first[low] + slot.surface];
+    const std::int64_t pair = find_pair(old_pairs, slot.i, slot.j);
+    return pair < 0 ? -1 : old_place[old_first[pair] + slot.surface];
   }
 };
 
@@ -291,15 +281,6 @@ void Slots<Space, Real>::build(ConstView<Pair> candidates, const ConstBodyView& 
   color_slots(bodies);
   place_slots(bodies);
   recall();
-}
-
-template <class Space, class Real>
-void Slots<Space, Real>::clear() {
-  for (auto* pairs : {&pairs_, &old_pairs_}) pairs->resize(0);
-  places_.resize(0);
-  ball_memory_.resize(0);
-  point_memory_.resize(0);
-  balls_ = others_ = ColorTiles{{0}};
 }
 
 template <class Space, class Real>

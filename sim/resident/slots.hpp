@@ -20,6 +20,21 @@ struct Hub {
   std::int32_t parts;
 };
 
+/// The number of a pair in a list ordered by (i, j); -1 if it is not there.
+SCREE_HD inline std::int64_t find_pair(ConstView<Pair> pairs, std::int32_t i, std::int32_t j) {
+  std::int64_t low = 0, high = pairs.size();
+  while (low < high) {
+    const std::int64_t middle = (low + high) / 2;
+    const Pair& pair = pairs[middle];
+    if (pair.i < i || (pair.i == i && pair.j < j)) {
+      low = middle + 1;
+    } else {
+      high = middle;
+    }
+  }
+  return low < pairs.size() && pairs[low].i == i && pairs[low].j == j ? low : -1;
+}
+
 /// Tiles of one colour after the other: slots of one colour share no free body.
 struct ColorTiles {
   std::vector<std::int64_t> begin;  ///< first tile of each colour; one more than colours
@@ -35,8 +50,6 @@ class Slots {
   /// what they remember. Places are given in tiles of parallel::tile: first those of balls, colour by colour,
   /// then the others. The result does not depend on the order of threads.
   void build(ConstView<Pair> candidates, const ConstBodyView& bodies);
-  /// Forgets slots and memory.
-  void clear();
 
   ConstView<Slot> places() const { return places_.view(); }
   const ColorTiles& balls() const { return balls_; }
@@ -49,7 +62,7 @@ class Slots {
   ConstView<std::int32_t> hub_of_parts() const { return hub_of_.view(); }
   /// Of the solver: all bodies, then the parts of the hubs.
   std::int64_t solver_bodies() const { return solver_bodies_; }
-  std::int64_t candidates() const { return pairs_.size(); }
+  ConstView<Pair> candidates() const { return pairs_.view(); }
 
  private:
   void list_slots(const ConstBodyView& bodies);

@@ -63,6 +63,20 @@ struct Meet {
   }
 };
 
+// What many threads say of one place.
+struct Tell {
+  std::uint64_t* least;
+  std::uint32_t* most;
+  std::uint64_t* count;
+  std::int64_t* list;
+  SCREE_HD void operator()(std::int64_t i) const {
+    const std::int64_t value = i * 7919 % 100003;  // a prime: each value under it once
+    lower(least, static_cast<std::uint64_t>(value + 5));
+    raise(most, static_cast<std::uint32_t>(value));
+    list[count_up(count)] = value;
+  }
+};
+
 // Runs f with exactly this many threads allowed, on machines with fewer cores too.
 template <class F>
 auto with_threads(int threads, F f) {
@@ -105,6 +119,23 @@ TYPED_TEST(ParallelTest, ExchangeHandsOnWhatWasWrittenBefore) {
   const std::vector<std::int64_t> all = to_vector(sums);
   for (std::int64_t k = 0; k < count; ++k)
     ASSERT_EQ(all[static_cast<std::size_t>(k)], 3 * (k + k + count) + 2);
+}
+
+TYPED_TEST(ParallelTest, LowerRaiseAndCountMissNobody) {
+  constexpr std::int64_t n = 100003;
+  Array<std::uint64_t, TypeParam> least(1), count(1);
+  Array<std::uint32_t, TypeParam> most(1);
+  Array<std::int64_t, TypeParam> list(n);
+  parallel::fill("least", least, ~std::uint64_t{0});
+  parallel::fill("most", most, std::uint32_t{0});
+  parallel::fill("count", count, std::uint64_t{0});
+  parallel::for_each<TypeParam>("tell", n, Tell{least.data(), most.data(), count.data(), list.data()});
+  EXPECT_EQ(to_vector(least)[0], 5u);
+  EXPECT_EQ(to_vector(most)[0], static_cast<std::uint32_t>(n - 1));
+  EXPECT_EQ(to_vector(count)[0], static_cast<std::uint64_t>(n));
+  std::vector<std::int64_t> all = to_vector(list);
+  std::sort(all.begin(), all.end());
+  for (std::int64_t k = 0; k < n; ++k) ASSERT_EQ(all[static_cast<std::size_t>(k)], k);
 }
 
 TYPED_TEST(ParallelTest, SumAgreesWithLongDouble) {

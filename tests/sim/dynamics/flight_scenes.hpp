@@ -38,7 +38,9 @@ struct FlightScene {
   }
   void add_plane(const Vec3& normal, double offset) {
     add(Shape::plane, Vec3::Zero(), offset * normal, Vec3::Zero(), false);
-    bodies.orientation.back() = Quat::FromTwoVectors(Vec3::UnitZ(), normal);
+    Mat3 axes;
+    axes << tangent_of(normal), normal.cross(tangent_of(normal)), normal;
+    bodies.orientation.back() = Quat(axes);
   }
 
   std::int32_t count() const { return static_cast<std::int32_t>(bodies.count()); }

@@ -116,6 +116,25 @@ TYPED_TEST(Rounds, TwoBallsMeetOnce) {
   EXPECT_TRUE(rounds.late);  // 0.5 ms after the midpoint
 }
 
+TYPED_TEST(Rounds, ManyAtOnceAreMoreThanThereIsRoomForAtFirst) {
+  constexpr std::int32_t lanes = 6000;
+  FlightScene scene;
+  std::vector<Pair> pairs;
+  for (std::int32_t k = 0; k < lanes; ++k) {
+    scene.add_ball(0.1, Vec3(0, k, 0), Vec3(1, 0, 0));
+    scene.add_ball(0.1, Vec3(0.201, k, 0), Vec3(-1, 0, 0));
+    pairs.push_back({2 * k, 2 * k + 1});
+  }
+  const Outcome rounds = in_rounds<TypeParam>(scene, pairs);
+  EXPECT_EQ(rounds.rounds, 1);
+  ASSERT_EQ(rounds.impacts.size(), static_cast<std::size_t>(lanes));
+  for (std::size_t k = 0; k < lanes; ++k) {
+    ASSERT_EQ(rounds.impacts[k].i, 2 * (lanes - 1 - static_cast<std::int32_t>(k)));  // as the pairs came
+    ASSERT_NEAR(rounds.bodies.velocity[2 * k].x(), -1, 1e-15);
+    ASSERT_NEAR(rounds.bodies.velocity[2 * k + 1].x(), 1, 1e-15);
+  }
+}
+
 TYPED_TEST(Rounds, ACradlePassesOnOneBall) {
   constexpr int balls = 20;
   FlightScene scene;

@@ -1,0 +1,64 @@
+// Work in tiles, against loops over the same items.
+#include "core/space_tiles.hpp"
+#include "tests/core/spaces.hpp"
+
+#include <gtest/gtest.h>
+
+#include <vector>
+
+namespace scree {
+namespace {
+
+template <class Space>
+class TilesTest : public test::InSpace<Space> {};
+TYPED_TEST_SUITE(TilesTest, test::Spaces, test::SpaceName);
+
+struct EveryThird {
+  using Record = std::int64_t;
+  View<std::int64_t> out;
+  SCREE_HD bool find(std::int64_t item, Record& record) const {
+    record = 10 * item;
+    return item % 3 == 0;
+  }
+  SCREE_HD void store(std::int64_t to, std::int64_t item, const Record& record) const {
+    out[to] = record + item;
+  }
+};
+
+TYPED_TEST(TilesTest, WhatIsFoundIsAtTheFrontOfItsTileInOrder) {
+  constexpr std::int64_t tiles = 5;
+  Array<std::int64_t, TypeParam> out(tiles * parallel::tile);
+  Array<std::int32_t, TypeParam> counts(tiles);
+  parallel::compact_tiles<TypeParam>("test", tiles, EveryThird{out.view()}, counts.data());
+  const std::vector<std::int64_t> found = to_vector(out);
+  const std::vector<std::int32_t> count = to_vector(counts);
+  for (std::int64_t t = 0; t < tiles; ++t) {
+    std::vector<std::int64_t> expected;
+    for (std::int64_t item = t * parallel::tile; item < (t + 1) * parallel::tile; ++item)
+      if (item % 3 == 0) expected.push_back(11 * item);
+    ASSERT_EQ(count[static_cast<std::size_t>(t)], static_cast<std::int32_t>(expected.size()));
+    const auto first = found.begin() + t * parallel::tile;
+    EXPECT_TRUE(std::equal(expected.begin(), expected.end(), first)) << t;
+  }
+}
+
+struct Number {
+  double value = 0;
+  SCREE_HD friend Number operator+(const Number& a, const Number& b) { return {a.value + b.value}; }
+};
+struct Item {
+  SCREE_HD Number operator()(std::int64_t i) const { return {static_cast<double>(i % 1000)}; }
+};
+
+TYPED_TEST(TilesTest, SumsOfAnyLengthStayInTheSpace) {
+  for (const std::int64_t n : {0, 1, 255, 256, 257, 65536, 65537, 1000000}) {
+    Array<Number, TypeParam> scratch, sum(1);
+    parallel::sum_into<Number, TypeParam>("test", n, Item{}, scratch, sum.data());
+    double expected = 0;
+    for (std::int64_t i = 0; i < n; ++i) expected += static_cast<double>(i % 1000);
+    EXPECT_EQ(to_vector(sum)[0].value, expected) << n;
+  }
+}
+
+}  // namespace
+}  // namespace scree

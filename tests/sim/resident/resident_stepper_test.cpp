@@ -1,0 +1,174 @@
+// Steps with everything in one space, beside Host's own and closed forms.
+#include "sim/simulation.hpp"
+#include "tests/sim/dynamics/simulations.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace scree {
+namespace {
+
+/// Where and how such steps are taken: on Host always, on Device where there is one.
+struct Way {
+  const char* name;
+  SimulationOptions options;
+  const char* precision;
+};
+
+class ResidentStep : public testing::TestWithParam<Way> {
+ protected:
+  void SetUp() override {
+    const DeviceInfo device = device_info();
+    if (GetParam().options.space == SpaceChoice::cuda && !device.available)
+      GTEST_SKIP() << "no GPU: " << device.name;
+  }
+  bool is_mixed() const { return std::string(GetParam().precision) == "mixed"; }
+  Simulation simulate(const std::string& text, SimulationOptions options) const {
+    return Simulation(scene_of(text + "\nprecision: " + GetParam().precision + "\n"), options);
+  }
+  Simulation simulate(const std::string& text) const { return simulate(text, GetParam().options); }
+};
+
+constexpr const char* grain = "materials: {stone: {density: 1000, restitution: 0, friction: 0.5}}\n";
+
+TEST_P(ResidentStep, ABallRollsAtFiveSeventhsOfItsSpeed) {
+  Simulation run = simulate(std::string(grain) + R"(
+gravity: [0, 0, -9.81]
+time: {end: 1, step: 0.004}
+bodies:
+  - {plane: {normal: [0, 0, 1], offset: 0}, material: stone}
+  - {sphere: {radius: 0.5}, name: ball, at: [0, 0, 0.5], velocity: [2, 0, 0], material: stone})");
+  run_to_end(run);
+  EXPECT_NEAR(run.body(1).velocity.x(), 10.0 / 7.0, is_mixed() ? 2e-6 : 1e-12);
+  EXPECT_NEAR(run.body(1).position.z(), 0.5, is_mixed() ? 1e-7 : 1e-12);
+}
+
+TEST_P(ResidentStep, ABouncingBallKeepsItsEnergy) {
+  Simulation run = simulate(R"(
+materials: {steel: {density: 1000, restitution: 1, friction: 0}}
+gravity: [0, 0, -9.81]
+time: {end: 5, step: 0.004}
+bodies:
+  - {plane: {normal: [0, 0, 1], offset: 0}, material: steel}
+  - {sphere: {radius: 0.5}, name: ball, at: [0, 0, 1.5], material: steel})");
+  const double before = run.observe(false).total();
+  run_to_end(run);
+  EXPECT_NEAR(run.observe(false).total() / before, 1.0, 1e-12);
+  EXPECT_GT(run.observe(false).counters.impacts, 4);
+}
+
+/// Boxes, balls, a drum that turns and a gate that goes: all shapes and kinds of contacts.
+constexpr const char* everything = R"(
+materials: {stone: {density: 1000, restitution: 0.2, friction: 0.5}}
+gravity: [0, 0, -9.81]
+time: {end: 0.6, step: 0.004}
+bodies:
+  - {plane: {normal: [0, 0, 1], offset: -1.5}, material: stone}
+  - {tube: {radius: 1, length: 1}, name: drum, at: [0, 0, 0], rotate: {axis: [1, 0, 0], degrees: 90}, motion: {spin: [0, 1, 0]}, material: stone}
+  - {box: {size: [0.6, 0.6, 0.1]}, at: [0, 0, -0.2], fixed: true, until: 0.2, material: stone}
+  - sphere: {radius: {uniform: [0.05, 0.08]}}
+    at: [-0.3, -0.3, 0]
+    repeat: {count: [3, 3, 3], spacing: [0.2, 0.2, 0.2], jitter: 0.01}
+    material: stone
+  - box: {size: [0.12, 0.1, 0.08]}
+    at: [-0.2, -0.2, -0.6]
+    repeat: {count: [3, 3, 1], spacing: [0.2, 0.2, 0.2]}
+    material: stone)";
+
+TEST_P(ResidentStep, TheLedgerCloses) {
+  Simulation run = simulate(everything);
+  double worst = 0;
+  while (!run.finished()) {
+    run.step();
+    worst = std::max(worst, run.observe().unexplained);
+  }
+  EXPECT_LT(worst, is_mixed() ? 1e-5 : 1e-9);
+  EXPECT_LT(run.observe().penetration.relative_max, 0.2);  // things still fall
+  EXPECT_GT(run.observe().contacts, 20);
+}
+
+TEST_P(ResidentStep, RunsRepeatBitByBitWhateverTheThreadsAndWhoLooks) {
+  const auto hash = [&](int threads, bool looks) {
+    SimulationOptions options = GetParam().options;
+    options.threads = threads;
+    Simulation run = simulate(everything, options);
+    while (!run.finished()) {
+      run.step();
+      if (looks) run.observe();
+    }
+    return run.state_hash();
+  };
+  const std::uint64_t first = hash(1, false);
+  EXPECT_EQ(first, hash(2, false));
+  EXPECT_EQ(first, hash(1, true));
+}
+
+/// A heap, on both ways of taking a step: the same centre of mass within what chaos leaves, no overlap.
+TEST_P(ResidentStep, AHeapComesToRestAsOnHost) {
+  const std::string heap = std::string(grain) + R"(
+gravity: [0, 0, -9.81]
+time: {end: 1.5, step: 0.004166666666666667}
+bodies:
+  - {plane: {normal: [0, 0, 1], offset: 0}, material: stone}
+  - {plane: {normal: [1, 0, 0], offset: -0.4}, material: stone}
+  - {plane: {normal: [-1, 0, 0], offset: -0.4}, material: stone}
+  - {plane: {normal: [0, 1, 0], offset: -0.4}, material: stone}
+  - {plane: {normal: [0, -1, 0], offset: -0.4}, material: stone}
+  - sphere: {radius: {uniform: [0.04, 0.06]}}
+    at: [-0.33, -0.33, 0.07]
+    repeat: {count: [6, 6, 30], spacing: [0.133, 0.133, 0.133], jitter: 0.005}
+    material: stone)";
+  Simulation run = simulate(heap);
+  run_to_end(run);
+  Simulation host = simulation_of(heap);
+  run_to_end(host);
+  const Observation& seen = run.observe();
+  EXPECT_NEAR(seen.centre.z(), host.observe().centre.z(), 0.02);
+  EXPECT_LT(seen.penetration.relative_mean, 1e-4);
+  EXPECT_LT(seen.penetration.relative_max, 1e-2);
+  EXPECT_NEAR(seen.coordination_mean, host.observe().coordination_mean, 0.3);
+}
+
+/// A heavy ball on a bed of many light ones that all touch it: its contacts are shared out.
+TEST_P(ResidentStep, AHubIsHeld) {
+  Simulation run = simulate(std::string(grain) + R"(
+gravity: [0, 0, -9.81]
+time: {end: 1, step: 0.004}
+bodies:
+  - {plane: {normal: [0, 0, 1], offset: 0}, material: stone}
+  - sphere: {radius: 0.02}
+    at: [-0.4, -0.4, 0.02]
+    repeat: {count: [20, 20, 1], spacing: [0.0405, 0.0405, 0]}
+    material: stone
+  - {box: {size: [0.8, 0.8, 0.2]}, name: slab, at: [-0.015, -0.015, 0.14], material: stone})");
+  run_to_end(run);
+  const std::int32_t slab = 401;
+  EXPECT_NEAR(run.body(slab).position.z(), 0.14, 2e-4);
+  EXPECT_LT(run.body(slab).velocity.norm(), 1e-3);
+}
+
+TEST_P(ResidentStep, ForcesOnWallsAreThoseOfTheScene) {
+  Simulation run = simulate(std::string(grain) + R"(
+gravity: [0, 0, -9.81]
+time: {end: 0.2, step: 0.004}
+bodies:
+  - {plane: {normal: [0, 0, 1], offset: 0}, name: floor, material: stone}
+  - {sphere: {radius: 0.1}, at: [0, 0, 0.1], material: stone}
+checks:
+  - {measure: floor.force.z, below: 0})");
+  run_to_end(run);
+  const double weight = 4.0 / 3.0 * pi * 0.001 * 1000 * 9.81;
+  EXPECT_NEAR(run.body(0).force.z(), -weight, 1e-6 * weight);
+}
+
+INSTANTIATE_TEST_SUITE_P(Ways, ResidentStep,
+                         testing::Values(Way{"host_double", {SpaceChoice::host, 1, true}, "double"},
+                                         Way{"host_mixed", {SpaceChoice::host, 1, true}, "mixed"},
+                                         Way{"cuda_double", {SpaceChoice::cuda, 0}, "double"},
+                                         Way{"cuda_mixed", {SpaceChoice::cuda, 0}, "mixed"}),
+                         [](const testing::TestParamInfo<Way>& way) { return std::string(way.param.name); });
+
+}  // namespace
+}  // namespace scree

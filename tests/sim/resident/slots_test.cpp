@@ -1,0 +1,183 @@
+// Slots: every candidate has its places, colours share no free body, memory outlives the candidates.
+#include "sim/resident/slots.hpp"
+
+#include "core/parallel.hpp"
+#include "core/rng.hpp"
+#include "core/space_tiles.hpp"
+#include "tests/core/spaces.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <map>
+#include <set>
+#include <tuple>
+
+namespace scree::resident {
+namespace {
+
+template <class Space>
+class SlotsTest : public test::InSpace<Space> {};
+TYPED_TEST_SUITE(SlotsTest, test::Spaces, test::SpaceName);
+
+/// Balls; number 0 is a plane, and number 1 is one of a drum that turns if asked for.
+BodyTable balls(std::size_t n, bool drum) {
+  BodyTable bodies;
+  bodies.position.assign(n, Vec3::Zero());
+  bodies.orientation.assign(n, Quat::Identity());
+  bodies.velocity.assign(n, Vec3::Zero());
+  bodies.spin.assign(n, Vec3::Zero());
+  bodies.size.assign(n, Vec3(1, 0, 0));
+  bodies.inverse_mass.assign(n, 1.0);
+  bodies.inverse_inertia.assign(n, Vec3(1, 1, 1));
+  bodies.shape.assign(n, Shape::sphere);
+  bodies.mobility.assign(n, Mobility::free);
+  bodies.material.assign(n, 0);
+  bodies.id.resize(n);
+  bodies.shape[0] = Shape::plane;
+  bodies.mobility[0] = Mobility::fixed;
+  if (drum) {
+    bodies.shape[1] = Shape::tube;
+    bodies.mobility[1] = Mobility::prescribed;
+    bodies.spin[1] = Vec3(0, 0, 1);
+  }
+  return bodies;
+}
+
+std::vector<Pair> random_pairs(std::int32_t bodies, int count, std::uint64_t seed) {
+  Random random(seed, 0);
+  std::set<std::pair<std::int32_t, std::int32_t>> pairs;
+  while (static_cast<int>(pairs.size()) < count) {
+    const auto i = static_cast<std::int32_t>(random.uniform() * bodies);
+    const auto j = static_cast<std::int32_t>(random.uniform() * bodies);
+    if (i < j) pairs.insert({i, j});
+  }
+  std::vector<Pair> list;
+  for (const auto& [i, j] : pairs) list.push_back({i, j});
+  return list;
+}
+
+template <class Space>
+struct Built {
+  Bodies<Space> bodies;
+  Array<Pair, Space> pairs;
+  Slots<Space, double> slots;
+
+  explicit Built(const BodyTable& table) { copy_bodies(bodies, table); }
+  void build(const std::vector<Pair>& list) {
+    copy(pairs, list);
+    slots.build(std::as_const(pairs).view(), view_of(std::as_const(bodies)));
+  }
+  std::vector<Slot> places() const {
+    std::vector<Slot> all(static_cast<std::size_t>(slots.places().size()));
+    copy_bytes<Host, Space>(all.data(), slots.places().data(), all.size() * sizeof(Slot));
+    return all;
+  }
+};
+
+void expect_colors_apart(const std::vector<Slot>& places, const ColorTiles& tiles, const BodyTable& bodies) {
+  for (std::size_t c = 0; c + 1 < tiles.begin.size(); ++c) {
+    std::set<std::int32_t> used;
+    for (std::int64_t p = tiles.begin[c] * parallel::tile; p < tiles.begin[c + 1] * parallel::tile; ++p) {
+      const Slot& slot = places[static_cast<std::size_t>(p)];
+      if (slot.i == Slot::empty) continue;
+      for (const auto& [body, end] : {std::pair(slot.i, slot.end_i), std::pair(slot.j, slot.end_j)}) {
+        if (bodies.mobility[static_cast<std::size_t>(body)] != Mobility::free) continue;
+        EXPECT_TRUE(used.insert(end).second) << "body " << body << " twice in colour " << c;
+      }
+    }
+  }
+}
+
+TYPED_TEST(SlotsTest, EachCandidateHasOnePlaceAndColoursShareNoFreeBody) {
+  const BodyTable bodies = balls(300, false);
+  const std::vector<Pair> pairs = random_pairs(300, 1500, 1);
+  Built<TypeParam> built(bodies);
+  built.build(pairs);
+  const std::vector<Slot> places = built.places();
+  std::vector<int> seen(pairs.size(), 0);
+  for (const Slot& slot : places) {
+    if (slot.i == Slot::empty) continue;
+    const auto k = static_cast<std::size_t>(slot.candidate);
+    ++seen[k];
+    EXPECT_EQ(slot.i, pairs[k].i);
+    EXPECT_EQ(slot.j, pairs[k].j);
+  }
+  EXPECT_EQ(std::ranges::count(seen, 1), static_cast<std::ptrdiff_t>(pairs.size()));
+  expect_colors_apart(places, built.slots.balls(), bodies);
+  EXPECT_EQ(built.slots.others().tiles(), 0);
+}
+
+TYPED_TEST(SlotsTest, ATubeHasASlotForEachSurfaceAndOneThatTurnsIsNoBall) {
+  Built<TypeParam> built(balls(10, true));
+  built.build({{0, 2}, {1, 2}, {1, 3}, {2, 3}});
+  std::multiset<std::pair<std::int32_t, std::int32_t>> others;
+  const std::int64_t first = built.slots.balls().tiles() * parallel::tile;
+  const std::vector<Slot> places = built.places();
+  for (auto p = static_cast<std::size_t>(first); p < places.size(); ++p)
+    if (places[p].i != Slot::empty) others.insert({places[p].candidate, places[p].surface});
+  EXPECT_EQ(others, (std::multiset<std::pair<std::int32_t, std::int32_t>>{
+                        {1, 0}, {1, 1}, {1, 2}, {2, 0}, {2, 1}, {2, 2}}));
+}
+
+/// A ball that touches a thousand is many parts, each with few slots, so that colours stay few.
+TYPED_TEST(SlotsTest, AHubIsSplitSoThatColoursStayFew) {
+  const BodyTable bodies = balls(1002, false);
+  std::vector<Pair> pairs;
+  for (std::int32_t k = 2; k < 1002; ++k) pairs.push_back({1, k});
+  Built<TypeParam> built(bodies);
+  built.build(pairs);
+  const std::vector<Slot> places = built.places();
+  expect_colors_apart(places, built.slots.balls(), bodies);
+  EXPECT_LE(built.slots.balls().colors(), 64);
+  ASSERT_EQ(built.slots.hubs().size(), 1);
+  std::map<std::int32_t, int> of_part;
+  for (const Slot& slot : places)
+    if (slot.i != Slot::empty) ++of_part[slot.end_i];
+  EXPECT_EQ(built.slots.solver_bodies(), 1002 + static_cast<std::int64_t>(of_part.size()));
+  for (const auto& [part, count] : of_part) {
+    EXPECT_GE(part, 1002);
+    EXPECT_LE(count, 32);
+  }
+}
+
+template <class Real>
+struct Remember {
+  ConstView<Slot> places;
+  View<BallMemory<Real>> memory;
+  SCREE_HD void operator()(std::int64_t p) const {
+    memory[p].impulse = {static_cast<Real>(places[p].i), static_cast<Real>(places[p].j), Real(1)};
+  }
+};
+
+TYPED_TEST(SlotsTest, MemoryOutlivesTheCandidates) {
+  Built<TypeParam> built(balls(200, false));
+  const std::vector<Pair> before = random_pairs(200, 700, 2);
+  const std::vector<Pair> after = random_pairs(200, 900, 3);
+  built.build(before);
+  parallel::for_each<TypeParam>("test", built.slots.places().size(),
+                                Remember<double>{built.slots.places(), built.slots.ball_memory()});
+  built.build(after);
+  const std::vector<Slot> places = built.places();
+  std::vector<BallMemory<double>> memory(places.size());
+  copy_bytes<Host, TypeParam>(memory.data(), built.slots.ball_memory().data(),
+                              memory.size() * sizeof(BallMemory<double>));
+  int kept = 0;
+  for (std::size_t p = 0; p < places.size(); ++p) {
+    if (places[p].i == Slot::empty) continue;
+    const bool known = std::ranges::any_of(
+        before, [&](const Pair& pair) { return pair.i == places[p].i && pair.j == places[p].j; });
+    EXPECT_EQ(memory[p].is_loaded(), known);
+    if (known) {
+      EXPECT_EQ(memory[p].impulse.x, places[p].i);
+    }
+    if (known) {
+      EXPECT_EQ(memory[p].impulse.y, places[p].j);
+    }
+    kept += known;
+  }
+  EXPECT_GT(kept, 10);
+}
+
+}  // namespace
+}  // namespace scree::resident
