@@ -7,6 +7,7 @@
 #include "core/space_policy.hpp"
 #include "core/timing.hpp"
 
+#include <tbb/global_control.h>
 #include <thrust/copy.h>
 #include <thrust/count.h>
 #include <thrust/extrema.h>
@@ -24,6 +25,11 @@ namespace scree::parallel {
 
 /// Under this many items the cost of waking threads exceeds the work, on the host.
 inline constexpr std::int64_t few = 256;
+
+/// Whether the host has but one thread to work with.
+inline bool is_alone() {
+  return tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism) == 1;
+}
 
 /// Calls f(i) for 0 <= i < n, in any order and at once. f is a copyable function object over views; on
 /// Device the call returns before the work is done. `label` names the work to a profiler. `fewest`: items

@@ -348,7 +348,7 @@ Ledger ResponseSolver::solve(const Manifolds& manifolds, double step, const Resp
     ledger.work += pairs.work;
     if (an_island_gains(stage, others, set.batches)) {
       list_pairs(set, stage);
-      ledger = account_for(set.contacts.size());
+      if (set.contacts.size() > others) ledger = account_for(set.contacts.size());
       islands_.find(set.contacts.view(), solver.view());
       int scaled = 0;
       for (std::int64_t island = 0; island < islands_.count(); ++island) {

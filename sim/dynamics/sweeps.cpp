@@ -124,22 +124,21 @@ struct LoadMean {
   }
 };
 
-struct PairBooks : lanes::Books {
-  friend PairBooks operator+(const PairBooks& a, const PairBooks& b) {
-    return {{a.restitution + b.restitution, a.friction + b.friction, a.work + b.work}};
-  }
-};
-
 struct BookPairs {
   const lanes::Batches* batches;
   const lanes::Body *mean, *kicked, *after;
   View<lanes::Losses> losses;
-  PairBooks operator()(std::int64_t b) const {
-    losses[b].gaining = 0;
-    if (!batches->ball_members.view()[b].are_pairs) return {};
-    return {lanes::kernels().book_balls(batches->balls.view()[b], mean, kicked, after,
-                                        tolerance::response_gain, losses[b])};
+  void operator()(std::int64_t b) const {
+    losses[b] = {};
+    if (!batches->ball_members.view()[b].are_pairs) return;
+    lanes::kernels().book_balls(batches->balls.view()[b], mean, kicked, after, tolerance::response_gain,
+                                losses[b]);
   }
+};
+
+struct LoadBooks {
+  ConstView<lanes::Losses> losses;
+  SCREE_HD lanes::Books operator()(std::int64_t b) const { return losses[b].books; }
 };
 
 }  // namespace
@@ -150,9 +149,10 @@ lanes::Books Sweeps::book_pairs(Array<lanes::Losses, Host>& losses) {
   last_.resize(bodies_.size());
   parallel::for_each<Host>("response.mean", bodies_.size(),
                            LoadMean{*stage_, std::as_const(bodies_).view(), last_.view()});
-  return parallel::sum<PairBooks, Host>(
-      "response.books", batches_->balls.size(),
-      BookPairs{batches_, last_.data(), free_.data(), bodies_.data(), losses.view()});
+  parallel::for_each<Host>("response.books", losses.size(),
+                           BookPairs{batches_, last_.data(), free_.data(), bodies_.data(), losses.view()});
+  return parallel::sum<lanes::Books, Host>("response.books", losses.size(),
+                                           LoadBooks{std::as_const(losses).view()});
 }
 
 bool Sweeps::run(const SweepPlan& plan, int most, std::int64_t& count) {

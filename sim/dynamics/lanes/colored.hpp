@@ -4,12 +4,15 @@
 #include "core/parallel.hpp"
 #include "sim/dynamics/lanes/batches.hpp"
 
+#include <limits>
+
 namespace scree::lanes {
 
 /// For each colour in turn: balls(k) for its batches k of balls, then points(k) for the others.
 template <class Balls, class Points>
 void for_each_color(const char* label, const Batches& batches, Balls balls, Points points) {
-  constexpr std::int64_t fewest = 48;  // batches worth waking threads for: some 5 us
+  // Batches worth waking threads for: some 5 us.
+  const std::int64_t fewest = parallel::is_alone() ? std::numeric_limits<std::int64_t>::max() : 48;
   const std::size_t colors = batches.ball_begin.size() - 1;
   for (std::size_t c = 0; c < colors; ++c) {
     const bool serial = batches.last_is_serial && c + 1 == colors;

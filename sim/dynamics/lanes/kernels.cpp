@@ -245,8 +245,8 @@ void prepare_balls(const BallSource& from, BallBatch& batch, BallParting& partin
   parting.apart = 0;
 }
 
-Books book_balls(const BallBatch& batch, const Body* mean, const Body* kicked, const Body* after,
-                 double rounding, Losses& losses) {
+void book_balls(const BallBatch& batch, const Body* mean, const Body* kicked, const Body* after,
+                double rounding, Losses& losses) {
   const Balls balls = get(batch);
   const V3 p = get(batch.impulse.impulse);
   const auto books = booked<Lanes>(balls, p, load(mean, batch.ends.i), load(mean, batch.ends.j));
@@ -260,13 +260,11 @@ Books book_balls(const BallBatch& batch, const Body* mean, const Body* kicked, c
     const V square = 0.5 * dot(p, u_after - u_kicked);
     losses.gaining = static_cast<std::int32_t>(bits_of((loss < 0) & (-loss > rounding * square)));
   }
-  Books sum{0, 0, 0};
   for (int l = 0; l < width; ++l) {
-    sum.restitution += books.restitution[l];
-    sum.friction += books.friction[l];
-    sum.work += books.work[l];
+    losses.books.restitution += books.restitution[l];
+    losses.books.friction += books.friction[l];
+    losses.books.work += books.work[l];
   }
-  return sum;
 }
 
 /// Goes on by beta of what the last sweep has changed.
@@ -409,9 +407,14 @@ double fly_balls(const BallBatch& batch, BallParting& parting, const Body* veloc
   const Centres j = load_centres(velocities, parting.ends.j);
   V gap = get(parting.gap) +
           0.5 * step * (dot(get(parting.normal), j.velocity - i.velocity) + 0.25 * step * get(parting.bend));
-  // What flies past is nearer to the other's tangent plane than to the other.
-  const V3 p = get(batch.impulse.impulse);
-  gap = (spread(parting.flying) > 0) & (dot(p, p) == 0) ? all(__builtin_huge_val()) : gap;
+  std::uint64_t any_flies = 0;
+  static_assert(sizeof any_flies == sizeof parting.flying);
+  __builtin_memcpy(&any_flies, parting.flying, sizeof any_flies);
+  if (any_flies != 0) {
+    // What flies past is nearer to the other's tangent plane than to the other.
+    const V3 p = get(batch.impulse.impulse);
+    gap = (spread(parting.flying) > 0) & (dot(p, p) == 0) ? all(__builtin_huge_val()) : gap;
+  }
   set(parting.flown, gap);
   double least = 0;
   for (int l = 0; l < width; ++l) least = gap[l] < least ? gap[l] : least;

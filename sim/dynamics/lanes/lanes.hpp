@@ -123,13 +123,17 @@ struct Change {
 
 /// Of a batch: what its impulses move (J), of Ledger.
 struct Books {
-  double restitution, friction, work;
+  double restitution = 0, friction = 0, work = 0;
+  SCREE_HD friend Books operator+(const Books& a, const Books& b) {
+    return {a.restitution + b.restitution, a.friction + b.friction, a.work + b.work};
+  }
 };
 
-/// What the impulses of a batch's contacts dissipate (J), and a bit for each that gains.
+/// What the impulses of each contact of a batch dissipate (J), a bit for each that gains, and all together.
 struct alignas(64) Losses {
   double at[width];
   std::int32_t gaining;
+  Books books;
 };
 
 /// What contacts of balls are made of.
@@ -164,8 +168,8 @@ struct Kernels {
   void (*prepare_balls)(const BallSource&, BallBatch&, BallParting&);
   /// `mean`: velocities halfway between those before and after the substep; `kicked`: without impulses. A
   /// contact gains that gains more than `rounding` of what the impulses do after the kick.
-  Books (*book_balls)(const BallBatch&, const Body* mean, const Body* kicked, const Body* after,
-                      double rounding, Losses&);
+  void (*book_balls)(const BallBatch&, const Body* mean, const Body* kicked, const Body* after,
+                     double rounding, Losses&);
   /// Flies the gaps on to the end of the substep, half a step after the midpoint. Returns the deepest overlap
   /// (m).
   double (*fly_balls)(const BallBatch&, BallParting&, const Body* velocities, double step);
