@@ -32,8 +32,10 @@ using Clock = std::chrono::steady_clock;
 using Json = nlohmann::ordered_json;
 
 double median(std::vector<double> values) {
-  std::ranges::sort(values);
-  return values.empty() ? NAN : values[values.size() / 2];
+  if (values.empty()) return NAN;
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::ranges::nth_element(values, middle);
+  return *middle;
 }
 
 double seconds_since(Clock::time_point start) {
@@ -73,6 +75,13 @@ MemoryUse memory_use_of(const std::string& space) {
   MemoryUse use;
   ((space == Spaces::name ? static_cast<void>(use = Spaces::memory_use()) : void()), ...);
   return use;
+}
+
+/// The processor and, if the bodies are on it, the GPU.
+std::string hardware_of(const std::string& space) {
+  const MachineInfo machine = machine_info();
+  const std::string host = fmt::format("{}, {} cores", machine.cpu, machine.cores);
+  return space == Host::name ? host : device_info().name + " beside " + host;
 }
 
 /// In ms per step.
@@ -144,6 +153,7 @@ int run(int argc, char** argv) {
             {"space", simulation.space_name()},
             {"precision", scene.precision == Precision::mixed ? "mixed" : "double"},
             {"commit", build_info().commit},
+            {"hardware", hardware_of(simulation.space_name())},
             {"bodies", seen.bodies},
             {"contacts", seen.contacts},
             {"pairs", seen.pairs},
