@@ -79,6 +79,7 @@ class ResidentStepper final : public Stepper {
     forces_.forget();
     kept_pairs_.forget();
     seen_pairs_.forget();
+    contacts_.change_bodies();
   }
 
   void copy_state(BodyTable& out) const override { copy_bodies(out, bodies_); }

@@ -152,10 +152,16 @@ struct PointContacts {
   SCREE_HD static int at_point(int k, int field) { return k * point_count + field; }
 };
 
+/// True if there is a contact in a place: `found` in each tile, at its front.
+SCREE_HD inline bool has_contact(const std::int32_t* found, std::int64_t place) {
+  return place % 256 < found[place / 256];
+}
+
 /// Of contacts.
 enum Flag : std::uint8_t {
-  flag_flying = 1,  ///< known not to meet in this substep: its rows only guard what the flight leaves free
-  flag_late = 2     ///< its geometry is of a time after the midpoint
+  flag_flying = 1,   ///< known not to meet in this substep: its rows only guard what the flight leaves free
+  flag_late = 2,     ///< its geometry is of a time after the midpoint
+  flag_may_pass = 4  ///< to be told whether it flies
 };
 
 /// What slots remember from substep to substep.
