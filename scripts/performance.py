@@ -143,6 +143,7 @@ def measure(arguments):
     program = program_in(arguments.build)
     at_most = lambda *counts: list(dict.fromkeys(min(n, arguments.most) for n in counts))
     end = time.monotonic() + arguments.seconds
+    asked = f"--space {arguments.space} --part {arguments.part}" + (f" --most {arguments.most}" if arguments.most < 10**9 else "")
     arguments.out.mkdir(parents=True, exist_ok=True)
     for run in PARTS[arguments.part](at_most, arguments.space):
         run.space = run.space or arguments.space
@@ -151,8 +152,8 @@ def measure(arguments):
         words = run.words(max(1, min(run.within, left / 4)))
         command = shlex.join(["scree", "bench", "step", *words])
         print(f"+ {command}", file=sys.stderr)
-        line = {"part": arguments.part, "name": run.name, "varied": run.varied, "scene": run.scene, "precision": run.precision, "space": run.space,
-                "command": command, **result_of(program, words, left)}
+        line = {"part": arguments.part, "asked": asked, "name": run.name, "varied": run.varied, "scene": run.scene, "precision": run.precision,
+                "space": run.space, "command": command, **result_of(program, words, left)}
         with open(arguments.out / f"{arguments.part}.jsonl", "a") as lines:
             lines.write(json.dumps(line) + "\n")
         said = line.get("result")
