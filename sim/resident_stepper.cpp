@@ -58,6 +58,7 @@ class ResidentStepper final : public Stepper {
   void start_step(std::int64_t step) override {
     step_ = step;
     start_.save(bodies_);
+    kept_pairs_.start_step(step);
     start_ledger_ = ledger;
     for (auto& [body, impulse] : driven_impulse_) impulse.setZero();
     forces_.act(step, bodies_, parameters_);

@@ -5,6 +5,8 @@
 #include "core/tolerances.hpp"
 #include "sim/dynamics/rotation.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <limits>
 
 namespace scree {
@@ -94,6 +96,26 @@ struct RaiseMargin {
   }
 };
 
+constexpr double most_box_steps = 3;
+constexpr double box_travel = 0.05;
+
+/// How fast a body leaves where it is, in its own smallest_size (1/s), squared.
+struct Leaving {
+  double rate_squared = 0;
+  std::int64_t count = 0;
+  SCREE_HD friend Leaving operator+(const Leaving& a, const Leaving& b) {
+    return {a.rate_squared + b.rate_squared, a.count + b.count};
+  }
+};
+struct LeavingOf {
+  ConstBodyView bodies;
+  SCREE_HD Leaving operator()(std::int64_t k) const {
+    if (bodies.mobility[k] != Mobility::free) return {};
+    const double size = smallest_size(bodies.shape[k], bodies.size[k]);
+    return {bodies.velocity[k].squaredNorm() / (size * size), 1};
+  }
+};
+
 struct WorkOfForce {
   ConstBodyView bodies;
   ConstView<Vec3> start;
@@ -167,7 +189,13 @@ void contact_margins(const Bodies<Space>& bodies, double dt, double slack,
 template <class Space>
 void FatBoxes<Space>::put_around(const Bodies<Space>& bodies, double dt, const ResponseParameters& parameters,
                                  const Array<double, Space>& contact_margin) {
-  contact_margins(bodies, dt, tolerance::contact_slack + tolerance::pair_skin, parameters, margin_);
+  const auto leaving =
+      parallel::sum_by_tiles<Leaving, Space>("motion.leaving", bodies.count(), LeavingOf{view_of(bodies)});
+  const double rate =
+      std::sqrt(leaving.rate_squared / static_cast<double>(std::max<std::int64_t>(leaving.count, 1)));
+  const double longest = most_box_steps * dt;
+  const double life = rate * longest > box_travel ? std::max(dt, box_travel / rate) : longest;
+  contact_margins(bodies, life, tolerance::contact_slack + tolerance::pair_skin, parameters, margin_);
   parallel::for_each<Space>("motion.margins", bodies.count(),
                             RaiseMargin{view_of(bodies), contact_margin.view(), margin_.view()});
   copy(position_, bodies.position);

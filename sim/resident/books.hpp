@@ -24,6 +24,8 @@ struct Books {
   std::int64_t ends = 0;     ///< free bodies at loaded contacts
   std::int64_t gaining = 0;  ///< contacts that gain energy
   double deepest = 0;        ///< overlap at the end, of the cap
+  double gap_power = 0;      ///< of normal impulses on what they leave undone: 0 when all are found (J)
+  double kick_power = 0;     ///< of impulses on what they have changed (J)
 
   SCREE_HD friend Books operator+(const Books& a, const Books& b) {
     return {a.restitution + b.restitution,
@@ -33,7 +35,9 @@ struct Books {
             a.loaded + b.loaded,
             a.ends + b.ends,
             a.gaining + b.gaining,
-            a.deepest > b.deepest ? a.deepest : b.deepest};
+            a.deepest > b.deepest ? a.deepest : b.deepest,
+            a.gap_power + b.gap_power,
+            a.kick_power + b.kick_power};
   }
 };
 
@@ -81,7 +85,7 @@ struct BookStage {
   }
 
   /// Adds what an impulse p on j, and reversed on i, has moved: account(), at the arms given.
-  SCREE_HD void book(const Vec3& p, const Vec3& n, const Vec3& arm_i, const Vec3& arm_j,
+  SCREE_HD void book(const Vec3& p, const Vec3& n, const Vec3& arm_i, const Vec3& arm_j, double target,
                      const EndVelocities& i, const EndVelocities& j, bool free_i, bool free_j, Moved& moved,
                      Books& books) const {
     const auto at = [](const Vec3& v, const Vec3& w, const Vec3& arm) { return Vec3(v + w.cross(arm)); };
@@ -95,7 +99,10 @@ struct BookStage {
     if (!free_i) books.work += p.dot(at(i.after, i.after_spin, arm_i));
     if (!free_j) books.work -= p.dot(at(j.after, j.after_spin, arm_j));
     moved.linear += 0.5 * p.dot(before + free_u);
-    moved.square += 0.5 * p.dot(after - free_u);
+    const double changed = p.dot(after - free_u);
+    moved.square += 0.5 * changed;
+    books.gap_power += p.dot(n) * (after.dot(n) - target);
+    books.kick_power += changed;
   }
 };
 
@@ -113,33 +120,35 @@ struct BookBalls {
     using C = BallContacts<Real>;
     if (!has_contact(contacts.found, c)) return {};
     const std::int64_t place = c - c % 256 + contacts.slot[c];
-    const Slot& slot = stage.places[place];
     const Ends ends = contacts.ends[c];
     const Fields<Real>& f = contacts.fields;
-    const EndVelocities i = stage.velocities(slot.i, ends.i);
-    const EndVelocities j = stage.velocities(slot.j, ends.j);
-    const Vec3 n = vec3(f.vector(C::normal, c));
+    const V3<Real> n = f.vector(C::normal, c);
     const V3<Real> impulse = f.vector(C::impulse, c);
-    const Vec3 p = vec3(impulse);
-    const bool free_i = stage.solver[ends.i].inverse_mass > 0;
-    const bool free_j = stage.solver[ends.j].inverse_mass > 0;
     Books books;
     memory[place] = {impulse};
-    if (memory[place].is_loaded()) {
+    const bool loaded = memory[place].is_loaded();
+    if (loaded) {
+      const Slot& slot = stage.places[place];
+      const EndVelocities i = stage.velocities(slot.i, ends.i);
+      const EndVelocities j = stage.velocities(slot.j, ends.j);
+      const bool free_i = stage.solver[ends.i].inverse_mass > 0;
+      const bool free_j = stage.solver[ends.j].inverse_mass > 0;
       Moved moved;
-      stage.book(p, n, static_cast<double>(f.at(C::arm_i, c)) * n, static_cast<double>(f.at(C::arm_j, c)) * n,
-                 i, j, free_i, free_j, moved, books);
+      stage.book(vec3(impulse), vec3(n), static_cast<double>(f.at(C::arm_i, c)) * vec3(n),
+                 static_cast<double>(f.at(C::arm_j, c)) * vec3(n), static_cast<double>(f.at(C::target, c)), i,
+                 j, free_i, free_j, moved, books);
       books.gaining = moved.gains(tolerance::response_gain) ? 1 : 0;
       books.gaps = fabs(static_cast<double>(f.at(C::gap, c)));
       books.loaded = 1;
       books.ends = static_cast<int>(free_i) + static_cast<int>(free_j);
-      if (stage.loads.size() > 0) stage.mark_loaded(slot, stage.part_of(slot));
+      if (stage.loads.size() > 0) stage.mark_loaded(slot, slot.surface);
     }
     Real& flown = f.at(C::flown, c);
     if (contacts.flags[c] == 0) {
-      flown += static_cast<Real>(0.5 * stage.step * n.dot(j.after - i.after));
+      const V3<Real> u = stage.solver[ends.j].velocity - stage.solver[ends.i].velocity;
+      flown += static_cast<Real>(0.5 * stage.step) * dot(n, u);
       books.deepest = fmax(0.0, static_cast<double>(-flown / f.at(C::cap, c)));
-    } else if (passes(contacts.flags[c], memory[place].is_loaded())) {
+    } else if (passes(contacts.flags[c], loaded)) {
       flown = static_cast<Real>(HUGE_VAL);
     }
     return books;
@@ -175,7 +184,8 @@ struct BookPoints {
       const V3<Real> impulse = f.vector(C::at_point(k, C::impulse), c);
       memory[place].impulse[k] = impulse;
       if (impulse.x != 0 || impulse.y != 0 || impulse.z != 0) {
-        stage.book(vec3(impulse), n, arm_i, arm_j, i, j, free_i, free_j, moved, books);
+        stage.book(vec3(impulse), n, arm_i, arm_j, static_cast<double>(f.at(C::at_point(k, C::target), c)), i,
+                   j, free_i, free_j, moved, books);
         books.gaps += fabs(static_cast<double>(f.at(C::at_point(k, C::gap), c)));
         ++books.loaded;
       }

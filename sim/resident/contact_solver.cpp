@@ -252,6 +252,10 @@ template <class Space, class Real>
 void ContactSolver<Space, Real>::find_impulses(const ResponseParameters& parameters, Counters& counters) {
   SweepPlan plan = plan_sweeps(parameters, counts_.contacts, counts_.points);
   if (std::is_same_v<Real, float>) plan.tolerance = std::max(plan.tolerance, tolerance::mixed_change);
+  if (is_heap(counts_.points)) {
+    plan.least *= patience_;
+    plan.most = std::max(plan.most, plan.least);
+  }
   const SweepState done =
       store_.point_places() == 0 ? run_impulse_rounds<true>(plan) : run_impulse_rounds<false>(plan);
   counters.sweeps += done.sweeps;
@@ -277,6 +281,9 @@ Ledger ContactSolver<Space, Real>::book(const ConstBodyView& bodies, const Respo
   ledger.restitution = books_.restitution;
   ledger.friction = books_.friction;
   ledger.work = books_.work;
+  const double undone = fabs(books_.gap_power);
+  if (undone > 0.01 * books_.kick_power) patience_ = std::min(2 * patience_, 16);
+  if (undone < 0.0025 * books_.kick_power) patience_ = std::max(patience_ / 2, 1);
   return ledger;
 }
 

@@ -96,6 +96,7 @@ class ContactSolver {
   ContactCounts counts_;
   Books books_;
   double overlap_ = 0;
+  int patience_ = 1;  // how many times the least number of sweeps
   Array<std::uint32_t, Space> loads_, next_loads_;
 
   Array<Books, Space> books_scratch_;

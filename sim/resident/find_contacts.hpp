@@ -202,7 +202,10 @@ struct FindBalls {
     const double friction = stage.friction_of(slot);
     const double bend = stage.bend_of(slot, n);
     const double parting = n.dot(vec3(b.velocity) - vec3(a.velocity));
-    const bool may_pass = record.gap > 0 && !memory[place].is_loaded();
+    // A look at the normal velocity tells of nearly all that they are not held apart (flight_of_contact).
+    const double closing = n.dot(stage.kicked_velocity(slot.i) - stage.kicked_velocity(slot.j));
+    const bool may_pass = record.gap > 0 && !memory[place].is_loaded() &&
+                          (record.lead > 0 || closing * stage.step > tolerance::likely_closing * record.gap);
     const BallMasses masses = ball_masses(
         static_cast<double>(stage.inverse_mass(slot.i, slot.end_i)),
         static_cast<double>(stage.inverse_inertia(slot.i, slot.end_i)), record.arm_i * record.arm_i,

@@ -32,6 +32,11 @@ SCREE_HD inline Vec3 vec3(const V3<Real>& a) {
   return {static_cast<double>(a.x), static_cast<double>(a.y), static_cast<double>(a.z)};
 }
 
+template <class Real>
+SCREE_HD inline bool is_zero(const V3<Real>& a) {
+  return a.x == 0 && a.y == 0 && a.z == 0;
+}
+
 /// Velocities of a body, or its displacement and turn: a record that is read and written as a whole.
 template <class Real>
 struct alignas(8 * sizeof(Real)) BodyRecord : Moving<Real> {};
@@ -169,7 +174,7 @@ template <class Real>
 struct BallMemory {
   V3<Real> impulse;  ///< N s, world frame
 
-  SCREE_HD bool is_loaded() const { return impulse.x != 0 || impulse.y != 0 || impulse.z != 0; }
+  SCREE_HD bool is_loaded() const { return !is_zero<Real>(impulse); }
 };
 template <class Real>
 struct PointMemory {
@@ -179,7 +184,7 @@ struct PointMemory {
 
   SCREE_HD bool is_loaded() const {
     for (int k = 0; k < count; ++k)
-      if (impulse[k].x != 0 || impulse[k].y != 0 || impulse[k].z != 0) return true;
+      if (!is_zero<Real>(impulse[k])) return true;
     return false;
   }
 };

@@ -118,9 +118,14 @@ struct SweepBalls {
     const Ends ends = contacts.ends[c];
     BodyRecord<Real> i = bodies[ends.i];
     BodyRecord<Real> j = bodies[ends.j];
-    const auto balls = balls_at(contacts, c);
     const V3<Real> before = contacts.fields.vector(C::impulse, c);
     const V3<Real> ahead = before + beta * (before - contacts.fields.vector(C::last, c));
+    // Many contacts are open and stay so: they need no more.
+    if (is_zero<Real>(before) && is_zero<Real>(ahead) &&
+        dot(contacts.fields.vector(C::normal, c), j.velocity - i.velocity) >=
+            contacts.fields.at(C::target, c))
+      return {};
+    const auto balls = balls_at(contacts, c);
     const V3<Real> p = impulse_of(balls, ahead, i, j);
     const V3<Real> change = p - ahead;
     push(balls, change, i, j);
