@@ -117,11 +117,15 @@ def table_of(rows, columns):
     return table(list(columns), [[cell(row) for cell in columns.values()] for row in rows])
 
 
-def scaling(number):
+def scaling_rows():
     rows, failed = rows_of("spheres", "spheres-double", "spheres-largest")
+    return sorted(rows, key=lambda row: (row.space != "cuda", row.machine, row.precision != "mixed", row.bodies)), failed
+
+
+def scaling(number):
+    rows, failed = scaling_rows()
     if not rows:
         return []
-    rows.sort(key=lambda row: (row.space != "cuda", row.machine, row.precision != "mixed", row.bodies))
     lines = [f"## {number}. Speed against the number of bodies", "",
              "Spheres of +-20 % at rest in a box ([scene](../configs/bench/settled_spheres.yaml)), friction 0.5, step 1/240 s: as deep as wide up to a "
              "million, which are 100 layers; more are as deep, and wider. Not all are at rest when they are timed: the median speed says it.", ""]
@@ -139,14 +143,14 @@ def stages_of(row):
 
 
 def stages(number):
-    rows, _ = rows_of("spheres", "spheres-double", "spheres-largest")
+    rows, _ = scaling_rows()
     if not rows:
         return []
     lines = [f"## {number}. Where the time goes", "",
-             "Shares of the stages ([method](method.md)) in the same runs. On Device from ten steps more in which each parallel call is waited for, "
+             "Shares of the stages ([method](method.md)) in the runs of section 1, which has their commands and commits. On Device from ten steps more in which each parallel call is waited for, "
              "without which calls run side by side with those that come after.", ""]
     for k, name in enumerate(dict.fromkeys(row.curve for row in rows)):
-        of_curve = sorted((row for row in rows if row.curve == name), key=lambda row: row.bodies)
+        of_curve = [row for row in rows if row.curve == name]
         bars = []
         for s in reversed(range(len(STAGES) + 1)):
             points = [(x, 100 * sum(stages_of(row)[: s + 1]), count(row.bodies)) for x, row in enumerate(of_curve)]
@@ -156,22 +160,21 @@ def stages(number):
         calls = sorted(row.by_calls["calls_ms"].items(), key=lambda call: -call[1])[:8]
         lines += [f"The longest calls of {count(row.bodies)} bodies, {name}, each waited for:", "",
                   *table(["call", "ms/step", "%"], [[f"`{call}`", three(ms), f"{100 * ms / row.by_calls['mean_ms']:.0f}"] for call, ms in calls])]
-    return lines + caption(rows)
+    return lines
 
 
 def memory(number):
-    rows, _ = rows_of("spheres", "spheres-double", "spheres-largest")
-    rows = [row for row in rows if row.bodies >= 5000]  # or the program itself is most of it
+    rows = [row for row in scaling_rows()[0] if row.bodies >= 5000]  # or the program itself is most of it
     if not rows:
         return []
-    rows.sort(key=lambda row: (row.space != "cuda", row.machine, row.precision != "mixed", row.bodies))
     lines = [f"## {number}. Memory", "",
              "On Device what the bodies, their contacts and all buffers have in use; on Host what the process has resident, the program (30 MB) and "
-             "the scene included. The same runs; the peak is that of the whole run up to the end of the steps that are timed.", ""]
+             "the scene included. The runs, with their commands and commits, are those of section 1; the peak is that of a whole run up to the end of the "
+             "steps that are timed.", ""]
     lines += over_bodies("memory", rows, lambda row: row.memory_peak_bytes / row.bodies, "bytes per body at the peak", "x")
     columns = WHERE | {"bodies": SPEED["bodies"], "bytes/body": lambda row: three(row.memory_bytes / row.bodies),
                        "at the peak": lambda row: three(row.memory_peak_bytes / row.bodies), "peak (GB)": lambda row: three(row.memory_peak_bytes / 1e9)}
-    return lines + table_of(rows, columns) + caption(rows)
+    return lines + table_of(rows, columns)
 
 
 def other_scenes(number):
@@ -188,16 +191,18 @@ def other_scenes(number):
 def crossings(rows):
     """From how many bodies on a GPU is the faster, beside the same machine's Host."""
     lines = []
-    for machine in dict.fromkeys(row.file.parent.parent.name for row in rows):
+    for gpu in dict.fromkeys((row.file, row.machine) for row in rows if row.space == "cuda"):
         for precision in ("double", "mixed"):
-            ms = {(row.space, row.bodies): row.median_ms for row in rows if row.file.parent.parent.name == machine and row.precision == precision}
+            ms = {(row.space, row.bodies): row.median_ms for row in rows if row.file == gpu[0] and row.precision == precision}
             both = sorted(n for space, n in ms if space == "host" and ("cuda", n) in ms)
-            slower = [n for n in both if ms["cuda", n] >= ms["host", n]]
-            if not both:
-                continue
-            faster = [n for n in both if not slower or n > slower[-1]]
-            lines += [f"- {machine}, {precision}: " + (f"Device is the faster from {count(faster[0])} bodies on, of those measured." if faster else
-                                                       f"Host is the faster up to {count(both[-1])} bodies, the most that were measured.")]
+            faster = []
+            for n in reversed(both):
+                if ms["cuda", n] >= ms["host", n]:
+                    break
+                faster = [n, *faster]
+            if both:
+                lines.append(f"- {gpu[1]}, {precision}: " + (f"faster than its host from {count(faster[0])} bodies on, of those measured." if faster else
+                                                             f"slower than its host up to {count(both[-1])} bodies, the most that were measured."))
     return lines + [""] if lines else []
 
 
