@@ -110,7 +110,7 @@ PRECISIONS = ("mixed", "double")
 PARTS = {
     "spheres": lambda at_most, space: [spheres(n) for n in at_most(10**3, 10**4, 10**5, 10**6, 10**7)],
     "spheres-double": lambda at_most, space: [spheres(n, "double") for n in at_most(10**3, 10**4, 10**5, 10**6, 10**7)],
-    "spheres-largest": lambda at_most, space: [spheres(n, p, within=130) for p in PRECISIONS for n in at_most(10**8)],
+    "spheres-largest": lambda at_most, space: [spheres(n, p, within=130) for p in PRECISIONS for n in at_most(3 * 10**7, 10**8)],
     "boxes": lambda at_most, space: [boxes(n, p) for p in PRECISIONS for n in at_most(10**4, 10**5, 10**6)],
     "decades": lambda at_most, space: [decades(n, p) for p in PRECISIONS for n in at_most(10**6)],
     "drum": lambda at_most, space: [drum(n, p) for p in PRECISIONS for n in at_most(10**6)],
