@@ -58,7 +58,7 @@ typename Program::State run(Host, const char* label, const Program& program, typ
 /// judges alike, from the sums of all blocks, of which there are two sets: one may still be read by blocks
 /// that are behind.
 template <class Program>
-__global__ void __launch_bounds__(tile)
+__global__ void __launch_bounds__(tile, blocks_at_once<Program>())
     run_phases(const Program program, typename Program::State state, typename Program::Sum* sums,
                typename Program::State* out) {
   using Sum = typename Program::Sum;

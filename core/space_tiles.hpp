@@ -45,8 +45,15 @@ void add_up(Host, const char* label, std::int64_t n, const F& f, Array<T, Host>&
 
 #if SCREE_WITH_CUDA
 
+/// Blocks that share a processor at least: a program may say so, if it would take too many registers.
 template <class F>
-__global__ void __launch_bounds__(tile) compact_tile(F f, std::int32_t* counts) {
+constexpr int blocks_at_once() {
+  if constexpr (requires { F::blocks_at_once; }) return F::blocks_at_once;
+  return 1;
+}
+
+template <class F>
+__global__ void __launch_bounds__(tile, blocks_at_once<F>()) compact_tile(F f, std::int32_t* counts) {
   __shared__ std::uint32_t sums[tile / 32];
   const std::int64_t first = std::int64_t{blockIdx.x} * tile;
   typename F::Record record;
@@ -78,7 +85,7 @@ struct BlockRoom {
 
 /// Each block adds up the tiles b, b + blocks, ...; sums[b] is its part.
 template <class T, class F>
-__global__ void __launch_bounds__(tile) sum_strided(F f, std::int64_t n, T* sums) {
+__global__ void __launch_bounds__(tile, blocks_at_once<F>()) sum_strided(F f, std::int64_t n, T* sums) {
   __shared__ BlockRoom<T> room;
   T mine{};
   const std::int64_t stride = std::int64_t{gridDim.x} * tile;

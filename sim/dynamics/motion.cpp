@@ -84,20 +84,24 @@ struct AddTravel {
   SCREE_HD void operator()(std::int64_t k) const { margin[k] += travel(k); }
 };
 
-/// At least the margin wanted, and the skin.
+constexpr double most_box_steps = 16;
+constexpr double box_travel = 0.05;
+constexpr double pair_skin = 0.05;
+
+/// At least the margin wanted and the skin, and what fast bodies travel in so long (s): they are few, and for
+/// them alone the boxes of all would have to be put anew.
 struct RaiseMargin {
   ConstBodyView bodies;
   ConstView<double> wanted;
   View<double> margin;
+  double life;
   SCREE_HD void operator()(std::int64_t k) const {
     if (bodies.mobility[k] == Mobility::fixed || is_boundary(bodies.shape[k])) return;
-    const double skin = tolerance::pair_skin * smallest_size(bodies.shape[k], bodies.size[k]);
-    margin[k] = fmax(margin[k], wanted[k] + skin);
+    const double size = smallest_size(bodies.shape[k], bodies.size[k]);
+    const double travel = tolerance::contact_slack * size + life * bodies.velocity[k].norm();
+    margin[k] = fmax(margin[k], fmax(wanted[k] + pair_skin * size, travel));
   }
 };
-
-constexpr double most_box_steps = 3;
-constexpr double box_travel = 0.05;
 
 /// How fast a body leaves where it is, in its own smallest_size (1/s), squared.
 struct Leaving {
@@ -195,9 +199,9 @@ void FatBoxes<Space>::put_around(const Bodies<Space>& bodies, double dt, const R
       std::sqrt(leaving.rate_squared / static_cast<double>(std::max<std::int64_t>(leaving.count, 1)));
   const double longest = most_box_steps * dt;
   const double life = rate * longest > box_travel ? std::max(dt, box_travel / rate) : longest;
-  contact_margins(bodies, life, tolerance::contact_slack + tolerance::pair_skin, parameters, margin_);
+  contact_margins(bodies, dt, tolerance::contact_slack + pair_skin, parameters, margin_);
   parallel::for_each<Space>("motion.margins", bodies.count(),
-                            RaiseMargin{view_of(bodies), contact_margin.view(), margin_.view()});
+                            RaiseMargin{view_of(bodies), contact_margin.view(), margin_.view(), life});
   copy(position_, bodies.position);
   copy(orientation_, bodies.orientation);
 }

@@ -112,13 +112,14 @@ SCREE_HD inline bool passes(std::uint8_t flags, bool loaded) { return (flags & f
 /// Of contacts of balls. Sets their gaps at the end, and remembers their impulses.
 template <class Real>
 struct BookBalls {
+  static constexpr int blocks_at_once = 2;
+
   BookStage<Real> stage;
   BallContacts<Real> contacts;
   View<BallMemory<Real>> memory;
 
   SCREE_HD Books operator()(std::int64_t c) const {
     using C = BallContacts<Real>;
-    if (!has_contact(contacts.found, c)) return {};
     const std::int64_t place = c - c % 256 + contacts.slot[c];
     const Ends ends = contacts.ends[c];
     const Fields<Real>& f = contacts.fields;
@@ -165,7 +166,6 @@ struct BookPoints {
 
   SCREE_HD Books operator()(std::int64_t c) const {
     using C = PointContacts<Real>;
-    if (!has_contact(contacts.found, c)) return {};
     const std::int64_t place = c - c % 256 + contacts.slot[c];
     const Slot& slot = stage.places[first_place + place];
     const Ends ends = contacts.ends[c];

@@ -16,17 +16,10 @@ namespace {
 
 constexpr int tile = parallel::tile;
 
-/// Contacts and points of a place.
-struct CountBalls {
-  const std::int32_t* found;
-  SCREE_HD ContactCounts operator()(std::int64_t t) const { return {found[t], found[t]}; }
-};
 template <class Real>
 struct CountPoints {
   PointContacts<Real> contacts;
-  SCREE_HD ContactCounts operator()(std::int64_t c) const {
-    return has_contact(contacts.found, c) ? ContactCounts{1, contacts.points[c]} : ContactCounts{};
-  }
+  SCREE_HD std::int64_t operator()(std::int64_t c) const { return contacts.points[c]; }
 };
 
 /// What is known of pairs in another list.
@@ -54,7 +47,6 @@ struct BallImpulseOn {
   BallContacts<Real> contacts;
   ConstView<Slot> places;
   SCREE_HD ImpulseSum operator()(std::int64_t c) const {
-    if (!has_contact(contacts.found, c)) return {};
     const Slot& slot = places[c - c % tile + contacts.slot[c]];
     if (slot.i != body && slot.j != body) return {};
     const Vec3 impulse = vec3(contacts.fields.vector(BallContacts<Real>::impulse, c));
@@ -68,7 +60,6 @@ struct PointImpulseOn {
   ConstView<Slot> places;
   SCREE_HD ImpulseSum operator()(std::int64_t c) const {
     using C = PointContacts<Real>;
-    if (!has_contact(contacts.found, c)) return {};
     const Slot& slot = places[c - c % tile + contacts.slot[c]];
     if (slot.i != body && slot.j != body) return {};
     Vec3 impulse = Vec3::Zero();
@@ -138,15 +129,20 @@ Inspection<Real> ContactSolver<Space, Real>::inspect() const {
 }
 
 template <class Space, class Real>
-Vec3 ContactSolver<Space, Real>::impulse_on(std::int32_t body) {
+ConstView<Slot> ContactSolver<Space, Real>::places_of_points() const {
   const std::int64_t first = store_.ball_places();
-  const ConstView<Slot> places = slots_.places();
-  if (step_ == 0 || places.size() == 0) return Vec3::Zero();
+  return {slots_.places().data() + first, slots_.places().size() - first};
+}
+
+template <class Space, class Real>
+Vec3 ContactSolver<Space, Real>::impulse_on(std::int32_t body) {
+  if (counts_.contacts == 0) return Vec3::Zero();
   const auto on_balls = parallel::sum_by_tiles<ImpulseSum, Space>(
-      "contacts.impulse", first, BallImpulseOn<Real>{body, store_.balls(), places});
+      "contacts.impulse", ball_list_.size(),
+      on_contacts(ball_list_, BallImpulseOn<Real>{body, store_.balls(), slots_.places()}));
   const auto on_points = parallel::sum_by_tiles<ImpulseSum, Space>(
-      "contacts.impulse", places.size() - first,
-      PointImpulseOn<Real>{body, store_.points(), {places.data() + first, places.size() - first}});
+      "contacts.impulse", point_list_.size(),
+      on_contacts(point_list_, PointImpulseOn<Real>{body, store_.points(), places_of_points()}));
   return (on_balls + on_points).impulse;
 }
 
@@ -192,31 +188,25 @@ void ContactSolver<Space, Real>::find(ConstView<double> margin, double scale, co
   const std::int64_t balls = slots_.balls().tiles();
   parallel::compact_tiles<Space>("contacts.find balls", balls,
                                  FindBalls<Real>{stage, store_.balls(), slots_.ball_memory()},
-                                 store_.found());
-  passing_.resize(balls);
-  passing_in_tile_.resize(balls * tile);
-  parallel::compact_tiles<Space>("contacts.passing", balls,
-                                 MarkPassing<Real>{store_.balls(), passing_in_tile_.view()}, passing_.data());
-  parallel::for_each<Space>(
-      "contacts.passing", balls * tile,
-      JudgePassing<Real>{stage, store_.balls(), passing_.data(), std::as_const(passing_in_tile_).view()});
+                                 store_.ball_tiles().data());
   parallel::compact_tiles<Space>(
       "contacts.find", slots_.others().tiles(),
       FindPoints<Real>{stage, balls * tile, store_.points(), slots_.point_memory(), loads()},
-      store_.found() + balls);
-  count();
-}
-
-template <class Space, class Real>
-void ContactSolver<Space, Real>::count() {
-  Array<ContactCounts, Space> scratch, totals(2);
-  parallel::sum_into<ContactCounts, Space>("contacts.count", slots_.balls().tiles(),
-                                           CountBalls{store_.found()}, scratch, totals.data());
-  parallel::sum_into<ContactCounts, Space>("contacts.count", store_.point_places(),
-                                           CountPoints<Real>{store_.points()}, scratch, totals.data() + 1);
-  ContactCounts both[2];
-  copy_bytes<Host, Space>(both, totals.data(), sizeof(both));
-  counts_ = both[0] + both[1];
+      store_.point_tiles().data());
+  passing_.resize(balls);
+  passing_in_tile_.resize(balls * tile);
+  parallel::compact_tiles<Space>(
+      "contacts.passing", balls,
+      MarkPassing<Real>{store_.balls(), store_.ball_tiles().data(), passing_in_tile_.view()},
+      passing_.data());
+  parallel::for_each<Space>(
+      "contacts.passing", balls * tile,
+      JudgePassing<Real>{stage, store_.balls(), passing_.data(), std::as_const(passing_in_tile_).view()});
+  ball_list_.make(slots_.balls(), store_.ball_tiles());
+  point_list_.make(slots_.others(), store_.point_tiles());
+  const std::int64_t points = parallel::sum_by_tiles<std::int64_t, Space>(
+      "contacts.count", point_list_.size(), on_contacts(point_list_, CountPoints<Real>{store_.points()}));
+  counts_ = {ball_list_.size() + point_list_.size(), ball_list_.size() + points};
 }
 
 template <class Space, class Real>
@@ -230,10 +220,9 @@ JoinHubs<Record> ContactSolver<Space, Real>::join_hubs(Array<Record, Space>& bod
 template <class Space, class Real>
 template <bool only_balls>
 SweepState ContactSolver<Space, Real>::run_impulse_rounds(const SweepPlan& plan) {
-  const std::int64_t balls = slots_.balls().tiles();
   return parallel::run_rounds<Space>("sweeps",
-                                     ImpulseRounds<Real, only_balls>{.ball_colors = {slots_.balls(), 0},
-                                                                     .point_colors = {slots_.others(), balls},
+                                     ImpulseRounds<Real, only_balls>{.ball_colors = ColorPhases(ball_list_),
+                                                                     .point_colors = ColorPhases(point_list_),
                                                                      .balls = store_.balls(),
                                                                      .points = store_.points(),
                                                                      .inertia = inertia_.data(),
@@ -264,16 +253,18 @@ void ContactSolver<Space, Real>::find_impulses(const ResponseParameters& paramet
 
 template <class Space, class Real>
 Ledger ContactSolver<Space, Real>::book(const ConstBodyView& bodies, const ResponseParameters& parameters) {
-  const std::int64_t first = store_.ball_places();
   const BookStage<Real> stage{slots_.places(), bodies, free_.view(),      solver_.view(),
                               parameters,      step_,  next_loads_.view()};
   Array<Books, Space> totals(2);
-  parallel::sum_into<Books, Space>("books.balls", first,
-                                   BookBalls<Real>{stage, store_.balls(), slots_.ball_memory()},
-                                   books_scratch_, totals.data());
-  parallel::sum_into<Books, Space>("books.points", store_.point_places(),
-                                   BookPoints<Real>{stage, first, store_.points(), slots_.point_memory()},
-                                   books_scratch_, totals.data() + 1);
+  parallel::sum_into<Books, Space>(
+      "books.balls", ball_list_.size(),
+      on_contacts(ball_list_, BookBalls<Real>{stage, store_.balls(), slots_.ball_memory()}), books_scratch_,
+      totals.data());
+  parallel::sum_into<Books, Space>(
+      "books.points", point_list_.size(),
+      on_contacts(point_list_,
+                  BookPoints<Real>{stage, store_.ball_places(), store_.points(), slots_.point_memory()}),
+      books_scratch_, totals.data() + 1);
   Books both[2];
   copy_bytes<Host, Space>(both, totals.data(), sizeof(both));
   books_ = both[0] + both[1];
@@ -311,16 +302,15 @@ Ledger ContactSolver<Space, Real>::solve(const FlightStage& flight, bool any_is_
 
 template <class Space, class Real>
 Ledger ContactSolver<Space, Real>::shift_late_bodies(const FlightStage& flight) {
-  const std::int64_t first = slots_.balls().tiles() * tile;
-  const ConstView<Slot> places = slots_.places();
   const LateMoments<Real> moments{flight, free_.view(), solver_.view()};
   Array<Ledger, Space> totals(3);
-  parallel::sum_into<Ledger, Space>("late.moments", first,
-                                    LateBallMoments<Real>{moments, store_.balls(), places}, ledger_scratch_,
-                                    totals.data());
   parallel::sum_into<Ledger, Space>(
-      "late.moments", places.size() - first,
-      LatePointMoments<Real>{moments, store_.points(), {places.data() + first, places.size() - first}},
+      "late.moments", ball_list_.size(),
+      on_contacts(ball_list_, LateBallMoments<Real>{moments, store_.balls(), slots_.places()}),
+      ledger_scratch_, totals.data());
+  parallel::sum_into<Ledger, Space>(
+      "late.moments", point_list_.size(),
+      on_contacts(point_list_, LatePointMoments<Real>{moments, store_.points(), places_of_points()}),
       ledger_scratch_, totals.data() + 1);
   parallel::sum_into<Ledger, Space>("late.shift", flight.bodies.count(),
                                     ShiftLate<Real>{flight, free_.view(), solver_.view()}, ledger_scratch_,
@@ -335,24 +325,24 @@ void ContactSolver<Space, Real>::take_velocities(const ConstBodyView& bodies) {
   parallel::for_each<Space>(
       "late.reload", solver_.size(),
       ReloadBody<Real>{bodies, slots_.hubs(), slots_.hub_of_parts(), solver_.view(), last_.view()});
-  if (counts_.contacts > 0) {
-    parallel::for_each<Space>("late.fly", slots_.balls().tiles() * tile,
-                              FlyBalls<Real>{store_.balls(), solver_.view(), last_.view(), step_});
-    parallel::for_each<Space>("late.fly", store_.point_places(),
-                              FlyPoints<Real>{store_.points(), solver_.view(), last_.view(), step_});
-  }
+  parallel::for_each<Space>(
+      "late.fly", ball_list_.size(),
+      on_contacts(ball_list_, FlyBalls<Real>{store_.balls(), solver_.view(), last_.view(), step_}));
+  parallel::for_each<Space>(
+      "late.fly", point_list_.size(),
+      on_contacts(point_list_, FlyPoints<Real>{store_.points(), solver_.view(), last_.view(), step_}));
   solver_.swap(last_);
 }
 
 template <class Space, class Real>
 void ContactSolver<Space, Real>::fly_late(const FlightStage& flight) {
-  const std::int64_t first = slots_.balls().tiles() * tile;
-  const ConstView<Slot> places = slots_.places();
   const ConstBodyView bodies = read_only(flight.bodies);
-  parallel::for_each<Space>("late.fly", first, FlyLateBalls<Real>{store_.balls(), places, bodies});
   parallel::for_each<Space>(
-      "late.fly", places.size() - first,
-      FlyLatePoints<Real>{store_.points(), {places.data() + first, places.size() - first}, bodies, flight});
+      "late.fly", ball_list_.size(),
+      on_contacts(ball_list_, FlyLateBalls<Real>{store_.balls(), slots_.places(), bodies}));
+  parallel::for_each<Space>(
+      "late.fly", point_list_.size(),
+      on_contacts(point_list_, FlyLatePoints<Real>{store_.points(), places_of_points(), bodies, flight}));
 }
 
 template <class Space, class Real>
@@ -385,12 +375,11 @@ Ledger ContactSolver<Space, Real>::correct(const FlightStage& flight, bool any_i
 template <class Space, class Real>
 template <bool only_balls>
 void ContactSolver<Space, Real>::run_parting_rounds(int most) {
-  const std::int64_t balls = slots_.balls().tiles();
   parallel::run_rounds<Space>(
       "correction",
       PartingRounds<Real, only_balls>{
-          .ball_colors = {slots_.balls(), 0},
-          .point_colors = {slots_.others(), balls},
+          .ball_colors = ColorPhases(ball_list_),
+          .point_colors = ColorPhases(point_list_),
           .balls = store_.balls(),
           .points = store_.points(),
           .inertia = inertia_.data(),

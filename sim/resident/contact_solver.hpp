@@ -8,6 +8,7 @@
 #include "sim/dynamics/sweeps.hpp"
 #include "sim/resident/bodies.hpp"
 #include "sim/resident/books.hpp"
+#include "sim/resident/contact_list.hpp"
 #include "sim/resident/contact_store.hpp"
 #include "sim/resident/find_contacts.hpp"
 #include "sim/resident/flights.hpp"
@@ -68,7 +69,7 @@ class ContactSolver {
  private:
   void load_bodies(const ConstBodyView& bodies, ConstView<double> margin,
                    const ResponseParameters& parameters);
-  void count();
+  ConstView<Slot> places_of_points() const;
   template <class Record>
   JoinHubs<Record> join_hubs(Array<Record, Space>& bodies);
   void find_impulses(const ResponseParameters& parameters, Counters& counters);
@@ -90,6 +91,7 @@ class ContactSolver {
   Array<PartsSum, Space> parts_sums_;
 
   ContactStore<Space, Real> store_;
+  ContactList<Space> ball_list_, point_list_;
   Array<std::int32_t, Space> passing_;  // contacts of balls that may fly past, of each tile
   Array<std::uint8_t, Space> passing_in_tile_;
 

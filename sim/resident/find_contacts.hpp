@@ -169,6 +169,8 @@ struct FindBalls {
     double lead;
   };
 
+  static constexpr int blocks_at_once = 3;
+
   FindStage<Real> stage;
   BallContacts<Real> contacts;
   View<BallMemory<Real>> memory;
@@ -240,10 +242,11 @@ struct MarkPassing {
   struct Record {};
 
   BallContacts<Real> contacts;
+  const std::int32_t* found;   ///< contacts of each tile
   View<std::uint8_t> in_tile;  ///< where each is, in its tile
 
   SCREE_HD bool find(std::int64_t c, Record&) const {
-    return has_contact(contacts.found, c) && (contacts.flags[c] & flag_may_pass) != 0;
+    return has_contact(found, c) && (contacts.flags[c] & flag_may_pass) != 0;
   }
   SCREE_HD void store(std::int64_t to, std::int64_t c, const Record&) const {
     in_tile[to] = static_cast<std::uint8_t>(c % 256);

@@ -119,7 +119,6 @@ struct BallContacts {
     count
   };
 
-  const std::int32_t* found;  ///< of each tile
   View<Ends> ends;
   View<std::uint8_t> slot;  ///< of each contact, in its tile
   View<std::uint8_t> flags;
@@ -146,7 +145,6 @@ struct PointContacts {
     point_count
   };
 
-  const std::int32_t* found;
   View<Ends> ends;
   View<std::uint8_t> slot;
   View<std::uint8_t> flags;

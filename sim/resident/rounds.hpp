@@ -2,7 +2,7 @@
 // and until nothing overlaps (core/space_rounds.hpp).
 #pragma once
 
-#include "core/space_tiles.hpp"
+#include "sim/resident/contact_list.hpp"
 #include "sim/resident/hubs.hpp"
 #include "sim/resident/layout.hpp"
 #include "sim/resident/slots.hpp"
@@ -10,20 +10,23 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <type_traits>
 
 namespace scree::resident {
 
-/// The colours of one kind of contacts as phases: places from the first of a colour on.
+/// The colours of one kind of contacts as phases.
 struct ColorPhases {
   std::int64_t begin[most_colors + 1];
   int count = 0;
+  ConstView<std::int32_t> places;
 
-  /// `first`: the tile from which the places are counted.
-  ColorPhases(const ColorTiles& colors, std::int64_t first) : count(static_cast<int>(colors.colors())) {
-    for (int c = 0; c <= count; ++c)
-      begin[c] = parallel::tile * (colors.begin[static_cast<std::size_t>(c)] - first);
+  template <class Space>
+  explicit ColorPhases(const ContactList<Space>& list)
+      : count(static_cast<int>(list.begin().size()) - 1), places(list.places()) {
+    std::ranges::copy(list.begin(), begin);
   }
   SCREE_HD std::int64_t items(int color) const { return begin[color + 1] - begin[color]; }
+  SCREE_HD std::int64_t place(int color, std::int64_t item) const { return places[begin[color] + item]; }
   std::int64_t most_items() const {
     std::int64_t most = 0;
     for (int c = 0; c < count; ++c) most = std::max(most, items(c));
@@ -38,6 +41,8 @@ template <class Real, bool only_balls>
 struct ImpulseRounds {
   using State = SweepState;
   using Sum = SweepChange;
+  /// Memory is waited for: many contacts must be on their way.
+  static constexpr int blocks_at_once = !only_balls ? 1 : std::is_same_v<Real, float> ? 4 : 2;
 
   ColorPhases ball_colors, point_colors;
   BallContacts<Real> balls;
@@ -71,7 +76,7 @@ struct ImpulseRounds {
       return {};
     }
     if (phase < ball_colors.count) {
-      const std::int64_t c = ball_colors.begin[phase] + item;
+      const std::int64_t c = ball_colors.place(phase, item);
       if (state.pushed) return SweepBalls<Real>{balls, bodies}(c, beta);
       PushBalls<Real>{balls, bodies}(c);
       return {};
@@ -79,7 +84,7 @@ struct ImpulseRounds {
     phase -= ball_colors.count;
     if constexpr (!only_balls) {
       if (phase < point_colors.count) {
-        const std::int64_t c = point_colors.begin[phase] + item;
+        const std::int64_t c = point_colors.place(phase, item);
         if (state.pushed) return SweepPoints<Real>{points, inertia, bodies, block_sweeps}(c, beta);
         PushPoints<Real>{points, inertia, bodies}(c);
         return {};
@@ -114,6 +119,7 @@ template <class Real, bool only_balls>
 struct PartingRounds {
   using State = PartingState;
   using Sum = Deepest;
+  static constexpr int blocks_at_once = !only_balls ? 1 : std::is_same_v<Real, float> ? 6 : 4;
 
   ColorPhases ball_colors, point_colors;
   BallContacts<Real> balls;
@@ -141,11 +147,11 @@ struct PartingRounds {
   std::int64_t most_items() const { return std::max(ball_colors.most_items(), point_colors.most_items()); }
   SCREE_HD Sum operator()(const State&, int phase, std::int64_t item) const {
     if (phase < ball_colors.count)
-      return PartBalls<Real>{balls, displacement, share}(ball_colors.begin[phase] + item);
+      return PartBalls<Real>{balls, displacement, share}(ball_colors.place(phase, item));
     phase -= ball_colors.count;
     if constexpr (!only_balls) {
       if (phase < point_colors.count)
-        return PartPoints<Real>{points, inertia, displacement, turn, share}(point_colors.begin[phase] + item);
+        return PartPoints<Real>{points, inertia, displacement, turn, share}(point_colors.place(phase, item));
     }
     phase -= point_colors.count;
     if (phase < shifted_hubs.phases()) {

@@ -72,7 +72,6 @@ struct PushBalls {
   BodyRecord<Real>* bodies;
 
   SCREE_HD void operator()(std::int64_t c) const {
-    if (!has_contact(contacts.found, c)) return;
     const Ends ends = contacts.ends[c];
     BodyRecord<Real> i = bodies[ends.i];
     BodyRecord<Real> j = bodies[ends.j];
@@ -90,7 +89,6 @@ struct PushPoints {
 
   SCREE_HD void operator()(std::int64_t c) const {
     using C = PointContacts<Real>;
-    if (!has_contact(contacts.found, c)) return;
     const Ends ends = contacts.ends[c];
     BodyRecord<Real> i = bodies[ends.i];
     BodyRecord<Real> j = bodies[ends.j];
@@ -114,14 +112,14 @@ struct SweepBalls {
 
   SCREE_HD SweepChange operator()(std::int64_t c, Real beta) const {
     using C = BallContacts<Real>;
-    if (!has_contact(contacts.found, c)) return {};
     const Ends ends = contacts.ends[c];
     BodyRecord<Real> i = bodies[ends.i];
     BodyRecord<Real> j = bodies[ends.j];
     const V3<Real> before = contacts.fields.vector(C::impulse, c);
-    const V3<Real> ahead = before + beta * (before - contacts.fields.vector(C::last, c));
+    const V3<Real> last = contacts.fields.vector(C::last, c);
+    const V3<Real> ahead = before + beta * (before - last);
     // Many contacts are open and stay so: they need no more.
-    if (is_zero<Real>(before) && is_zero<Real>(ahead) &&
+    if (is_zero<Real>(before) && is_zero<Real>(last) &&
         dot(contacts.fields.vector(C::normal, c), j.velocity - i.velocity) >=
             contacts.fields.at(C::target, c))
       return {};
@@ -147,7 +145,6 @@ struct SweepPoints {
 
   SCREE_HD SweepChange operator()(std::int64_t c, Real beta) const {
     using C = PointContacts<Real>;
-    if (!has_contact(contacts.found, c)) return {};
     const Ends ends = contacts.ends[c];
     BodyRecord<Real> i = bodies[ends.i];
     BodyRecord<Real> j = bodies[ends.j];
@@ -223,7 +220,6 @@ struct PartBalls {
 
   SCREE_HD Deepest operator()(std::int64_t c) const {
     using C = BallContacts<Real>;
-    if (!has_contact(contacts.found, c)) return {};
     const Ends ends = contacts.ends[c];
     CentreRecord<Real> i = bodies[ends.i];
     CentreRecord<Real> j = bodies[ends.j];
@@ -252,7 +248,6 @@ struct PartPoints {
 
   SCREE_HD Deepest operator()(std::int64_t c) const {
     using C = PointContacts<Real>;
-    if (!has_contact(contacts.found, c)) return {};
     const Ends ends = contacts.ends[c];
     Moving<Real> i = load(ends.i);
     Moving<Real> j = load(ends.j);
