@@ -58,11 +58,12 @@ typename Program::State run(Host, const char* label, const Program& program, typ
 /// judges alike, from the sums of all blocks, of which there are two sets: one may still be read by blocks
 /// that are behind.
 template <class Program>
-__global__ void __launch_bounds__(tile, blocks_at_once<Program>())
+__global__ void __launch_bounds__(Program::threads, blocks_at_once<Program>())
     run_phases(const Program program, typename Program::State state, typename Program::Sum* sums,
                typename Program::State* out) {
   using Sum = typename Program::Sum;
-  __shared__ BlockRoom<Sum> room;
+  constexpr int threads = Program::threads;
+  __shared__ BlockRoom<Sum, threads> room;
   const auto grid = cooperative_groups::this_grid();
   Sum* const sums_of[] = {sums, sums + gridDim.x};
   int turn = 0;
@@ -71,20 +72,16 @@ __global__ void __launch_bounds__(tile, blocks_at_once<Program>())
     for (int phase = 0; phase < phases; ++phase) {
       if (phase > 0) grid.sync();
       const std::int64_t items = program.items(state, phase);
-      // The front of a tile may have more to do than its end: the warps take turns.
-      unsigned in_tile = threadIdx.x;
-      for (std::int64_t first = std::int64_t{blockIdx.x} * tile; first < items;
-           first += std::int64_t{gridDim.x} * tile) {
-        if (first + in_tile < items) mine = mine + program(state, phase, first + in_tile);
-        in_tile = (in_tile + 32) % tile;
-      }
+      const std::int64_t stride = std::int64_t{gridDim.x} * threads;
+      for (std::int64_t i = std::int64_t{blockIdx.x} * threads + threadIdx.x; i < items; i += stride)
+        mine = mine + program(state, phase, i);
     }
-    const Sum sum = sum_over_block(mine, room.data());
+    const Sum sum = sum_over_block<threads>(mine, room.data());
     if (threadIdx.x == 0) sums_of[turn][blockIdx.x] = sum;
     grid.sync();
     Sum of_blocks{};
-    for (unsigned b = threadIdx.x; b < gridDim.x; b += tile) of_blocks = of_blocks + sums_of[turn][b];
-    sum_over_block(of_blocks, room.data());
+    for (unsigned b = threadIdx.x; b < gridDim.x; b += threads) of_blocks = of_blocks + sums_of[turn][b];
+    sum_over_block<threads>(of_blocks, room.data());
     __syncthreads();
     state = program.judge(state, room.data()[0]);
     __syncthreads();
@@ -100,7 +97,7 @@ int most_blocks() {
     int device = 0, processors = 0, on_each = 0;
     cudaGetDevice(&device);
     cudaDeviceGetAttribute(&processors, cudaDevAttrMultiProcessorCount, device);
-    cudaOccupancyMaxActiveBlocksPerMultiprocessor(&on_each, run_phases<Program>, tile, 0);
+    cudaOccupancyMaxActiveBlocksPerMultiprocessor(&on_each, run_phases<Program>, Program::threads, 0);
     scree::detail::require_launched("the rounds' first");
     return std::max(processors * on_each, 1);
   }();
@@ -110,14 +107,14 @@ int most_blocks() {
 template <class Program>
 typename Program::State run(Device, const char* label, Program program, typename Program::State state) {
   const timing::Call<Device> call(label);
-  const auto blocks = static_cast<unsigned>(
-      std::clamp<std::int64_t>(tiles_of(program.most_items()), 1, most_blocks<Program>()));
+  const auto blocks = static_cast<unsigned>(std::clamp<std::int64_t>(
+      (program.most_items() + Program::threads - 1) / Program::threads, 1, most_blocks<Program>()));
   Array<typename Program::Sum, Device> sums(2 * std::int64_t{blocks});
   Array<typename Program::State, Device> out(1);
   auto* sums_data = sums.data();
   auto* out_data = out.data();
   void* arguments[] = {&program, &state, &sums_data, &out_data};
-  cudaLaunchCooperativeKernel(run_phases<Program>, blocks, tile, arguments);
+  cudaLaunchCooperativeKernel(run_phases<Program>, blocks, Program::threads, arguments);
   scree::detail::require_launched(label);
   copy_bytes<Host, Device>(&state, out.data(), sizeof(state));
   return state;
@@ -131,8 +128,9 @@ typename Program::State run(Device, const char* label, Program program, typename
 /// program.phases(state) phases, of which each is work on program.items(state, phase) items at once:
 /// program(state, phase, item), of type Program::Sum with an operator +. Then state = program.judge(state,
 /// sum over the round), and no phase is left where phases() is 0. No phase has more than
-/// program.most_items(). On Device all rounds are one launch, in which a phase costs some microseconds; the
-/// sums depend on the GPU's size, and are the same from run to run.
+/// program.most_items(). Program::threads make a block, a power of 2: fewer and larger blocks wait for one
+/// another more quickly, if registers suffice. On Device all rounds are one launch, in which a phase costs
+/// some microseconds; the sums depend on the GPU's size, and are the same from run to run.
 template <class Space, class Program>
 typename Program::State run_rounds(const char* label, const Program& program,
                                    const typename Program::State& start) {

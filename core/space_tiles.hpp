@@ -66,10 +66,10 @@ __global__ void __launch_bounds__(tile, blocks_at_once<F>()) compact_tile(F f, s
 
 /// Sum over the threads of a block, for its first thread: a tree of fixed shape, in which halves are added to
 /// one another. `memory` has room for one T of each thread, and is free again after the next barrier.
-template <class T>
+template <int threads, class T>
 __device__ T sum_over_block(const T& mine, T* memory) {
   memory[threadIdx.x] = mine;
-  for (unsigned half = tile / 2; half > 0; half /= 2) {
+  for (unsigned half = threads / 2; half > 0; half /= 2) {
     __syncthreads();
     if (threadIdx.x < half) memory[threadIdx.x] = memory[threadIdx.x] + memory[threadIdx.x + half];
   }
@@ -77,20 +77,20 @@ __device__ T sum_over_block(const T& mine, T* memory) {
 }
 
 /// Room for one T of each thread of a block, without calling its constructor.
-template <class T>
+template <class T, int threads>
 struct BlockRoom {
-  alignas(alignof(T)) unsigned char bytes[tile * sizeof(T)];
+  alignas(alignof(T)) unsigned char bytes[threads * sizeof(T)];
   __device__ T* data() { return reinterpret_cast<T*>(bytes); }
 };
 
 /// Each block adds up the tiles b, b + blocks, ...; sums[b] is its part.
 template <class T, class F>
 __global__ void __launch_bounds__(tile, blocks_at_once<F>()) sum_strided(F f, std::int64_t n, T* sums) {
-  __shared__ BlockRoom<T> room;
+  __shared__ BlockRoom<T, tile> room;
   T mine{};
   const std::int64_t stride = std::int64_t{gridDim.x} * tile;
   for (std::int64_t i = std::int64_t{blockIdx.x} * tile + threadIdx.x; i < n; i += stride) mine = mine + f(i);
-  const T sum = sum_over_block(mine, room.data());
+  const T sum = sum_over_block<tile>(mine, room.data());
   if (threadIdx.x == 0) sums[blockIdx.x] = sum;
 }
 

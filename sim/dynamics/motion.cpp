@@ -84,10 +84,6 @@ struct AddTravel {
   SCREE_HD void operator()(std::int64_t k) const { margin[k] += travel(k); }
 };
 
-constexpr double most_box_steps = 16;
-constexpr double box_travel = 0.05;
-constexpr double pair_skin = 0.05;
-
 /// At least the margin wanted and the skin, and what fast bodies travel in so long (s): they are few, and for
 /// them alone the boxes of all would have to be put anew.
 struct RaiseMargin {
@@ -99,7 +95,7 @@ struct RaiseMargin {
     if (bodies.mobility[k] == Mobility::fixed || is_boundary(bodies.shape[k])) return;
     const double size = smallest_size(bodies.shape[k], bodies.size[k]);
     const double travel = tolerance::contact_slack * size + life * bodies.velocity[k].norm();
-    margin[k] = fmax(margin[k], fmax(wanted[k] + pair_skin * size, travel));
+    margin[k] = fmax(margin[k], fmax(wanted[k] + tolerance::pair_skin * size, travel));
   }
 };
 
@@ -197,9 +193,10 @@ void FatBoxes<Space>::put_around(const Bodies<Space>& bodies, double dt, const R
       parallel::sum_by_tiles<Leaving, Space>("motion.leaving", bodies.count(), LeavingOf{view_of(bodies)});
   const double rate =
       std::sqrt(leaving.rate_squared / static_cast<double>(std::max<std::int64_t>(leaving.count, 1)));
-  const double longest = most_box_steps * dt;
-  const double life = rate * longest > box_travel ? std::max(dt, box_travel / rate) : longest;
-  contact_margins(bodies, dt, tolerance::contact_slack + pair_skin, parameters, margin_);
+  const double longest = tolerance::most_pair_steps * dt;
+  const double life =
+      rate * longest > tolerance::pair_travel ? std::max(dt, tolerance::pair_travel / rate) : longest;
+  contact_margins(bodies, dt, tolerance::contact_slack + tolerance::pair_skin, parameters, margin_);
   parallel::for_each<Space>("motion.margins", bodies.count(),
                             RaiseMargin{view_of(bodies), contact_margin.view(), margin_.view(), life});
   copy(position_, bodies.position);

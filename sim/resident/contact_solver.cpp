@@ -272,10 +272,17 @@ Ledger ContactSolver<Space, Real>::book(const ConstBodyView& bodies, const Respo
   ledger.restitution = books_.restitution;
   ledger.friction = books_.friction;
   ledger.work = books_.work;
-  const double undone = fabs(books_.gap_power);
-  if (undone > 0.01 * books_.kick_power) patience_ = std::min(2 * patience_, 16);
-  if (undone < 0.0025 * books_.kick_power) patience_ = std::max(patience_ / 2, 1);
+  be_patient();
   return ledger;
+}
+
+/// Sweeps of the next substep, by what those of this one have left undone.
+template <class Space, class Real>
+void ContactSolver<Space, Real>::be_patient() {
+  constexpr int most = 16;
+  const double undone = std::abs(books_.gap_power);
+  if (undone > tolerance::undone_power * books_.kick_power) patience_ = std::min(2 * patience_, most);
+  if (undone < tolerance::done_power * books_.kick_power) patience_ = std::max(patience_ / 2, 1);
 }
 
 template <class Space, class Real>

@@ -78,6 +78,7 @@ class ContactSolver {
   template <bool only_balls>
   void run_parting_rounds(int most);
   Ledger book(const ConstBodyView& bodies, const ResponseParameters& parameters);
+  void be_patient();
   Ledger shift_late_bodies(const FlightStage& flight);
   void fly_late(const FlightStage& flight);
 

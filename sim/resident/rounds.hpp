@@ -42,7 +42,8 @@ struct ImpulseRounds {
   using State = SweepState;
   using Sum = SweepChange;
   /// Memory is waited for: many contacts must be on their way.
-  static constexpr int blocks_at_once = !only_balls ? 1 : std::is_same_v<Real, float> ? 4 : 2;
+  static constexpr int threads = only_balls ? 512 : 256;
+  static constexpr int blocks_at_once = only_balls && std::is_same_v<Real, float> ? 2 : 1;
 
   ColorPhases ball_colors, point_colors;
   BallContacts<Real> balls;
@@ -119,7 +120,8 @@ template <class Real, bool only_balls>
 struct PartingRounds {
   using State = PartingState;
   using Sum = Deepest;
-  static constexpr int blocks_at_once = !only_balls ? 1 : std::is_same_v<Real, float> ? 6 : 4;
+  static constexpr int threads = only_balls ? 512 : 256;
+  static constexpr int blocks_at_once = only_balls ? 2 : 1;
 
   ColorPhases ball_colors, point_colors;
   BallContacts<Real> balls;
