@@ -210,11 +210,10 @@ bool ResponseSolver::count_outcomes(std::int64_t& solved, std::int64_t& failed) 
   return all_solved;
 }
 
-void ResponseSolver::list_pairs(ContactSet& set, SolveStage& stage) {
-  set.list_pairs(stage.solver);
+void ResponseSolver::list_all(ContactSet& set, SolveStage& stage) {
+  set.list_all(stage.solver);
   stage.contacts = set.contacts.view();
   stage.rows = set.rows.view();
-  stage.couplings = set.couplings.view();
   sweeps_.look_at(stage);
 }
 
@@ -223,7 +222,7 @@ bool ResponseSolver::find_impulses(SolveStage stage, const ResponseParameters& p
   const SweepPlan plan = plan_sweeps(parameters, set);
   sweeps_.load(stage, set.coloring, set.batches);
   const bool one_by_one = plan.direct || parameters.accurate;
-  if (one_by_one) list_pairs(set, stage);
+  if (one_by_one) list_all(set, stage);
   change_.resize(plan.direct ? set.contacts.size() : 0);
   stage.change = change_.view();
   sweeps_.look_at(stage);
@@ -310,7 +309,6 @@ Ledger ResponseSolver::solve(const Manifolds& manifolds, double step, const Resp
                    .solver = solver.view(),
                    .contacts = set.contacts.view(),
                    .rows = set.rows.view(),
-                   .couplings = set.couplings.view(),
                    .change = {},
                    .free_velocity = free_velocity_.view(),
                    .free_spin = free_spin_.view(),
@@ -329,7 +327,7 @@ Ledger ResponseSolver::solve(const Manifolds& manifolds, double step, const Resp
     const std::int64_t others = set.contacts.size();
     parallel::for_each<Host>("response.rows", others, PrepareRows{stage});
     if (!find_impulses(stage, parameters, set, counters)) ++counters.unconverged;
-    if (set.pairs_are_listed) list_pairs(set, stage);
+    if (set.all_are_listed) list_all(set, stage);
     if (parameters.accurate) {
       const auto left =
           parallel::sum<ImpulseChange, Host>("response.residual", set.contacts.size(), LoadResidual{stage});
@@ -347,7 +345,7 @@ Ledger ResponseSolver::solve(const Manifolds& manifolds, double step, const Resp
     ledger.friction += pairs.friction;
     ledger.work += pairs.work;
     if (an_island_gains(stage, others, set.batches)) {
-      list_pairs(set, stage);
+      list_all(set, stage);
       if (set.contacts.size() > others) ledger = account_for(set.contacts.size());
       islands_.find(set.contacts.view(), solver.view());
       int scaled = 0;

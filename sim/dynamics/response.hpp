@@ -37,8 +37,8 @@ class ResponseSolver {
   double slip_end() const { return slip_end_; }
 
  private:
-  /// Lists the contacts of BallPairs for those who look at contacts one by one.
-  void list_pairs(ContactSet& set, SolveStage& stage);
+  /// Lists what only the batches have, for those who look at contacts one by one.
+  void list_all(ContactSet& set, SolveStage& stage);
   /// Whether an island may gain: one with contacts that do, and that loses nothing in all.
   bool an_island_gains(const SolveStage& stage, std::int64_t others, const lanes::Batches& batches);
   /// Adds to `solved` and `failed`; true if no island is left to the sweeps.

@@ -19,8 +19,9 @@ struct PushPoints {
   ConstView<lanes::PointBatch> batches;
   ConstView<lanes::PointRow> rows;
   View<lanes::Body> bodies;
-  void operator()(std::int64_t b) const {
-    lanes::kernels().push_points(batches[b], &rows[batches[b].first_row], bodies.data());
+  void operator()(std::int64_t first, int count) const {
+    for (std::int64_t b = first; b < first + count; ++b)
+      lanes::kernels().push_points(batches[b], &rows[batches[b].first_row], bodies.data());
   }
 };
 
@@ -41,8 +42,8 @@ struct SweepPoints {
   double beta;
   int block_sweeps;
   lanes::Change* change;
-  void operator()(std::int64_t b) const {
-    change[b] = kernel(batches[b], &rows[batches[b].first_row], bodies.data(), beta, block_sweeps);
+  void operator()(std::int64_t b, int count) const {
+    kernel(&batches[b], count, rows.data(), bodies.data(), beta, block_sweeps, change + b);
   }
 };
 
@@ -92,7 +93,7 @@ void Sweeps::load(const SolveStage& stage, const Coloring& coloring, lanes::Batc
   parallel::for_each<Host>("response.release", free_.size(), Release{stage, free_.view()});
   lanes::arrange(coloring, stage.contacts, nobody, batches);
   if (stage.balls != nullptr) stage.balls->put_into(stage.warm_start, batches);
-  lanes::load(stage.contacts, stage.rows, stage.couplings, stage.solver, stage.pairs, batches);
+  lanes::load(stage.contacts, stage.rows, stage.solver, free_.data(), stage.pairs, batches);
   change_.resize(batches.balls.size() + batches.points.size());
 }
 

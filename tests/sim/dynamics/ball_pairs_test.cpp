@@ -100,7 +100,7 @@ struct Substep {
     const Ledger ledger =
         response.solve(manifolds, step, parameters, balls, 1, view_of(bodies), solver, set, counters);
     memory.remember(manifolds, set, bodies.count());
-    set.list_pairs(solver.view());
+    set.list_all(solver.view());
     return ledger;
   }
   /// A contact, or null.
