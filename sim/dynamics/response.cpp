@@ -49,8 +49,7 @@ SCREE_HD Moved moved_by(const SolveStage& stage, const Contact& contact) {
 
 struct Account {
   SolveStage stage;
-  View<double> loss;           ///< of each contact (J)
-  View<std::uint8_t> gaining;  ///< whether it gains
+  View<double> loss;  ///< of each contact (J)
   SCREE_HD Ledger operator()(std::int64_t c) const {
     const Contact& contact = stage.contacts[c];
     Ledger ledger;
@@ -60,7 +59,6 @@ struct Account {
                                 stage.solver[contact.i], stage.solver[contact.j]);
     }
     loss[c] = ledger.restitution + ledger.friction;
-    gaining[c] = loss[c] < 0 && moved_by(stage, contact).gains(tolerance::response_gain) ? 1 : 0;
     return ledger;
   }
 };
@@ -258,23 +256,18 @@ bool ResponseSolver::find_impulses(SolveStage stage, const ResponseParameters& p
   return converged;
 }
 
-bool ResponseSolver::an_island_gains(const SolveStage& stage, std::int64_t others,
-                                     const lanes::Batches& batches) {
-  const auto any_gains = [](const lanes::Losses& losses) { return losses.gaining != 0; };
-  if (!std::ranges::any_of(gaining_.view(), [](std::uint8_t gains) { return gains != 0; }) &&
-      (stage.balls == nullptr || !std::ranges::any_of(pair_loss_.view(), any_gains)))
+bool ResponseSolver::an_island_gains(std::int64_t bodies, const lanes::Batches& batches) {
+  if (std::ranges::none_of(batch_loss_.view(),
+                           [](const lanes::Losses& losses) { return losses.gaining != 0; }))
     return false;
-  islands_.start(stage.solver.size());
+  islands_.start(bodies);
   // Calls act(i, j, loss, gains) for each contact.
   const auto for_each_contact = [&](const auto& act) {
-    for (std::int64_t c = 0; c < others; ++c) {
-      const Contact& contact = stage.contacts[c];
-      act(contact.i, contact.j, loss_.view()[c], gaining_.view()[c] != 0);
-    }
-    for (std::int64_t b = 0; b < batches.balls.size(); ++b) {
-      if (!batches.ball_members.view()[b].are_pairs) continue;
-      const lanes::Ends& ends = batches.balls.view()[b].ends;
-      const lanes::Losses& losses = pair_loss_.view()[b];
+    for (std::int64_t b = 0; b < batch_loss_.size(); ++b) {
+      const std::int64_t balls = batches.balls.size();
+      const lanes::Ends& ends =
+          b < balls ? batches.balls.view()[b].ends : batches.points.view()[b - balls].ends;
+      const lanes::Losses& losses = batch_loss_.view()[b];
       for (int l = 0; l < lanes::width; ++l) {
         if (ends.i[l] != batches.nobody)
           act(ends.i[l], ends.j[l], losses.at[l], (losses.gaining >> l & 1) != 0);
@@ -285,7 +278,7 @@ bool ResponseSolver::an_island_gains(const SolveStage& stage, std::int64_t other
   for_each_contact([&](std::int32_t i, std::int32_t j, double, bool) {
     if (is_free(i) && is_free(j)) islands_.unite(i, j);
   });
-  const auto n = static_cast<std::size_t>(stage.solver.size());
+  const auto n = static_cast<std::size_t>(bodies);
   island_loss_.assign(n, 0);
   island_gains_.assign(n, false);
   for_each_contact([&](std::int32_t i, std::int32_t j, double loss, bool gains) {
@@ -333,20 +326,17 @@ Ledger ResponseSolver::solve(const Manifolds& manifolds, double step, const Resp
           parallel::sum<ImpulseChange, Host>("response.residual", set.contacts.size(), LoadResidual{stage});
       if (left.size > 0) counters.residual = std::max(counters.residual, std::sqrt(left.step / left.size));
     }
-    const auto account_for = [&](std::int64_t contacts) {
-      loss_.resize(contacts);
-      gaining_.resize(contacts);
-      return parallel::sum<Ledger, Host>("response.ledger", contacts,
-                                         Account{stage, loss_.view(), gaining_.view()});
-    };
-    ledger = account_for(others);
-    const lanes::Books pairs = sweeps_.book_pairs(pair_loss_);
-    ledger.restitution += pairs.restitution;
-    ledger.friction += pairs.friction;
-    ledger.work += pairs.work;
-    if (an_island_gains(stage, others, set.batches)) {
+    const lanes::Books books = sweeps_.book(batch_loss_);
+    ledger.restitution = books.restitution;
+    ledger.friction = books.friction;
+    ledger.work = books.work;
+    if (an_island_gains(solver.size(), set.batches)) {
       list_all(set, stage);
-      if (set.contacts.size() > others) ledger = account_for(set.contacts.size());
+      loss_.resize(set.contacts.size());
+      const auto account = [&] {
+        return parallel::sum<Ledger, Host>("response.ledger", loss_.size(), Account{stage, loss_.view()});
+      };
+      ledger = account();
       islands_.find(set.contacts.view(), solver.view());
       int scaled = 0;
       for (std::int64_t island = 0; island < islands_.count(); ++island) {
@@ -357,7 +347,7 @@ Ledger ResponseSolver::solve(const Manifolds& manifolds, double step, const Resp
         sweeps_.take_impulses();
         sweeps_.set_velocities();
         sweeps_.store_velocities();
-        ledger = account_for(set.contacts.size());
+        ledger = account();
       }
     }
     if (parameters.accurate && parameters.friction && !set.is_heap())

@@ -40,16 +40,15 @@ class ResponseSolver {
   /// Lists what only the batches have, for those who look at contacts one by one.
   void list_all(ContactSet& set, SolveStage& stage);
   /// Whether an island may gain: one with contacts that do, and that loses nothing in all.
-  bool an_island_gains(const SolveStage& stage, std::int64_t others, const lanes::Batches& batches);
+  bool an_island_gains(std::int64_t bodies, const lanes::Batches& batches);
   /// Adds to `solved` and `failed`; true if no island is left to the sweeps.
   bool count_outcomes(std::int64_t& solved, std::int64_t& failed) const;
 
   Array<ImpulseChange, Host> change_;  // per contact, of the last sweep
   Sweeps sweeps_;
   Array<Vec3, Host> free_velocity_, free_spin_;  // of each body without contacts
-  Array<double, Host> loss_;                     // of each contact that is listed (J)
-  Array<std::uint8_t, Host> gaining_;            // whether it gains
-  Array<lanes::Losses, Host> pair_loss_;         // of each batch of the others
+  Array<lanes::Losses, Host> batch_loss_;        // of each batch
+  Array<double, Host> loss_;                     // of each contact, where an island may gain (J)
   std::vector<double> island_loss_;              // by root (J)
   std::vector<bool> island_gains_;
   Islands islands_;

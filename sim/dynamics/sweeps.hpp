@@ -81,8 +81,9 @@ class Sweeps {
 
   bool is_free(std::int32_t body) const { return free_.view()[body].inverse_mass > 0; }
 
-  /// Of the contacts of BallPairs, with the velocities as they are; and what each loses, by batch.
-  lanes::Books book_pairs(Array<lanes::Losses, Host>& losses);
+  /// Of all contacts, with the velocities as they are; and what each loses, by batch: the balls', then the
+  /// others.
+  lanes::Books book(Array<lanes::Losses, Host>& losses);
 
   /// From there on, until they converge, but at most so often. The last sweep stands as it is, so that every
   /// impulse ends inside its cone. The velocities go along, but for the rounding of every sweep. `count` goes

@@ -278,26 +278,56 @@ void prepare_points(const PointBatch& batch, PointRow* rows, PointParting* point
   }
 }
 
-void book_balls(const BallBatch& batch, const Body* mean, const Body* kicked, const Body* after,
-                double rounding, Losses& losses) {
-  const Balls balls = get(batch);
-  const V3 p = get(batch.impulse.impulse);
-  const auto books = booked<Lanes>(balls, p, load(mean, batch.ends.i), load(mean, batch.ends.j));
+/// Books contacts; `square` gives what their impulses do after the kick, if somebody asks.
+template <class Square>
+[[gnu::always_inline]] inline void book(const Booked<Lanes>& books, double rounding, Square square,
+                                        Losses& losses) {
   const V loss = books.restitution + books.friction;
   *reinterpret_cast<V*>(losses.at) = loss;
+  // As Moved::gains().
   losses.gaining = 0;
-  if (bits_of(loss < 0) != 0) {
-    // As Moved::gains().
-    const V3 u_kicked = velocity_at(balls, load(kicked, batch.ends.i), load(kicked, batch.ends.j));
-    const V3 u_after = velocity_at(balls, load(after, batch.ends.i), load(after, batch.ends.j));
-    const V square = 0.5 * dot(p, u_after - u_kicked);
-    losses.gaining = static_cast<std::int32_t>(bits_of((loss < 0) & (-loss > rounding * square)));
-  }
+  if (Lanes::any(loss < 0))
+    losses.gaining = static_cast<std::int32_t>(bits_of((loss < 0) & (-loss > rounding * square())));
+  losses.books = {};
   for (int l = 0; l < width; ++l) {
     losses.books.restitution += books.restitution[l];
     losses.books.friction += books.friction[l];
     losses.books.work += books.work[l];
   }
+}
+
+void book_balls(const BallBatch& batch, const Body* mean, const Body* kicked, const Body* after,
+                double rounding, Losses& losses) {
+  const Balls balls = get(batch);
+  const V3 p = get(batch.impulse.impulse);
+  const auto square = [&] {
+    const V3 u_kicked = velocity_at(balls, load(kicked, batch.ends.i), load(kicked, batch.ends.j));
+    const V3 u_after = velocity_at(balls, load(after, batch.ends.i), load(after, batch.ends.j));
+    return 0.5 * dot(p, u_after - u_kicked);
+  };
+  book(booked<Lanes>(balls, p, load(mean, batch.ends.i), load(mean, batch.ends.j)), rounding, square, losses);
+}
+
+void book_points(const PointBatch& batch, const PointRow* rows, const Body* mean, const Body* kicked,
+                 const Body* after, double rounding, Losses& losses) {
+  const Bodies i = load(mean, batch.ends.i);
+  const Bodies j = load(mean, batch.ends.j);
+  const V3 n = get(batch.normal);
+  Booked<Lanes> books{};
+  for (int k = 0; k < batch.count; ++k)
+    books = books + booked<Lanes>(point_of(rows[k]), n, get(rows[k].impulse.impulse), i, j);
+  const auto square = [&] {
+    const Bodies kicked_i = load(kicked, batch.ends.i), kicked_j = load(kicked, batch.ends.j);
+    const Bodies after_i = load(after, batch.ends.i), after_j = load(after, batch.ends.j);
+    V sum = all(0);
+    for (int k = 0; k < batch.count; ++k) {
+      const Point at = point_of(rows[k]);
+      sum += dot(get(rows[k].impulse.impulse),
+                 velocity_at(at, after_i, after_j) - velocity_at(at, kicked_i, kicked_j));
+    }
+    return 0.5 * sum;
+  };
+  book(books, rounding, square, losses);
 }
 
 /// Goes on by beta of what the last sweep has changed.
@@ -387,12 +417,13 @@ struct PointSweep {
     store(j, bodies, batch->ends.j);
     V step = all(0);
     V size = all(0);
+    const V3 n = get(batch->normal);
     for (int k = 0; k < batch->count; ++k) {
       const V3 p = get(rows[k].impulse.impulse);
       const V3 change = p - last[k];
-      const V normal_mass = get(rows[k].normal_mass);
-      step += dot(change, change) / normal_mass;
-      size += dot(p, p) / normal_mass;
+      const V inverse_mass = dot(get(rows[k].coupling), n);
+      step += dot(change, change) * inverse_mass;
+      size += dot(p, p) * inverse_mass;
     }
     return total(step, size);
   }
@@ -421,10 +452,12 @@ void sweep_points(const PointBatch* batches, int count, PointRow* rows, Body* bo
 }
 
 /// The inverse mass and inertia stay: they are those of the last.
-void accelerate(Body& body, Body& last, double beta) {
-  const V now = whole(body);
-  whole(body) = now + all(beta) * (now - whole(last));
-  whole(last) = now;
+void accelerate(Body* bodies, Body* last, std::int64_t count, double beta) {
+  for (std::int64_t k = 0; k < count; ++k) {
+    const V now = whole(bodies[k]);
+    whole(bodies[k]) = now + all(beta) * (now - whole(last[k]));
+    whole(last[k]) = now;
+  }
 }
 
 void push_balls(const BallBatch& batch, Body* bodies) {
@@ -611,6 +644,7 @@ extern const Kernels kernels = {.rough = {sweep_balls, sweep_points<true>},
                                 .prepare_balls = prepare_balls,
                                 .prepare_points = prepare_points,
                                 .book_balls = book_balls,
+                                .book_points = book_points,
                                 .fly_balls = fly_balls,
                                 .fly_points = fly_points,
                                 .turn = turn,

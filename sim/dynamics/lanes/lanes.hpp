@@ -196,6 +196,8 @@ struct Kernels {
   /// contact gains that gains more than `rounding` of what the impulses do after the kick.
   void (*book_balls)(const BallBatch&, const Body* mean, const Body* kicked, const Body* after,
                      double rounding, Losses&);
+  void (*book_points)(const PointBatch&, const PointRow* rows, const Body* mean, const Body* kicked,
+                      const Body* after, double rounding, Losses&);
   /// Flies the gaps on to the end of the substep, half a step after the midpoint. Returns the deepest overlap
   /// (m).
   double (*fly_balls)(const BallBatch&, BallParting&, const Body* velocities, double step);
@@ -205,7 +207,7 @@ struct Kernels {
   /// Turns for a time (s) those that do not turn far.
   void (*turn)(Tops&, double dt, bool fourth_order);
   /// Goes on by beta of what has changed since the last time.
-  void (*accelerate)(Body& body, Body& last, double beta);
+  void (*accelerate)(Body* bodies, Body* last, std::int64_t count, double beta);
   /// Gives the bodies what the impulses are.
   void (*push_balls)(const BallBatch&, Body* bodies);
   void (*push_points)(const PointBatch&, const PointRow* rows, Body* bodies);

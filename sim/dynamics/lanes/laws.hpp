@@ -250,10 +250,14 @@ SCREE_LAW V3<A> in_cone(const V3<A>& p, const V3<A>& n, const typename A::V& fri
   return where(pn > 0, on_disc(pn, p - pn * n, n, friction), V3<A>{});
 }
 
-/// account() of a contact of balls that carries p: the bodies halfway between before and after.
+/// account() of a contact that carries p: the bodies halfway between before and after.
 template <class A>
 struct Booked {
   typename A::V restitution, friction, work;
+
+  SCREE_LAW friend Booked operator+(const Booked& a, const Booked& b) {
+    return {a.restitution + b.restitution, a.friction + b.friction, a.work + b.work};
+  }
 };
 template <class A>
 SCREE_LAW Booked<A> booked(const Balls<A>& c, const V3<A>& p, const Moving<A>& i, const Moving<A>& j) {
@@ -289,6 +293,17 @@ SCREE_LAW V3<A> smooth_impulse_of(const V3<A>& n, const typename A::V& target,
 template <class A>
 SCREE_LAW V3<A> velocity_at(const Point<A>& at, const Moving<A>& i, const Moving<A>& j) {
   return j.velocity + cross(j.spin, at.arm_j) - i.velocity - cross(i.spin, at.arm_i);
+}
+
+template <class A>
+SCREE_LAW Booked<A> booked(const Point<A>& at, const V3<A>& n, const V3<A>& p, const Moving<A>& i,
+                           const Moving<A>& j) {
+  using V = typename A::V;
+  const V3<A> mean = velocity_at(at, i, j);
+  const V normal_part = dot(p, n) * dot(mean, n);
+  const V of_i = i.inverse_mass > 0 ? V{} : dot(p, i.velocity + cross(i.spin, at.arm_i));
+  const V of_j = j.inverse_mass > 0 ? V{} : dot(p, j.velocity + cross(j.spin, at.arm_j));
+  return {-normal_part, normal_part - dot(p, mean), of_i - of_j};
 }
 
 /// coulomb_update() of a point that carries p, given its relative velocity u.

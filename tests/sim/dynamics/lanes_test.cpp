@@ -287,7 +287,7 @@ TEST(Lanes, EveryInstructionSetGivesTheSameBits) {
     std::vector<lanes::Body> last = bodies;
     for (int sweep = 0; sweep < 5; ++sweep) {
       const double beta = 0.15 * sweep;
-      for (std::size_t b = 0; b < bodies.size(); ++b) kernels->accelerate(bodies[b], last[b], beta);
+      kernels->accelerate(bodies.data(), last.data(), std::ssize(bodies), beta);
       p.sweep(kernels->rough, bodies, beta);
     }
     if (first.empty()) {
