@@ -257,37 +257,54 @@ bool ResponseSolver::find_impulses(SolveStage stage, const ResponseParameters& p
 }
 
 bool ResponseSolver::an_island_gains(std::int64_t bodies, const lanes::Batches& batches) {
-  if (std::ranges::none_of(batch_loss_.view(),
-                           [](const lanes::Losses& losses) { return losses.gaining != 0; }))
-    return false;
-  islands_.start(bodies);
-  // Calls act(i, j, loss, gains) for each contact.
-  const auto for_each_contact = [&](const auto& act) {
-    for (std::int64_t b = 0; b < batch_loss_.size(); ++b) {
-      const std::int64_t balls = batches.balls.size();
-      const lanes::Ends& ends =
-          b < balls ? batches.balls.view()[b].ends : batches.points.view()[b - balls].ends;
-      const lanes::Losses& losses = batch_loss_.view()[b];
-      for (int l = 0; l < lanes::width; ++l) {
-        if (ends.i[l] != batches.nobody)
-          act(ends.i[l], ends.j[l], losses.at[l], (losses.gaining >> l & 1) != 0);
-      }
+  const auto any_gains = [](const lanes::Losses& losses) {
+    return std::ranges::any_of(losses.of.at, [](double loss) { return loss < 0; });
+  };
+  if (std::ranges::none_of(batch_loss_.view(), any_gains)) return false;
+  // Calls act(i, j, l) for each contact of a batch, in lane l.
+  const auto for_each_contact = [&](std::int64_t batch, const auto& act) {
+    const std::int64_t balls = batches.balls.size();
+    const lanes::Ends& ends =
+        batch < balls ? batches.balls.view()[batch].ends : batches.points.view()[batch - balls].ends;
+    for (int l = 0; l < lanes::width; ++l) {
+      if (ends.i[l] != batches.nobody) act(ends.i[l], ends.j[l], l);
     }
   };
-  const auto is_free = [&](std::int32_t body) { return sweeps_.is_free(body); };
-  for_each_contact([&](std::int32_t i, std::int32_t j, double, bool) {
-    if (is_free(i) && is_free(j)) islands_.unite(i, j);
-  });
-  const auto n = static_cast<std::size_t>(bodies);
-  island_loss_.assign(n, 0);
-  island_gains_.assign(n, false);
-  for_each_contact([&](std::int32_t i, std::int32_t j, double loss, bool gains) {
-    const auto island = static_cast<std::size_t>(islands_.root(is_free(i) ? i : j));
-    island_loss_[island] += loss;
-    if (gains) island_gains_[island] = true;
-  });
-  for (std::size_t k = 0; k < n; ++k) {
-    if (island_gains_[k] && island_loss_[k] <= 0) return true;
+  islands_.start(bodies);
+  const std::int64_t count = batch_loss_.size();
+  for (std::int64_t b = 0; b < count; ++b) {
+    for_each_contact(b, [&](std::int32_t i, std::int32_t j, int) {
+      if (sweeps_.is_free(i) && sweeps_.is_free(j)) islands_.unite(i, j);
+    });
+  }
+  const auto island_of = [&](std::int32_t i, std::int32_t j) {
+    return static_cast<std::size_t>(islands_.root(sweeps_.is_free(i) ? i : j));
+  };
+  island_moves_.assign(static_cast<std::size_t>(bodies), Moved{});
+  for (std::int64_t b = 0; b < count; ++b) {
+    for_each_contact(b, [&](std::int32_t i, std::int32_t j, int l) {
+      island_moves_[island_of(i, j)].linear -= batch_loss_.view()[b].of.at[l];
+    });
+  }
+  // So far that is what each gains in all; those that do are looked at closely.
+  const auto gained = [](const Moved& moved) { return moved.linear > 0; };
+  if (std::ranges::none_of(island_moves_, gained)) return false;
+  island_gains_.resize(island_moves_.size());
+  std::transform(island_moves_.begin(), island_moves_.end(), island_gains_.begin(), gained);
+  for (std::int64_t b = 0; b < count; ++b) {
+    bool any = false;
+    for_each_contact(
+        b, [&](std::int32_t i, std::int32_t j, int) { any = any || island_gains_[island_of(i, j)]; });
+    if (!any) continue;
+    const lanes::Lane square = sweeps_.square_of(b);
+    for_each_contact(b, [&](std::int32_t i, std::int32_t j, int l) {
+      Moved& moved = island_moves_[island_of(i, j)];
+      moved.linear -= square.at[l];
+      moved.square += square.at[l];
+    });
+  }
+  for (std::size_t island = 0; island < island_gains_.size(); ++island) {
+    if (island_gains_[island] && island_moves_[island].gains(tolerance::response_gain)) return true;
   }
   return false;
 }

@@ -39,7 +39,7 @@ class ResponseSolver {
  private:
   /// Lists what only the batches have, for those who look at contacts one by one.
   void list_all(ContactSet& set, SolveStage& stage);
-  /// Whether an island may gain: one with contacts that do, and that loses nothing in all.
+  /// Whether an island gains in all.
   bool an_island_gains(std::int64_t bodies, const lanes::Batches& batches);
   /// Adds to `solved` and `failed`; true if no island is left to the sweeps.
   bool count_outcomes(std::int64_t& solved, std::int64_t& failed) const;
@@ -49,7 +49,7 @@ class ResponseSolver {
   Array<Vec3, Host> free_velocity_, free_spin_;  // of each body without contacts
   Array<lanes::Losses, Host> batch_loss_;        // of each batch
   Array<double, Host> loss_;                     // of each contact, where an island may gain (J)
-  std::vector<double> island_loss_;              // by root (J)
+  std::vector<Moved> island_moves_;              // by root
   std::vector<bool> island_gains_;
   Islands islands_;
   Array<DirectOutcome, Host> outcome_;  // of each island

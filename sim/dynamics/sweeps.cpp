@@ -133,18 +133,16 @@ struct LoadMean {
 
 struct BookBatch {
   const lanes::Batches* batches;
-  const lanes::Body *mean, *kicked, *after;
+  const lanes::Body* mean;
   View<lanes::Losses> losses;
   void operator()(std::int64_t b) const {
     const std::int64_t balls = batches->balls.size();
     if (b < balls) {
-      lanes::kernels().book_balls(batches->balls.view()[b], mean, kicked, after, tolerance::response_gain,
-                                  losses[b]);
+      lanes::kernels().book_balls(batches->balls.view()[b], mean, losses[b]);
       return;
     }
     const lanes::PointBatch& batch = batches->points.view()[b - balls];
-    lanes::kernels().book_points(batch, &batches->rows.view()[batch.first_row], mean, kicked, after,
-                                 tolerance::response_gain, losses[b]);
+    lanes::kernels().book_points(batch, &batches->rows.view()[batch.first_row], mean, losses[b]);
   }
 };
 
@@ -161,11 +159,23 @@ lanes::Books Sweeps::book(Array<lanes::Losses, Host>& losses) {
   last_.resize(bodies_.size());
   parallel::for_each<Host>("response.mean", bodies_.size(),
                            LoadMean{*stage_, std::as_const(bodies_).view(), last_.view()});
-  parallel::for_each<Host>("response.books", losses.size(),
-                           BookBatch{batches_, last_.data(), free_.data(), bodies_.data(), losses.view()},
+  parallel::for_each<Host>("response.books", losses.size(), BookBatch{batches_, last_.data(), losses.view()},
                            few_batches);
   return parallel::sum<lanes::Books, Host>("response.books", losses.size(),
                                            LoadBooks{std::as_const(losses).view()});
+}
+
+lanes::Lane Sweeps::square_of(std::int64_t batch) const {
+  lanes::Lane square;
+  const std::int64_t balls = batches_->balls.size();
+  if (batch < balls) {
+    lanes::kernels().square_of_balls(batches_->balls.view()[batch], free_.data(), bodies_.data(), square);
+  } else {
+    const lanes::PointBatch& points = batches_->points.view()[batch - balls];
+    lanes::kernels().square_of_points(points, &batches_->rows.view()[points.first_row], free_.data(),
+                                      bodies_.data(), square);
+  }
+  return square;
 }
 
 bool Sweeps::run(const SweepPlan& plan, int most, std::int64_t& count) {

@@ -84,6 +84,8 @@ class Sweeps {
   /// Of all contacts, with the velocities as they are; and what each loses, by batch: the balls', then the
   /// others.
   lanes::Books book(Array<lanes::Losses, Host>& losses);
+  /// Of each contact in one of these batches, Moved::square (J).
+  lanes::Lane square_of(std::int64_t batch) const;
 
   /// From there on, until they converge, but at most so often. The last sweep stands as it is, so that every
   /// impulse ends inside its cone. The velocities go along, but for the rounding of every sweep. `count` goes

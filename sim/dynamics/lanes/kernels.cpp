@@ -278,16 +278,8 @@ void prepare_points(const PointBatch& batch, PointRow* rows, PointParting* point
   }
 }
 
-/// Books contacts; `square` gives what their impulses do after the kick, if somebody asks.
-template <class Square>
-[[gnu::always_inline]] inline void book(const Booked<Lanes>& books, double rounding, Square square,
-                                        Losses& losses) {
-  const V loss = books.restitution + books.friction;
-  *reinterpret_cast<V*>(losses.at) = loss;
-  // As Moved::gains().
-  losses.gaining = 0;
-  if (Lanes::any(loss < 0))
-    losses.gaining = static_cast<std::int32_t>(bits_of((loss < 0) & (-loss > rounding * square())));
+void set(Losses& losses, const Booked<Lanes>& books) {
+  set(losses.of, books.restitution + books.friction);
   losses.books = {};
   for (int l = 0; l < width; ++l) {
     losses.books.restitution += books.restitution[l];
@@ -296,38 +288,39 @@ template <class Square>
   }
 }
 
-void book_balls(const BallBatch& batch, const Body* mean, const Body* kicked, const Body* after,
-                double rounding, Losses& losses) {
-  const Balls balls = get(batch);
-  const V3 p = get(batch.impulse.impulse);
-  const auto square = [&] {
-    const V3 u_kicked = velocity_at(balls, load(kicked, batch.ends.i), load(kicked, batch.ends.j));
-    const V3 u_after = velocity_at(balls, load(after, batch.ends.i), load(after, batch.ends.j));
-    return 0.5 * dot(p, u_after - u_kicked);
-  };
-  book(booked<Lanes>(balls, p, load(mean, batch.ends.i), load(mean, batch.ends.j)), rounding, square, losses);
+void book_balls(const BallBatch& batch, const Body* mean, Losses& losses) {
+  set(losses, booked<Lanes>(get(batch), get(batch.impulse.impulse), load(mean, batch.ends.i),
+                            load(mean, batch.ends.j)));
 }
 
-void book_points(const PointBatch& batch, const PointRow* rows, const Body* mean, const Body* kicked,
-                 const Body* after, double rounding, Losses& losses) {
+void book_points(const PointBatch& batch, const PointRow* rows, const Body* mean, Losses& losses) {
   const Bodies i = load(mean, batch.ends.i);
   const Bodies j = load(mean, batch.ends.j);
   const V3 n = get(batch.normal);
   Booked<Lanes> books{};
   for (int k = 0; k < batch.count; ++k)
     books = books + booked<Lanes>(point_of(rows[k]), n, get(rows[k].impulse.impulse), i, j);
-  const auto square = [&] {
-    const Bodies kicked_i = load(kicked, batch.ends.i), kicked_j = load(kicked, batch.ends.j);
-    const Bodies after_i = load(after, batch.ends.i), after_j = load(after, batch.ends.j);
-    V sum = all(0);
-    for (int k = 0; k < batch.count; ++k) {
-      const Point at = point_of(rows[k]);
-      sum += dot(get(rows[k].impulse.impulse),
-                 velocity_at(at, after_i, after_j) - velocity_at(at, kicked_i, kicked_j));
-    }
-    return 0.5 * sum;
-  };
-  book(books, rounding, square, losses);
+  set(losses, books);
+}
+
+void square_of_balls(const BallBatch& batch, const Body* kicked, const Body* after, Lane& square) {
+  const Balls balls = get(batch);
+  const V3 u_kicked = velocity_at(balls, load(kicked, batch.ends.i), load(kicked, batch.ends.j));
+  const V3 u_after = velocity_at(balls, load(after, batch.ends.i), load(after, batch.ends.j));
+  set(square, 0.5 * dot(get(batch.impulse.impulse), u_after - u_kicked));
+}
+
+void square_of_points(const PointBatch& batch, const PointRow* rows, const Body* kicked, const Body* after,
+                      Lane& square) {
+  const Bodies kicked_i = load(kicked, batch.ends.i), kicked_j = load(kicked, batch.ends.j);
+  const Bodies after_i = load(after, batch.ends.i), after_j = load(after, batch.ends.j);
+  V sum = all(0);
+  for (int k = 0; k < batch.count; ++k) {
+    const Point at = point_of(rows[k]);
+    sum += 0.5 * dot(get(rows[k].impulse.impulse),
+                     velocity_at(at, after_i, after_j) - velocity_at(at, kicked_i, kicked_j));
+  }
+  set(square, sum);
 }
 
 /// Goes on by beta of what the last sweep has changed.
@@ -645,6 +638,8 @@ extern const Kernels kernels = {.rough = {sweep_balls, sweep_points<true>},
                                 .prepare_points = prepare_points,
                                 .book_balls = book_balls,
                                 .book_points = book_points,
+                                .square_of_balls = square_of_balls,
+                                .square_of_points = square_of_points,
                                 .fly_balls = fly_balls,
                                 .fly_points = fly_points,
                                 .turn = turn,

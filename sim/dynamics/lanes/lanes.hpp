@@ -140,10 +140,9 @@ struct Books {
   }
 };
 
-/// What the impulses of each contact of a batch dissipate (J), a bit for each that gains, and all together.
+/// What the impulses of each contact of a batch dissipate (J), and all together.
 struct alignas(64) Losses {
-  double at[width];
-  std::int32_t gaining;
+  Lane of;
   Books books;
 };
 
@@ -192,12 +191,13 @@ struct Kernels {
   void (*prepare_balls)(const BallSource&, BallBatch&, BallParting&);
   /// Sets the masses of points that know their arms, their bodies' inertia, and their bodies.
   void (*prepare_points)(const PointBatch&, PointRow* rows, PointParting* points, const Body* bodies);
-  /// `mean`: velocities halfway between those before and after the substep; `kicked`: without impulses. A
-  /// contact gains that gains more than `rounding` of what the impulses do after the kick.
-  void (*book_balls)(const BallBatch&, const Body* mean, const Body* kicked, const Body* after,
-                     double rounding, Losses&);
-  void (*book_points)(const PointBatch&, const PointRow* rows, const Body* mean, const Body* kicked,
-                      const Body* after, double rounding, Losses&);
+  /// `mean`: velocities halfway between those before and after the substep.
+  void (*book_balls)(const BallBatch&, const Body* mean, Losses&);
+  void (*book_points)(const PointBatch&, const PointRow* rows, const Body* mean, Losses&);
+  /// Of each contact, Moved::square. `kicked`: velocities without impulses.
+  void (*square_of_balls)(const BallBatch&, const Body* kicked, const Body* after, Lane&);
+  void (*square_of_points)(const PointBatch&, const PointRow* rows, const Body* kicked, const Body* after,
+                           Lane&);
   /// Flies the gaps on to the end of the substep, half a step after the midpoint. Returns the deepest overlap
   /// (m).
   double (*fly_balls)(const BallBatch&, BallParting&, const Body* velocities, double step);

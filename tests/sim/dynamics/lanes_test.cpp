@@ -5,6 +5,7 @@
 #include "sim/dynamics/contact_set.hpp"
 #include "sim/dynamics/lanes/batches.hpp"
 #include "sim/dynamics/rotation.hpp"
+#include "sim/dynamics/state.hpp"
 
 #include <Eigen/Cholesky>
 #include <gtest/gtest.h>
@@ -198,6 +199,67 @@ TEST(Lanes, PushesGiveTheBodiesWhatTheImpulsesAre) {
       ASSERT_LT((bodies[static_cast<std::size_t>(c.j)].velocity - j.velocity).norm(), rounding) << name;
       ASSERT_LT((bodies[static_cast<std::size_t>(c.i)].spin - i.spin).norm(), 10 * rounding) << name;
       ASSERT_LT((bodies[static_cast<std::size_t>(c.j)].spin - j.spin).norm(), 10 * rounding) << name;
+    }
+  }
+}
+
+TEST(Lanes, BooksWhatTheImpulsesMove) {
+  for (const auto& [name, kernels] : lanes::supported_kernels()) {
+    Problem p(odd_count);
+    const std::vector<lanes::Body> before = p.lane_bodies();
+    std::vector<lanes::Body> after = before;
+    std::vector<lanes::Body> mean = before;
+    p.sweep(kernels->rough, after, 0.0);
+    p.take_impulses_back();
+    for (std::size_t b = 0; b < mean.size(); ++b) {
+      mean[b].velocity = 0.5 * (before[b].velocity + after[b].velocity);
+      mean[b].spin = 0.5 * (before[b].spin + after[b].spin);
+    }
+    const auto check = [&](const lanes::Members& members, const lanes::Losses& losses,
+                           const lanes::Lane& square) {
+      Ledger all;
+      for (int l = 0; l < lanes::width; ++l) {
+        if (members.contact[l] < 0) continue;
+        const Contact& c = p.contacts[static_cast<std::size_t>(members.contact[l])];
+        const auto velocity_in = [&](const std::vector<lanes::Body>& bodies, const ContactRow& row) {
+          const lanes::Body& i = bodies[static_cast<std::size_t>(c.i)];
+          const lanes::Body& j = bodies[static_cast<std::size_t>(c.j)];
+          return row.relative_velocity(i.velocity, i.spin, j.velocity, j.spin);
+        };
+        const auto solved = [&](std::int32_t b) {
+          SolverBody body = p.bodies[static_cast<std::size_t>(b)];
+          body.velocity = after[static_cast<std::size_t>(b)].velocity;
+          body.spin = after[static_cast<std::size_t>(b)].spin;
+          return body;
+        };
+        Ledger ledger;
+        double moved = 0;
+        for (int k = 0; k < c.count; ++k) {
+          const ContactRow& row = p.rows[static_cast<std::size_t>(c.first_row + k)];
+          ledger = ledger + account(row, c.normal, velocity_in(before, row), solved(c.i), solved(c.j));
+          moved += 0.5 * row.impulse.dot(velocity_in(after, row) - velocity_in(before, row));
+        }
+        ASSERT_NEAR(losses.of.at[l], ledger.restitution + ledger.friction, 10 * rounding) << name;
+        ASSERT_NEAR(square.at[l], moved, 10 * rounding) << name;
+        all = all + ledger;
+      }
+      ASSERT_NEAR(losses.books.restitution, all.restitution, 100 * rounding) << name;
+      ASSERT_NEAR(losses.books.friction, all.friction, 100 * rounding) << name;
+      ASSERT_NEAR(losses.books.work, all.work, 100 * rounding) << name;
+    };
+    lanes::Losses losses;
+    lanes::Lane square;
+    for (std::int64_t b = 0; b < p.batches.balls.size(); ++b) {
+      kernels->book_balls(p.batches.balls.view()[b], mean.data(), losses);
+      kernels->square_of_balls(p.batches.balls.view()[b], before.data(), after.data(), square);
+      check(p.batches.ball_members.view()[b], losses, square);
+    }
+    for (std::int64_t b = 0; b < p.batches.points.size(); ++b) {
+      const lanes::PointBatch& batch = p.batches.points.view()[b];
+      const lanes::PointRow* rows = &p.batches.rows.view()[batch.first_row];
+      kernels->book_points(batch, rows, mean.data(), losses);
+      kernels->square_of_points(batch, rows, before.data(), after.data(), square);
+      check(p.batches.point_members.view()[b], losses, square);
     }
   }
 }
