@@ -35,49 +35,6 @@ struct Kick {
   }
 };
 
-/// What the impulses of a contact move, in all of its rows.
-SCREE_HD Moved moved_by(const SolveStage& stage, const Contact& contact) {
-  Moved moved;
-  for (int k = 0; k < contact.count; ++k) {
-    const ContactRow& row = stage.rows[contact.first_row + k];
-    const Vec3 kicked = stage.free_velocity_of(contact, row);
-    moved.linear += 0.5 * row.impulse.dot(stage.velocity_before(contact, row) + kicked);
-    moved.square += 0.5 * row.impulse.dot(stage.velocity_after(contact, row) - kicked);
-  }
-  return moved;
-}
-
-struct Account {
-  SolveStage stage;
-  View<double> loss;  ///< of each contact (J)
-  SCREE_HD Ledger operator()(std::int64_t c) const {
-    const Contact& contact = stage.contacts[c];
-    Ledger ledger;
-    for (int k = 0; k < contact.count; ++k) {
-      const ContactRow& row = stage.rows[contact.first_row + k];
-      ledger = ledger + account(row, contact.normal, stage.velocity_before(contact, row),
-                                stage.solver[contact.i], stage.solver[contact.j]);
-    }
-    loss[c] = ledger.restitution + ledger.friction;
-    return ledger;
-  }
-};
-
-/// Scales down the impulses of an island that gains energy, to where it gains none. Whether it did.
-bool keep_from_gaining(const SolveStage& stage, ConstView<double> loss, ConstView<std::int32_t> contacts) {
-  double lost = 0;
-  for (const std::int32_t c : contacts) lost += loss[c];
-  if (lost > 0) return false;
-  Moved moved;
-  for (const std::int32_t c : contacts) moved = moved + moved_by(stage, stage.contacts[c]);
-  if (!moved.gains(tolerance::response_gain)) return false;
-  const double scale = moved.scale_without_gain();
-  for (const std::int32_t c : contacts) {
-    for (int k = 0; k < stage.contacts[c].count; ++k) stage.rows_of(c)[k].impulse *= scale;
-  }
-  return true;
-}
-
 /// Work of the torques: by the mean of the spins before and after, as that of impulses.
 struct WorkOfTorque {
   SolveStage stage;
@@ -256,14 +213,14 @@ bool ResponseSolver::find_impulses(SolveStage stage, const ResponseParameters& p
   return converged;
 }
 
-bool ResponseSolver::an_island_gains(std::int64_t bodies, const lanes::Batches& batches) {
+int ResponseSolver::keep_from_gaining(std::int64_t bodies, lanes::Batches& batches) {
   const auto any_gains = [](const lanes::Losses& losses) {
     return std::ranges::any_of(losses.of.at, [](double loss) { return loss < 0; });
   };
-  if (std::ranges::none_of(batch_loss_.view(), any_gains)) return false;
+  if (std::ranges::none_of(loss_.view(), any_gains)) return 0;
   // Calls act(i, j, l) for each contact of a batch, in lane l.
+  const std::int64_t balls = batches.balls.size();
   const auto for_each_contact = [&](std::int64_t batch, const auto& act) {
-    const std::int64_t balls = batches.balls.size();
     const lanes::Ends& ends =
         batch < balls ? batches.balls.view()[batch].ends : batches.points.view()[batch - balls].ends;
     for (int l = 0; l < lanes::width; ++l) {
@@ -271,42 +228,53 @@ bool ResponseSolver::an_island_gains(std::int64_t bodies, const lanes::Batches& 
     }
   };
   islands_.start(bodies);
-  const std::int64_t count = batch_loss_.size();
-  for (std::int64_t b = 0; b < count; ++b) {
+  for (std::int64_t b = 0; b < loss_.size(); ++b) {
     for_each_contact(b, [&](std::int32_t i, std::int32_t j, int) {
       if (sweeps_.is_free(i) && sweeps_.is_free(j)) islands_.unite(i, j);
     });
   }
-  const auto island_of = [&](std::int32_t i, std::int32_t j) {
-    return static_cast<std::size_t>(islands_.root(sweeps_.is_free(i) ? i : j));
+  const auto of_island = [&](auto& list, std::int32_t i, std::int32_t j) -> auto& {
+    return list[static_cast<std::size_t>(islands_.root(sweeps_.is_free(i) ? i : j))];
   };
-  island_moves_.assign(static_cast<std::size_t>(bodies), Moved{});
-  for (std::int64_t b = 0; b < count; ++b) {
+  moved_.assign(static_cast<std::size_t>(bodies), Moved{});
+  for (std::int64_t b = 0; b < loss_.size(); ++b) {
     for_each_contact(b, [&](std::int32_t i, std::int32_t j, int l) {
-      island_moves_[island_of(i, j)].linear -= batch_loss_.view()[b].of.at[l];
+      of_island(moved_, i, j).linear -= loss_.view()[b].of.at[l];
     });
   }
-  // So far that is what each gains in all; those that do are looked at closely.
-  const auto gained = [](const Moved& moved) { return moved.linear > 0; };
-  if (std::ranges::none_of(island_moves_, gained)) return false;
-  island_gains_.resize(island_moves_.size());
-  std::transform(island_moves_.begin(), island_moves_.end(), island_gains_.begin(), gained);
-  for (std::int64_t b = 0; b < count; ++b) {
-    bool any = false;
-    for_each_contact(
-        b, [&](std::int32_t i, std::int32_t j, int) { any = any || island_gains_[island_of(i, j)]; });
-    if (!any) continue;
+  // So far that is what each island gains in all; those that do are looked at closely.
+  scale_.resize(moved_.size());
+  std::ranges::transform(moved_, scale_.begin(),
+                         [](const Moved& moved) { return moved.linear > 0 ? 0.0 : 1.0; });
+  const auto for_each_gaining_batch = [&](const auto& act) {
+    for (std::int64_t b = 0; b < loss_.size(); ++b) {
+      bool any = false;
+      for_each_contact(
+          b, [&](std::int32_t i, std::int32_t j, int) { any = any || of_island(scale_, i, j) < 1; });
+      if (any) act(b);
+    }
+  };
+  for_each_gaining_batch([&](std::int64_t b) {
     const lanes::Lane square = sweeps_.square_of(b);
+    for_each_contact(
+        b, [&](std::int32_t i, std::int32_t j, int l) { of_island(moved_, i, j).square += square.at[l]; });
+  });
+  int scaled = 0;
+  for (std::size_t island = 0; island < scale_.size(); ++island) {
+    if (scale_[island] == 1) continue;
+    Moved& moved = moved_[island];
+    moved.linear -= moved.square;
+    const bool gains = moved.gains(tolerance::response_gain);
+    scale_[island] = gains ? moved.scale_without_gain() : 1.0;
+    scaled += gains;
+  }
+  if (scaled == 0) return 0;
+  for_each_gaining_batch([&](std::int64_t b) {
     for_each_contact(b, [&](std::int32_t i, std::int32_t j, int l) {
-      Moved& moved = island_moves_[island_of(i, j)];
-      moved.linear -= square.at[l];
-      moved.square += square.at[l];
+      lanes::scale_impulse(batches, b, l, of_island(scale_, i, j));
     });
-  }
-  for (std::size_t island = 0; island < island_gains_.size(); ++island) {
-    if (island_gains_[island] && island_moves_[island].gains(tolerance::response_gain)) return true;
-  }
-  return false;
+  });
+  return scaled;
 }
 
 Ledger ResponseSolver::solve(const Manifolds& manifolds, double step, const ResponseParameters& parameters,
@@ -343,30 +311,17 @@ Ledger ResponseSolver::solve(const Manifolds& manifolds, double step, const Resp
           parallel::sum<ImpulseChange, Host>("response.residual", set.contacts.size(), LoadResidual{stage});
       if (left.size > 0) counters.residual = std::max(counters.residual, std::sqrt(left.step / left.size));
     }
-    const lanes::Books books = sweeps_.book(batch_loss_);
+    lanes::Books books = sweeps_.book(loss_);
+    if (const int scaled = keep_from_gaining(solver.size(), set.batches); scaled > 0) {
+      counters.scaled += scaled;
+      sweeps_.store_impulses();
+      sweeps_.set_velocities();
+      sweeps_.store_velocities();
+      books = sweeps_.book(loss_);
+    }
     ledger.restitution = books.restitution;
     ledger.friction = books.friction;
     ledger.work = books.work;
-    if (an_island_gains(solver.size(), set.batches)) {
-      list_all(set, stage);
-      loss_.resize(set.contacts.size());
-      const auto account = [&] {
-        return parallel::sum<Ledger, Host>("response.ledger", loss_.size(), Account{stage, loss_.view()});
-      };
-      ledger = account();
-      islands_.find(set.contacts.view(), solver.view());
-      int scaled = 0;
-      for (std::int64_t island = 0; island < islands_.count(); ++island) {
-        scaled += keep_from_gaining(stage, std::as_const(loss_).view(), islands_.contacts(island));
-      }
-      counters.scaled += scaled;
-      if (scaled > 0) {
-        sweeps_.take_impulses();
-        sweeps_.set_velocities();
-        sweeps_.store_velocities();
-        ledger = account();
-      }
-    }
     if (parameters.accurate && parameters.friction && !set.is_heap())
       slip_end_ =
           -parallel::max<double, Host>("response.slip", set.contacts.size(), MinusSlipEnd{{stage}}, -1.0);

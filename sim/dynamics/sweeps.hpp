@@ -74,6 +74,9 @@ class Sweeps {
   /// Takes the impulses that the rows have now.
   void take_impulses();
 
+  /// Gives the rows their impulses.
+  void store_impulses() const { lanes::store_impulses(*batches_, stage_->rows, {}); }
+
   /// Sets the velocities to what the impulses taken, or found since, give.
   void set_velocities();
   /// Gives the solver's bodies their velocities.

@@ -344,6 +344,17 @@ void take_impulses(ConstView<ContactRow> rows, Batches& batches) {
       TakePointImpulses{rows, batches.point_members.view(), batches.points.view(), batches.rows.view()});
 }
 
+void scale_impulse(Batches& batches, std::int64_t batch, int l, double scale) {
+  const auto scale_lane = [&](LaneImpulse& lanes) { put(lanes.impulse, l, scale * take(lanes.impulse, l)); };
+  const std::int64_t balls = batches.balls.size();
+  if (batch < balls) {
+    scale_lane(batches.balls.view()[batch].impulse);
+    return;
+  }
+  const PointBatch& points = batches.points.view()[batch - balls];
+  for (int k = 0; k < points.count; ++k) scale_lane(batches.rows.view()[points.first_row + k].impulse);
+}
+
 void store_impulses(const Batches& batches, View<ContactRow> rows, View<ImpulseChange> change) {
   const Target to{rows, change};
   parallel::for_each<Host>("lanes.store", batches.balls.size(),

@@ -77,6 +77,8 @@ void load(ConstView<Contact> contacts, ConstView<ContactRow> rows, ConstView<Sol
 void store_masses(const Batches& batches, View<ContactRow> rows);
 /// Takes the impulses of the rows again; directions start anew.
 void take_impulses(ConstView<ContactRow> rows, Batches& batches);
+/// Of the contact in lane l of a batch: the balls', then those of points.
+void scale_impulse(Batches& batches, std::int64_t batch, int l, double scale);
 /// Gives the rows their impulses, and, unless `change` is empty, what the last sweep changed of each contact.
 void store_impulses(const Batches& batches, View<ContactRow> rows, View<ImpulseChange> change);
 
