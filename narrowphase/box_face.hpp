@@ -20,23 +20,33 @@ struct ClipPolygon {
   ClipPoint point[8];  // a side adds at most one to a quadrilateral's corners
 };
 
-/// The part of a convex polygon on the inner side of at[d] * side = limit (Sutherland, Hodgman 1974).
-SCREE_HD inline ClipPolygon clip(const ClipPolygon& in, int d, double side, double limit, BoxFeature cut) {
-  ClipPolygon out;
-  for (int k = 0; k < in.count; ++k) {
-    const ClipPoint& p = in.point[k];
-    const ClipPoint& q = in.point[k + 1 < in.count ? k + 1 : 0];
-    const double beyond_p = side * p.at[d] - limit, beyond_q = side * q.at[d] - limit;
-    if (beyond_p <= 0.0) out.point[out.count++] = p;
-    if ((beyond_p <= 0.0) == (beyond_q <= 0.0)) continue;
-    const double share = beyond_p / (beyond_p - beyond_q);
-    ClipPoint& c = out.point[out.count++];
+/// Cuts a convex polygon to its part on the inner side of at[d] * side = limit (Sutherland, Hodgman 1974).
+/// `scratch`: of its points before.
+SCREE_HD inline void clip(ClipPolygon& polygon, int d, double side, double limit, BoxFeature cut,
+                          ClipPolygon& scratch) {
+  double beyond[8];
+  bool any = false;
+  for (int k = 0; k < polygon.count; ++k) {
+    beyond[k] = side * polygon.point[k].at[d] - limit;
+    any = any || beyond[k] > 0.0;
+  }
+  if (!any) return;
+  scratch.count = polygon.count;
+  for (int k = 0; k < polygon.count; ++k) scratch.point[k] = polygon.point[k];
+  polygon.count = 0;
+  for (int k = 0; k < scratch.count; ++k) {
+    const int next = k + 1 < scratch.count ? k + 1 : 0;
+    const ClipPoint& p = scratch.point[k];
+    const ClipPoint& q = scratch.point[next];
+    if (beyond[k] <= 0.0) polygon.point[polygon.count++] = p;
+    if ((beyond[k] <= 0.0) == (beyond[next] <= 0.0)) continue;
+    const double share = beyond[k] / (beyond[k] - beyond[next]);
+    ClipPoint& c = polygon.point[polygon.count++];
     for (int e = 0; e < 2; ++e) c.at[e] = p.at[e] + share * (q.at[e] - p.at[e]);
     c.height = p.height + share * (q.height - p.height);
     c.own = (p.own & q.own) | cut;
     c.other = p.other & q.other;
   }
-  return out;
 }
 
 /// Twice the area of the triangle a, b, c, positive if counterclockwise.
@@ -83,7 +93,10 @@ SCREE_HD inline void reduce(ClipPolygon& polygon, double smallest) {
   const double slack = tolerance::same_feature * smallest;
   const ClipPoint* p = polygon.point;
   select(polygon, 0, slack, [](const ClipPoint& c) { return -c.height; });
-  const auto distance = [p](const ClipPoint& c) { return hypot(c.at[0] - p[0].at[0], c.at[1] - p[0].at[1]); };
+  const auto distance = [p](const ClipPoint& c) {
+    const double x = c.at[0] - p[0].at[0], y = c.at[1] - p[0].at[1];
+    return sqrt(x * x + y * y);
+  };
   select(polygon, 1, slack, distance);
   const double area_slack = slack * distance(p[1]);
   select(polygon, 2, area_slack, [p](const ClipPoint& c) { return fabs(area(p[0], p[1], c)); });
@@ -160,9 +173,10 @@ SCREE_HD inline bool face_contact(const BoxPair& pair, const BoxAxis& axis, doub
 
   detail::ClipPolygon polygon =
       detail::corners(pair, box, k, side, detail::incident_face(pair, box, k, side));
+  detail::ClipPolygon scratch;
   for (int d = 0; d < 2; ++d) {
     const double limit = half[across[d]] + tolerance::same_feature * pair.smallest;
-    for (const double s : {-1.0, 1.0}) polygon = detail::clip(polygon, d, s, limit, box_side(across[d], s));
+    for (const double s : {-1.0, 1.0}) detail::clip(polygon, d, s, limit, box_side(across[d], s), scratch);
   }
   int within = 0;
   for (int c = 0; c < polygon.count; ++c) {

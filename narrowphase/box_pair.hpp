@@ -66,12 +66,15 @@ SCREE_HD inline void edge_axis(const BoxPair& pair, const Vec3& offset, int i, i
   const int i1 = (i + 1) % 3, i2 = (i + 2) % 3, j1 = (j + 1) % 3, j2 = (j + 2) % 3;
   const Mat3& C = pair.turn;
   const double n1 = -C(i2, j), n2 = C(i1, j);
-  const double sine = sqrt(n1 * n1 + n2 * n2);
-  if (sine < tolerance::parallel_axes) return;
   const double reach_a = pair.half[0][i1] * fabs(n1) + pair.half[0][i2] * fabs(n2);
   const double reach_b = pair.half[1][j1] * fabs(n1 * C(i1, j1) + n2 * C(i2, j1)) +
                          pair.half[1][j2] * fabs(n1 * C(i1, j2) + n2 * C(i2, j2));
-  const double separation = (fabs(n1 * offset[i1] + n2 * offset[i2]) - (reach_a + reach_b)) / sine;
+  const double apart = fabs(n1 * offset[i1] + n2 * offset[i2]) - (reach_a + reach_b);
+  // Where the shadows overlap, they do so by no less along the unit axis.
+  if (apart < 0.0 && apart <= best.edges.separation) return;
+  const double sine = sqrt(n1 * n1 + n2 * n2);
+  if (sine < tolerance::parallel_axes) return;
+  const double separation = apart / sine;
   best.separation = fmax(best.separation, separation);
   const BoxAxis axis = {-1, {i, j}, separation};
   if (separation > best.any_edges.separation) best.any_edges = axis;

@@ -194,7 +194,7 @@ void Substepper::respond(const Manifolds& manifolds, double h) {
   ledger =
       ledger + response_.solve(manifolds, h, parameters_, memory_.balls, parameters_.warm_start ? scale : 0.0,
                                view_of(bodies_), solver_, contacts_, counters);
-  if (any_late_) contacts_.list_pairs(solver_.view());
+  if (any_late_) contacts_.list_all(solver_.view());
   ledger = ledger + impacts_.shift_late(impact_problem({}, h, 0), parameters_, view_of(bodies_), contacts_);
 }
 
@@ -267,7 +267,7 @@ void Substepper::measure_contacts(std::int64_t free_bodies, Observation& out) co
 }
 
 const ContactSet& Substepper::listed_contacts() const {
-  contacts_.list_pairs(solver_.view());
+  contacts_.list_all(solver_.view());
   return contacts_;
 }
 

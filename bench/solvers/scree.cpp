@@ -40,7 +40,6 @@ class Replay {
             .solver = solver_.view(),
             .contacts = set_.contacts.view(),
             .rows = set_.rows.view(),
-            .couplings = set_.couplings.view(),
             .change = {},
             .free_velocity = velocity_.view(),
             .free_spin = spin_.view(),
@@ -63,7 +62,6 @@ class Replay {
     std::vector<ManifoldHeader> headers;
     set_.contacts.resize(static_cast<std::int64_t>(scene_.contacts.size()));
     set_.rows.resize(static_cast<std::int64_t>(scene_.points.size()));
-    set_.couplings.resize(set_.rows.size());
     for (const ContactProblem::Contact& c : scene_.contacts) {
       set_.contacts.view()[std::ssize(headers)] = contact_of(c);
       load_rows(c);
@@ -105,8 +103,7 @@ class Replay {
       const SolverBody j = solver_body(c.j);
       frames_.push_back(frame_of(c));
       ContactRow& row = set_.rows.view()[p];
-      row = c.balls ? make_ball_row(point.arm_i, point.arm_j, 0, i, j)
-                    : make_row(c.normal, point.arm_i, point.arm_j, 0, i, j, set_.couplings.view()[p]);
+      row = c.balls ? make_ball_row(point.arm_i, point.arm_j, 0, i, j) : row_at(point.arm_i, point.arm_j, 0);
       row.target = point.target;
     }
   }

@@ -9,7 +9,7 @@
 
 namespace scree {
 
-/// Arms, gaps and targets at the midpoint.
+/// Arms, gaps and targets at the midpoint. Masses of points are for the lanes to make.
 struct PrepareRows {
   SolveStage stage;
   SCREE_HD void operator()(std::int64_t c) const {
@@ -29,11 +29,8 @@ struct PrepareRows {
       const SolverBody& j = stage.solver[m.j];
       const Vec3 arm_i = point - (bodies.position[m.i] + contact.lead * i.velocity);
       const Vec3 arm_j = point - (bodies.position[m.j] + contact.lead * j.velocity);
-      if (contact.balls) {
-        row = make_ball_row(arm_i, arm_j, points[k].gap, i, j);
-      } else {
-        row = make_row(m.normal, arm_i, arm_j, points[k].gap, i, j, stage.couplings[contact.first_row + k]);
-      }
+      row = contact.balls ? make_ball_row(arm_i, arm_j, points[k].gap, i, j)
+                          : row_at(arm_i, arm_j, points[k].gap);
       row.impulse = impulse;
       // The next midpoint must not overlap: the gap may close by then, and no more (speculative contact).
       row.target = row.gap > shell ? -(row.gap - shell) / (stage.step - contact.lead) : 0.0;

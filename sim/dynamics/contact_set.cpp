@@ -149,14 +149,15 @@ void extend(Array<T, Host>& values, std::int64_t n) {
 
 }  // namespace
 
-void ContactSet::list_pairs(ConstView<SolverBody> bodies) {
-  if (pairs_are_listed) return;
+void ContactSet::list_all(ConstView<SolverBody> bodies) {
+  if (all_are_listed) return;
+  lanes::store_masses(batches, rows.view());
+  all_are_listed = true;
+  if (pairs == 0) return;
   const std::int64_t first_contact = contacts.size();
   const std::int64_t first_row = rows.size();
   extend(contacts, first_contact + pairs);
-  extend(couplings, first_row + pairs);
   extend(rows, first_row + pairs);
-  pairs_are_listed = true;
   parallel::for_each<Host>(
       "contacts.list", pairs,
       ListPairs{&batches, bodies, first_contact, first_row, contacts.view(), rows.view()});
@@ -182,11 +183,10 @@ void ImpulseMemory::remember(const Manifolds& manifolds, const ContactSet& set, 
 void prepare_contacts(const Manifolds& manifolds, const ContactLaws& laws, const ImpulseMemory& memory,
                       double scale, const ResponseParameters& parameters, ContactSet& set) {
   set.pairs = static_cast<std::int64_t>(memory.balls.touching().size());
-  set.pairs_are_listed = false;
+  set.all_are_listed = false;
   set.batches.clear();
   set.contacts.resize(manifolds.size());
   set.rows.resize(manifolds.points.size());
-  set.couplings.resize(manifolds.points.size());
   parallel::for_each<Host>(
       "contacts.prepare", manifolds.size(),
       PrepareContact{manifolds, laws, &memory, scale, parameters, set.contacts.view(), set.rows.view()});

@@ -64,19 +64,17 @@ struct ContactCounts {
 struct ContactSet {
   Coloring coloring;
   Array<Contact, Host> contacts;
-  Array<ContactRow, Host> rows;        ///< of one contact after the other
-  Array<RowCoupling, Host> couplings;  ///< of the rows; not set for those of balls
-  lanes::Batches batches;              ///< the same for the kernels, colour by colour
-  std::int64_t pairs = 0;              ///< contacts of BallPairs: only in the batches, until they are listed
-  bool pairs_are_listed = false;       ///< among the contacts and rows, after the others
+  Array<ContactRow, Host> rows;  ///< of one contact after the other
+  lanes::Batches batches;        ///< the same for the kernels, colour by colour
+  std::int64_t pairs = 0;        ///< contacts of BallPairs: only in the batches, until all are listed
+  bool all_are_listed = false;  ///< those too, after the others, and the masses of rows, which are made there
 
-  std::int64_t contact_count() const { return contacts.size() + (pairs_are_listed ? 0 : pairs); }
-  std::int64_t point_count() const { return rows.size() + (pairs_are_listed ? 0 : pairs); }
+  std::int64_t contact_count() const { return contacts.size() + (all_are_listed ? 0 : pairs); }
+  std::int64_t point_count() const { return rows.size() + (all_are_listed ? 0 : pairs); }
   /// How many contacts are not of BallPairs.
   std::int64_t others() const { return contact_count() - pairs; }
-  /// Lists the contacts of BallPairs too, as the batches have them, for those who look at contacts one by
-  /// one.
-  void list_pairs(ConstView<SolverBody> bodies);
+  /// Lists what only the batches have, for those who look at contacts one by one.
+  void list_all(ConstView<SolverBody> bodies);
 
   bool is_heap() const { return scree::is_heap(point_count()); }
   bool shares_loads() const { return scree::shares_loads(contact_count(), point_count()); }

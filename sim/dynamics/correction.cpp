@@ -14,7 +14,8 @@ struct PositionCorrector::Stage {
   ConstView<SolverBody> solver;
   ConstView<Contact> contacts;
   ConstView<ContactRow> rows;
-  View<lanes::Body> displacement;  ///< of the centre (m), and turn (rad)
+  View<lanes::Body> displacement;  ///< of the centre (m), and turn, as PointParting has it
+  View<lanes::InertiaRoot> roots;
   double step;
 
   /// How far a gap has opened since the contact was seen. From the places that bodies struck late have come
@@ -44,10 +45,9 @@ struct PositionCorrector::FlyBalls {
   ConstView<lanes::Members> members;
   ConstView<lanes::BallBatch> batches;
   View<lanes::BallParting> partings;
-  const lanes::Body* velocities;
   double operator()(std::int64_t b) const {
     lanes::BallParting& parting = partings[b];
-    double deepest = lanes::kernels().fly_balls(batches[b], parting, velocities, stage.step);
+    double deepest = lanes::kernels().fly_balls(batches[b], parting, stage.displacement.data(), stage.step);
     for (int l = 0; l < lanes::width; ++l) {
       if ((parting.apart >> l & 1) == 0) continue;
       parting.flown.at[l] =
@@ -62,19 +62,18 @@ struct PositionCorrector::FlyPoints {
   Stage stage;
   ConstView<lanes::Members> members;
   ConstView<lanes::PointBatch> batches;
-  View<lanes::Lane> caps;            ///< of each batch
-  View<lanes::PointParting> points;  ///< of each of its points
+  ConstView<lanes::PointRow> rows;
+  View<lanes::PointParting> points;
   double operator()(std::int64_t b) const {
     const lanes::PointBatch& batch = batches[b];
-    double deepest = 0;
-    for (int l = 0; l < lanes::width; ++l) {
-      const std::int32_t c = members[b].contact[l];
-      caps[b].at[l] = c == lanes::none ? 0.0 : tolerance::correction_cap * stage.contacts[c].size;
+    const std::int64_t first = batch.first_row;
+    double deepest = lanes::kernels().fly_points(batch, &rows[first], &points[first],
+                                                 stage.displacement.data(), stage.roots.data(), stage.step);
+    for (int l = 0; batch.apart >> l != 0; ++l) {
+      if ((batch.apart >> l & 1) == 0) continue;
       for (int k = 0; k < batch.count; ++k) {
-        lanes::PointParting& point = points[batch.first_row + k];
-        double& gap = point.flown.at[l];
-        point.pushed.at[l] = 0;
-        gap = c == lanes::none ? 0.0 : stage.flown_gap(stage.contacts[c], stage.rows[members[b].row[l] + k]);
+        double& gap = points[first + k].gap.at[l];
+        gap = stage.flown_gap(stage.contacts[members[b].contact[l]], stage.rows[members[b].row[l] + k]);
         deepest = fmax(deepest, -gap);
       }
     }
@@ -83,12 +82,29 @@ struct PositionCorrector::FlyPoints {
 };
 
 /// Puts the velocities where the displacements will be.
-struct PositionCorrector::LoadVelocity {
+struct PositionCorrector::LoadBody {
   Stage stage;
   void operator()(std::int64_t k) const {
-    const bool exists = k < stage.solver.size();
-    stage.displacement[k].velocity = exists ? stage.solver[k].velocity : Vec3::Zero();
-    stage.displacement[k].inverse_mass = exists ? stage.solver[k].inverse_mass : 0;
+    if (k == stage.solver.size()) {
+      stage.displacement[k] = {Vec3::Zero(), 0, Vec3::Zero(), 0};
+      stage.roots[k] = {};
+      return;
+    }
+    const SolverBody& body = stage.solver[k];
+    stage.displacement[k] = {body.velocity, body.inverse_mass, body.spin, 0};
+    stage.roots[k] = root_of(body.inverse_inertia);
+  }
+  /// Cholesky's factor.
+  static lanes::InertiaRoot root_of(const Mat3& m) {
+    lanes::InertiaRoot root{};
+    if (m(0, 0) == 0) return root;
+    root.xx = sqrt(m(0, 0));
+    root.xy = m(0, 1) / root.xx;
+    root.xz = m(0, 2) / root.xx;
+    root.yy = sqrt(m(1, 1) - root.xy * root.xy);
+    root.yz = (m(1, 2) - root.xy * root.xz) / root.yy;
+    root.zz = sqrt(m(2, 2) - root.xz * root.xz - root.yz * root.yz);
+    return root;
   }
 };
 
@@ -111,15 +127,12 @@ struct PositionCorrector::PartBalls {
 
 struct PositionCorrector::PartPoints {
   ConstView<lanes::PointBatch> batches;
-  ConstView<lanes::PointRow> rows;
   View<lanes::PointParting> points;
-  ConstView<lanes::Lane> caps;
   lanes::Body* displacement;
   double* deepest;
-  void operator()(std::int64_t b) const {
-    const std::int64_t first = batches[b].first_row;
-    deepest[b] = lanes::kernels().part_points(batches[b], &rows[first], &points[first], caps[b],
-                                              tolerance::correction_share, displacement);
+  void operator()(std::int64_t b, int count) const {
+    lanes::kernels().part_points(&batches[b], count, points.data(), tolerance::correction_share, displacement,
+                                 deepest + b);
   }
 };
 
@@ -136,7 +149,10 @@ struct PositionCorrector::Apply {
   SCREE_HD Ledger operator()(std::int64_t k) const {
     const lanes::Body& d = stage.displacement[k];
     if (!stage.solver[k].is_free()) return {};
-    return displace(stage.bodies, k, d.velocity, d.spin, gravity, rotation);
+    const lanes::InertiaRoot& root = stage.roots[k];
+    const Vec3 turn(root.xx * d.spin.x(), root.xy * d.spin.x() + root.yy * d.spin.y(),
+                    root.xz * d.spin.x() + root.yz * d.spin.y() + root.zz * d.spin.z());
+    return displace(stage.bodies, k, d.velocity, turn, gravity, rotation);
   }
 };
 
@@ -146,14 +162,13 @@ Ledger PositionCorrector::correct(double step, const ResponseParameters& paramet
   if (set.contact_count() == 0) return {};
   lanes::Batches& batches = set.batches;
   displacement_.resize(solver.size() + 1);
-  points_.resize(batches.rows.size());
-  caps_.resize(batches.points.size());
-  const Stage stage{bodies, solver.view(), set.contacts.view(), set.rows.view(), displacement_.view(), step};
-  parallel::for_each<Host>("correction.velocities", displacement_.size(), LoadVelocity{stage});
-  const FlyBalls fly_balls{stage, batches.ball_members.view(), batches.balls.view(), batches.partings.view(),
-                           displacement_.data()};
-  const FlyPoints fly_points{stage, batches.point_members.view(), batches.points.view(), caps_.view(),
-                             points_.view()};
+  roots_.resize(displacement_.size());
+  const Stage stage{bodies,        solver.view(), set.contacts.view(), set.rows.view(), displacement_.view(),
+                    roots_.view(), step};
+  parallel::for_each<Host>("correction.load", displacement_.size(), LoadBody{stage});
+  const FlyBalls fly_balls{stage, batches.ball_members.view(), batches.balls.view(), batches.partings.view()};
+  const FlyPoints fly_points{stage, batches.point_members.view(), batches.points.view(), batches.rows.view(),
+                             batches.point_partings.view()};
   const double deepest =
       fmax(parallel::max<double, Host>("correction.gaps", batches.balls.size(), fly_balls, 0.0),
            parallel::max<double, Host>("correction.gaps", batches.points.size(), fly_points, 0.0));
@@ -167,7 +182,7 @@ Ledger PositionCorrector::correct(double step, const ResponseParameters& paramet
   for (int sweep = 0; sweep < most && !corrected; ++sweep) {
     lanes::for_each_color("correction.sweep", batches,
                           PartBalls{batches.partings.view(), displacement_.data(), deepest_.data()},
-                          PartPoints{batches.points.view(), batches.rows.view(), points_.view(), caps_.view(),
+                          PartPoints{batches.points.view(), batches.point_partings.view(),
                                      displacement_.data(), deepest_.data() + balls});
     const double overlap = tolerance::correction_cap *
                            parallel::max<double, Host>("correction.deepest", deepest_.size(),

@@ -23,15 +23,14 @@ class PositionCorrector {
   struct Stage;
   struct FlyBalls;
   struct FlyPoints;
-  struct LoadVelocity;
+  struct LoadBody;
   struct Reset;
   struct PartBalls;
   struct PartPoints;
   struct LoadDepth;
   struct Apply;
-  Array<lanes::Body, Host> displacement_;    // and that of nobody
-  Array<lanes::Lane, Host> caps_;            // of each batch of points
-  Array<lanes::PointParting, Host> points_;  // of these
+  Array<lanes::Body, Host> displacement_;  // and that of nobody
+  Array<lanes::InertiaRoot, Host> roots_;  // likewise
   double overlap_ = 0;
   Array<double, Host> deepest_;  // overlap in the last sweep, in units of the cap; balls first
 };

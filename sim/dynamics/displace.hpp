@@ -25,11 +25,15 @@ SCREE_HD inline Ledger displace(const BodyView& bodies, std::int64_t k, const Ve
   ledger.correction = mass * gravity.dot(moved);
   ledger.angular_correction = mass * moved.cross(bodies.velocity[k]);
   if (rotation && !turn.isZero(0)) {
-    const double energy = rotational_energy(q, spin, inverse_inertia);
-    const Vec3 momentum = spin_momentum(q, spin, inverse_inertia);
+    const Mat3 before_turn = q.toRotationMatrix();
     q = (rotation_of(turn) * q).normalized();
-    ledger.correction -= rotational_energy(q, spin, inverse_inertia) - energy;
-    ledger.angular_correction += spin_momentum(q, spin, inverse_inertia) - momentum;
+    const Mat3 after_turn = q.toRotationMatrix();
+    // At constant spin.
+    const Vec3 inertia = inverse_inertia.cwiseInverse();
+    const Vec3 momentum = before_turn * (before_turn.transpose() * spin).cwiseProduct(inertia);
+    const Vec3 gained = after_turn * (after_turn.transpose() * spin).cwiseProduct(inertia) - momentum;
+    ledger.correction -= 0.5 * spin.dot(gained);
+    ledger.angular_correction += gained;
   }
   return ledger;
 }

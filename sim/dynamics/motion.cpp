@@ -3,11 +3,14 @@
 #include "core/parallel.hpp"
 #include "core/space_tiles.hpp"
 #include "core/tolerances.hpp"
+#include "sim/dynamics/lanes/lanes.hpp"
 #include "sim/dynamics/rotation.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <type_traits>
+#include <utility>
 
 namespace scree {
 
@@ -30,6 +33,78 @@ struct Rotate {
     if (bodies.mobility[k] != Mobility::free) return 0;
     return rotate_freely(bodies.orientation[k], bodies.spin[k], bodies.inverse_inertia[k], dt, order);
   }
+};
+
+/// The same of bodies side by side, on Host.
+struct RotateBatch {
+  Rotate rotate;
+  View<double> drift;
+  void operator()(std::int64_t batch) const {
+    const BodyView& bodies = rotate.bodies;
+    const std::int64_t first = batch * lanes::width;
+    const auto count = static_cast<int>(std::min<std::int64_t>(lanes::width, bodies.count() - first));
+    lanes::Tops tops = no_tops;
+    std::uint32_t filled = 0;
+    for (int l = 0; l < count; ++l) {
+      const std::int64_t k = first + l;
+      if (bodies.mobility[k] != Mobility::free || has_equal_moments(bodies.inverse_inertia[k])) {
+        drift[k] = rotate(k);
+      } else {
+        filled |= 1u << l;
+        load(k, l, tops);
+      }
+    }
+    if (filled == 0) return;
+    lanes::kernels().turn(tops, rotate.dt, rotate.order == RotationOrder::fourth);
+    for (int l = 0; l < count; ++l) {
+      if ((filled >> l & 1) == 0) continue;
+      const std::int64_t k = first + l;
+      drift[k] = (tops.far >> l & 1) != 0 ? rotate(k) : store(tops, l, k);
+    }
+  }
+
+ private:
+  /// That stay as they are.
+  static constexpr lanes::Tops no_tops = [] {
+    lanes::Tops tops{};
+    for (int l = 0; l < lanes::width; ++l) {
+      tops.w.at[l] = 1;
+      for (lanes::Lane* inverse : {&tops.inverse_inertia.x, &tops.inverse_inertia.y, &tops.inverse_inertia.z})
+        inverse->at[l] = 1;
+    }
+    return tops;
+  }();
+
+  void load(std::int64_t k, int l, lanes::Tops& tops) const {
+    const Vec3& inverse_inertia = rotate.bodies.inverse_inertia[k];
+    const Quat& q = rotate.bodies.orientation[k];
+    const AxisOrder axes(inverse_inertia);
+    const auto put = [l](lanes::LaneVec& lanes, const Vec3& value) {
+      lanes.x.at[l] = value.x();
+      lanes.y.at[l] = value.y();
+      lanes.z.at[l] = value.z();
+    };
+    tops.w.at[l] = q.w();
+    put(tops.v, axes.renamed(q.vec()));
+    put(tops.spin, axes.renamed(rotate.bodies.spin[k]));
+    put(tops.inverse_inertia, axes.ordered(inverse_inertia));
+  }
+  /// Returns the drift.
+  double store(const lanes::Tops& tops, int l, std::int64_t k) const {
+    const AxisOrder axes(rotate.bodies.inverse_inertia[k]);
+    const auto take = [l, &axes](const lanes::LaneVec& lanes) {
+      return axes.named_back(Vec3(lanes.x.at[l], lanes.y.at[l], lanes.z.at[l]));
+    };
+    rotate.bodies.orientation[k].w() = tops.w.at[l];
+    rotate.bodies.orientation[k].vec() = take(tops.v);
+    rotate.bodies.spin[k] = take(tops.spin);
+    return tops.drift.at[l];
+  }
+};
+
+struct LoadDrift {
+  ConstView<double> drift;
+  SCREE_HD double operator()(std::int64_t k) const { return drift[k]; }
 };
 
 struct SetMargin {
@@ -61,8 +136,11 @@ struct Travel {
     if (bodies.mobility[k] == Mobility::fixed || bodies.mobility[k] == Mobility::absent) return 0;
     const double moved = (bodies.position[k] - position[k]).norm();
     if (bodies.shape[k] == Shape::sphere) return moved;
-    return moved + bounding_radius(bodies.shape[k], bodies.size[k]) *
-                       bodies.orientation[k].angularDistance(orientation[k]);
+    // A turn by an angle moves a point by 2 r sin(angle / 2), which is at most 4 r sin(angle / 4).
+    const Eigen::Vector4d& q = bodies.orientation[k].coeffs();
+    const Eigen::Vector4d& before = orientation[k].coeffs();
+    const double way = sqrt(fmin((q - before).squaredNorm(), (q + before).squaredNorm()));
+    return moved + 2 * bounding_radius(bodies.shape[k], bodies.size[k]) * way;
   }
 };
 
@@ -173,7 +251,17 @@ double advance(Bodies<Space>& bodies, double dt, const ResponseParameters& param
   parallel::for_each<Space>("motion.translate", n, Translate{views, dt});
   if (!parameters.rotation) return 0;
   const Rotate rotate{views, dt, parameters.accurate ? RotationOrder::fourth : RotationOrder::second};
-  if (parameters.gyroscopic) return parallel::sum_by_tiles<double, Space>("motion.rotate", n, rotate);
+  if (parameters.gyroscopic) {
+    if constexpr (std::is_same_v<Space, Host>) {
+      constexpr std::int64_t few_batches = 16;  // worth waking threads for
+      Array<double, Host> drift(n);
+      parallel::for_each<Host>("motion.rotate", (n + lanes::width - 1) / lanes::width,
+                               RotateBatch{rotate, drift.view()}, few_batches);
+      return parallel::sum_by_tiles<double, Host>("motion.rotate", n, LoadDrift{std::as_const(drift).view()});
+    } else {
+      return parallel::sum_by_tiles<double, Space>("motion.rotate", n, rotate);
+    }
+  }
   parallel::for_each<Space>("motion.rotate", n, rotate);
   return 0;
 }

@@ -35,51 +35,6 @@ struct Kick {
   }
 };
 
-/// What the impulses of a contact move, in all of its rows.
-SCREE_HD Moved moved_by(const SolveStage& stage, const Contact& contact) {
-  Moved moved;
-  for (int k = 0; k < contact.count; ++k) {
-    const ContactRow& row = stage.rows[contact.first_row + k];
-    const Vec3 kicked = stage.free_velocity_of(contact, row);
-    moved.linear += 0.5 * row.impulse.dot(stage.velocity_before(contact, row) + kicked);
-    moved.square += 0.5 * row.impulse.dot(stage.velocity_after(contact, row) - kicked);
-  }
-  return moved;
-}
-
-struct Account {
-  SolveStage stage;
-  View<double> loss;           ///< of each contact (J)
-  View<std::uint8_t> gaining;  ///< whether it gains
-  SCREE_HD Ledger operator()(std::int64_t c) const {
-    const Contact& contact = stage.contacts[c];
-    Ledger ledger;
-    for (int k = 0; k < contact.count; ++k) {
-      const ContactRow& row = stage.rows[contact.first_row + k];
-      ledger = ledger + account(row, contact.normal, stage.velocity_before(contact, row),
-                                stage.solver[contact.i], stage.solver[contact.j]);
-    }
-    loss[c] = ledger.restitution + ledger.friction;
-    gaining[c] = loss[c] < 0 && moved_by(stage, contact).gains(tolerance::response_gain) ? 1 : 0;
-    return ledger;
-  }
-};
-
-/// Scales down the impulses of an island that gains energy, to where it gains none. Whether it did.
-bool keep_from_gaining(const SolveStage& stage, ConstView<double> loss, ConstView<std::int32_t> contacts) {
-  double lost = 0;
-  for (const std::int32_t c : contacts) lost += loss[c];
-  if (lost > 0) return false;
-  Moved moved;
-  for (const std::int32_t c : contacts) moved = moved + moved_by(stage, stage.contacts[c]);
-  if (!moved.gains(tolerance::response_gain)) return false;
-  const double scale = moved.scale_without_gain();
-  for (const std::int32_t c : contacts) {
-    for (int k = 0; k < stage.contacts[c].count; ++k) stage.rows_of(c)[k].impulse *= scale;
-  }
-  return true;
-}
-
 /// Work of the torques: by the mean of the spins before and after, as that of impulses.
 struct WorkOfTorque {
   SolveStage stage;
@@ -210,11 +165,10 @@ bool ResponseSolver::count_outcomes(std::int64_t& solved, std::int64_t& failed) 
   return all_solved;
 }
 
-void ResponseSolver::list_pairs(ContactSet& set, SolveStage& stage) {
-  set.list_pairs(stage.solver);
+void ResponseSolver::list_all(ContactSet& set, SolveStage& stage) {
+  set.list_all(stage.solver);
   stage.contacts = set.contacts.view();
   stage.rows = set.rows.view();
-  stage.couplings = set.couplings.view();
   sweeps_.look_at(stage);
 }
 
@@ -223,7 +177,7 @@ bool ResponseSolver::find_impulses(SolveStage stage, const ResponseParameters& p
   const SweepPlan plan = plan_sweeps(parameters, set);
   sweeps_.load(stage, set.coloring, set.batches);
   const bool one_by_one = plan.direct || parameters.accurate;
-  if (one_by_one) list_pairs(set, stage);
+  if (one_by_one) list_all(set, stage);
   change_.resize(plan.direct ? set.contacts.size() : 0);
   stage.change = change_.view();
   sweeps_.look_at(stage);
@@ -259,45 +213,68 @@ bool ResponseSolver::find_impulses(SolveStage stage, const ResponseParameters& p
   return converged;
 }
 
-bool ResponseSolver::an_island_gains(const SolveStage& stage, std::int64_t others,
-                                     const lanes::Batches& batches) {
-  const auto any_gains = [](const lanes::Losses& losses) { return losses.gaining != 0; };
-  if (!std::ranges::any_of(gaining_.view(), [](std::uint8_t gains) { return gains != 0; }) &&
-      (stage.balls == nullptr || !std::ranges::any_of(pair_loss_.view(), any_gains)))
-    return false;
-  islands_.start(stage.solver.size());
-  // Calls act(i, j, loss, gains) for each contact.
-  const auto for_each_contact = [&](const auto& act) {
-    for (std::int64_t c = 0; c < others; ++c) {
-      const Contact& contact = stage.contacts[c];
-      act(contact.i, contact.j, loss_.view()[c], gaining_.view()[c] != 0);
-    }
-    for (std::int64_t b = 0; b < batches.balls.size(); ++b) {
-      if (!batches.ball_members.view()[b].are_pairs) continue;
-      const lanes::Ends& ends = batches.balls.view()[b].ends;
-      const lanes::Losses& losses = pair_loss_.view()[b];
-      for (int l = 0; l < lanes::width; ++l) {
-        if (ends.i[l] != batches.nobody)
-          act(ends.i[l], ends.j[l], losses.at[l], (losses.gaining >> l & 1) != 0);
-      }
+int ResponseSolver::keep_from_gaining(std::int64_t bodies, lanes::Batches& batches) {
+  const auto any_gains = [](const lanes::Losses& losses) {
+    return std::ranges::any_of(losses.of.at, [](double loss) { return loss < 0; });
+  };
+  if (std::ranges::none_of(loss_.view(), any_gains)) return 0;
+  // Calls act(i, j, l) for each contact of a batch, in lane l.
+  const std::int64_t balls = batches.balls.size();
+  const auto for_each_contact = [&](std::int64_t batch, const auto& act) {
+    const lanes::Ends& ends =
+        batch < balls ? batches.balls.view()[batch].ends : batches.points.view()[batch - balls].ends;
+    for (int l = 0; l < lanes::width; ++l) {
+      if (ends.i[l] != batches.nobody) act(ends.i[l], ends.j[l], l);
     }
   };
-  const auto is_free = [&](std::int32_t body) { return sweeps_.is_free(body); };
-  for_each_contact([&](std::int32_t i, std::int32_t j, double, bool) {
-    if (is_free(i) && is_free(j)) islands_.unite(i, j);
-  });
-  const auto n = static_cast<std::size_t>(stage.solver.size());
-  island_loss_.assign(n, 0);
-  island_gains_.assign(n, false);
-  for_each_contact([&](std::int32_t i, std::int32_t j, double loss, bool gains) {
-    const auto island = static_cast<std::size_t>(islands_.root(is_free(i) ? i : j));
-    island_loss_[island] += loss;
-    if (gains) island_gains_[island] = true;
-  });
-  for (std::size_t k = 0; k < n; ++k) {
-    if (island_gains_[k] && island_loss_[k] <= 0) return true;
+  islands_.start(bodies);
+  for (std::int64_t b = 0; b < loss_.size(); ++b) {
+    for_each_contact(b, [&](std::int32_t i, std::int32_t j, int) {
+      if (sweeps_.is_free(i) && sweeps_.is_free(j)) islands_.unite(i, j);
+    });
   }
-  return false;
+  const auto of_island = [&](auto& list, std::int32_t i, std::int32_t j) -> auto& {
+    return list[static_cast<std::size_t>(islands_.root(sweeps_.is_free(i) ? i : j))];
+  };
+  moved_.assign(static_cast<std::size_t>(bodies), Moved{});
+  for (std::int64_t b = 0; b < loss_.size(); ++b) {
+    for_each_contact(b, [&](std::int32_t i, std::int32_t j, int l) {
+      of_island(moved_, i, j).linear -= loss_.view()[b].of.at[l];
+    });
+  }
+  // So far that is what each island gains in all; those that do are looked at closely.
+  scale_.resize(moved_.size());
+  std::ranges::transform(moved_, scale_.begin(),
+                         [](const Moved& moved) { return moved.linear > 0 ? 0.0 : 1.0; });
+  const auto for_each_gaining_batch = [&](const auto& act) {
+    for (std::int64_t b = 0; b < loss_.size(); ++b) {
+      bool any = false;
+      for_each_contact(
+          b, [&](std::int32_t i, std::int32_t j, int) { any = any || of_island(scale_, i, j) < 1; });
+      if (any) act(b);
+    }
+  };
+  for_each_gaining_batch([&](std::int64_t b) {
+    const lanes::Lane square = sweeps_.square_of(b);
+    for_each_contact(
+        b, [&](std::int32_t i, std::int32_t j, int l) { of_island(moved_, i, j).square += square.at[l]; });
+  });
+  int scaled = 0;
+  for (std::size_t island = 0; island < scale_.size(); ++island) {
+    if (scale_[island] == 1) continue;
+    Moved& moved = moved_[island];
+    moved.linear -= moved.square;
+    const bool gains = moved.gains(tolerance::response_gain);
+    scale_[island] = gains ? moved.scale_without_gain() : 1.0;
+    scaled += gains;
+  }
+  if (scaled == 0) return 0;
+  for_each_gaining_batch([&](std::int64_t b) {
+    for_each_contact(b, [&](std::int32_t i, std::int32_t j, int l) {
+      lanes::scale_impulse(batches, b, l, of_island(scale_, i, j));
+    });
+  });
+  return scaled;
 }
 
 Ledger ResponseSolver::solve(const Manifolds& manifolds, double step, const ResponseParameters& parameters,
@@ -310,7 +287,6 @@ Ledger ResponseSolver::solve(const Manifolds& manifolds, double step, const Resp
                    .solver = solver.view(),
                    .contacts = set.contacts.view(),
                    .rows = set.rows.view(),
-                   .couplings = set.couplings.view(),
                    .change = {},
                    .free_velocity = free_velocity_.view(),
                    .free_spin = free_spin_.view(),
@@ -329,39 +305,23 @@ Ledger ResponseSolver::solve(const Manifolds& manifolds, double step, const Resp
     const std::int64_t others = set.contacts.size();
     parallel::for_each<Host>("response.rows", others, PrepareRows{stage});
     if (!find_impulses(stage, parameters, set, counters)) ++counters.unconverged;
-    if (set.pairs_are_listed) list_pairs(set, stage);
+    if (set.all_are_listed) list_all(set, stage);
     if (parameters.accurate) {
       const auto left =
           parallel::sum<ImpulseChange, Host>("response.residual", set.contacts.size(), LoadResidual{stage});
       if (left.size > 0) counters.residual = std::max(counters.residual, std::sqrt(left.step / left.size));
     }
-    const auto account_for = [&](std::int64_t contacts) {
-      loss_.resize(contacts);
-      gaining_.resize(contacts);
-      return parallel::sum<Ledger, Host>("response.ledger", contacts,
-                                         Account{stage, loss_.view(), gaining_.view()});
-    };
-    ledger = account_for(others);
-    const lanes::Books pairs = sweeps_.book_pairs(pair_loss_);
-    ledger.restitution += pairs.restitution;
-    ledger.friction += pairs.friction;
-    ledger.work += pairs.work;
-    if (an_island_gains(stage, others, set.batches)) {
-      list_pairs(set, stage);
-      if (set.contacts.size() > others) ledger = account_for(set.contacts.size());
-      islands_.find(set.contacts.view(), solver.view());
-      int scaled = 0;
-      for (std::int64_t island = 0; island < islands_.count(); ++island) {
-        scaled += keep_from_gaining(stage, std::as_const(loss_).view(), islands_.contacts(island));
-      }
+    lanes::Books books = sweeps_.book(loss_);
+    if (const int scaled = keep_from_gaining(solver.size(), set.batches); scaled > 0) {
       counters.scaled += scaled;
-      if (scaled > 0) {
-        sweeps_.take_impulses();
-        sweeps_.set_velocities();
-        sweeps_.store_velocities();
-        ledger = account_for(set.contacts.size());
-      }
+      sweeps_.store_impulses();
+      sweeps_.set_velocities();
+      sweeps_.store_velocities();
+      books = sweeps_.book(loss_);
     }
+    ledger.restitution = books.restitution;
+    ledger.friction = books.friction;
+    ledger.work = books.work;
     if (parameters.accurate && parameters.friction && !set.is_heap())
       slip_end_ =
           -parallel::max<double, Host>("response.slip", set.contacts.size(), MinusSlipEnd{{stage}}, -1.0);

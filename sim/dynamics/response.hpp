@@ -37,21 +37,21 @@ class ResponseSolver {
   double slip_end() const { return slip_end_; }
 
  private:
-  /// Lists the contacts of BallPairs for those who look at contacts one by one.
-  void list_pairs(ContactSet& set, SolveStage& stage);
-  /// Whether an island may gain: one with contacts that do, and that loses nothing in all.
-  bool an_island_gains(const SolveStage& stage, std::int64_t others, const lanes::Batches& batches);
+  /// Lists what only the batches have, for those who look at contacts one by one.
+  void list_all(ContactSet& set, SolveStage& stage);
+  /// Scales down the impulses of each island that gains energy, to where it gains none: those in the
+  /// batches, whose losses are known. How many did.
+  int keep_from_gaining(std::int64_t bodies, lanes::Batches& batches);
   /// Adds to `solved` and `failed`; true if no island is left to the sweeps.
   bool count_outcomes(std::int64_t& solved, std::int64_t& failed) const;
 
   Array<ImpulseChange, Host> change_;  // per contact, of the last sweep
   Sweeps sweeps_;
   Array<Vec3, Host> free_velocity_, free_spin_;  // of each body without contacts
-  Array<double, Host> loss_;                     // of each contact that is listed (J)
-  Array<std::uint8_t, Host> gaining_;            // whether it gains
-  Array<lanes::Losses, Host> pair_loss_;         // of each batch of the others
-  std::vector<double> island_loss_;              // by root (J)
-  std::vector<bool> island_gains_;
+  Array<lanes::Losses, Host> loss_;              // of each batch
+  // Of each island, by its root: what its impulses move, and their scale.
+  std::vector<Moved> moved_;
+  std::vector<double> scale_;
   Islands islands_;
   Array<DirectOutcome, Host> outcome_;  // of each island
   double slip_end_ = 1;

@@ -17,7 +17,6 @@ struct SolveStage {
   View<SolverBody> solver;
   View<Contact> contacts;
   View<ContactRow> rows;
-  View<RowCoupling> couplings;
   View<ImpulseChange> change;  ///< of each contact, in the last sweep; empty if nobody asks
   View<Vec3> free_velocity;    ///< of each body without contacts
   View<Vec3> free_spin;

@@ -3,6 +3,7 @@
 #include "core/parallel.hpp"
 #include "sim/dynamics/lanes/colored.hpp"
 
+#include <algorithm>
 #include <utility>
 
 namespace scree {
@@ -19,8 +20,9 @@ struct PushPoints {
   ConstView<lanes::PointBatch> batches;
   ConstView<lanes::PointRow> rows;
   View<lanes::Body> bodies;
-  void operator()(std::int64_t b) const {
-    lanes::kernels().push_points(batches[b], &rows[batches[b].first_row], bodies.data());
+  void operator()(std::int64_t first, int count) const {
+    for (std::int64_t b = first; b < first + count; ++b)
+      lanes::kernels().push_points(batches[b], &rows[batches[b].first_row], bodies.data());
   }
 };
 
@@ -41,8 +43,8 @@ struct SweepPoints {
   double beta;
   int block_sweeps;
   lanes::Change* change;
-  void operator()(std::int64_t b) const {
-    change[b] = kernel(batches[b], &rows[batches[b].first_row], bodies.data(), beta, block_sweeps);
+  void operator()(std::int64_t b, int count) const {
+    kernel(&batches[b], count, rows.data(), bodies.data(), beta, block_sweeps, change + b);
   }
 };
 
@@ -53,10 +55,15 @@ struct LoadChange {
 
 /// Velocities are linear in the impulses: what beta does to these it does to them.
 struct Accelerate {
-  lanes::Body* bodies;
+  static constexpr std::int64_t chunk = 128;
+  View<lanes::Body> bodies;
   lanes::Body* last;
   double beta;
-  void operator()(std::int64_t k) const { lanes::kernels().accelerate(bodies[k], last[k], beta); }
+  void operator()(std::int64_t c) const {
+    const std::int64_t first = c * chunk;
+    lanes::kernels().accelerate(bodies.data() + first, last + first, std::min(chunk, bodies.size() - first),
+                                beta);
+  }
 };
 
 }  // namespace
@@ -92,7 +99,7 @@ void Sweeps::load(const SolveStage& stage, const Coloring& coloring, lanes::Batc
   parallel::for_each<Host>("response.release", free_.size(), Release{stage, free_.view()});
   lanes::arrange(coloring, stage.contacts, nobody, batches);
   if (stage.balls != nullptr) stage.balls->put_into(stage.warm_start, batches);
-  lanes::load(stage.contacts, stage.rows, stage.couplings, stage.solver, stage.pairs, batches);
+  lanes::load(stage.contacts, stage.rows, stage.solver, free_.data(), stage.pairs, batches);
   change_.resize(batches.balls.size() + batches.points.size());
 }
 
@@ -124,15 +131,18 @@ struct LoadMean {
   }
 };
 
-struct BookPairs {
+struct BookBatch {
   const lanes::Batches* batches;
-  const lanes::Body *mean, *kicked, *after;
+  const lanes::Body* mean;
   View<lanes::Losses> losses;
   void operator()(std::int64_t b) const {
-    losses[b] = {};
-    if (!batches->ball_members.view()[b].are_pairs) return;
-    lanes::kernels().book_balls(batches->balls.view()[b], mean, kicked, after, tolerance::response_gain,
-                                losses[b]);
+    const std::int64_t balls = batches->balls.size();
+    if (b < balls) {
+      lanes::kernels().book_balls(batches->balls.view()[b], mean, losses[b]);
+      return;
+    }
+    const lanes::PointBatch& batch = batches->points.view()[b - balls];
+    lanes::kernels().book_points(batch, &batches->rows.view()[batch.first_row], mean, losses[b]);
   }
 };
 
@@ -143,16 +153,29 @@ struct LoadBooks {
 
 }  // namespace
 
-lanes::Books Sweeps::book_pairs(Array<lanes::Losses, Host>& losses) {
-  losses.resize(batches_->balls.size());
-  if (stage_->balls == nullptr) return {};
+lanes::Books Sweeps::book(Array<lanes::Losses, Host>& losses) {
+  constexpr std::int64_t few_batches = 64;  // worth waking threads for
+  losses.resize(batches_->balls.size() + batches_->points.size());
   last_.resize(bodies_.size());
   parallel::for_each<Host>("response.mean", bodies_.size(),
                            LoadMean{*stage_, std::as_const(bodies_).view(), last_.view()});
-  parallel::for_each<Host>("response.books", losses.size(),
-                           BookPairs{batches_, last_.data(), free_.data(), bodies_.data(), losses.view()});
+  parallel::for_each<Host>("response.books", losses.size(), BookBatch{batches_, last_.data(), losses.view()},
+                           few_batches);
   return parallel::sum<lanes::Books, Host>("response.books", losses.size(),
                                            LoadBooks{std::as_const(losses).view()});
+}
+
+lanes::Lane Sweeps::square_of(std::int64_t batch) const {
+  lanes::Lane square;
+  const std::int64_t balls = batches_->balls.size();
+  if (batch < balls) {
+    lanes::kernels().square_of_balls(batches_->balls.view()[batch], free_.data(), bodies_.data(), square);
+  } else {
+    const lanes::PointBatch& points = batches_->points.view()[batch - balls];
+    lanes::kernels().square_of_points(points, &batches_->rows.view()[points.first_row], free_.data(),
+                                      bodies_.data(), square);
+  }
+  return square;
 }
 
 bool Sweeps::run(const SweepPlan& plan, int most, std::int64_t& count) {
@@ -163,8 +186,10 @@ bool Sweeps::run(const SweepPlan& plan, int most, std::int64_t& count) {
   const lanes::SweepKernels& kernels = plan.smooth ? lanes::kernels().smooth : lanes::kernels().rough;
   for (int sweep = 1; sweep <= most && !converged; ++sweep) {
     if (sweep > 1) {
-      parallel::for_each<Host>("response.accelerate", bodies_.size(),
-                               Accelerate{bodies_.data(), last_.data(), beta});
+      constexpr std::int64_t few_chunks = 8;  // worth waking threads for
+      parallel::for_each<Host>("response.accelerate",
+                               (bodies_.size() + Accelerate::chunk - 1) / Accelerate::chunk,
+                               Accelerate{bodies_.view(), last_.data(), beta}, few_chunks);
     }
     lanes::for_each_color(
         "response.sweep", *batches_,

@@ -74,6 +74,9 @@ class Sweeps {
   /// Takes the impulses that the rows have now.
   void take_impulses();
 
+  /// Gives the rows their impulses.
+  void store_impulses() const { lanes::store_impulses(*batches_, stage_->rows, {}); }
+
   /// Sets the velocities to what the impulses taken, or found since, give.
   void set_velocities();
   /// Gives the solver's bodies their velocities.
@@ -81,8 +84,11 @@ class Sweeps {
 
   bool is_free(std::int32_t body) const { return free_.view()[body].inverse_mass > 0; }
 
-  /// Of the contacts of BallPairs, with the velocities as they are; and what each loses, by batch.
-  lanes::Books book_pairs(Array<lanes::Losses, Host>& losses);
+  /// Of all contacts, with the velocities as they are; and what each loses, by batch: the balls', then the
+  /// others.
+  lanes::Books book(Array<lanes::Losses, Host>& losses);
+  /// Of each contact in one of these batches, Moved::square (J).
+  lanes::Lane square_of(std::int64_t batch) const;
 
   /// From there on, until they converge, but at most so often. The last sweep stands as it is, so that every
   /// impulse ends inside its cone. The velocities go along, but for the rounding of every sweep. `count` goes

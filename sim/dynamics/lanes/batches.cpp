@@ -10,6 +10,9 @@ namespace scree::lanes {
 
 namespace {
 
+/// Batches worth waking threads for, where all of their contacts are made.
+constexpr std::int64_t few_batches = 32;
+
 /// Batches of one kind and colour hold as many points each: kind 0 is pairs of balls, kind 1 other balls, the
 /// rest are one more than their points.
 constexpr int kinds = most_points + 2;
@@ -39,8 +42,8 @@ void start_from(LaneImpulse& lanes, int l, const Vec3& impulse) {
 struct Source {
   ConstView<Contact> contacts;
   ConstView<ContactRow> rows;
-  ConstView<RowCoupling> couplings;
   ConstView<SolverBody> bodies;
+  const Body* lane_bodies;
   std::int32_t nobody;
 
   void put_ends(Ends& ends, int l, std::int32_t c) const {
@@ -105,56 +108,47 @@ struct LoadPoints {
   ConstView<Members> members;
   View<PointBatch> batches;
   View<PointRow> rows;
+  View<PointParting> partings;
   void operator()(std::int64_t b) const {
     PointBatch& batch = batches[b];
+    batch.apart = 0;
     for (int l = 0; l < width; ++l) {
       const std::int32_t c = members[b].contact[l];
       from.put_ends(batch.ends, l, c);
       if (c == none) {
         put(batch.normal, l, Vec3::Zero());
+        put(batch.cap, l, 0);
         put(batch.friction, l, 0);
         put(batch.inertia_i, l, Mat3::Zero());
         put(batch.inertia_j, l, Mat3::Zero());
-        for (int k = 0; k < batch.count; ++k) leave(rows[batch.first_row + k], l);
+        const ContactRow no_row = row_at(Vec3::Zero(), Vec3::Zero(), 0);
+        for (int k = 0; k < batch.count; ++k) load(no_row, batch.first_row + k, l);
         continue;
       }
       const Contact& contact = from.contacts[c];
       put(batch.normal, l, contact.normal);
+      put(batch.cap, l, tolerance::correction_cap * contact.size);
       put(batch.friction, l, contact.friction);
       put(batch.inertia_i, l, from.bodies[contact.i].inverse_inertia);
       put(batch.inertia_j, l, from.bodies[contact.j].inverse_inertia);
+      bool apart = contact.flying || contact.lead != 0;
       for (int k = 0; k < batch.count; ++k) {
-        const std::int64_t r = contact.first_row + k;
-        load(from.rows[r],
-             contact.balls ? coupling_of_balls(from.rows[r], contact.normal) : from.couplings[r],
-             rows[batch.first_row + k], l);
+        const ContactRow& row = from.rows[contact.first_row + k];
+        load(row, batch.first_row + k, l);
+        apart = apart || row.bend != 0;
       }
+      if (apart) batch.apart |= 1 << l;
     }
+    kernels().prepare_points(batch, &rows[batch.first_row], &partings[batch.first_row], from.lane_bodies);
   }
 
-  static RowCoupling coupling_of_balls(const ContactRow& row, const Vec3& n) {
-    const Mat3 along = n * n.transpose();
-    return {row.normal_mass * along + row.tangent_mass * (Mat3::Identity() - along), n / row.normal_mass};
-  }
-  static void load(const ContactRow& from_row, const RowCoupling& coupling, PointRow& row, int l) {
+  void load(const ContactRow& from_row, std::int64_t r, int l) const {
+    PointRow& row = rows[r];
     put(row.arm_i, l, from_row.arm_i);
     put(row.arm_j, l, from_row.arm_j);
-    put(row.stick, l, coupling.stick);
-    put(row.coupling, l, coupling.normal);
     put(row.target, l, from_row.target);
-    put(row.normal_mass, l, from_row.normal_mass);
-    put(row.tangent_mass, l, from_row.tangent_mass);
     start_from(row.impulse, l, from_row.impulse);
-  }
-  static void leave(PointRow& row, int l) {
-    put(row.arm_i, l, Vec3::Zero());
-    put(row.arm_j, l, Vec3::Zero());
-    put(row.stick, l, Mat3::Zero());
-    put(row.coupling, l, Vec3::Zero());
-    put(row.target, l, 0);
-    put(row.normal_mass, l, 1);
-    put(row.tangent_mass, l, 0);
-    start_from(row.impulse, l, Vec3::Zero());
+    put(partings[r].gap, l, from_row.gap);
   }
 };
 
@@ -226,6 +220,22 @@ struct StorePointImpulses {
   }
 };
 
+struct StoreMasses {
+  ConstView<Members> members;
+  ConstView<PointBatch> batches;
+  ConstView<PointRow> from;
+  View<ContactRow> rows;
+  void operator()(std::int64_t b) const {
+    for (int l = 0; l < width; ++l) {
+      for (int k = 0; members[b].contact[l] != none && k < batches[b].count; ++k) {
+        ContactRow& row = rows[members[b].row[l] + k];
+        row.normal_mass = from[batches[b].first_row + k].normal_mass.at[l];
+        row.tangent_mass = from[batches[b].first_row + k].tangent_mass.at[l];
+      }
+    }
+  }
+};
+
 /// Lanes of pairs that nobody takes.
 void leave(BallBatch& batch, BallParting& parting, std::int32_t nobody) {
   for (int l = 0; l < width; ++l) {
@@ -277,6 +287,7 @@ void arrange(const Coloring& coloring, ConstView<Contact> contacts, std::int32_t
   batches.points.resize(batches.point_begin.back());
   batches.point_members.resize(batches.points.size());
   batches.rows.resize(rows);
+  batches.point_partings.resize(rows);
   parallel::fill("lanes.reset", batches.ball_members, nothing);
   parallel::fill("lanes.reset", batches.point_members, nothing);
   for (std::size_t color = 0; color < colors; ++color) {
@@ -306,15 +317,23 @@ void arrange(const Coloring& coloring, ConstView<Contact> contacts, std::int32_t
   }
 }
 
-void load(ConstView<Contact> contacts, ConstView<ContactRow> rows, ConstView<RowCoupling> couplings,
-          ConstView<SolverBody> bodies, const BallSource& balls, Batches& batches) {
-  const Source from{contacts, rows, couplings, bodies, batches.nobody};
+void load(ConstView<Contact> contacts, ConstView<ContactRow> rows, ConstView<SolverBody> bodies,
+          const Body* lane_bodies, const BallSource& balls, Batches& batches) {
+  const Source from{contacts, rows, bodies, lane_bodies, batches.nobody};
   parallel::for_each<Host>(
       "lanes.load", batches.balls.size(),
-      LoadBalls{from, balls, batches.ball_members.view(), batches.balls.view(), batches.partings.view()});
+      LoadBalls{from, balls, batches.ball_members.view(), batches.balls.view(), batches.partings.view()},
+      few_batches);
+  parallel::for_each<Host>("lanes.load", batches.points.size(),
+                           LoadPoints{from, batches.point_members.view(), batches.points.view(),
+                                      batches.rows.view(), batches.point_partings.view()},
+                           few_batches);
+}
+
+void store_masses(const Batches& batches, View<ContactRow> rows) {
   parallel::for_each<Host>(
-      "lanes.load", batches.points.size(),
-      LoadPoints{from, batches.point_members.view(), batches.points.view(), batches.rows.view()});
+      "lanes.masses", batches.points.size(),
+      StoreMasses{batches.point_members.view(), batches.points.view(), batches.rows.view(), rows});
 }
 
 void take_impulses(ConstView<ContactRow> rows, Batches& batches) {
@@ -323,6 +342,17 @@ void take_impulses(ConstView<ContactRow> rows, Batches& batches) {
   parallel::for_each<Host>(
       "lanes.impulses", batches.points.size(),
       TakePointImpulses{rows, batches.point_members.view(), batches.points.view(), batches.rows.view()});
+}
+
+void scale_impulse(Batches& batches, std::int64_t batch, int l, double scale) {
+  const auto scale_lane = [&](LaneImpulse& lanes) { put(lanes.impulse, l, scale * take(lanes.impulse, l)); };
+  const std::int64_t balls = batches.balls.size();
+  if (batch < balls) {
+    scale_lane(batches.balls.view()[batch].impulse);
+    return;
+  }
+  const PointBatch& points = batches.points.view()[batch - balls];
+  for (int k = 0; k < points.count; ++k) scale_lane(batches.rows.view()[points.first_row + k].impulse);
 }
 
 void store_impulses(const Batches& batches, View<ContactRow> rows, View<ImpulseChange> change) {

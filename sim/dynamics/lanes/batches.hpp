@@ -32,6 +32,7 @@ struct Batches {
   Array<PointBatch, Host> points;
   Array<Members, Host> point_members;
   Array<PointRow, Host> rows;
+  Array<PointParting, Host> point_partings;           ///< of the rows
   std::vector<std::int64_t> ball_begin, point_begin;  ///< of each colour; one more than colours
   bool last_is_serial = false;
   Array<std::int32_t, Host> lane_of;  ///< of each candidate of BallPairs that touches, in their order
@@ -45,6 +46,7 @@ struct Batches {
     points.resize(0);
     point_members.resize(0);
     rows.resize(0);
+    point_partings.resize(0);
     lane_of.resize(0);
   }
 
@@ -67,11 +69,16 @@ struct Batches {
 /// of BallPairs. The batches keep their storage from call to call. `nobody`: the body that lanes without
 /// contact name.
 void arrange(const Coloring& coloring, ConstView<Contact> contacts, std::int32_t nobody, Batches& batches);
-/// Fills the batches, but for what BallPairs puts into its own; directions start anew.
-void load(ConstView<Contact> contacts, ConstView<ContactRow> rows, ConstView<RowCoupling> couplings,
-          ConstView<SolverBody> bodies, const BallSource& balls, Batches& batches);
+/// Fills the batches, but for what BallPairs puts into its own; directions start anew. Of rows in batches of
+/// points the masses are made here. `lane_bodies`: the bodies and nobody, of which only the masses count.
+void load(ConstView<Contact> contacts, ConstView<ContactRow> rows, ConstView<SolverBody> bodies,
+          const Body* lane_bodies, const BallSource& balls, Batches& batches);
+/// Gives the rows the masses that were made here.
+void store_masses(const Batches& batches, View<ContactRow> rows);
 /// Takes the impulses of the rows again; directions start anew.
 void take_impulses(ConstView<ContactRow> rows, Batches& batches);
+/// Of the contact in lane l of a batch: the balls', then those of points.
+void scale_impulse(Batches& batches, std::int64_t batch, int l, double scale);
 /// Gives the rows their impulses, and, unless `change` is empty, what the last sweep changed of each contact.
 void store_impulses(const Batches& batches, View<ContactRow> rows, View<ImpulseChange> change);
 

@@ -1,5 +1,6 @@
 // Compiled once for each instruction set; SCREE_LANES names it. It calls nothing that other sources share, so
 // that no function of theirs is compiled for more than the program may use.
+#include "sim/dynamics/lanes/free_turn.hpp"
 #include "sim/dynamics/lanes/lanes.hpp"
 #include "sim/dynamics/lanes/laws.hpp"
 
@@ -18,6 +19,12 @@ struct Lanes {
     for (int l = 0; l < width; ++l) r[l] = __builtin_sqrt(a[l]);
     return r;
   }
+  static bool any(const decltype(V{} > V{}) & condition) {
+    bool any = false;
+    for (int l = 0; l < width; ++l) any = any || condition[l] != 0;
+    return any;
+  }
+  static HalfTurn<Lanes> half_turn(const V& square) { return half_turn_series<Lanes>(square); }
 };
 using V3 = lanes::V3<Lanes>;
 using Bodies = lanes::Moving<Lanes>;  // one of each contact
@@ -40,6 +47,14 @@ void set(LaneVec& lanes, const V3& value) {
 
 Symmetric get(const Lane (&m)[6]) {
   return {get(m[0]), get(m[1]), get(m[2]), get(m[3]), get(m[4]), get(m[5])};
+}
+void set(Lane (&m)[6], const Symmetric& value) {
+  set(m[0], value.xx);
+  set(m[1], value.yy);
+  set(m[2], value.zz);
+  set(m[3], value.xy);
+  set(m[4], value.xz);
+  set(m[5], value.yz);
 }
 Balls get(const BallBatch& batch) {
   return {get(batch.normal), get(batch.arm_i),       get(batch.arm_j),       get(batch.friction),
@@ -245,26 +260,67 @@ void prepare_balls(const BallSource& from, BallBatch& batch, BallParting& partin
   parting.apart = 0;
 }
 
-void book_balls(const BallBatch& batch, const Body* mean, const Body* kicked, const Body* after,
-                double rounding, Losses& losses) {
-  const Balls balls = get(batch);
-  const V3 p = get(batch.impulse.impulse);
-  const auto books = booked<Lanes>(balls, p, load(mean, batch.ends.i), load(mean, batch.ends.j));
-  const V loss = books.restitution + books.friction;
-  *reinterpret_cast<V*>(losses.at) = loss;
-  losses.gaining = 0;
-  if (bits_of(loss < 0) != 0) {
-    // As Moved::gains().
-    const V3 u_kicked = velocity_at(balls, load(kicked, batch.ends.i), load(kicked, batch.ends.j));
-    const V3 u_after = velocity_at(balls, load(after, batch.ends.i), load(after, batch.ends.j));
-    const V square = 0.5 * dot(p, u_after - u_kicked);
-    losses.gaining = static_cast<std::int32_t>(bits_of((loss < 0) & (-loss > rounding * square)));
+void prepare_points(const PointBatch& batch, PointRow* rows, PointParting* points, const Body* bodies) {
+  const V mass_i = load_centres(bodies, batch.ends.i).inverse_mass;
+  const V mass_j = load_centres(bodies, batch.ends.j).inverse_mass;
+  for (int k = 0; k < batch.count; ++k) {
+    PointRow& row = rows[k];
+    const Point at = point_of(row);
+    const auto law = lanes::law_of(delassus_share(mass_i, get(batch.inertia_i), at.arm_i) +
+                                       delassus_share(mass_j, get(batch.inertia_j), at.arm_j),
+                                   get(batch.normal), get(row.target));
+    set(row.stick, law.stick);
+    set(row.coupling, law.coupling);
+    set(row.normal_mass, law.normal_mass);
+    set(row.tangent_mass, law.tangent_mass);
+    set(points[k].normal_mass, law.normal_mass);
+    set(points[k].pushed, all(0));
   }
+}
+
+void set(Losses& losses, const Booked<Lanes>& books) {
+  set(losses.of, books.restitution + books.friction);
+  losses.books = {};
   for (int l = 0; l < width; ++l) {
     losses.books.restitution += books.restitution[l];
     losses.books.friction += books.friction[l];
     losses.books.work += books.work[l];
   }
+}
+
+void book_balls(const BallBatch& batch, const Body* mean, Losses& losses) {
+  set(losses, booked<Lanes>(get(batch), get(batch.impulse.impulse), load(mean, batch.ends.i),
+                            load(mean, batch.ends.j)));
+}
+
+void book_points(const PointBatch& batch, const PointRow* rows, const Body* mean, Losses& losses) {
+  const Bodies i = load(mean, batch.ends.i);
+  const Bodies j = load(mean, batch.ends.j);
+  const V3 n = get(batch.normal);
+  Booked<Lanes> books{};
+  for (int k = 0; k < batch.count; ++k)
+    books = books + booked<Lanes>(point_of(rows[k]), n, get(rows[k].impulse.impulse), i, j);
+  set(losses, books);
+}
+
+void square_of_balls(const BallBatch& batch, const Body* kicked, const Body* after, Lane& square) {
+  const Balls balls = get(batch);
+  const V3 u_kicked = velocity_at(balls, load(kicked, batch.ends.i), load(kicked, batch.ends.j));
+  const V3 u_after = velocity_at(balls, load(after, batch.ends.i), load(after, batch.ends.j));
+  set(square, 0.5 * dot(get(batch.impulse.impulse), u_after - u_kicked));
+}
+
+void square_of_points(const PointBatch& batch, const PointRow* rows, const Body* kicked, const Body* after,
+                      Lane& square) {
+  const Bodies kicked_i = load(kicked, batch.ends.i), kicked_j = load(kicked, batch.ends.j);
+  const Bodies after_i = load(after, batch.ends.i), after_j = load(after, batch.ends.j);
+  V sum = all(0);
+  for (int k = 0; k < batch.count; ++k) {
+    const Point at = point_of(rows[k]);
+    sum += 0.5 * dot(get(rows[k].impulse.impulse),
+                     velocity_at(at, after_i, after_j) - velocity_at(at, kicked_i, kicked_j));
+  }
+  set(square, sum);
 }
 
 /// Goes on by beta of what the last sweep has changed.
@@ -318,53 +374,83 @@ Change sweep_smooth_balls(BallBatch& batch, Body* bodies, double beta) {
   return keep(batch, p, last);
 }
 
+/// A visit to a batch of points, which it enters, goes through point by point, and leaves.
 template <bool rough>
-Change sweep_points(const PointBatch& batch, PointRow* rows, Body* bodies, double beta, int block_sweeps) {
-  Bodies i = load(bodies, batch.ends.i);
-  Bodies j = load(bodies, batch.ends.j);
-  const V3 n = get(batch.normal);
-  const V friction = get(batch.friction);
+struct PointSweep {
+  const PointBatch* batch;
+  PointRow* rows;
+  Bodies i, j;
   V3 last[most_points];
-  for (int k = 0; k < batch.count; ++k) {
-    last[k] = accelerate(rows[k].impulse, all(beta));
-    set(rows[k].impulse.impulse, last[k]);
-  }
-  const int sweeps = batch.count > 1 ? block_sweeps : 1;
-  for (int sweep = 0; sweep < sweeps; ++sweep) {
-    for (int k = 0; k < batch.count; ++k) {
-      PointRow& row = rows[k];
-      const Point at = point_of(row);
-      const V3 u = velocity_at(at, i, j);
-      const V3 old = get(row.impulse.impulse);
-      V3 p;
-      if constexpr (rough) {
-        p = impulse_of(law_of(row), n, friction, old, u);
-      } else {
-        p = smooth_impulse_of(n, get(row.target), get(row.normal_mass), old, dot(u, n));
-      }
-      set(row.impulse.impulse, p);
-      push(get(batch.inertia_i), get(batch.inertia_j), at, p - old, i, j);
+
+  [[gnu::always_inline]] void enter(const Body* bodies, const V& beta) {
+    i = load(bodies, batch->ends.i);
+    j = load(bodies, batch->ends.j);
+    for (int k = 0; k < batch->count; ++k) {
+      last[k] = accelerate(rows[k].impulse, beta);
+      set(rows[k].impulse.impulse, last[k]);
     }
   }
-  store(i, bodies, batch.ends.i);
-  store(j, bodies, batch.ends.j);
-  V step = all(0);
-  V size = all(0);
-  for (int k = 0; k < batch.count; ++k) {
-    const V3 p = get(rows[k].impulse.impulse);
-    const V3 change = p - last[k];
-    const V normal_mass = get(rows[k].normal_mass);
-    step += dot(change, change) / normal_mass;
-    size += dot(p, p) / normal_mass;
+  [[gnu::always_inline]] void visit(int k) {
+    PointRow& row = rows[k];
+    const V3 n = get(batch->normal);
+    const Point at = point_of(row);
+    const V3 u = velocity_at(at, i, j);
+    const V3 old = get(row.impulse.impulse);
+    V3 p;
+    if constexpr (rough) {
+      p = impulse_of(law_of(row), n, get(batch->friction), old, u);
+    } else {
+      p = smooth_impulse_of(n, get(row.target), get(row.normal_mass), old, dot(u, n));
+    }
+    set(row.impulse.impulse, p);
+    push(get(batch->inertia_i), get(batch->inertia_j), at, p - old, i, j);
   }
-  return total(step, size);
+  [[gnu::always_inline]] Change leave(Body* bodies) const {
+    store(i, bodies, batch->ends.i);
+    store(j, bodies, batch->ends.j);
+    V step = all(0);
+    V size = all(0);
+    const V3 n = get(batch->normal);
+    for (int k = 0; k < batch->count; ++k) {
+      const V3 p = get(rows[k].impulse.impulse);
+      const V3 change = p - last[k];
+      const V inverse_mass = dot(get(rows[k].coupling), n);
+      step += dot(change, change) * inverse_mass;
+      size += dot(p, p) * inverse_mass;
+    }
+    return total(step, size);
+  }
+};
+
+template <bool rough>
+void sweep_points(const PointBatch* batches, int count, PointRow* rows, Body* bodies, double beta,
+                  int block_sweeps, Change* change) {
+  PointSweep<rough> visits[abreast];
+  int points = 0;
+  for (int b = 0; b < count; ++b) {
+    visits[b].batch = &batches[b];
+    visits[b].rows = rows + batches[b].first_row;
+    visits[b].enter(bodies, all(beta));
+    points = batches[b].count > points ? batches[b].count : points;
+  }
+  for (int sweep = 0; sweep < block_sweeps; ++sweep) {
+    for (int k = 0; k < points; ++k) {
+      for (int b = 0; b < count; ++b) {
+        // A point alone is solved at once.
+        if (k < batches[b].count && (sweep == 0 || batches[b].count > 1)) visits[b].visit(k);
+      }
+    }
+  }
+  for (int b = 0; b < count; ++b) change[b] = visits[b].leave(bodies);
 }
 
 /// The inverse mass and inertia stay: they are those of the last.
-void accelerate(Body& body, Body& last, double beta) {
-  const V now = whole(body);
-  whole(body) = now + all(beta) * (now - whole(last));
-  whole(last) = now;
+void accelerate(Body* bodies, Body* last, std::int64_t count, double beta) {
+  for (std::int64_t k = 0; k < count; ++k) {
+    const V now = whole(bodies[k]);
+    whole(bodies[k]) = now + all(beta) * (now - whole(last[k]));
+    whole(last[k]) = now;
+  }
 }
 
 void push_balls(const BallBatch& batch, Body* bodies) {
@@ -383,6 +469,34 @@ void push_points(const PointBatch& batch, const PointRow* rows, Body* bodies) {
   }
   store(i, bodies, batch.ends.i);
   store(j, bodies, batch.ends.j);
+}
+
+void turn(Tops& tops, double dt, bool fourth_order) {
+  const V3 inverse_inertia = get(tops.inverse_inertia);
+  const V3 inertia = {1.0 / inverse_inertia.x, 1.0 / inverse_inertia.y, 1.0 / inverse_inertia.z};
+  Top<Lanes> top{{get(tops.w), get(tops.v)}, get(tops.spin), inertia, inverse_inertia};
+  const auto start = start_of(top);
+  const V turn = start.fastest * (dt < 0 ? -dt : dt);
+  const auto hardly = turn < tolerance::hardly_a_turn;
+  const auto splits = (turn >= tolerance::hardly_a_turn) & (turn <= tolerance::split_turn);
+  tops.far = static_cast<std::int32_t>(bits_of(turn > tolerance::split_turn));
+  V drift = all(0);
+  const Top<Lanes> before = top;
+  if (Lanes::any(hardly)) {
+    Top<Lanes> turned = before;
+    turn_little(turned, start, dt);
+    choose(hardly, turned, top);
+  }
+  if (Lanes::any(splits)) {
+    Top<Lanes> turned = before;
+    const V drifted = turn_by_splitting(turned, start, dt, 1, fourth_order);
+    choose(splits, turned, top);
+    drift = splits ? drifted : drift;
+  }
+  set(tops.w, top.orientation.w);
+  set(tops.v, top.orientation.v);
+  set(tops.spin, top.spin);
+  set(tops.drift, drift);
 }
 
 /// As lanes::parting().
@@ -432,22 +546,86 @@ double part_balls(BallParting& batch, double share, Body* bodies) {
   return deepest(gap, get(batch.cap));
 }
 
-double part_points(const PointBatch& batch, const PointRow* rows, PointParting* points, const Lane& cap,
-                   double share, Body* bodies) {
-  Bodies i = load(bodies, batch.ends.i);
-  Bodies j = load(bodies, batch.ends.j);
+static_assert(sizeof(InertiaRoot) == sizeof(V) && offsetof(InertiaRoot, zz) == 40);
+[[gnu::always_inline]] inline lanes::Root<Lanes> load(const InertiaRoot* roots, const std::int32_t* at) {
+  V rows[width];
+  for (int l = 0; l < width; ++l) rows[l] = *reinterpret_cast<const V*>(roots + at[l]);
+  transpose<width>(rows);
+  return {rows[0], rows[1], rows[2], rows[3], rows[4], rows[5]};
+}
+
+double fly_points(const PointBatch& batch, const PointRow* rows, PointParting* points, const Body* velocities,
+                  const InertiaRoot* roots, double step) {
+  const Bodies i = load(velocities, batch.ends.i);
+  const Bodies j = load(velocities, batch.ends.j);
+  const auto root_i = load(roots, batch.ends.i);
+  const auto root_j = load(roots, batch.ends.j);
   const V3 n = get(batch.normal);
   V least = all(0);
   for (int k = 0; k < batch.count; ++k) {
     const Point at = point_of(rows[k]);
-    const V gap = get(points[k].flown) + dot(n, velocity_at(at, i, j));
-    push(get(batch.inertia_i), get(batch.inertia_j), at,
-         part(gap, cap, share, rows[k].normal_mass, points[k].pushed) * n, i, j);
+    PointParting& point = points[k];
+    V gap = get(point.gap) + 0.5 * step * dot(n, velocity_at(at, i, j));
+    for (int l = 0; batch.apart >> l != 0; ++l)
+      gap[l] = (batch.apart >> l & 1) != 0 ? __builtin_huge_val() : gap[l];
+    set(point.gap, gap);
+    set(point.turn_i, root_i * cross(at.arm_i, n));
+    set(point.turn_j, root_j * cross(at.arm_j, n));
     least = gap < least ? gap : least;
   }
-  store(i, bodies, batch.ends.i);
-  store(j, bodies, batch.ends.j);
-  return deepest(least, get(cap));
+  double deepest = 0;
+  for (int l = 0; l < width; ++l) deepest = -least[l] > deepest ? -least[l] : deepest;
+  return deepest;
+}
+
+/// As PointSweep.
+struct PointParts {
+  const PointBatch* batch;
+  PointParting* points;
+  Bodies i, j;
+  V least;
+
+  [[gnu::always_inline]] void enter(const Body* bodies) {
+    i = load(bodies, batch->ends.i);
+    j = load(bodies, batch->ends.j);
+    least = all(0);
+  }
+  [[gnu::always_inline]] void visit(int k, double share) {
+    PointParting& point = points[k];
+    const V3 n = get(batch->normal);
+    const V3 turn_i = get(point.turn_i);
+    const V3 turn_j = get(point.turn_j);
+    const V gap =
+        get(point.gap) + dot(n, j.velocity - i.velocity) + (dot(turn_j, j.spin) - dot(turn_i, i.spin));
+    const V more = part(gap, batch->cap, share, point.normal_mass, point.pushed);
+    push_centres(more * n, i, j);
+    i.spin = i.spin - more * turn_i;
+    j.spin = j.spin + more * turn_j;
+    least = gap < least ? gap : least;
+  }
+  [[gnu::always_inline]] double leave(Body* bodies) const {
+    store(i, bodies, batch->ends.i);
+    store(j, bodies, batch->ends.j);
+    return deepest(least, get(batch->cap));
+  }
+};
+
+void part_points(const PointBatch* batches, int count, PointParting* points, double share, Body* bodies,
+                 double* deepest) {
+  PointParts visits[abreast];
+  int most = 0;
+  for (int b = 0; b < count; ++b) {
+    visits[b].batch = &batches[b];
+    visits[b].points = points + batches[b].first_row;
+    visits[b].enter(bodies);
+    most = batches[b].count > most ? batches[b].count : most;
+  }
+  for (int k = 0; k < most; ++k) {
+    for (int b = 0; b < count; ++b) {
+      if (k < batches[b].count) visits[b].visit(k, share);
+    }
+  }
+  for (int b = 0; b < count; ++b) deepest[b] = visits[b].leave(bodies);
 }
 
 }  // namespace
@@ -457,8 +635,14 @@ extern const Kernels kernels = {.rough = {sweep_balls, sweep_points<true>},
                                 .touch_balls = touch_balls,
                                 .touch_planes = touch_planes,
                                 .prepare_balls = prepare_balls,
+                                .prepare_points = prepare_points,
                                 .book_balls = book_balls,
+                                .book_points = book_points,
+                                .square_of_balls = square_of_balls,
+                                .square_of_points = square_of_points,
                                 .fly_balls = fly_balls,
+                                .fly_points = fly_points,
+                                .turn = turn,
                                 .accelerate = accelerate,
                                 .push_balls = push_balls,
                                 .push_points = push_points,

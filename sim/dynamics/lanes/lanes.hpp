@@ -79,10 +79,12 @@ struct BallBatch {
 struct PointBatch {
   Ends ends;
   LaneVec normal;
+  Lane cap;  ///< most that one visit of the position correction parts (m)
   Lane friction;
   Lane inertia_i[6], inertia_j[6];  ///< inverse, world frame: xx, yy, zz, xy, xz, yz
   std::int64_t first_row;
   std::int32_t count;  ///< of points
+  std::int32_t apart;  ///< as of BallParting
 };
 
 /// One point of each contact of a PointBatch.
@@ -110,10 +112,19 @@ struct BallParting {
   std::int32_t driven;  ///< one of the two bodies is not free
 };
 
-/// And of one point of each contact of a PointBatch.
+/// And of one point of each contact of a PointBatch. Turns of bodies are in coordinates in which their
+/// inverse inertia is 1: those that L of Root turns into the world's.
 struct PointParting {
-  Lane flown;
-  Lane pushed;
+  LaneVec turn_i, turn_j;  ///< of the bodies by a push along the normal, away from it and along it
+  Lane normal_mass;
+  Lane gap;     ///< at the midpoint; then, flown, that at the end of the substep without displacements (m)
+  Lane pushed;  ///< as of BallParting
+};
+
+/// Transpose of Cholesky's factor of a body's inverse inertia in the world frame; 0: it does not turn. One
+/// cache line.
+struct alignas(64) InertiaRoot {
+  double xx, xy, yy, xz, yz, zz;
 };
 
 /// Of a batch: ImpulseChange.
@@ -129,11 +140,18 @@ struct Books {
   }
 };
 
-/// What the impulses of each contact of a batch dissipate (J), a bit for each that gains, and all together.
+/// What the impulses of each contact of a batch dissipate (J), and all together.
 struct alignas(64) Losses {
-  double at[width];
-  std::int32_t gaining;
+  Lane of;
   Books books;
+};
+
+/// Eight bodies that turn freely, as Top has them.
+struct Tops {
+  Lane w;
+  LaneVec v, spin, inverse_inertia;
+  Lane drift;        ///< of the rotational energy (J)
+  std::int32_t far;  ///< a bit for each that would turn further than one step of the splitting may
 };
 
 /// What contacts of balls are made of.
@@ -147,11 +165,16 @@ struct BallSource {
   double step;         ///< s
   double noise;        ///< parting speeds that count as none (m/s)
 };
+/// Batches of points that a kernel may visit at once, if they are of one colour: what one visit waits for,
+/// the other does not.
+inline constexpr int abreast = 2;
+
 /// One visit. Going on by beta of what the last sweep has changed, which the bodies have done already, waits
-/// for it. The local law is that of coulomb_update() and natural_map().
+/// for it. The local law is that of coulomb_update() and natural_map(). `rows` are those of all batches.
 struct SweepKernels {
   Change (*balls)(BallBatch&, Body* bodies, double beta);
-  Change (*points)(const PointBatch&, PointRow* rows, Body* bodies, double beta, int block_sweeps);
+  void (*points)(const PointBatch* batches, int count, PointRow* rows, Body* bodies, double beta,
+                 int block_sweeps, Change* change);
 };
 
 /// Candidates that touch() looks at in one call.
@@ -166,23 +189,33 @@ struct Kernels {
   std::uint64_t (*touch_planes)(const Reach*, const Triple* up, const Two* pairs);
   /// Prepares contacts that know their bodies, friction, and the impulses that they start from.
   void (*prepare_balls)(const BallSource&, BallBatch&, BallParting&);
-  /// `mean`: velocities halfway between those before and after the substep; `kicked`: without impulses. A
-  /// contact gains that gains more than `rounding` of what the impulses do after the kick.
-  void (*book_balls)(const BallBatch&, const Body* mean, const Body* kicked, const Body* after,
-                     double rounding, Losses&);
+  /// Sets the masses of points that know their arms, their bodies' inertia, and their bodies.
+  void (*prepare_points)(const PointBatch&, PointRow* rows, PointParting* points, const Body* bodies);
+  /// `mean`: velocities halfway between those before and after the substep.
+  void (*book_balls)(const BallBatch&, const Body* mean, Losses&);
+  void (*book_points)(const PointBatch&, const PointRow* rows, const Body* mean, Losses&);
+  /// Of each contact, Moved::square. `kicked`: velocities without impulses.
+  void (*square_of_balls)(const BallBatch&, const Body* kicked, const Body* after, Lane&);
+  void (*square_of_points)(const PointBatch&, const PointRow* rows, const Body* kicked, const Body* after,
+                           Lane&);
   /// Flies the gaps on to the end of the substep, half a step after the midpoint. Returns the deepest overlap
   /// (m).
   double (*fly_balls)(const BallBatch&, BallParting&, const Body* velocities, double step);
+  /// Of points that are not apart (the gaps of the others are infinite then); and prepares all to be parted.
+  double (*fly_points)(const PointBatch&, const PointRow* rows, PointParting* points, const Body* velocities,
+                       const InertiaRoot* roots, double step);
+  /// Turns for a time (s) those that do not turn far.
+  void (*turn)(Tops&, double dt, bool fourth_order);
   /// Goes on by beta of what has changed since the last time.
-  void (*accelerate)(Body& body, Body& last, double beta);
+  void (*accelerate)(Body* bodies, Body* last, std::int64_t count, double beta);
   /// Gives the bodies what the impulses are.
   void (*push_balls)(const BallBatch&, Body* bodies);
   void (*push_points)(const PointBatch&, const PointRow* rows, Body* bodies);
   /// Parts what overlaps: by a share of the overlap, but at most by the cap (m). Returns the deepest overlap
   /// met, in units of the cap.
   double (*part_balls)(BallParting&, double share, Body* bodies);
-  double (*part_points)(const PointBatch&, const PointRow* rows, PointParting* points, const Lane& cap,
-                        double share, Body* bodies);
+  void (*part_points)(const PointBatch* batches, int count, PointParting* points, double share, Body* bodies,
+                      double* deepest);
 };
 
 /// Those that this processor can run, the widest last. All give the same bits.

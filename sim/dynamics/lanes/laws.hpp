@@ -46,6 +46,9 @@ struct Symmetric {
     return {m.xx * a.x + m.xy * a.y + m.xz * a.z, m.xy * a.x + m.yy * a.y + m.yz * a.z,
             m.xz * a.x + m.yz * a.y + m.zz * a.z};
   }
+  SCREE_LAW friend Symmetric operator+(const Symmetric& m, const Symmetric& n) {
+    return {m.xx + n.xx, m.yy + n.yy, m.zz + n.zz, m.xy + n.xy, m.xz + n.xz, m.yz + n.yz};
+  }
 };
 
 /// A body's centre: its velocity, or in the position correction its displacement.
@@ -83,6 +86,59 @@ struct PointLaw {
   Symmetric<A> stick;  ///< of RowCoupling
   V3<A> coupling;      ///< RowCoupling::normal
   typename A::V target, normal_mass, tangent_mass;
+};
+
+/// delassus_share()
+template <class A>
+SCREE_LAW Symmetric<A> delassus_share(const typename A::V& inverse_mass, const Symmetric<A>& inertia,
+                                      const V3<A>& arm) {
+  const typename A::V zero{};
+  const V3<A> x = {zero, arm.z, zero - arm.y}, y = {zero - arm.z, zero, arm.x},
+              z = {arm.y, zero - arm.x, zero};  // arm x each axis
+  const V3<A> turn_x = inertia * x, turn_y = inertia * y, turn_z = inertia * z;
+  return {inverse_mass + dot(x, turn_x),
+          inverse_mass + dot(y, turn_y),
+          inverse_mass + dot(z, turn_z),
+          dot(x, turn_y),
+          dot(x, turn_z),
+          dot(y, turn_z)};
+}
+
+/// The law with the masses of make_row(), by the Delassus matrix of the point. Where it is 0, nothing moves.
+template <class A>
+SCREE_LAW PointLaw<A> law_of(const Symmetric<A>& w, const V3<A>& n, const typename A::V& target) {
+  using V = typename A::V;
+  const V zero{};
+  const auto moves = w.xx + w.yy + w.zz > 0;
+  // tangent_of()
+  const V sign = n.z < 0 ? zero - 1.0 : zero + 1.0;
+  const V a = -1.0 / (sign + n.z);
+  const V3<A> t = {1.0 + sign * n.x * n.x * a, sign * n.x * n.y * a, -sign * n.x};
+  const V3<A> b = cross(n, t);
+  const V3<A> wn = w * n, wt = w * t, wb = w * b;
+  const V tt = dot(t, wt), bb = dot(b, wb), tb = dot(t, wb);
+  const V half_difference = 0.5 * (tt - bb);
+  const V largest = 0.5 * (tt + bb) + A::root(half_difference * half_difference + tb * tb);
+  // Cofactors over the determinant.
+  const V xx = w.yy * w.zz - w.yz * w.yz, xy = w.xz * w.yz - w.xy * w.zz, xz = w.xy * w.yz - w.xz * w.yy;
+  const V determinant = w.xx * xx + w.xy * xy + w.xz * xz;
+  const V inverse = moves ? 1.0 / determinant : zero;
+  return {{xx * inverse, (w.xx * w.zz - w.xz * w.xz) * inverse, (w.xx * w.yy - w.xy * w.xy) * inverse,
+           xy * inverse, xz * inverse, (w.xy * w.xz - w.xx * w.yz) * inverse},
+          wn,
+          target,
+          moves ? 1.0 / dot(n, wn) : zero + 1.0,
+          moves ? 1.0 / largest : zero};
+}
+
+/// The transpose of Cholesky's factor L of an inverse inertia, L L^T.
+template <class A>
+struct Root {
+  typename A::V xx, xy, yy, xz, yz, zz;
+
+  SCREE_LAW friend V3<A> operator*(const Root& m, const V3<A>& a) {
+    return {m.xx * a.x + m.xy * a.y + m.xz * a.z, m.yy * a.y + m.yz * a.z, m.zz * a.z};
+  }
 };
 
 /// How two balls, or a ball and a plane, face each other.
@@ -194,10 +250,14 @@ SCREE_LAW V3<A> in_cone(const V3<A>& p, const V3<A>& n, const typename A::V& fri
   return where(pn > 0, on_disc(pn, p - pn * n, n, friction), V3<A>{});
 }
 
-/// account() of a contact of balls that carries p: the bodies halfway between before and after.
+/// account() of a contact that carries p: the bodies halfway between before and after.
 template <class A>
 struct Booked {
   typename A::V restitution, friction, work;
+
+  SCREE_LAW friend Booked operator+(const Booked& a, const Booked& b) {
+    return {a.restitution + b.restitution, a.friction + b.friction, a.work + b.work};
+  }
 };
 template <class A>
 SCREE_LAW Booked<A> booked(const Balls<A>& c, const V3<A>& p, const Moving<A>& i, const Moving<A>& j) {
@@ -233,6 +293,17 @@ SCREE_LAW V3<A> smooth_impulse_of(const V3<A>& n, const typename A::V& target,
 template <class A>
 SCREE_LAW V3<A> velocity_at(const Point<A>& at, const Moving<A>& i, const Moving<A>& j) {
   return j.velocity + cross(j.spin, at.arm_j) - i.velocity - cross(i.spin, at.arm_i);
+}
+
+template <class A>
+SCREE_LAW Booked<A> booked(const Point<A>& at, const V3<A>& n, const V3<A>& p, const Moving<A>& i,
+                           const Moving<A>& j) {
+  using V = typename A::V;
+  const V3<A> mean = velocity_at(at, i, j);
+  const V normal_part = dot(p, n) * dot(mean, n);
+  const V of_i = i.inverse_mass > 0 ? V{} : dot(p, i.velocity + cross(i.spin, at.arm_i));
+  const V of_j = j.inverse_mass > 0 ? V{} : dot(p, j.velocity + cross(j.spin, at.arm_j));
+  return {-normal_part, normal_part - dot(p, mean), of_i - of_j};
 }
 
 /// coulomb_update() of a point that carries p, given its relative velocity u.

@@ -100,7 +100,7 @@ struct Substep {
     const Ledger ledger =
         response.solve(manifolds, step, parameters, balls, 1, view_of(bodies), solver, set, counters);
     memory.remember(manifolds, set, bodies.count());
-    set.list_pairs(solver.view());
+    set.list_all(solver.view());
     return ledger;
   }
   /// A contact, or null.
@@ -209,6 +209,7 @@ struct Made {
   lanes::BallBatch batch;
   lanes::BallParting parting;
   lanes::Losses losses;
+  lanes::Lane square;
   double deepest;
 };
 
@@ -262,7 +263,8 @@ TEST(BallPairs, AreTheSameBitsOnEveryInstructionSet) {
     for (const auto& [name, kernels] : lanes::supported_kernels()) {
       Made m = start;
       kernels->prepare_balls(source, m.batch, m.parting);
-      kernels->book_balls(m.batch, mean.data(), free.data(), after.data(), 1e-10, m.losses);
+      kernels->book_balls(m.batch, mean.data(), m.losses);
+      kernels->square_of_balls(m.batch, free.data(), after.data(), m.square);
       m.deepest = kernels->fly_balls(m.batch, m.parting, after.data(), step);
       made.push_back(m);
       touching.push_back(kernels->touch_balls(reach.data(), pairs.data()) ^

@@ -4,9 +4,14 @@
 #include "core/rng.hpp"
 #include "sim/dynamics/contact_set.hpp"
 #include "sim/dynamics/lanes/batches.hpp"
+#include "sim/dynamics/rotation.hpp"
+#include "sim/dynamics/state.hpp"
 
+#include <Eigen/Cholesky>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <cstring>
 #include <numeric>
 #include <vector>
@@ -35,8 +40,7 @@ struct Problem {
     coloring.order.resize(static_cast<std::size_t>(count));
     std::iota(coloring.order.begin(), coloring.order.end(), 0);
     lanes::arrange(coloring, contact_view(), static_cast<std::int32_t>(bodies.size()), batches);
-    lanes::load(contact_view(), row_view(), {couplings.data(), size(couplings)},
-                {bodies.data(), size(bodies)}, {}, batches);
+    lanes::load(contact_view(), row_view(), {bodies.data(), size(bodies)}, lane_bodies().data(), {}, batches);
   }
 
   template <class T>
@@ -105,8 +109,11 @@ struct Problem {
       total.size += change.size;
     };
     for (lanes::BallBatch& batch : batches.balls.view()) add_up(kernels.balls(batch, all.data(), beta));
-    for (const lanes::PointBatch& batch : batches.points.view()) {
-      add_up(kernels.points(batch, &batches.rows.view()[batch.first_row], all.data(), beta, 2));
+    for (std::int64_t b = 0; b < batches.points.size(); b += lanes::abreast) {
+      lanes::Change change[lanes::abreast];
+      const auto count = static_cast<int>(std::min<std::int64_t>(lanes::abreast, batches.points.size() - b));
+      kernels.points(&batches.points.view()[b], count, batches.rows.data(), all.data(), beta, 2, change);
+      for (int k = 0; k < count; ++k) add_up(change[k]);
     }
     return total;
   }
@@ -158,6 +165,22 @@ TEST(Lanes, SweepAsTheScalarLawDoes) {
   }
 }
 
+TEST(Lanes, MakesTheMassesOfPoints) {
+  Problem p(odd_count);
+  const std::vector<ContactRow> expected = p.rows;
+  for (const Contact& c : p.contacts) {
+    for (int k = 0; k < c.count && !c.aligned; ++k) {
+      ContactRow& row = p.rows[static_cast<std::size_t>(c.first_row + k)];
+      row.normal_mass = row.tangent_mass = 0;
+    }
+  }
+  lanes::store_masses(p.batches, p.row_view());
+  for (std::size_t r = 0; r < expected.size(); ++r) {
+    ASSERT_NEAR(p.rows[r].normal_mass, expected[r].normal_mass, rounding) << r;
+    ASSERT_NEAR(p.rows[r].tangent_mass, expected[r].tangent_mass, rounding) << r;
+  }
+}
+
 TEST(Lanes, PushesGiveTheBodiesWhatTheImpulsesAre) {
   for (const auto& [name, kernels] : lanes::supported_kernels()) {
     Problem p(odd_count);
@@ -180,6 +203,67 @@ TEST(Lanes, PushesGiveTheBodiesWhatTheImpulsesAre) {
   }
 }
 
+TEST(Lanes, BooksWhatTheImpulsesMove) {
+  for (const auto& [name, kernels] : lanes::supported_kernels()) {
+    Problem p(odd_count);
+    const std::vector<lanes::Body> before = p.lane_bodies();
+    std::vector<lanes::Body> after = before;
+    std::vector<lanes::Body> mean = before;
+    p.sweep(kernels->rough, after, 0.0);
+    p.take_impulses_back();
+    for (std::size_t b = 0; b < mean.size(); ++b) {
+      mean[b].velocity = 0.5 * (before[b].velocity + after[b].velocity);
+      mean[b].spin = 0.5 * (before[b].spin + after[b].spin);
+    }
+    const auto check = [&](const lanes::Members& members, const lanes::Losses& losses,
+                           const lanes::Lane& square) {
+      Ledger all;
+      for (int l = 0; l < lanes::width; ++l) {
+        if (members.contact[l] < 0) continue;
+        const Contact& c = p.contacts[static_cast<std::size_t>(members.contact[l])];
+        const auto velocity_in = [&](const std::vector<lanes::Body>& bodies, const ContactRow& row) {
+          const lanes::Body& i = bodies[static_cast<std::size_t>(c.i)];
+          const lanes::Body& j = bodies[static_cast<std::size_t>(c.j)];
+          return row.relative_velocity(i.velocity, i.spin, j.velocity, j.spin);
+        };
+        const auto solved = [&](std::int32_t b) {
+          SolverBody body = p.bodies[static_cast<std::size_t>(b)];
+          body.velocity = after[static_cast<std::size_t>(b)].velocity;
+          body.spin = after[static_cast<std::size_t>(b)].spin;
+          return body;
+        };
+        Ledger ledger;
+        double moved = 0;
+        for (int k = 0; k < c.count; ++k) {
+          const ContactRow& row = p.rows[static_cast<std::size_t>(c.first_row + k)];
+          ledger = ledger + account(row, c.normal, velocity_in(before, row), solved(c.i), solved(c.j));
+          moved += 0.5 * row.impulse.dot(velocity_in(after, row) - velocity_in(before, row));
+        }
+        ASSERT_NEAR(losses.of.at[l], ledger.restitution + ledger.friction, 10 * rounding) << name;
+        ASSERT_NEAR(square.at[l], moved, 10 * rounding) << name;
+        all = all + ledger;
+      }
+      ASSERT_NEAR(losses.books.restitution, all.restitution, 100 * rounding) << name;
+      ASSERT_NEAR(losses.books.friction, all.friction, 100 * rounding) << name;
+      ASSERT_NEAR(losses.books.work, all.work, 100 * rounding) << name;
+    };
+    lanes::Losses losses;
+    lanes::Lane square;
+    for (std::int64_t b = 0; b < p.batches.balls.size(); ++b) {
+      kernels->book_balls(p.batches.balls.view()[b], mean.data(), losses);
+      kernels->square_of_balls(p.batches.balls.view()[b], before.data(), after.data(), square);
+      check(p.batches.ball_members.view()[b], losses, square);
+    }
+    for (std::int64_t b = 0; b < p.batches.points.size(); ++b) {
+      const lanes::PointBatch& batch = p.batches.points.view()[b];
+      const lanes::PointRow* rows = &p.batches.rows.view()[batch.first_row];
+      kernels->book_points(batch, rows, mean.data(), losses);
+      kernels->square_of_points(batch, rows, before.data(), after.data(), square);
+      check(p.batches.point_members.view()[b], losses, square);
+    }
+  }
+}
+
 /// One overlapping point between two free bodies is parted by its share, and their common centre stays.
 TEST(Lanes, PartsByTheShareAndKeepsTheCentre) {
   constexpr double share = 0.5;
@@ -187,11 +271,18 @@ TEST(Lanes, PartsByTheShareAndKeepsTheCentre) {
     Problem p(odd_count);
     std::vector<lanes::Body> moved = p.lane_bodies();
     for (lanes::Body& b : moved) b.velocity = b.spin = Vec3::Zero();
-    lanes::PointParting points[Manifold::max_points];
+    std::vector<Mat3> factors;  // Cholesky's, of the inverse inertias
+    std::vector<lanes::InertiaRoot> roots;
+    for (const SolverBody& b : p.bodies) {
+      const Mat3 l = b.is_free() ? Mat3(b.inverse_inertia.llt().matrixL()) : Mat3(Mat3::Zero());
+      factors.push_back(l);
+      roots.push_back({l(0, 0), l(1, 0), l(1, 1), l(2, 0), l(2, 1), l(2, 2)});
+    }
+    roots.push_back({});
+    lanes::Lane gap;
     lanes::Lane cap;
     for (int l = 0; l < lanes::width; ++l) {
-      for (lanes::PointParting& point : points) point.flown.at[l] = 0.1;
-      points[0].flown.at[l] = l % 2 == 0 ? -0.01 : 0.01;
+      gap.at[l] = l % 2 == 0 ? -0.01 : 0.01;
       cap.at[l] = 0.004;
     }
     const double cap_units = 0.01 / 0.004;
@@ -200,15 +291,34 @@ TEST(Lanes, PartsByTheShareAndKeepsTheCentre) {
       parting.ends = batch.ends;
       parting.normal = batch.normal;
       parting.normal_mass = batch.normal_mass;
-      parting.flown = points[0].flown;
+      parting.flown = gap;
       parting.cap = cap;
       EXPECT_NEAR(kernels->part_balls(parting, share, moved.data()), cap_units, rounding) << name;
     }
-    for (const lanes::PointBatch& batch : p.batches.points.view()) {
-      const lanes::PointRow* rows = &p.batches.rows.view()[batch.first_row];
-      for (lanes::PointParting& point : points) point.pushed = {};
-      EXPECT_NEAR(kernels->part_points(batch, rows, points, cap, share, moved.data()), cap_units, rounding)
+    // Nobody moves, so the first points keep their gaps and the others are far.
+    for (lanes::PointBatch& batch : p.batches.points.view()) {
+      batch.cap = cap;
+      lanes::PointParting* points = &p.batches.point_partings.view()[batch.first_row];
+      for (int k = 0; k < batch.count; ++k) {
+        points[k].gap = gap;
+        for (double& far : points[k].gap.at) far = k == 0 ? far : 0.1;
+      }
+      EXPECT_NEAR(kernels->fly_points(batch, &p.batches.rows.view()[batch.first_row], points, moved.data(),
+                                      roots.data(), 1.0),
+                  0.01, rounding)
           << name;
+    }
+    for (std::int64_t b = 0; b < p.batches.points.size(); b += lanes::abreast) {
+      double deepest[lanes::abreast];
+      const auto count =
+          static_cast<int>(std::min<std::int64_t>(lanes::abreast, p.batches.points.size() - b));
+      kernels->part_points(&p.batches.points.view()[b], count, p.batches.point_partings.data(), share,
+                           moved.data(), deepest);
+      for (int k = 0; k < count; ++k) EXPECT_NEAR(deepest[k], cap_units, rounding) << name;
+    }
+    for (std::size_t b = 0; b < factors.size(); ++b) {
+      const bool of_points = !p.contacts[b / 2].aligned;
+      if (of_points) moved[b].spin = (factors[b] * moved[b].spin).eval();
     }
     const auto check = [&](const lanes::Members& members) {
       for (int l = 0; l < lanes::width; ++l) {
@@ -239,7 +349,7 @@ TEST(Lanes, EveryInstructionSetGivesTheSameBits) {
     std::vector<lanes::Body> last = bodies;
     for (int sweep = 0; sweep < 5; ++sweep) {
       const double beta = 0.15 * sweep;
-      for (std::size_t b = 0; b < bodies.size(); ++b) kernels->accelerate(bodies[b], last[b], beta);
+      kernels->accelerate(bodies.data(), last.data(), std::ssize(bodies), beta);
       p.sweep(kernels->rough, bodies, beta);
     }
     if (first.empty()) {
@@ -284,6 +394,61 @@ TEST(Lanes, TheSerialColourSharesNoBatch) {
   for (const lanes::Members& members : p.batches.ball_members.view()) count(members);
   for (const lanes::Members& members : p.batches.point_members.view()) count(members);
   EXPECT_EQ(alone, odd_count);
+}
+
+/// Boxes of all proportions, slow and fast, two of them beyond one step of the splitting.
+TEST(Lanes, TurnsAsOneBodyAloneDoes) {
+  constexpr int far[] = {2, 5};
+  for (const bool fourth_order : {false, true}) {
+    lanes::Tops first{};
+    for (const auto& [name, kernels] : lanes::supported_kernels()) {
+      for (std::uint64_t item = 0; item < 500; ++item) {
+        Random random(31, item);
+        lanes::Tops tops{};
+        Quat orientation[lanes::width];
+        Vec3 spin[lanes::width];
+        Vec3 inverse_inertia[lanes::width];
+        const double dt = random.uniform(-0.01, 0.01);
+        for (int l = 0; l < lanes::width; ++l) {
+          const Vec3 axis = random_vector(random, 1);
+          orientation[l] = Quat(random.uniform(-1, 1), axis.x(), axis.y(), axis.z()).normalized();
+          const double x = random.uniform(1, 2);
+          inverse_inertia[l] = {x, x * random.uniform(0.5, 1), x * random.uniform(0.3, 0.5)};
+          const bool is_far = std::ranges::find(far, l) != std::end(far);
+          const double turn = is_far ? 3 : std::pow(10.0, random.uniform(-8, -1));
+          spin[l] = (turn / std::abs(dt)) * random_vector(random, 1).normalized();
+          const auto put = [l](lanes::LaneVec& lanes, const Vec3& value) {
+            lanes.x.at[l] = value.x();
+            lanes.y.at[l] = value.y();
+            lanes.z.at[l] = value.z();
+          };
+          tops.w.at[l] = orientation[l].w();
+          put(tops.v, orientation[l].vec());
+          put(tops.spin, spin[l]);
+          put(tops.inverse_inertia, inverse_inertia[l]);
+        }
+        kernels->turn(tops, dt, fourth_order);
+        ASSERT_EQ(tops.far, 1 << far[0] | 1 << far[1]) << name << item;
+        for (int l = 0; l < lanes::width; ++l) {
+          const auto take = [l](const lanes::LaneVec& lanes) {
+            return Vec3(lanes.x.at[l], lanes.y.at[l], lanes.z.at[l]);
+          };
+          if ((tops.far >> l & 1) == 0)
+            rotate_freely(orientation[l], spin[l], inverse_inertia[l], dt,
+                          fourth_order ? RotationOrder::fourth : RotationOrder::second);
+          const double speed = spin[l].norm();
+          ASSERT_LT((take(tops.spin) - spin[l]).norm(), rounding * speed) << name << item;
+          ASSERT_LT((take(tops.v) - orientation[l].vec()).norm(), rounding) << name << item;
+          ASSERT_NEAR(tops.w.at[l], orientation[l].w(), rounding) << name << item;
+          ASSERT_LT(std::abs(tops.drift.at[l]), rounding * speed * speed / inverse_inertia[l].z());
+        }
+        if (item > 0) continue;
+        if (name == lanes::supported_kernels().front().name) first = tops;
+        EXPECT_EQ(std::memcmp(&first.spin, &tops.spin, sizeof tops.spin), 0) << name;
+        EXPECT_EQ(std::memcmp(&first.v, &tops.v, sizeof tops.v), 0) << name;
+      }
+    }
+  }
 }
 
 }  // namespace
