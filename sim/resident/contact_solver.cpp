@@ -193,17 +193,13 @@ void ContactSolver<Space, Real>::find(ConstView<double> margin, double scale, co
       "contacts.find", slots_.others().tiles(),
       FindPoints<Real>{stage, balls * tile, store_.points(), slots_.point_memory(), loads()},
       store_.point_tiles().data());
-  passing_.resize(balls);
-  passing_in_tile_.resize(balls * tile);
-  parallel::compact_tiles<Space>(
-      "contacts.passing", balls,
-      MarkPassing<Real>{store_.balls(), store_.ball_tiles().data(), passing_in_tile_.view()},
-      passing_.data());
-  parallel::for_each<Space>(
-      "contacts.passing", balls * tile,
-      JudgePassing<Real>{stage, store_.balls(), passing_.data(), std::as_const(passing_in_tile_).view()});
   ball_list_.make(slots_.balls(), store_.ball_tiles());
   point_list_.make(slots_.others(), store_.point_tiles());
+  parallel::select("contacts.passing", ball_list_.size(), MayPass<Real>{ball_list_.places(), store_.balls()},
+                   MayPass<Real>::none, passing_);
+  parallel::for_each<Space>(
+      "contacts.passing", passing_.size(),
+      OnContacts<JudgePassing<Real>>{std::as_const(passing_).view(), {stage, store_.balls()}});
   const std::int64_t points = parallel::sum_by_tiles<std::int64_t, Space>(
       "contacts.count", point_list_.size(), on_contacts(point_list_, CountPoints<Real>{store_.points()}));
   counts_ = {ball_list_.size() + point_list_.size(), ball_list_.size() + points};
@@ -276,13 +272,18 @@ Ledger ContactSolver<Space, Real>::book(const ConstBodyView& bodies, const Respo
   return ledger;
 }
 
-/// Sweeps of the next substep, by what those of this one have left undone.
+/// Sweeps of the next substep, by what those of this one have left undone. Fewer only after quiet substeps in
+/// a row: the slow modes are oscillations, and a number of sweeps that goes up and down with them pumps them.
 template <class Space, class Real>
 void ContactSolver<Space, Real>::be_patient() {
   constexpr int most = 16;
+  constexpr int enough_quiet = 64;
   const double undone = std::abs(books_.gap_power);
+  quiet_ = undone < tolerance::done_power * books_.kick_power ? quiet_ + 1 : 0;
   if (undone > tolerance::undone_power * books_.kick_power) patience_ = std::min(2 * patience_, most);
-  if (undone < tolerance::done_power * books_.kick_power) patience_ = std::max(patience_ / 2, 1);
+  if (quiet_ < enough_quiet) return;
+  patience_ = std::max(patience_ / 2, 1);
+  quiet_ = 0;
 }
 
 template <class Space, class Real>

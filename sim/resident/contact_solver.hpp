@@ -93,13 +93,13 @@ class ContactSolver {
 
   ContactStore<Space, Real> store_;
   ContactList<Space> ball_list_, point_list_;
-  Array<std::int32_t, Space> passing_;  // contacts of balls that may fly past, of each tile
-  Array<std::uint8_t, Space> passing_in_tile_;
+  Array<std::int32_t, Space> passing_;  // contacts of balls that may fly past
 
   ContactCounts counts_;
   Books books_;
   double overlap_ = 0;
   int patience_ = 1;  // how many times the least number of sweeps
+  int quiet_ = 0;     // substeps in a row that have left little undone
   Array<std::uint32_t, Space> loads_, next_loads_;
 
   Array<Books, Space> books_scratch_;

@@ -236,20 +236,14 @@ struct FindBalls {
   }
 };
 
-/// Those of a tile that may fly past.
+/// The places of those that may fly past.
 template <class Real>
-struct MarkPassing {
-  struct Record {};
-
+struct MayPass {
+  static constexpr std::int32_t none = -1;
+  ConstView<std::int32_t> places;  ///< of contacts
   BallContacts<Real> contacts;
-  const std::int32_t* found;   ///< contacts of each tile
-  View<std::uint8_t> in_tile;  ///< where each is, in its tile
-
-  SCREE_HD bool find(std::int64_t c, Record&) const {
-    return has_contact(found, c) && (contacts.flags[c] & flag_may_pass) != 0;
-  }
-  SCREE_HD void store(std::int64_t to, std::int64_t c, const Record&) const {
-    in_tile[to] = static_cast<std::uint8_t>(c % 256);
+  SCREE_HD std::int32_t operator()(std::int64_t k) const {
+    return (contacts.flags[places[k]] & flag_may_pass) != 0 ? places[k] : none;
   }
 };
 
@@ -258,15 +252,11 @@ template <class Real>
 struct JudgePassing {
   FindStage<Real> stage;
   BallContacts<Real> contacts;
-  const std::int32_t* found;  ///< of those that may, in each tile
-  ConstView<std::uint8_t> in_tile;
 
-  SCREE_HD void operator()(std::int64_t k) const {
+  SCREE_HD void operator()(std::int64_t c) const {
     using C = BallContacts<Real>;
-    if (!has_contact(found, k)) return;
-    const std::int64_t c = k - k % 256 + in_tile[k];
     contacts.flags[c] &= static_cast<std::uint8_t>(~flag_may_pass);
-    const Slot& slot = stage.places[k - k % 256 + contacts.slot[c]];
+    const Slot& slot = stage.places[c - c % 256 + contacts.slot[c]];
     Manifold m;
     if (!meet_balls(stage, slot, stage.lead_of(slot), m)) return;
     m.i = slot.i;
