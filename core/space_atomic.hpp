@@ -90,7 +90,8 @@ SCREE_HD T add(T* place, T value) {
 template <class T>
 SCREE_HD void set_bits(T* place, T value) {
 #if defined(__CUDA_ARCH__)
-  atomicOr(place, value);
+  using Word = detail::CudaWord<T>;
+  atomicOr(reinterpret_cast<Word*>(place), static_cast<Word>(value));
 #else
   std::atomic_ref<T>(*place).fetch_or(value, std::memory_order_relaxed);
 #endif

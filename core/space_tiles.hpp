@@ -1,5 +1,5 @@
-// Work in tiles of consecutive items: what a tile finds is put side by side at its front, what it sums up is
-// one number, and neither waits for other tiles or for the host. For parallel libraries alone.
+// Work in tiles of consecutive items: what a tile finds is put side by side at its front, and sums over many
+// tiles are found without waiting for the host. For parallel libraries alone.
 #pragma once
 
 #include "core/array.hpp"
@@ -7,8 +7,8 @@
 #include "core/space_warp.hpp"
 #include "core/timing.hpp"
 
+#include <algorithm>
 #include <cstdint>
-#include <type_traits>
 
 namespace scree::parallel {
 
@@ -34,38 +34,26 @@ struct CompactTile {
   }
 };
 
-template <class T, class F>
-struct SumTile {
-  F f;
-  T* sums;
-  void operator()(std::int64_t t) const {
-    T sum = f(t * tile);
-    for (std::int64_t item = t * tile + 1; item < (t + 1) * tile; ++item) sum = sum + f(item);
-    sums[t] = sum;
-  }
-};
-
 template <class F>
 void compact(Host, const char* label, std::int64_t tiles, const F& f, std::int32_t* counts) {
   parallel::for_each<Host>(label, tiles, CompactTile<F>{f, counts});
 }
 template <class T, class F>
-void sum_each(Host, const char* label, std::int64_t tiles, const F& f, T* sums) {
-  parallel::for_each<Host>(label, tiles, SumTile<T, F>{f, sums});
+void add_up(Host, const char* label, std::int64_t n, const F& f, Array<T, Host>&, T* out) {
+  *out = parallel::sum<T, Host>(label, n, f);
 }
-
-/// f(i), and nothing beyond n.
-template <class T, class F>
-struct UpTo {
-  F f;
-  std::int64_t n;
-  SCREE_HD T operator()(std::int64_t i) const { return i < n ? f(i) : T{}; }
-};
 
 #if SCREE_WITH_CUDA
 
+/// Blocks that share a processor at least: a program may say so, if it would take too many registers.
 template <class F>
-__global__ void __launch_bounds__(tile) compact_tile(F f, std::int32_t* counts) {
+constexpr int blocks_at_once() {
+  if constexpr (requires { F::blocks_at_once; }) return F::blocks_at_once;
+  return 1;
+}
+
+template <class F>
+__global__ void __launch_bounds__(tile, blocks_at_once<F>()) compact_tile(F f, std::int32_t* counts) {
   __shared__ std::uint32_t sums[tile / 32];
   const std::int64_t first = std::int64_t{blockIdx.x} * tile;
   typename F::Record record;
@@ -76,17 +64,34 @@ __global__ void __launch_bounds__(tile) compact_tile(F f, std::int32_t* counts) 
   if (threadIdx.x == 0) counts[blockIdx.x] = static_cast<std::int32_t>(total);
 }
 
-/// A tree of fixed shape: halves are added to one another.
-template <class T, class F>
-__global__ void __launch_bounds__(tile) sum_tile(F f, T* sums) {
-  __shared__ typename std::aligned_storage<sizeof(T), alignof(T)>::type memory[tile];
-  T* const part = reinterpret_cast<T*>(memory);
-  part[threadIdx.x] = f(std::int64_t{blockIdx.x} * tile + threadIdx.x);
-  for (unsigned half = tile / 2; half > 0; half /= 2) {
+/// Sum over the threads of a block, for its first thread: a tree of fixed shape, in which halves are added to
+/// one another. `memory` has room for one T of each thread, and is free again after the next barrier.
+template <int threads, class T>
+__device__ T sum_over_block(const T& mine, T* memory) {
+  memory[threadIdx.x] = mine;
+  for (unsigned half = threads / 2; half > 0; half /= 2) {
     __syncthreads();
-    if (threadIdx.x < half) part[threadIdx.x] = part[threadIdx.x] + part[threadIdx.x + half];
+    if (threadIdx.x < half) memory[threadIdx.x] = memory[threadIdx.x] + memory[threadIdx.x + half];
   }
-  if (threadIdx.x == 0) sums[blockIdx.x] = part[0];
+  return memory[0];
+}
+
+/// Room for one T of each thread of a block, without calling its constructor.
+template <class T, int threads>
+struct BlockRoom {
+  alignas(alignof(T)) unsigned char bytes[threads * sizeof(T)];
+  __device__ T* data() { return reinterpret_cast<T*>(bytes); }
+};
+
+/// Each block adds up the tiles b, b + blocks, ...; sums[b] is its part.
+template <class T, class F>
+__global__ void __launch_bounds__(tile, blocks_at_once<F>()) sum_strided(F f, std::int64_t n, T* sums) {
+  __shared__ BlockRoom<T, tile> room;
+  T mine{};
+  const std::int64_t stride = std::int64_t{gridDim.x} * tile;
+  for (std::int64_t i = std::int64_t{blockIdx.x} * tile + threadIdx.x; i < n; i += stride) mine = mine + f(i);
+  const T sum = sum_over_block<tile>(mine, room.data());
+  if (threadIdx.x == 0) sums[blockIdx.x] = sum;
 }
 
 template <class F>
@@ -96,9 +101,13 @@ void compact(Device, const char* label, std::int64_t tiles, const F& f, std::int
   scree::detail::require_launched(label);
 }
 template <class T, class F>
-void sum_each(Device, const char* label, std::int64_t tiles, const F& f, T* sums) {
+void add_up(Device, const char* label, std::int64_t n, const F& f, Array<T, Device>& scratch, T* out) {
+  constexpr std::int64_t most_blocks = 1024;  // that a GPU is busy with, and that one block adds up quickly
   const timing::Call<Device> call(label);
-  sum_tile<T><<<static_cast<unsigned>(tiles), tile>>>(f, sums);
+  const std::int64_t blocks = std::clamp<std::int64_t>(tiles_of(n), 1, most_blocks);
+  scratch.resize(blocks);
+  sum_strided<T><<<static_cast<unsigned>(blocks), tile>>>(f, n, blocks > 1 ? scratch.data() : out);
+  if (blocks > 1) sum_strided<T><<<1, tile>>>(Load<T>{scratch.data()}, blocks, out);
   scree::detail::require_launched(label);
 }
 
@@ -115,38 +124,15 @@ void compact_tiles(const char* label, std::int64_t tiles, const F& f, std::int32
   if (tiles > 0) detail::compact(Space{}, label, tiles, f, counts);
 }
 
-/// sums[t] = sum of f(item) over the items of tile t, as T with an operator +. The tree of the additions is
-/// fixed. f may write what belongs to its item. On Device the call returns before the work is done.
-template <class T, class Space, class F>
-void sum_tiles(const char* label, std::int64_t tiles, const F& f, T* sums) {
-  if (tiles > 0) detail::sum_each(Space{}, label, tiles, f, sums);
-}
-
-/// *out = sum of f(i) over 0 <= i < n, T{} for n = 0; out is in the space, and so nobody waits for it. The
-/// tree of the additions depends on n alone. `scratch` keeps its storage from call to call.
+/// *out = sum of f(i) over 0 <= i < n, as T with an operator +, T{} for n = 0; out is in the space, and so
+/// nobody waits for it. The tree of the additions depends on n and the space alone. f may write what belongs
+/// to its item. `scratch` keeps its storage from call to call.
 template <class T, class Space, class F>
 void sum_into(const char* label, std::int64_t n, const F& f, Array<T, Space>& scratch, T* out) {
-  std::int64_t items = n;
-  std::int64_t room = 0;
-  do {
-    items = tiles_of(items);
-    room += items;
-  } while (items > 1);
-  scratch.resize(room);
-  T* from = scratch.data();
-  items = tiles_of(n);
-  sum_tiles<T, Space>(label, std::max<std::int64_t>(items, 1), detail::UpTo<T, F>{f, n},
-                      items > 1 ? from : out);
-  while (items > 1) {
-    const std::int64_t sums = tiles_of(items);
-    sum_tiles<T, Space>(label, sums, detail::UpTo<T, detail::Load<T>>{{from}, items},
-                        sums > 1 ? from + items : out);
-    from += items;
-    items = sums;
-  }
+  detail::add_up(Space{}, label, n, f, scratch, out);
 }
 
-/// The same, brought to the host: on Device faster than sum(), and on Host the same to the bit.
+/// The same, brought to the host: on Device faster than sum(), and on Host the same.
 template <class T, class Space, class F>
 T sum_by_tiles(const char* label, std::int64_t n, const F& f) {
   Array<T, Space> scratch, out(1);

@@ -17,7 +17,12 @@ inline constexpr double contact_slack = 0.02;
 
 /// How much further the boxes of the broad phase reach (of smallest_size): the pairs last until a body has
 /// moved about this far. Larger: fewer broad phases, more pairs for the narrow phase. Never changes a result.
-inline constexpr double pair_skin = 0.1;
+inline constexpr double pair_skin = 0.05;
+/// How far most bodies may travel while the pairs last (likewise): boxes of faster ones have room for as long
+/// a time. Larger: likewise.
+inline constexpr double pair_travel = 0.05;
+/// That time at most, in steps.
+inline constexpr double most_pair_steps = 16;
 
 /// Safety factor on the distance that a body can travel in a step, for what impacts add to its speed.
 inline constexpr double travel_factor = 1.05;
@@ -72,7 +77,13 @@ inline constexpr double impact_gain = 1e-12;
 /// replaces both. Larger: towers rock; heaps come to rest too dense.
 inline constexpr double response_change = 1e-10;
 inline constexpr double heap_change = 3e-3;
-/// The least of it with impulses in float, whose rounding is 1e-7.
+/// Power that normal impulses have on what they leave undone (of that on all they change), over which a heap
+/// is swept twice as often in the next substep, and under which half as often: it shows slow modes of many
+/// layers, of which one sweep's change tells nothing. Smaller: heaps come to rest sooner, and cost more until
+/// then.
+inline constexpr double undone_power = 0.01;
+inline constexpr double done_power = 0.004;
+/// The least change with impulses in float, whose rounding is 1e-7.
 inline constexpr double mixed_change = 2e-6;
 
 /// Speed at which a contact may part before gravity's kick and still be held at 0 by it, in units of
@@ -134,6 +145,7 @@ inline constexpr double unit_length = 1e-14;
 /// A last step shorter than this share of a step is rounding of end / step, and none.
 inline constexpr double step_count = 1e-9;
 
+static_assert(done_power < undone_power);
 static_assert(closed_gap < contact_slack);
 static_assert(corrected_overlap < closed_gap);
 static_assert(4 * coarser_overlap < substep_overlap);

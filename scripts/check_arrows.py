@@ -61,8 +61,8 @@ LIBRARIES = {
     "CLI11": r"CLI/", "Boost": r"boost/", "nlohmann-json": r"nlohmann/", "xxHash": r"xxhash\.h",
 }
 THRUST_HEADERS = ["core/parallel.hpp", "core/space_matches.hpp", "core/space_matches_device.hpp", "core/space_matches_host.hpp",
-                  "core/space_policy.hpp", "core/space_warp.hpp", "core/space_tiles.hpp"]
-THRUST = re.compile(r"(thrust|cub|cuda)/")
+                  "core/space_policy.hpp", "core/space_warp.hpp", "core/space_rounds.hpp", "core/space_tiles.hpp"]
+THRUST = re.compile(r"(thrust|cub|cuda)/|cooperative_groups\.h")
 
 INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]', re.M)
 CONDITIONAL = re.compile(r"^\s*#\s*(if|ifdef|ifndef|elif)\b", re.M)

@@ -58,6 +58,7 @@ class ResidentStepper final : public Stepper {
   void start_step(std::int64_t step) override {
     step_ = step;
     start_.save(bodies_);
+    kept_pairs_.start_step(step);
     start_ledger_ = ledger;
     for (auto& [body, impulse] : driven_impulse_) impulse.setZero();
     forces_.act(step, bodies_, parameters_);
@@ -79,6 +80,7 @@ class ResidentStepper final : public Stepper {
     forces_.forget();
     kept_pairs_.forget();
     seen_pairs_.forget();
+    contacts_.change_bodies();
   }
 
   void copy_state(BodyTable& out) const override { copy_bodies(out, bodies_); }

@@ -1,13 +1,15 @@
 """The plots and tables of docs/broadphase.md, from the tables that `figures measure` has written."""
 import csv
 import os
-import subprocess
 import sys
 from pathlib import Path
 
-PAGE = Path(__file__).resolve().parents[2] / "docs/broadphase.md"
+ROOT = Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(ROOT / "scripts"))
+from plotting import COLORS, count, line_of, plot, table, three
 
-COLORS = ["#000000", "#e69f00", "#56b4e9", "#009e73", "#cc79a7", "#0072b2", "#d55e00", "#888888"]
+PAGE = ROOT / "docs/broadphase.md"
+
 STAGES = ["initialize", "sort", "construct", "traverse"]
 SPACE_WORDS = {"host": "Host", "cuda": "Device"}
 
@@ -66,33 +68,6 @@ class Results:
 
 # Plots
 
-STYLE = ("set grid lc rgb '#e8e8e8'\nset border lc rgb '#444444'\nset key outside right noenhanced\nset ytics format '%g'\n"
-         "set boxwidth 0.7\nset style fill solid\n")
-
-
-def plot(results, name, settings, curves, size="900,520"):
-    """Draws the curves, (points, gnuplot's words for them) each, a point being a list of numbers or words."""
-    script, words = STYLE + settings, []
-    for k, (points, how) in enumerate(curves):
-        script += f"$data{k} << END\n" + "".join(" ".join(quoted(x) for x in point) + "\n" for point in points) + "END\n"
-        words.append(f"$data{k} {how}")
-    picture = results.folder / f"{name}.svg"
-    script += f"set terminal svg size {size} background 'white' font 'DejaVu Sans,13'\nset output '{picture}'\nplot " + ", ".join(words) + "\n"
-    try:
-        subprocess.run(["gnuplot"], input=script, text=True, check=True)
-    except FileNotFoundError:
-        sys.exit("gnuplot is not installed")
-    return picture
-
-
-def quoted(x):
-    return f'"{x}"' if isinstance(x, str) else f"{x:.6g}"
-
-
-def line_of(k, title, dash=1, points=True):
-    return f"with {'linespoints' if points else 'lines'} lw 2 dt {dash} pt 7 ps 0.5 lc rgb '{COLORS[k % len(COLORS)]}' title '{title}'"
-
-
 def plot_over_counts(results, name, table, value, label, settings=""):
     """A curve for each set and space."""
     curves = []
@@ -100,7 +75,7 @@ def plot_over_counts(results, name, table, value, label, settings=""):
         for k, name_of_set in enumerate(results.values(table, "set", space=space)):
             rows = results.of(table, space=space, set=name_of_set)
             curves.append(([(row.n, value(row)) for row in rows], line_of(k, f"{name_of_set}, {SPACE_WORDS[space]}", dash)))
-    return plot(results, name, f"set logscale xy\nset format x '10^{{%T}}'\nset xlabel 'objects'\nset ylabel '{label}'\n{settings}", curves)
+    return plot(results.folder, name, f"set logscale xy\nset format x '10^{{%T}}'\nset xlabel 'objects'\nset ylabel '{label}'\n{settings}", curves)
 
 
 def plot_stages(results, name, rows, labels, xlabel):
@@ -110,7 +85,7 @@ def plot_stages(results, name, rows, labels, xlabel):
         points = [(x, sum(row.stages[: k + 1]), label) for x, (row, label) in enumerate(zip(rows, labels))]
         title = [*STAGES, "between calls"][k]
         curves.append((points, f"using 1:2:xtic(3) with boxes lc rgb '{COLORS[1:][k]}' title '{title}'"))
-    return plot(results, name, f"set xtics noenhanced rotate by -30\nset xlabel '{xlabel}'\nset ylabel 'ns per object'\nset yrange [0:]\n", curves)
+    return plot(results.folder, name, f"set xtics noenhanced rotate by -30\nset xlabel '{xlabel}'\nset ylabel 'ns per object'\nset yrange [0:]\n", curves)
 
 
 def plot_levels(results, name, table, space, key, title):
@@ -120,23 +95,10 @@ def plot_levels(results, name, table, space, key, title):
         chosen, forced = results.chosen(table, space=space, **{key: value})
         curves.append(([(row.levels, row.ns) for row in forced], line_of(k, title(value))))
         curves.append(([(chosen.levels, chosen.ns)], f"with points pt 6 ps 2 lw 2 lc rgb '{COLORS[k % len(COLORS)]}' notitle"))
-    return plot(results, name, "set logscale y\nset xrange [0.7:8.3]\nset xtics 1\nset xlabel 'levels'\nset ylabel 'ns per object'\n", curves)
+    return plot(results.folder, name, "set logscale y\nset xrange [0.7:8.3]\nset xtics 1\nset xlabel 'levels'\nset ylabel 'ns per object'\n", curves)
 
 
 # The page
-
-def table(head, rows):
-    line = lambda cells: "| " + " | ".join(str(cell) for cell in cells) + " |"
-    return [line(head), "|" + "---|" * len(head), *(line(row) for row in rows), ""]
-
-
-def count(n):
-    return f"{int(float(n)):,}"
-
-
-def three(x):
-    return f"{x:.3g}" if x < 1000 else f"{x:,.0f}"
-
 
 def by_space(results, name_of_table, section):
     """A section for each space, under its name and that of its machine."""
@@ -221,7 +183,7 @@ def methods_block(results, picture):
                 if rows := results.of("methods", space=space, set=name, method=method):
                     curves.append(([(row.n, row.ns) for row in rows], line_of(k, f"{method}, {SPACE_WORDS[space]}", dash)))
         settings = f"set logscale xy\nset format x '10^{{%T}}'\nset xlabel 'objects of set {name}'\nset ylabel 'ns per object'\n"
-        lines += [picture(plot(results, f"methods_{name}", settings, curves, size="900,420")), ""]
+        lines += [picture(plot(results.folder, f"methods_{name}", settings, curves, size="900,420")), ""]
     return lines
 
 

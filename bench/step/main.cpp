@@ -1,12 +1,14 @@
 // Steps of a settled scene: how long one takes, and with which error.
 //
-//   scree bench step SCENE [--settle S] [--steps N] [--space auto|host|cuda] [--threads N] [--set
-//   key=value;...]
-//                          [--resident no|yes] [--calls no|yes]
+//   scree bench step SCENE [--settle S] [--steps N] [--within W] [--space auto|host|cuda] [--threads N]
+//                          [--set key=value;...] [--resident no|yes] [--calls no|yes]
 //
-// Runs until S seconds have passed, then times N steps. One JSON object: medians over these steps, and the
-// state after the last. With --resident yes Host too takes the steps as Device does. With --calls yes ten
-// more steps follow in which each parallel call is waited for, and its share is printed.
+// Runs until S seconds have passed, then times N steps. One JSON object: medians over these steps, the memory
+// that its space then has in use, and the state after the last. Settling ends, wherever it is, after W
+// seconds of wall time, and so do the timed steps. With --resident yes Host too takes the steps as Device
+// does. With
+// --calls yes ten more steps follow in which each parallel call is waited for: what they and the stages take,
+// which on Device cannot be told apart otherwise.
 #include "bench/options.hpp"
 #include "core/error.hpp"
 #include "core/space.hpp"
@@ -30,8 +32,10 @@ using Clock = std::chrono::steady_clock;
 using Json = nlohmann::ordered_json;
 
 double median(std::vector<double> values) {
-  std::ranges::sort(values);
-  return values.empty() ? NAN : values[values.size() / 2];
+  if (values.empty()) return NAN;
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::ranges::nth_element(values, middle);
+  return *middle;
 }
 
 double seconds_since(Clock::time_point start) {
@@ -65,19 +69,41 @@ double median_speed(const Simulation& simulation) {
   return median(std::move(speeds));
 }
 
-Json entries(const std::vector<timing::Entry>& list) {
+/// What the program has taken of the space of that name, the one of `Spaces` where the bodies are.
+template <class... Spaces>
+MemoryUse memory_use_of(const std::string& space) {
+  MemoryUse use;
+  ((space == Spaces::name ? static_cast<void>(use = Spaces::memory_use()) : void()), ...);
+  return use;
+}
+
+/// The processor and, if the bodies are on it, the GPU.
+std::string hardware_of(const std::string& space) {
+  const MachineInfo machine = machine_info();
+  const std::string host = fmt::format("{}, {} cores", machine.cpu, machine.cores);
+  return space == Host::name ? host : device_info().name + " beside " + host;
+}
+
+/// In ms per step.
+Json per_step(const std::vector<timing::Entry>& list, double steps) {
   Json json;
-  for (const timing::Entry& entry : list) json[entry.label] = entry.seconds;
+  for (const timing::Entry& entry : list) json[entry.label] = 1e3 * entry.seconds / steps;
   return json;
 }
 
 /// Each parallel call is waited for, so that its share is seen; the steps take longer.
-Json calls_of(Simulation& simulation, int steps) {
+Json steps_by_calls(Simulation& simulation, int most) {
   timing::reset();
   timing::time_calls(true);
-  for (int k = 0; k < steps && !simulation.finished(); ++k) simulation.step();
+  const auto start = Clock::now();
+  int steps = 0;
+  for (; steps < most && !simulation.finished(); ++steps) simulation.step();
+  const double total = seconds_since(start);
   timing::time_calls(false);
-  return entries(timing::calls());
+  return {{"steps", steps},
+          {"mean_ms", 1e3 * total / steps},
+          {"stages_ms", per_step(timing::entries(), steps)},
+          {"calls_ms", per_step(timing::calls(), steps)}};
 }
 
 int run(int argc, char** argv) {
@@ -85,6 +111,7 @@ int run(int argc, char** argv) {
   const bench::Options options = bench::parse(argc, argv,
                                               {{"--settle", "0"},
                                                {"--steps", "100"},
+                                               {"--within", "inf"},
                                                {"--space", "auto"},
                                                {"--threads", "0"},
                                                {"--set", ""},
@@ -98,21 +125,27 @@ int run(int argc, char** argv) {
                                 options.at("--resident") == "yes"});
   const double built = seconds_since(building);
   const auto settling = Clock::now();
-  while (!simulation.finished() && simulation.time() < std::stod(options.at("--settle"))) simulation.step();
+  const double within = std::stod(options.at("--within"));
+  while (!simulation.finished() && simulation.time() < std::stod(options.at("--settle")) &&
+         seconds_since(settling) < within)
+    simulation.step();
   const double settled = seconds_since(settling);
   const std::int64_t first = simulation.steps();
   const Counters before = simulation.observe(false).counters;
   timing::reset();
   std::vector<double> times;
-  while (!simulation.finished() && static_cast<int>(times.size()) < std::stoi(options.at("--steps"))) {
+  const auto timed = Clock::now();
+  while (!simulation.finished() && static_cast<int>(times.size()) < std::stoi(options.at("--steps")) &&
+         seconds_since(timed) < within) {
     const auto start = Clock::now();
     simulation.step();
     times.push_back(seconds_since(start));
   }
   if (times.empty()) throw InputError("the scene ends before there is a step to time");
-  const Json stages = entries(timing::entries());
-  const Observation& seen = simulation.observe();
   const auto n = static_cast<double>(simulation.steps() - first);
+  const Json stages = per_step(timing::entries(), n);
+  const MemoryUse memory = memory_use_of<SCREE_SPACES>(simulation.space_name());
+  const Observation& seen = simulation.observe();
   double total = 0;
   for (const double time : times) total += time;
   const double typical = median(times);
@@ -120,6 +153,7 @@ int run(int argc, char** argv) {
             {"space", simulation.space_name()},
             {"precision", scene.precision == Precision::mixed ? "mixed" : "double"},
             {"commit", build_info().commit},
+            {"hardware", hardware_of(simulation.space_name())},
             {"bodies", seen.bodies},
             {"contacts", seen.contacts},
             {"pairs", seen.pairs},
@@ -128,6 +162,9 @@ int run(int argc, char** argv) {
             {"median_ms", 1e3 * typical},
             {"mean_ms", 1e3 * total / n},
             {"steps_per_s", 1 / typical},
+            {"body_steps_per_s", static_cast<double>(seen.bodies) / typical},
+            {"memory_bytes", memory.now},
+            {"memory_peak_bytes", memory.peak},
             {"substeps", static_cast<double>(seen.counters.substeps - before.substeps) / n},
             {"sweeps", static_cast<double>(seen.counters.sweeps - before.sweeps) / n},
             {"unconverged", seen.counters.unconverged - before.unconverged},
@@ -145,8 +182,8 @@ int run(int argc, char** argv) {
             {"settled_s", settled},
             {"settling_steps", first},
             {"state_hash", fmt::format("{:016x}", simulation.state_hash())},
-            {"stages_s", stages}};
-  if (options.at("--calls") == "yes") json["calls_of_10_steps_s"] = calls_of(simulation, 10);
+            {"stages_ms", stages}};
+  if (options.at("--calls") == "yes") json["by_calls"] = steps_by_calls(simulation, 10);
   fmt::print("{}\n", json.dump(1));
   return 0;
 }

@@ -7,6 +7,7 @@
 #include "sim/dynamics/rotation.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <type_traits>
 #include <utility>
@@ -161,15 +162,35 @@ struct AddTravel {
   SCREE_HD void operator()(std::int64_t k) const { margin[k] += travel(k); }
 };
 
-/// At least the margin wanted, and the skin.
+/// At least the margin wanted and the skin, and what fast bodies travel in so long (s): they are few, and for
+/// them alone the boxes of all would have to be put anew.
 struct RaiseMargin {
   ConstBodyView bodies;
   ConstView<double> wanted;
   View<double> margin;
+  double life;
   SCREE_HD void operator()(std::int64_t k) const {
     if (bodies.mobility[k] == Mobility::fixed || is_boundary(bodies.shape[k])) return;
-    const double skin = tolerance::pair_skin * smallest_size(bodies.shape[k], bodies.size[k]);
-    margin[k] = fmax(margin[k], wanted[k] + skin);
+    const double size = smallest_size(bodies.shape[k], bodies.size[k]);
+    const double travel = tolerance::contact_slack * size + life * bodies.velocity[k].norm();
+    margin[k] = fmax(margin[k], fmax(wanted[k] + tolerance::pair_skin * size, travel));
+  }
+};
+
+/// How fast a body leaves where it is, in its own smallest_size (1/s), squared.
+struct Leaving {
+  double rate_squared = 0;
+  std::int64_t count = 0;
+  SCREE_HD friend Leaving operator+(const Leaving& a, const Leaving& b) {
+    return {a.rate_squared + b.rate_squared, a.count + b.count};
+  }
+};
+struct LeavingOf {
+  ConstBodyView bodies;
+  SCREE_HD Leaving operator()(std::int64_t k) const {
+    if (bodies.mobility[k] != Mobility::free) return {};
+    const double size = smallest_size(bodies.shape[k], bodies.size[k]);
+    return {bodies.velocity[k].squaredNorm() / (size * size), 1};
   }
 };
 
@@ -256,9 +277,16 @@ void contact_margins(const Bodies<Space>& bodies, double dt, double slack,
 template <class Space>
 void FatBoxes<Space>::put_around(const Bodies<Space>& bodies, double dt, const ResponseParameters& parameters,
                                  const Array<double, Space>& contact_margin) {
+  const auto leaving =
+      parallel::sum_by_tiles<Leaving, Space>("motion.leaving", bodies.count(), LeavingOf{view_of(bodies)});
+  const double rate =
+      std::sqrt(leaving.rate_squared / static_cast<double>(std::max<std::int64_t>(leaving.count, 1)));
+  const double longest = tolerance::most_pair_steps * dt;
+  const double life =
+      rate * longest > tolerance::pair_travel ? std::max(dt, tolerance::pair_travel / rate) : longest;
   contact_margins(bodies, dt, tolerance::contact_slack + tolerance::pair_skin, parameters, margin_);
   parallel::for_each<Space>("motion.margins", bodies.count(),
-                            RaiseMargin{view_of(bodies), contact_margin.view(), margin_.view()});
+                            RaiseMargin{view_of(bodies), contact_margin.view(), margin_.view(), life});
   copy(position_, bodies.position);
   copy(orientation_, bodies.orientation);
 }

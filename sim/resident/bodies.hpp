@@ -84,56 +84,6 @@ struct LoadPart {
   }
 };
 
-/// Sum of two vectors of each part of a hub; a tile to each hub.
-struct PartsSum {
-  Vec3 velocity = Vec3::Zero();
-  Vec3 spin = Vec3::Zero();
-  SCREE_HD friend PartsSum operator+(const PartsSum& a, const PartsSum& b) {
-    return {a.velocity + b.velocity, a.spin + b.spin};
-  }
-};
-template <class Record>
-SCREE_HD inline Vec3 spin_of(const Record& body) {
-  if constexpr (requires { body.spin; }) return vec3(body.spin);
-  return Vec3::Zero();
-}
-template <class Record>
-struct SumParts {
-  ConstView<Hub> hubs;
-  const Record* bodies;
-  SCREE_HD PartsSum operator()(std::int64_t item) const {
-    const Hub& hub = hubs[item / parallel_tile];
-    PartsSum sum;
-    for (std::int64_t p = item % parallel_tile; p < hub.parts; p += parallel_tile) {
-      const Record& body = bodies[hub.first + p];
-      sum = sum + PartsSum{vec3(body.velocity), spin_of(body)};
-    }
-    return sum;
-  }
-  static constexpr std::int64_t parallel_tile = 256;
-};
-/// The parts of a hub, and the hub itself, get their mean.
-template <class Record>
-struct JoinParts {
-  ConstView<Hub> hubs;
-  ConstView<std::int32_t> hub_of;
-  ConstView<PartsSum> sums;
-  std::int64_t count;
-  Record* bodies;
-  SCREE_HD void operator()(std::int64_t p) const {
-    using Real = decltype(bodies->inverse_mass);
-    const std::int32_t h = hub_of[p];
-    const Hub& hub = hubs[h];
-    const auto mean = [&](const Vec3& sum) { return v3<Real>(sum / static_cast<double>(hub.parts)); };
-    const auto set = [&](Record& body) {
-      body.velocity = mean(sums[h].velocity);
-      if constexpr (requires { body.spin; }) body.spin = mean(sums[h].spin);
-    };
-    set(bodies[count + p]);
-    if (count + p == hub.first) set(bodies[hub.body]);
-  }
-};
-
 /// What the contacts have made of the velocities.
 template <class Real>
 struct StoreVelocities {

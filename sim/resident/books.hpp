@@ -24,6 +24,8 @@ struct Books {
   std::int64_t ends = 0;     ///< free bodies at loaded contacts
   std::int64_t gaining = 0;  ///< contacts that gain energy
   double deepest = 0;        ///< overlap at the end, of the cap
+  double gap_power = 0;      ///< of normal impulses on what they leave undone: 0 when all are found (J)
+  double kick_power = 0;     ///< of impulses on what they have changed (J)
 
   SCREE_HD friend Books operator+(const Books& a, const Books& b) {
     return {a.restitution + b.restitution,
@@ -33,15 +35,18 @@ struct Books {
             a.loaded + b.loaded,
             a.ends + b.ends,
             a.gaining + b.gaining,
-            a.deepest > b.deepest ? a.deepest : b.deepest};
+            a.deepest > b.deepest ? a.deepest : b.deepest,
+            a.gap_power + b.gap_power,
+            a.kick_power + b.kick_power};
   }
 };
 
-/// Velocities of a body at a contact.
-struct EndVelocities {
-  Vec3 before, before_spin;  ///< the kick
-  Vec3 free, free_spin;      ///< after the kick, without contacts
-  Vec3 after, after_spin;    ///< with them
+/// A point of a contact: what acts on it, and the bodies that it acts on.
+struct BookedPoint {
+  Vec3 impulse;  ///< on j (N s)
+  Vec3 normal;
+  Vec3 arm_i, arm_j;
+  double target;  ///< of the normal velocity (m/s)
 };
 
 /// What all contacts have in common.
@@ -55,18 +60,6 @@ struct BookStage {
   double step;
   View<std::uint32_t> loads;  ///< bytes of candidates: a bit for each part that is loaded
 
-  SCREE_HD EndVelocities velocities(std::int32_t body, std::int32_t end) const {
-    EndVelocities v;
-    const BodyRecord<Real>& f = free[end];
-    const BodyRecord<Real>& a = solver[end];
-    v.free = vec3(f.velocity);
-    v.free_spin = vec3(f.spin);
-    v.after = vec3(a.velocity);
-    v.after_spin = vec3(a.spin);
-    v.before = a.inverse_mass > 0 ? Vec3(v.free - step * parameters.acceleration_of(body)) : v.free;
-    v.before_spin = parameters.torque.size() > 0 ? bodies.spin[body] : v.free_spin;
-    return v;
-  }
   /// Manifold::part of a slot's surface: the corners of a box all touch the one wall.
   SCREE_HD int part_of(const Slot& slot) const {
     const Shape a = bodies.shape[slot.i], b = bodies.shape[slot.j];
@@ -80,22 +73,41 @@ struct BookStage {
     set_bits(&loads[candidate / 4], 1u << (8 * (candidate % 4) + static_cast<std::uint32_t>(part)));
   }
 
-  /// Adds what an impulse p on j, and reversed on i, has moved: account(), at the arms given.
-  SCREE_HD void book(const Vec3& p, const Vec3& n, const Vec3& arm_i, const Vec3& arm_j,
-                     const EndVelocities& i, const EndVelocities& j, bool free_i, bool free_j, Moved& moved,
+  /// Adds what a point's impulse has moved: account(), at the arms given.
+  SCREE_HD void book(const BookedPoint& at, const Slot& slot, const Ends& ends, Moved& moved,
                      Books& books) const {
-    const auto at = [](const Vec3& v, const Vec3& w, const Vec3& arm) { return Vec3(v + w.cross(arm)); };
-    const Vec3 before = at(j.before, j.before_spin, arm_j) - at(i.before, i.before_spin, arm_i);
-    const Vec3 free_u = at(j.free, j.free_spin, arm_j) - at(i.free, i.free_spin, arm_i);
-    const Vec3 after = at(j.after, j.after_spin, arm_j) - at(i.after, i.after_spin, arm_i);
-    const Vec3 mean = 0.5 * (before + after);
-    const double normal_part = p.dot(n) * mean.dot(n);
+    const Vec3& p = at.impulse;
+    const Vec3 after = velocity_of(solver, ends.j, at.arm_j) - velocity_of(solver, ends.i, at.arm_i);
+    const Vec3 free_u = velocity_of(free, ends.j, at.arm_j) - velocity_of(free, ends.i, at.arm_i);
+    const Vec3 before = free_u - kick_of(slot.j, ends.j, at.arm_j) + kick_of(slot.i, ends.i, at.arm_i);
+    const double pn = p.dot(at.normal);
+    const double through_mean = 0.5 * p.dot(before + after);
+    const double normal_part = 0.5 * pn * at.normal.dot(before + after);
+    const double changed = p.dot(after - free_u);
     books.restitution -= normal_part;
-    books.friction -= p.dot(mean) - normal_part;
-    if (!free_i) books.work += p.dot(at(i.after, i.after_spin, arm_i));
-    if (!free_j) books.work -= p.dot(at(j.after, j.after_spin, arm_j));
+    books.friction -= through_mean - normal_part;
+    if (!is_free(ends.i)) books.work += p.dot(velocity_of(solver, ends.i, at.arm_i));
+    if (!is_free(ends.j)) books.work -= p.dot(velocity_of(solver, ends.j, at.arm_j));
+    books.gap_power += pn * (after.dot(at.normal) - at.target);
+    books.kick_power += changed;
     moved.linear += 0.5 * p.dot(before + free_u);
-    moved.square += 0.5 * p.dot(after - free_u);
+    moved.square += 0.5 * changed;
+  }
+  SCREE_HD bool is_free(std::int32_t end) const { return solver[end].inverse_mass > 0; }
+  SCREE_HD std::int64_t free_ends(const Ends& ends) const {
+    return static_cast<int>(is_free(ends.i)) + static_cast<int>(is_free(ends.j));
+  }
+
+ private:
+  SCREE_HD static Vec3 velocity_of(ConstView<BodyRecord<Real>> records, std::int32_t end, const Vec3& arm) {
+    const BodyRecord<Real>& body = records[end];
+    return vec3(body.velocity) + vec3(body.spin).cross(arm);
+  }
+  /// What the substep's forces have added to the velocity of a body's point.
+  SCREE_HD Vec3 kick_of(std::int32_t body, std::int32_t end, const Vec3& arm) const {
+    Vec3 kick = is_free(end) ? Vec3(step * parameters.acceleration_of(body)) : Vec3(Vec3::Zero());
+    if (parameters.torque.size() > 0) kick += (vec3(free[end].spin) - bodies.spin[body]).cross(arm);
+    return kick;
   }
 };
 
@@ -111,35 +123,34 @@ struct BookBalls {
 
   SCREE_HD Books operator()(std::int64_t c) const {
     using C = BallContacts<Real>;
-    if (!has_contact(contacts.found, c)) return {};
     const std::int64_t place = c - c % 256 + contacts.slot[c];
-    const Slot& slot = stage.places[place];
     const Ends ends = contacts.ends[c];
     const Fields<Real>& f = contacts.fields;
-    const EndVelocities i = stage.velocities(slot.i, ends.i);
-    const EndVelocities j = stage.velocities(slot.j, ends.j);
-    const Vec3 n = vec3(f.vector(C::normal, c));
+    const V3<Real> n = f.vector(C::normal, c);
     const V3<Real> impulse = f.vector(C::impulse, c);
-    const Vec3 p = vec3(impulse);
-    const bool free_i = stage.solver[ends.i].inverse_mass > 0;
-    const bool free_j = stage.solver[ends.j].inverse_mass > 0;
     Books books;
     memory[place] = {impulse};
-    if (memory[place].is_loaded()) {
+    const bool loaded = memory[place].is_loaded();
+    if (loaded) {
+      const Slot& slot = stage.places[place];
+      const Vec3 normal = vec3(n);
+      const auto number = [&](int field) { return static_cast<double>(f.at(field, c)); };
       Moved moved;
-      stage.book(p, n, static_cast<double>(f.at(C::arm_i, c)) * n, static_cast<double>(f.at(C::arm_j, c)) * n,
-                 i, j, free_i, free_j, moved, books);
+      stage.book(
+          {vec3(impulse), normal, number(C::arm_i) * normal, number(C::arm_j) * normal, number(C::target)},
+          slot, ends, moved, books);
       books.gaining = moved.gains(tolerance::response_gain) ? 1 : 0;
       books.gaps = fabs(static_cast<double>(f.at(C::gap, c)));
       books.loaded = 1;
-      books.ends = static_cast<int>(free_i) + static_cast<int>(free_j);
-      if (stage.loads.size() > 0) stage.mark_loaded(slot, stage.part_of(slot));
+      books.ends = stage.free_ends(ends);
+      if (stage.loads.size() > 0) stage.mark_loaded(slot, slot.surface);
     }
     Real& flown = f.at(C::flown, c);
     if (contacts.flags[c] == 0) {
-      flown += static_cast<Real>(0.5 * stage.step * n.dot(j.after - i.after));
+      const V3<Real> u = stage.solver[ends.j].velocity - stage.solver[ends.i].velocity;
+      flown += static_cast<Real>(0.5 * stage.step) * dot(n, u);
       books.deepest = fmax(0.0, static_cast<double>(-flown / f.at(C::cap, c)));
-    } else if (passes(contacts.flags[c], memory[place].is_loaded())) {
+    } else if (passes(contacts.flags[c], loaded)) {
       flown = static_cast<Real>(HUGE_VAL);
     }
     return books;
@@ -156,39 +167,35 @@ struct BookPoints {
 
   SCREE_HD Books operator()(std::int64_t c) const {
     using C = PointContacts<Real>;
-    if (!has_contact(contacts.found, c)) return {};
     const std::int64_t place = c - c % 256 + contacts.slot[c];
     const Slot& slot = stage.places[first_place + place];
     const Ends ends = contacts.ends[c];
-    const EndVelocities i = stage.velocities(slot.i, ends.i);
-    const EndVelocities j = stage.velocities(slot.j, ends.j);
     const Vec3 n = vec3(contacts.fields.vector(C::normal, c));
-    const bool free_i = stage.solver[ends.i].inverse_mass > 0;
-    const bool free_j = stage.solver[ends.j].inverse_mass > 0;
     const double cap = static_cast<double>(contacts.fields.at(C::cap, c));
     const Fields<Real>& f = contacts.point_fields;
     Books books;
     Moved moved;
     for (int k = 0; k < contacts.points[c]; ++k) {
-      const Vec3 arm_i = vec3(f.vector(C::at_point(k, C::arm_i), c));
-      const Vec3 arm_j = vec3(f.vector(C::at_point(k, C::arm_j), c));
+      const auto number = [&](int field) { return static_cast<double>(f.at(C::at_point(k, field), c)); };
+      const auto at = point_at(contacts, c, k);
       const V3<Real> impulse = f.vector(C::at_point(k, C::impulse), c);
+      const bool loaded = !is_zero<Real>(impulse);
       memory[place].impulse[k] = impulse;
-      if (impulse.x != 0 || impulse.y != 0 || impulse.z != 0) {
-        stage.book(vec3(impulse), n, arm_i, arm_j, i, j, free_i, free_j, moved, books);
-        books.gaps += fabs(static_cast<double>(f.at(C::at_point(k, C::gap), c)));
+      if (loaded) {
+        stage.book({vec3(impulse), n, vec3(at.arm_i), vec3(at.arm_j), number(C::target)}, slot, ends, moved,
+                   books);
+        books.gaps += fabs(number(C::gap));
         ++books.loaded;
       }
       Real& flown = f.at(C::at_point(k, C::flown), c);
-      if (passes(contacts.flags[c], impulse.x != 0 || impulse.y != 0 || impulse.z != 0))
-        flown = static_cast<Real>(HUGE_VAL);
+      if (passes(contacts.flags[c], loaded)) flown = static_cast<Real>(HUGE_VAL);
       if (contacts.flags[c] != 0) continue;
-      const Vec3 u = j.after + j.after_spin.cross(arm_j) - i.after - i.after_spin.cross(arm_i);
-      flown += static_cast<Real>(0.5 * stage.step * n.dot(u));
+      const V3<Real> u = velocity_at(at, stage.solver[ends.i], stage.solver[ends.j]);
+      flown += static_cast<Real>(0.5 * stage.step) * dot(contacts.fields.vector(C::normal, c), u);
       books.deepest = fmax(books.deepest, static_cast<double>(-flown) / cap);
     }
     if (books.loaded == 0) return books;
-    books.ends = static_cast<int>(free_i) + static_cast<int>(free_j);
+    books.ends = stage.free_ends(ends);
     books.gaining = moved.gains(tolerance::response_gain) ? 1 : 0;
     if (stage.loads.size() > 0) stage.mark_loaded(slot, stage.part_of(slot));
     return books;

@@ -1,8 +1,10 @@
 #include "sim/resident/contact_solver.hpp"
 
 #include "core/parallel.hpp"
+#include "core/space_rounds.hpp"
 #include "core/space_tiles.hpp"
 #include "core/tolerances.hpp"
+#include "sim/resident/rounds.hpp"
 
 #include <algorithm>
 #include <type_traits>
@@ -14,31 +16,11 @@ namespace {
 
 constexpr int tile = parallel::tile;
 
-template <class T>
-struct LoadSum {
-  const T* sums;
-  SCREE_HD T operator()(std::int64_t k) const { return sums[k]; }
-};
-
-/// Contacts and points of a place.
-struct CountBalls {
-  const std::int32_t* found;
-  SCREE_HD ContactCounts operator()(std::int64_t t) const { return {found[t], found[t]}; }
-};
 template <class Real>
 struct CountPoints {
   PointContacts<Real> contacts;
-  SCREE_HD ContactCounts operator()(std::int64_t c) const {
-    return has_contact(contacts.found, c) ? ContactCounts{1, contacts.points[c]} : ContactCounts{};
-  }
+  SCREE_HD std::int64_t operator()(std::int64_t c) const { return contacts.points[c]; }
 };
-
-/// work(first tile, tiles) for each colour in turn; the tiles are counted from `first` on.
-template <class Work>
-void for_each_color(const ColorTiles& colors, std::int64_t first, Work work) {
-  for (std::size_t c = 0; c + 1 < colors.begin.size(); ++c)
-    work(colors.begin[c] - first, colors.begin[c + 1] - colors.begin[c]);
-}
 
 /// What is known of pairs in another list.
 struct LookUpLoads {
@@ -65,7 +47,6 @@ struct BallImpulseOn {
   BallContacts<Real> contacts;
   ConstView<Slot> places;
   SCREE_HD ImpulseSum operator()(std::int64_t c) const {
-    if (!has_contact(contacts.found, c)) return {};
     const Slot& slot = places[c - c % tile + contacts.slot[c]];
     if (slot.i != body && slot.j != body) return {};
     const Vec3 impulse = vec3(contacts.fields.vector(BallContacts<Real>::impulse, c));
@@ -79,7 +60,6 @@ struct PointImpulseOn {
   ConstView<Slot> places;
   SCREE_HD ImpulseSum operator()(std::int64_t c) const {
     using C = PointContacts<Real>;
-    if (!has_contact(contacts.found, c)) return {};
     const Slot& slot = places[c - c % tile + contacts.slot[c]];
     if (slot.i != body && slot.j != body) return {};
     Vec3 impulse = Vec3::Zero();
@@ -118,9 +98,6 @@ void ContactSolver<Space, Real>::take_candidates(ConstView<Pair> candidates, con
   const std::int64_t places = slots_.places().size();
   const std::int64_t balls = slots_.balls().tiles() * tile;
   const std::int64_t others = places - balls;
-  change_.resize(places / tile);
-  deepest_.resize(places / tile);
-  book_sums_.resize(places / tile);
   store_.resize(balls, others, tile);
   for (auto* loads : {&loads_, &next_loads_}) {
     loads->resize((candidates.size() + 3) / 4);
@@ -152,15 +129,20 @@ Inspection<Real> ContactSolver<Space, Real>::inspect() const {
 }
 
 template <class Space, class Real>
-Vec3 ContactSolver<Space, Real>::impulse_on(std::int32_t body) {
+ConstView<Slot> ContactSolver<Space, Real>::places_of_points() const {
   const std::int64_t first = store_.ball_places();
-  const ConstView<Slot> places = slots_.places();
-  if (step_ == 0 || places.size() == 0) return Vec3::Zero();
+  return {slots_.places().data() + first, slots_.places().size() - first};
+}
+
+template <class Space, class Real>
+Vec3 ContactSolver<Space, Real>::impulse_on(std::int32_t body) {
+  if (counts_.contacts == 0) return Vec3::Zero();
   const auto on_balls = parallel::sum_by_tiles<ImpulseSum, Space>(
-      "contacts.impulse", first, BallImpulseOn<Real>{body, store_.balls(), places});
+      "contacts.impulse", ball_list_.size(),
+      on_contacts(ball_list_, BallImpulseOn<Real>{body, store_.balls(), slots_.places()}));
   const auto on_points = parallel::sum_by_tiles<ImpulseSum, Space>(
-      "contacts.impulse", places.size() - first,
-      PointImpulseOn<Real>{body, store_.points(), {places.data() + first, places.size() - first}});
+      "contacts.impulse", point_list_.size(),
+      on_contacts(point_list_, PointImpulseOn<Real>{body, store_.points(), places_of_points()}));
   return (on_balls + on_points).impulse;
 }
 
@@ -206,116 +188,101 @@ void ContactSolver<Space, Real>::find(ConstView<double> margin, double scale, co
   const std::int64_t balls = slots_.balls().tiles();
   parallel::compact_tiles<Space>("contacts.find balls", balls,
                                  FindBalls<Real>{stage, store_.balls(), slots_.ball_memory()},
-                                 store_.found());
+                                 store_.ball_tiles().data());
   parallel::compact_tiles<Space>(
       "contacts.find", slots_.others().tiles(),
       FindPoints<Real>{stage, balls * tile, store_.points(), slots_.point_memory(), loads()},
-      store_.found() + balls);
-  count();
-}
-
-template <class Space, class Real>
-void ContactSolver<Space, Real>::count() {
-  Array<ContactCounts, Space> scratch, totals(2);
-  parallel::sum_into<ContactCounts, Space>("contacts.count", slots_.balls().tiles(),
-                                           CountBalls{store_.found()}, scratch, totals.data());
-  parallel::sum_into<ContactCounts, Space>("contacts.count", store_.point_places(),
-                                           CountPoints<Real>{store_.points()}, scratch, totals.data() + 1);
-  ContactCounts both[2];
-  copy_bytes<Host, Space>(both, totals.data(), sizeof(both));
-  counts_ = both[0] + both[1];
+      store_.point_tiles().data());
+  passing_.resize(balls);
+  passing_in_tile_.resize(balls * tile);
+  parallel::compact_tiles<Space>(
+      "contacts.passing", balls,
+      MarkPassing<Real>{store_.balls(), store_.ball_tiles().data(), passing_in_tile_.view()},
+      passing_.data());
+  parallel::for_each<Space>(
+      "contacts.passing", balls * tile,
+      JudgePassing<Real>{stage, store_.balls(), passing_.data(), std::as_const(passing_in_tile_).view()});
+  ball_list_.make(slots_.balls(), store_.ball_tiles());
+  point_list_.make(slots_.others(), store_.point_tiles());
+  const std::int64_t points = parallel::sum_by_tiles<std::int64_t, Space>(
+      "contacts.count", point_list_.size(), on_contacts(point_list_, CountPoints<Real>{store_.points()}));
+  counts_ = {ball_list_.size() + point_list_.size(), ball_list_.size() + points};
 }
 
 template <class Space, class Real>
 template <class Record>
-void ContactSolver<Space, Real>::join_parts(Array<Record, Space>& bodies) {
-  const ConstView<Hub> hubs = slots_.hubs();
-  if (hubs.size() == 0 || bodies.empty()) return;
-  parts_.resize(hubs.size());
-  parallel::sum_tiles<PartsSum, Space>("contacts.hubs", hubs.size(), SumParts<Record>{hubs, bodies.data()},
-                                       parts_.data());
+JoinHubs<Record> ContactSolver<Space, Real>::join_hubs(Array<Record, Space>& bodies) {
   const ConstView<std::int32_t> hub_of = slots_.hub_of_parts();
-  parallel::for_each<Space>("contacts.hubs", hub_of.size(),
-                            JoinParts<Record>{hubs, hub_of, std::as_const(parts_).view(),
-                                              bodies.size() - hub_of.size(), bodies.data()});
+  parts_sums_.resize(hub_of.size());
+  return {slots_.hubs(), hub_of, bodies.size() - hub_of.size(), bodies.data(), parts_sums_.data()};
 }
 
 template <class Space, class Real>
-void ContactSolver<Space, Real>::sweep(const SweepPlan& plan) {
-  parallel::for_each<Space>("sweep.accelerate", solver_.size(),
-                            Accelerate<Real>{solver_.data(), last_.data(), state_.data()});
-  const std::int64_t first = slots_.balls().tiles();
-  for_each_color(slots_.balls(), 0, [&](std::int64_t t, std::int64_t tiles) {
-    parallel::sum_tiles<SweepChange, Space>(
-        "sweep.balls", tiles, SweepBalls<Real>{store_.balls(), solver_.data(), state_.data(), t * tile},
-        change_.data() + t);
-  });
-  for_each_color(slots_.others(), first, [&](std::int64_t t, std::int64_t tiles) {
-    parallel::sum_tiles<SweepChange, Space>(
-        "sweep.points", tiles,
-        SweepPoints<Real>{store_.points(), inertia_.data(), solver_.data(), state_.data(), plan.block_sweeps,
-                          t * tile},
-        change_.data() + first + t);
-  });
-  join_parts(solver_);
-  parallel::sum_into<SweepChange, Space>("sweep.change", change_.size(), LoadSum<SweepChange>{change_.data()},
-                                         change_scratch_, total_.data());
-  parallel::for_each<Space>("sweep.judge", 1,
-                            JudgeSweep{state_.data(), total_.data(), plan.least, plan.tolerance});
+template <bool only_balls>
+SweepState ContactSolver<Space, Real>::run_impulse_rounds(const SweepPlan& plan) {
+  return parallel::run_rounds<Space>("sweeps",
+                                     ImpulseRounds<Real, only_balls>{.ball_colors = ColorPhases(ball_list_),
+                                                                     .point_colors = ColorPhases(point_list_),
+                                                                     .balls = store_.balls(),
+                                                                     .points = store_.points(),
+                                                                     .inertia = inertia_.data(),
+                                                                     .bodies = solver_.data(),
+                                                                     .last = last_.data(),
+                                                                     .body_count = solver_.size(),
+                                                                     .hubs = join_hubs(solver_),
+                                                                     .least = plan.least,
+                                                                     .most = plan.most,
+                                                                     .block_sweeps = plan.block_sweeps,
+                                                                     .tolerance = plan.tolerance},
+                                     SweepState{});
 }
 
 template <class Space, class Real>
 void ContactSolver<Space, Real>::find_impulses(const ResponseParameters& parameters, Counters& counters) {
-  constexpr int sweeps_at_once = 4;
   SweepPlan plan = plan_sweeps(parameters, counts_.contacts, counts_.points);
   if (std::is_same_v<Real, float>) plan.tolerance = std::max(plan.tolerance, tolerance::mixed_change);
-  const std::int64_t first = slots_.balls().tiles();
-  state_.resize(1);
-  total_.resize(1);
-  parallel::fill("sweep.start", state_, SweepState{});
-  for_each_color(slots_.balls(), 0, [&](std::int64_t t, std::int64_t tiles) {
-    parallel::for_each<Space>("sweep.push balls", tiles * tile,
-                              PushBalls<Real>{store_.balls(), solver_.data(), t * tile});
-  });
-  for_each_color(slots_.others(), first, [&](std::int64_t t, std::int64_t tiles) {
-    parallel::for_each<Space>("sweep.push points", tiles * tile,
-                              PushPoints<Real>{store_.points(), inertia_.data(), solver_.data(), t * tile});
-  });
-  join_parts(solver_);
-  int launched = 0;
-  SweepState done;
-  while (launched < plan.most && done.converged == 0) {
-    const int wanted = launched == 0 ? std::max(plan.least, sweeps_at_once) : sweeps_at_once;
-    const int more = std::min(wanted, plan.most - launched);
-    for (int k = 0; k < more; ++k) sweep(plan);
-    launched += more;
-    copy_bytes<Host, Space>(&done, state_.data(), sizeof(done));
+  if (is_heap(counts_.points)) {
+    plan.least *= patience_;
+    plan.most = std::max(plan.most, plan.least);
   }
+  const SweepState done =
+      store_.point_places() == 0 ? run_impulse_rounds<true>(plan) : run_impulse_rounds<false>(plan);
   counters.sweeps += done.sweeps;
-  counters.unconverged += done.converged == 0;
+  counters.unconverged += !done.converged;
 }
 
 template <class Space, class Real>
 Ledger ContactSolver<Space, Real>::book(const ConstBodyView& bodies, const ResponseParameters& parameters) {
-  const std::int64_t first = slots_.balls().tiles();
   const BookStage<Real> stage{slots_.places(), bodies, free_.view(),      solver_.view(),
                               parameters,      step_,  next_loads_.view()};
-  parallel::sum_tiles<Books, Space>(
-      "books.balls", first, BookBalls<Real>{stage, store_.balls(), slots_.ball_memory()}, book_sums_.data());
-  parallel::sum_tiles<Books, Space>(
-      "books.points", slots_.others().tiles(),
-      BookPoints<Real>{stage, first * tile, store_.points(), slots_.point_memory()},
-      book_sums_.data() + first);
-  Array<Books, Space> scratch;
-  book_total_.resize(1);
-  parallel::sum_into<Books, Space>("books.sum", book_sums_.size(), LoadSum<Books>{book_sums_.data()}, scratch,
-                                   book_total_.data());
-  copy_bytes<Host, Space>(&books_, book_total_.data(), sizeof(books_));
+  Array<Books, Space> totals(2);
+  parallel::sum_into<Books, Space>(
+      "books.balls", ball_list_.size(),
+      on_contacts(ball_list_, BookBalls<Real>{stage, store_.balls(), slots_.ball_memory()}), books_scratch_,
+      totals.data());
+  parallel::sum_into<Books, Space>(
+      "books.points", point_list_.size(),
+      on_contacts(point_list_,
+                  BookPoints<Real>{stage, store_.ball_places(), store_.points(), slots_.point_memory()}),
+      books_scratch_, totals.data() + 1);
+  Books both[2];
+  copy_bytes<Host, Space>(both, totals.data(), sizeof(both));
+  books_ = both[0] + both[1];
   Ledger ledger;
   ledger.restitution = books_.restitution;
   ledger.friction = books_.friction;
   ledger.work = books_.work;
+  be_patient();
   return ledger;
+}
+
+/// Sweeps of the next substep, by what those of this one have left undone.
+template <class Space, class Real>
+void ContactSolver<Space, Real>::be_patient() {
+  constexpr int most = 16;
+  const double undone = std::abs(books_.gap_power);
+  if (undone > tolerance::undone_power * books_.kick_power) patience_ = std::min(2 * patience_, most);
+  if (undone < tolerance::done_power * books_.kick_power) patience_ = std::max(patience_ / 2, 1);
 }
 
 template <class Space, class Real>
@@ -342,18 +309,18 @@ Ledger ContactSolver<Space, Real>::solve(const FlightStage& flight, bool any_is_
 
 template <class Space, class Real>
 Ledger ContactSolver<Space, Real>::shift_late_bodies(const FlightStage& flight) {
-  const std::int64_t first = slots_.balls().tiles() * tile;
-  const ConstView<Slot> places = slots_.places();
   const LateMoments<Real> moments{flight, free_.view(), solver_.view()};
-  Array<Ledger, Space> scratch, totals(3);
+  Array<Ledger, Space> totals(3);
   parallel::sum_into<Ledger, Space>(
-      "late.moments", first, LateBallMoments<Real>{moments, store_.balls(), places}, scratch, totals.data());
+      "late.moments", ball_list_.size(),
+      on_contacts(ball_list_, LateBallMoments<Real>{moments, store_.balls(), slots_.places()}),
+      ledger_scratch_, totals.data());
   parallel::sum_into<Ledger, Space>(
-      "late.moments", places.size() - first,
-      LatePointMoments<Real>{moments, store_.points(), {places.data() + first, places.size() - first}},
-      scratch, totals.data() + 1);
+      "late.moments", point_list_.size(),
+      on_contacts(point_list_, LatePointMoments<Real>{moments, store_.points(), places_of_points()}),
+      ledger_scratch_, totals.data() + 1);
   parallel::sum_into<Ledger, Space>("late.shift", flight.bodies.count(),
-                                    ShiftLate<Real>{flight, free_.view(), solver_.view()}, scratch,
+                                    ShiftLate<Real>{flight, free_.view(), solver_.view()}, ledger_scratch_,
                                     totals.data() + 2);
   Ledger parts[3];
   copy_bytes<Host, Space>(parts, totals.data(), sizeof(parts));
@@ -365,24 +332,24 @@ void ContactSolver<Space, Real>::take_velocities(const ConstBodyView& bodies) {
   parallel::for_each<Space>(
       "late.reload", solver_.size(),
       ReloadBody<Real>{bodies, slots_.hubs(), slots_.hub_of_parts(), solver_.view(), last_.view()});
-  if (counts_.contacts > 0) {
-    parallel::for_each<Space>("late.fly", slots_.balls().tiles() * tile,
-                              FlyBalls<Real>{store_.balls(), solver_.view(), last_.view(), step_});
-    parallel::for_each<Space>("late.fly", store_.point_places(),
-                              FlyPoints<Real>{store_.points(), solver_.view(), last_.view(), step_});
-  }
+  parallel::for_each<Space>(
+      "late.fly", ball_list_.size(),
+      on_contacts(ball_list_, FlyBalls<Real>{store_.balls(), solver_.view(), last_.view(), step_}));
+  parallel::for_each<Space>(
+      "late.fly", point_list_.size(),
+      on_contacts(point_list_, FlyPoints<Real>{store_.points(), solver_.view(), last_.view(), step_}));
   solver_.swap(last_);
 }
 
 template <class Space, class Real>
 void ContactSolver<Space, Real>::fly_late(const FlightStage& flight) {
-  const std::int64_t first = slots_.balls().tiles() * tile;
-  const ConstView<Slot> places = slots_.places();
   const ConstBodyView bodies = read_only(flight.bodies);
-  parallel::for_each<Space>("late.fly", first, FlyLateBalls<Real>{store_.balls(), places, bodies});
   parallel::for_each<Space>(
-      "late.fly", places.size() - first,
-      FlyLatePoints<Real>{store_.points(), {places.data() + first, places.size() - first}, bodies, flight});
+      "late.fly", ball_list_.size(),
+      on_contacts(ball_list_, FlyLateBalls<Real>{store_.balls(), slots_.places(), bodies}));
+  parallel::for_each<Space>(
+      "late.fly", point_list_.size(),
+      on_contacts(point_list_, FlyLatePoints<Real>{store_.points(), places_of_points(), bodies, flight}));
 }
 
 template <class Space, class Real>
@@ -392,49 +359,45 @@ Ledger ContactSolver<Space, Real>::correct(const FlightStage& flight, bool any_i
   if (counts_.contacts == 0) return {};
   if (any_is_late) fly_late(flight);
   if (overlap_ == 0 && !any_is_late) return {};
-  part_state_.resize(1);
-  deepest_of_all_.resize(1);
-  parallel::fill("correction.start", part_state_, PartState{});
   parallel::for_each<Space>("correction.start", displacement_.size(),
                             ResetDisplacement<Real>{solver_.view(), displacement_.view(), turn_.view()});
   const bool heap = is_heap(counts_.points);
   const int most = !heap ? 100 : shares_loads(counts_.contacts, counts_.points) ? 24 : 6;
-  for (int k = 0; k < most; ++k) part_sweep();
+  if (store_.point_places() == 0) {
+    run_parting_rounds<true>(most);
+  } else {
+    run_parting_rounds<false>(most);
+  }
   const BodyView& bodies = flight.bodies;
-  ledger_total_.resize(1);
+  Array<Ledger, Space> total(1);
   parallel::sum_into<Ledger, Space>(
       "correction.apply", bodies.count(),
       Displace<Real>{displacement_.view(), turn_.view(), flight.parameters, bodies}, ledger_scratch_,
-      ledger_total_.data());
+      total.data());
   Ledger ledger;
-  copy_bytes<Host, Space>(&ledger, ledger_total_.data(), sizeof(ledger));
+  copy_bytes<Host, Space>(&ledger, total.data(), sizeof(ledger));
   return ledger;
 }
 
 template <class Space, class Real>
-void ContactSolver<Space, Real>::part_sweep() {
-  const std::int64_t first = slots_.balls().tiles();
-  const auto share = static_cast<Real>(tolerance::correction_share);
-  const auto enough = static_cast<float>(tolerance::corrected_overlap / tolerance::correction_cap);
-  for_each_color(slots_.balls(), 0, [&](std::int64_t t, std::int64_t tiles) {
-    parallel::sum_tiles<Deepest, Space>(
-        "correction.balls", tiles,
-        PartBalls<Real>{store_.balls(), displacement_.data(), part_state_.data(), share, t * tile},
-        deepest_.data() + t);
-  });
-  for_each_color(slots_.others(), first, [&](std::int64_t t, std::int64_t tiles) {
-    parallel::sum_tiles<Deepest, Space>(
-        "correction.points", tiles,
-        PartPoints<Real>{store_.points(), inertia_.data(), displacement_.data(), turn_.data(),
-                         part_state_.data(), share, t * tile},
-        deepest_.data() + first + t);
-  });
-  join_parts(displacement_);
-  join_parts(turn_);
-  parallel::sum_into<Deepest, Space>("correction.deepest", deepest_.size(), LoadSum<Deepest>{deepest_.data()},
-                                     deepest_scratch_, deepest_of_all_.data());
-  parallel::for_each<Space>("correction.judge", 1,
-                            JudgeParting{part_state_.data(), deepest_of_all_.data(), enough});
+template <bool only_balls>
+void ContactSolver<Space, Real>::run_parting_rounds(int most) {
+  parallel::run_rounds<Space>(
+      "correction",
+      PartingRounds<Real, only_balls>{
+          .ball_colors = ColorPhases(ball_list_),
+          .point_colors = ColorPhases(point_list_),
+          .balls = store_.balls(),
+          .points = store_.points(),
+          .inertia = inertia_.data(),
+          .displacement = displacement_.data(),
+          .turn = turn_.data(),
+          .shifted_hubs = join_hubs(displacement_),
+          .turned_hubs = join_hubs(turn_),
+          .share = static_cast<Real>(tolerance::correction_share),
+          .most = most,
+          .enough = static_cast<float>(tolerance::corrected_overlap / tolerance::correction_cap)},
+      PartingState{});
 }
 
 #define SCREE_INSTANTIATE(Space)               \

@@ -8,11 +8,14 @@
 #include "sim/dynamics/sweeps.hpp"
 #include "sim/resident/bodies.hpp"
 #include "sim/resident/books.hpp"
+#include "sim/resident/contact_list.hpp"
 #include "sim/resident/contact_store.hpp"
 #include "sim/resident/find_contacts.hpp"
 #include "sim/resident/flights.hpp"
+#include "sim/resident/hubs.hpp"
 #include "sim/resident/inspection.hpp"
 #include "sim/resident/slots.hpp"
+#include "sim/resident/sweeps.hpp"
 
 #include <cstdint>
 
@@ -25,6 +28,9 @@ class ContactSolver {
  public:
   /// The candidates have been made anew; impulses are remembered.
   void take_candidates(ConstView<Pair> candidates, const ConstBodyView& bodies);
+
+  /// Others of the bodies are free now; new candidates follow.
+  void change_bodies() { slots_.forget_colors(); }
 
   /// Contacts that may close by the next midpoint: gaps of at most the sum of the two margins (m). Impulses
   /// start from what they were, `scale` times.
@@ -63,13 +69,16 @@ class ContactSolver {
  private:
   void load_bodies(const ConstBodyView& bodies, ConstView<double> margin,
                    const ResponseParameters& parameters);
-  void count();
-  void sweep(const SweepPlan& plan);
+  ConstView<Slot> places_of_points() const;
   template <class Record>
-  void join_parts(Array<Record, Space>& bodies);
-  void part_sweep();
+  JoinHubs<Record> join_hubs(Array<Record, Space>& bodies);
   void find_impulses(const ResponseParameters& parameters, Counters& counters);
+  template <bool only_balls>
+  SweepState run_impulse_rounds(const SweepPlan& plan);
+  template <bool only_balls>
+  void run_parting_rounds(int most);
   Ledger book(const ConstBodyView& bodies, const ResponseParameters& parameters);
+  void be_patient();
   Ledger shift_late_bodies(const FlightStage& flight);
   void fly_late(const FlightStage& flight);
 
@@ -80,26 +89,21 @@ class ContactSolver {
   Array<BodyRecord<Real>, Space> solver_, free_, last_;
   Array<InertiaRecord<Real>, Space> inertia_;
   Array<CentreRecord<Real>, Space> displacement_, turn_;
-  Array<PartsSum, Space> parts_;
+  Array<PartsSum, Space> parts_sums_;
 
   ContactStore<Space, Real> store_;
+  ContactList<Space> ball_list_, point_list_;
+  Array<std::int32_t, Space> passing_;  // contacts of balls that may fly past, of each tile
+  Array<std::uint8_t, Space> passing_in_tile_;
 
   ContactCounts counts_;
   Books books_;
   double overlap_ = 0;
+  int patience_ = 1;  // how many times the least number of sweeps
   Array<std::uint32_t, Space> loads_, next_loads_;
 
-  Array<SweepChange, Space> change_;  // of each tile
-  Array<SweepState, Space> state_;
-  Array<SweepChange, Space> total_;
-  Array<Deepest, Space> deepest_;
-  Array<PartState, Space> part_state_;
-  Array<Deepest, Space> deepest_of_all_;
-  Array<Books, Space> book_sums_;
-  Array<Books, Space> book_total_;
-  Array<Ledger, Space> ledger_scratch_, ledger_total_;
-  Array<SweepChange, Space> change_scratch_;
-  Array<Deepest, Space> deepest_scratch_;
+  Array<Books, Space> books_scratch_;
+  Array<Ledger, Space> ledger_scratch_;
 };
 
 }  // namespace scree::resident

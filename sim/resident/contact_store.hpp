@@ -13,9 +13,9 @@ class ContactStore {
  public:
   /// Whole tiles of `tile` places: those of balls, and the others.
   void resize(std::int64_t balls, std::int64_t others, int tile) {
-    tile_ = tile;
     balls_ = balls;
-    found_.resize((balls + others) / tile);
+    ball_tiles_.resize(balls / tile);
+    point_tiles_.resize(others / tile);
     ends_.resize(balls + others);
     slot_.resize(balls + others);
     flags_.resize(balls + others);
@@ -28,20 +28,19 @@ class ContactStore {
   /// Places.
   std::int64_t ball_places() const { return balls_; }
   std::int64_t point_places() const { return points_.size(); }
-  /// How many each tile has found; first the tiles of balls.
-  std::int32_t* found() { return found_.data(); }
+  /// How many each tile has found, at its front.
+  Array<std::int32_t, Space>& ball_tiles() { return ball_tiles_; }
+  Array<std::int32_t, Space>& point_tiles() { return point_tiles_; }
 
   BallContacts<Real> balls() {
-    return {.found = found_.data(),
-            .ends = {ends_.data(), balls_},
+    return {.ends = {ends_.data(), balls_},
             .slot = {slot_.data(), balls_},
             .flags = {flags_.data(), balls_},
             .fields = {ball_fields_.data(), balls_}};
   }
   PointContacts<Real> points() {
     const std::int64_t places = points_.size();
-    return {.found = found_.data() + balls_ / tile_,
-            .ends = {ends_.data() + balls_, places},
+    return {.ends = {ends_.data() + balls_, places},
             .slot = {slot_.data() + balls_, places},
             .flags = {flags_.data() + balls_, places},
             .points = points_.view(),
@@ -51,9 +50,9 @@ class ContactStore {
 
   template <class From>
   void copy_from(const ContactStore<From, Real>& from) {
-    tile_ = from.tile_;
     balls_ = from.balls_;
-    copy(found_, from.found_);
+    copy(ball_tiles_, from.ball_tiles_);
+    copy(point_tiles_, from.point_tiles_);
     copy(ends_, from.ends_);
     copy(slot_, from.slot_);
     copy(flags_, from.flags_);
@@ -67,9 +66,8 @@ class ContactStore {
   template <class, class>
   friend class ContactStore;
 
-  int tile_ = 1;
   std::int64_t balls_ = 0;
-  Array<std::int32_t, Space> found_;
+  Array<std::int32_t, Space> ball_tiles_, point_tiles_;
   Array<Ends, Space> ends_;
   Array<std::uint8_t, Space> slot_, flags_;
   Array<std::int32_t, Space> points_;

@@ -71,13 +71,14 @@ struct FindStage {
   /// Normal velocity that a point may have at the end, so that the next midpoint does not overlap: the gap
   /// may close by then, and no more. Held, a contact that was parting before the kick would gain energy: it
   /// may close as fast.
-  /// What flies past is not held at all: `free` is the normal velocity without contacts, and rounding pushes
-  /// nobody.
-  SCREE_HD double target_of(double gap, double shell, double bend, double parting,
-                            const ContactFlight& flight, double free) const {
-    const double closing = gap > shell ? -(gap - shell) / (step - flight.lead) : 0.0;
-    const double target = fmin(closing - 0.5 * step * bend, noise - parting);
-    return flight.flying ? fmin(target, free - tolerance::flight_margin * fabs(free)) : target;
+  SCREE_HD double target_of(double gap, double shell, double bend, double parting, double lead) const {
+    const double closing = gap > shell ? -(gap - shell) / (step - lead) : 0.0;
+    return fmin(closing - 0.5 * step * bend, noise - parting);
+  }
+  /// Of what flies past: it is not held at all. `free` is the normal velocity without contacts, and rounding
+  /// pushes nobody.
+  SCREE_HD static double target_in_flight(double target, double free) {
+    return fmin(target, free - tolerance::flight_margin * fabs(free));
   }
 
   /// What the gap at the end has beside what the velocities after the response open (m): it bends; and a
@@ -108,10 +109,6 @@ struct FindStage {
   }
 };
 
-SCREE_HD inline std::uint8_t flags_of(const ContactFlight& flight) {
-  return static_cast<std::uint8_t>((flight.flying ? flag_flying : 0) | (flight.lead > 0 ? flag_late : 0));
-}
-
 /// Which of a pair's manifolds is that of a surface of a slot, among those that its test has found.
 SCREE_HD inline const Manifold* manifold_on(int surface, bool corners, const Manifold* found, int count) {
   constexpr int box_corners = 8;
@@ -131,15 +128,48 @@ SCREE_HD inline const Manifold* manifold_on(int surface, bool corners, const Man
   return nullptr;
 }
 
-/// Contacts of balls.
+/// The contact of a slot of balls, at its time.
+template <class Real>
+SCREE_HD inline bool meet_balls(const FindStage<Real>& stage, const Slot& slot, double lead, Manifold& out) {
+  const MidBody<Real>& a = stage.mid[slot.i];
+  const MidBody<Real>& b = stage.mid[slot.j];
+  const double margin = static_cast<double>(a.margin) + static_cast<double>(b.margin);
+  const bool ball_a = a.shape == Shape::sphere;
+  const auto ball = [&](std::int32_t body, double radius) {
+    return Solid{stage.centre(body, lead), Quat::Identity(), Vec3(radius, 0, 0)};
+  };
+  out.part = 0;
+  if (ball_a && b.shape == Shape::sphere)
+    return sphere_sphere(ball(slot.i, a.size), ball(slot.j, b.size), margin, out);
+  const std::int32_t wall = ball_a ? slot.j : slot.i;
+  const Solid of_ball = ball_a ? ball(slot.i, a.size) : ball(slot.j, b.size);
+  bool found = false;
+  if (stage.mid[wall].shape == Shape::plane) {
+    found = sphere_plane(of_ball, stage.solid(wall, lead), margin, out);
+  } else if (stage.mid[wall].shape == Shape::box) {
+    found = sphere_box(of_ball, stage.solid(wall, lead), margin, out);
+  } else {
+    Manifold all[3];
+    const int count = sphere_tube(of_ball, stage.solid(wall, lead), margin, all);
+    const Manifold* on = manifold_on(slot.surface, false, all, count);
+    found = on != nullptr;
+    if (found) out = *on;
+  }
+  if (found && !ball_a) out.normal = -out.normal;
+  return found;
+}
+
+/// Contacts of balls, all as if they met. Those that may fly past are marked.
 template <class Real>
 struct FindBalls {
   struct Record {
     Vec3 normal;
     double gap;
     double arm_i, arm_j;  ///< along the normal
-    ContactFlight flight;
+    double lead;
   };
+
+  static constexpr int blocks_at_once = 3;
 
   FindStage<Real> stage;
   BallContacts<Real> contacts;
@@ -148,32 +178,20 @@ struct FindBalls {
   SCREE_HD bool find(std::int64_t place, Record& record) const {
     const Slot& slot = stage.places[place];
     if (slot.i == Slot::empty) return false;
-    const MidBody<Real>& a = stage.mid[slot.i];
-    const MidBody<Real>& b = stage.mid[slot.j];
-    const double lead = stage.lead_of(slot);
-    const Vec3 centre_a = stage.centre(slot.i, lead);
-    const Vec3 centre_b = stage.centre(slot.j, lead);
-    const double margin = static_cast<double>(a.margin) + static_cast<double>(b.margin);
+    record.lead = stage.lead_of(slot);
     Manifold m;
-    m.part = 0;
-    const bool found =
-        a.shape == Shape::sphere && b.shape == Shape::sphere
-            ? sphere_sphere({centre_a, Quat::Identity(), Vec3(a.size, 0, 0)},
-                            {centre_b, Quat::Identity(), Vec3(b.size, 0, 0)}, margin, m)
-            : find_beside_wall(slot, a.shape == Shape::sphere ? centre_a : centre_b, lead, margin, m);
-    if (!found) {
+    if (!meet_balls(stage, slot, record.lead, m)) {
       memory[place] = {};
       return false;
     }
     record.normal = m.normal;
     record.gap = m.points[0].gap;
-    const Vec3& point = m.points[0].position;
-    record.arm_i = a.is_free() ? m.normal.dot(point - centre_a) : 0.0;
-    record.arm_j = b.is_free() ? m.normal.dot(point - centre_b) : 0.0;
-    m.i = slot.i;
-    m.j = slot.j;
-    record.flight =
-        flight_of_contact(stage.struck, m, m.points, fmin(a.size, b.size), memory[place].is_loaded());
+    const auto arm = [&](std::int32_t body) {
+      return stage.mid[body].is_free() ? m.normal.dot(m.points[0].position - stage.centre(body, record.lead))
+                                       : 0.0;
+    };
+    record.arm_i = arm(slot.i);
+    record.arm_j = arm(slot.j);
     return true;
   }
 
@@ -186,7 +204,10 @@ struct FindBalls {
     const double friction = stage.friction_of(slot);
     const double bend = stage.bend_of(slot, n);
     const double parting = n.dot(vec3(b.velocity) - vec3(a.velocity));
-    const double free = n.dot(stage.kicked_velocity(slot.j) - stage.kicked_velocity(slot.i));
+    // A look at the normal velocity tells of nearly all that they are not held apart (flight_of_contact).
+    const double closing = n.dot(stage.kicked_velocity(slot.i) - stage.kicked_velocity(slot.j));
+    const bool may_pass = record.gap > 0 && !memory[place].is_loaded() &&
+                          (record.lead > 0 || closing * stage.step > tolerance::likely_closing * record.gap);
     const BallMasses masses = ball_masses(
         static_cast<double>(stage.inverse_mass(slot.i, slot.end_i)),
         static_cast<double>(stage.inverse_inertia(slot.i, slot.end_i)), record.arm_i * record.arm_i,
@@ -194,7 +215,8 @@ struct FindBalls {
         static_cast<double>(stage.inverse_inertia(slot.j, slot.end_j)), record.arm_j * record.arm_j);
     contacts.ends[to] = {slot.end_i, slot.end_j};
     contacts.slot[to] = static_cast<std::uint8_t>(place % 256);
-    contacts.flags[to] = flags_of(record.flight);
+    contacts.flags[to] =
+        static_cast<std::uint8_t>((may_pass ? flag_may_pass : 0) | (record.lead > 0 ? flag_late : 0));
     const Fields<Real>& f = contacts.fields;
     const auto put = [&](int field, double value) { f.at(field, to) = static_cast<Real>(value); };
     const V3<Real> impulse = v3<Real>(stage.remembered(memory[place].impulse, n, friction));
@@ -202,37 +224,59 @@ struct FindBalls {
     put(C::arm_i, record.arm_i);
     put(C::arm_j, record.arm_j);
     put(C::friction, friction);
-    put(C::target, stage.target_of(record.gap, 0.0, bend, parting, record.flight, free));
+    put(C::target, stage.target_of(record.gap, 0.0, bend, parting, record.lead));
     put(C::normal_mass, masses.normal);
     put(C::tangent_mass, masses.tangent);
     f.set(C::impulse, to, impulse);
     f.set(C::last, to, impulse);
     put(C::gap, record.gap);
-    put(C::flown, record.gap + stage.opened_by_then(slot, n, bend, record.flight.lead));
+    put(C::flown, record.gap + stage.opened_by_then(slot, n, bend, record.lead));
     put(C::pushed, 0);
     put(C::cap, tolerance::correction_cap * fmin(a.size, b.size));
   }
+};
 
- private:
-  SCREE_HD bool find_beside_wall(const Slot& slot, const Vec3& centre, double lead, double margin,
-                                 Manifold& out) const {
-    const bool ball_first = stage.mid[slot.i].shape == Shape::sphere;
-    const std::int32_t wall = ball_first ? slot.j : slot.i;
-    const Solid ball{centre, Quat::Identity(), Vec3(stage.mid[ball_first ? slot.i : slot.j].size, 0, 0)};
-    bool found = false;
-    if (stage.mid[wall].shape == Shape::plane) {
-      found = sphere_plane(ball, stage.solid(wall, lead), margin, out);
-    } else if (stage.mid[wall].shape == Shape::box) {
-      found = sphere_box(ball, stage.solid(wall, lead), margin, out);
-    } else {
-      Manifold all[3];
-      const int count = sphere_tube(ball, stage.solid(wall, lead), margin, all);
-      const Manifold* on = manifold_on(slot.surface, false, all, count);
-      found = on != nullptr;
-      if (found) out = *on;
-    }
-    if (found && !ball_first) out.normal = -out.normal;
-    return found;
+/// Those of a tile that may fly past.
+template <class Real>
+struct MarkPassing {
+  struct Record {};
+
+  BallContacts<Real> contacts;
+  const std::int32_t* found;   ///< contacts of each tile
+  View<std::uint8_t> in_tile;  ///< where each is, in its tile
+
+  SCREE_HD bool find(std::int64_t c, Record&) const {
+    return has_contact(found, c) && (contacts.flags[c] & flag_may_pass) != 0;
+  }
+  SCREE_HD void store(std::int64_t to, std::int64_t c, const Record&) const {
+    in_tile[to] = static_cast<std::uint8_t>(c % 256);
+  }
+};
+
+/// Decides on them: work of another kind than that on the many which touch, and so it is done apart.
+template <class Real>
+struct JudgePassing {
+  FindStage<Real> stage;
+  BallContacts<Real> contacts;
+  const std::int32_t* found;  ///< of those that may, in each tile
+  ConstView<std::uint8_t> in_tile;
+
+  SCREE_HD void operator()(std::int64_t k) const {
+    using C = BallContacts<Real>;
+    if (!has_contact(found, k)) return;
+    const std::int64_t c = k - k % 256 + in_tile[k];
+    contacts.flags[c] &= static_cast<std::uint8_t>(~flag_may_pass);
+    const Slot& slot = stage.places[k - k % 256 + contacts.slot[c]];
+    Manifold m;
+    if (!meet_balls(stage, slot, stage.lead_of(slot), m)) return;
+    m.i = slot.i;
+    m.j = slot.j;
+    const double size = fmin(stage.mid[slot.i].size, stage.mid[slot.j].size);
+    if (!flight_of_contact(stage.struck, m, m.points, size, false).flying) return;
+    contacts.flags[c] |= flag_flying;
+    const double free = m.normal.dot(stage.kicked_velocity(slot.j) - stage.kicked_velocity(slot.i));
+    Real& target = contacts.fields.at(C::target, c);
+    target = static_cast<Real>(stage.target_in_flight(static_cast<double>(target), free));
   }
 };
 
@@ -294,7 +338,8 @@ struct FindPoints {
     PointMemory<Real>& now = memory[k];
     contacts.ends[to] = {slot.end_i, slot.end_j};
     contacts.slot[to] = static_cast<std::uint8_t>(k % 256);
-    contacts.flags[to] = flags_of(record.flight);
+    contacts.flags[to] = static_cast<std::uint8_t>((record.flight.flying ? flag_flying : 0) |
+                                                   (record.flight.lead > 0 ? flag_late : 0));
     contacts.points[to] = m.count;
     contacts.fields.set(C::normal, to, v3<Real>(m.normal));
     contacts.fields.at(C::friction, to) = static_cast<Real>(friction);
@@ -323,7 +368,8 @@ struct FindPoints {
       const double stick[] = {w(0, 0), w(1, 1), w(2, 2), w(0, 1), w(0, 2), w(1, 2)};
       for (int e = 0; e < 6; ++e) put(C::stick + e, stick[e]);
       f.set(at(C::coupling), to, v3<Real>(coupling.normal));
-      put(C::target, stage.target_of(point.gap, shell, bend, parting, record.flight, free));
+      const double target = stage.target_of(point.gap, shell, bend, parting, lead);
+      put(C::target, record.flight.flying ? stage.target_in_flight(target, free) : target);
       put(C::normal_mass, row.normal_mass);
       put(C::tangent_mass, row.tangent_mass);
       f.set(at(C::impulse), to, impulse);

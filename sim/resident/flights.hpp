@@ -18,7 +18,7 @@ struct FlyBalls {
   double step;
   SCREE_HD void operator()(std::int64_t c) const {
     using C = BallContacts<Real>;
-    if (!has_contact(contacts.found, c) || contacts.flags[c] != 0) return;
+    if (contacts.flags[c] != 0) return;
     const auto change = [&](std::int32_t k) { return after[k].velocity - before[k].velocity; };
     const V3<Real> u = change(contacts.ends[c].j) - change(contacts.ends[c].i);
     contacts.fields.at(C::flown, c) +=
@@ -32,7 +32,7 @@ struct FlyPoints {
   double step;
   SCREE_HD void operator()(std::int64_t c) const {
     using C = PointContacts<Real>;
-    if (!has_contact(contacts.found, c) || contacts.flags[c] != 0) return;
+    if (contacts.flags[c] != 0) return;
     const Moving<Real> i = change(contacts.ends[c].i);
     const Moving<Real> j = change(contacts.ends[c].j);
     for (int k = 0; k < contacts.points[c]; ++k) {
@@ -74,7 +74,7 @@ struct FlyLateBalls {
   ConstBodyView bodies;
   SCREE_HD void operator()(std::int64_t c) const {
     using C = BallContacts<Real>;
-    if (!has_contact(contacts.found, c) || (contacts.flags[c] & flag_late) == 0) return;
+    if ((contacts.flags[c] & flag_late) == 0) return;
     const Slot& slot = places[c - c % 256 + contacts.slot[c]];
     contacts.fields.at(C::flown, c) += static_cast<Real>(
         vec3(contacts.fields.vector(C::normal, c)).dot(bodies.position[slot.j] - bodies.position[slot.i]));
@@ -88,7 +88,7 @@ struct FlyLatePoints {
   FlightStage flight;
   SCREE_HD void operator()(std::int64_t c) const {
     using C = PointContacts<Real>;
-    if (!has_contact(contacts.found, c) || (contacts.flags[c] & flag_late) == 0) return;
+    if ((contacts.flags[c] & flag_late) == 0) return;
     const Slot& slot = places[c - c % 256 + contacts.slot[c]];
     const Vec3 n = vec3(contacts.fields.vector(C::normal, c));
     const Vec3 apart = bodies.position[slot.j] - bodies.position[slot.i];
@@ -134,7 +134,7 @@ struct LateBallMoments {
   BallContacts<Real> contacts;
   ConstView<Slot> places;
   SCREE_HD Ledger operator()(std::int64_t c) const {
-    if (!has_contact(contacts.found, c) || (contacts.flags[c] & flag_late) == 0) return {};
+    if ((contacts.flags[c] & flag_late) == 0) return {};
     return moments.of(places[c - c % 256 + contacts.slot[c]],
                       vec3(contacts.fields.vector(BallContacts<Real>::impulse, c)));
   }
@@ -146,7 +146,7 @@ struct LatePointMoments {
   ConstView<Slot> places;
   SCREE_HD Ledger operator()(std::int64_t c) const {
     using C = PointContacts<Real>;
-    if (!has_contact(contacts.found, c) || (contacts.flags[c] & flag_late) == 0) return {};
+    if ((contacts.flags[c] & flag_late) == 0) return {};
     Vec3 impulse = Vec3::Zero();
     for (int k = 0; k < contacts.points[c]; ++k)
       impulse += vec3(contacts.point_fields.vector(C::at_point(k, C::impulse), c));

@@ -32,7 +32,7 @@ void for_each_contact(Inspection<Real>& seen, Visit visit) {
     return seen.places[static_cast<std::size_t>(first + c - c % 256 + slot)];
   };
   for (std::int64_t c = 0; c < seen.contacts.ball_places(); ++c) {
-    if (!has_contact(balls.found, c)) continue;
+    if (!has_contact(seen.contacts.ball_tiles().data(), c)) continue;
     const Fields<Real>& f = balls.fields;
     const Vec3 normal = vec3(f.vector(B::normal, c));
     visit(SeenContact{slot_of(0, c, balls.slot[c]),
@@ -44,7 +44,7 @@ void for_each_contact(Inspection<Real>& seen, Visit visit) {
   }
   const P points = seen.contacts.points();
   for (std::int64_t c = 0; c < seen.contacts.point_places(); ++c) {
-    if (!has_contact(points.found, c)) continue;
+    if (!has_contact(seen.contacts.point_tiles().data(), c)) continue;
     SeenContact contact{slot_of(seen.contacts.ball_places(), c, points.slot[c]),
                         vec3(points.fields.vector(P::normal, c)),
                         number(points.fields.at(P::friction, c)),

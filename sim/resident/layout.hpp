@@ -32,6 +32,11 @@ SCREE_HD inline Vec3 vec3(const V3<Real>& a) {
   return {static_cast<double>(a.x), static_cast<double>(a.y), static_cast<double>(a.z)};
 }
 
+template <class Real>
+SCREE_HD inline bool is_zero(const V3<Real>& a) {
+  return a.x == 0 && a.y == 0 && a.z == 0;
+}
+
 /// Velocities of a body, or its displacement and turn: a record that is read and written as a whole.
 template <class Real>
 struct alignas(8 * sizeof(Real)) BodyRecord : Moving<Real> {};
@@ -114,7 +119,6 @@ struct BallContacts {
     count
   };
 
-  const std::int32_t* found;  ///< of each tile
   View<Ends> ends;
   View<std::uint8_t> slot;  ///< of each contact, in its tile
   View<std::uint8_t> flags;
@@ -141,7 +145,6 @@ struct PointContacts {
     point_count
   };
 
-  const std::int32_t* found;
   View<Ends> ends;
   View<std::uint8_t> slot;
   View<std::uint8_t> flags;
@@ -152,10 +155,16 @@ struct PointContacts {
   SCREE_HD static int at_point(int k, int field) { return k * point_count + field; }
 };
 
+/// True if there is a contact in a place: `found` in each tile, at its front.
+SCREE_HD inline bool has_contact(const std::int32_t* found, std::int64_t place) {
+  return place % 256 < found[place / 256];
+}
+
 /// Of contacts.
 enum Flag : std::uint8_t {
-  flag_flying = 1,  ///< known not to meet in this substep: its rows only guard what the flight leaves free
-  flag_late = 2     ///< its geometry is of a time after the midpoint
+  flag_flying = 1,   ///< known not to meet in this substep: its rows only guard what the flight leaves free
+  flag_late = 2,     ///< its geometry is of a time after the midpoint
+  flag_may_pass = 4  ///< to be told whether it flies
 };
 
 /// What slots remember from substep to substep.
@@ -163,7 +172,7 @@ template <class Real>
 struct BallMemory {
   V3<Real> impulse;  ///< N s, world frame
 
-  SCREE_HD bool is_loaded() const { return impulse.x != 0 || impulse.y != 0 || impulse.z != 0; }
+  SCREE_HD bool is_loaded() const { return !is_zero<Real>(impulse); }
 };
 template <class Real>
 struct PointMemory {
@@ -173,7 +182,7 @@ struct PointMemory {
 
   SCREE_HD bool is_loaded() const {
     for (int k = 0; k < count; ++k)
-      if (impulse[k].x != 0 || impulse[k].y != 0 || impulse[k].z != 0) return true;
+      if (!is_zero<Real>(impulse[k])) return true;
     return false;
   }
 };

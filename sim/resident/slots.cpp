@@ -14,8 +14,10 @@ namespace {
 /// Slots that a free body of the solver may have. Two such bodies leave one of 64 colours for what they
 /// share.
 constexpr std::int32_t most_slots = 32;
-constexpr int colors = 64;
+/// A slot's color in its lower bits, and whether it is on a part of a hub.
+constexpr std::uint8_t of_hub = 64;
 constexpr std::uint8_t uncolored = 255;
+static_assert(most_colors <= of_hub);
 
 /// Manifolds that a pair can have: a ball in a tube touches wall and caps, a box the wall with each corner.
 constexpr int tube_surfaces = 3;
@@ -146,15 +148,62 @@ SCREE_HD std::uint64_t rank_of(std::int64_t slot) {
   return (x & 0xffffffff00000000u) | static_cast<std::uint32_t>(slot);
 }
 
+/// The first of the old slots of each pair, -1 for new pairs.
+struct LookUpOld {
+  ConstView<Pair> pairs, old_pairs;
+  ConstView<std::int64_t> old_first;
+  View<std::int64_t> was;
+  SCREE_HD void operator()(std::int64_t k) const {
+    const std::int64_t pair = find_pair(old_pairs, pairs[k].i, pairs[k].j);
+    was[k] = pair < 0 ? -1 : old_first[pair];
+  }
+};
+
+/// Slots keep their colours, but for those on parts of hubs, which are dealt anew.
+struct KeepColors {
+  ConstView<Slot> slots;
+  ConstView<Mobility> mobility;
+  ConstView<std::int64_t> was;
+  ConstView<std::uint8_t> old_color;
+  View<std::uint8_t> color;
+  View<std::uint64_t> taken;
+  SCREE_HD void operator()(std::int64_t s) const {
+    const Slot& slot = slots[s];
+    const std::int64_t old = was[slot.candidate];
+    color[s] = uncolored;
+    if (old < 0 || slot.end_i != slot.i || slot.end_j != slot.j) return;
+    const std::uint8_t kept = old_color[old + slot.surface];
+    if ((kept & of_hub) != 0) return;
+    color[s] = kept;
+    if (mobility[slot.i] == Mobility::free) set_bits(&taken[slot.i], std::uint64_t{1} << kept);
+    if (mobility[slot.j] == Mobility::free) set_bits(&taken[slot.j], std::uint64_t{1} << kept);
+  }
+};
+
+struct Uncolored {
+  static constexpr std::uint32_t none = 0xffffffffu;
+  ConstView<std::uint8_t> color;
+  SCREE_HD std::uint32_t operator()(std::int64_t s) const {
+    return color[s] == uncolored ? static_cast<std::uint32_t>(s) : none;
+  }
+};
+struct StillUncolored {
+  Uncolored all;
+  ConstView<std::uint32_t> list;
+  SCREE_HD std::uint32_t operator()(std::int64_t k) const { return all(list[k]); }
+};
+
 /// Rounds of colouring: of the uncoloured slots of each body the first in rank stands, and a slot that stands
 /// at both its bodies takes the lowest colour that both have left (Jones, Plassmann 1993, "A parallel graph
 /// coloring heuristic").
 struct Stand {
+  ConstView<std::uint32_t> list;
   ConstView<Slot> slots;
   ConstView<Mobility> mobility;
   ConstView<std::uint8_t> color;
   View<std::uint64_t> standing;
-  SCREE_HD void operator()(std::int64_t s) const {
+  SCREE_HD void operator()(std::int64_t k) const {
+    const std::int64_t s = list[k];
     if (color[s] != uncolored) return;
     const Slot& slot = slots[s];
     if (mobility[slot.i] == Mobility::free) lower(&standing[slot.end_i], rank_of(s));
@@ -162,25 +211,25 @@ struct Stand {
   }
 };
 struct TakeColor {
+  ConstView<std::uint32_t> list;
   ConstView<Slot> slots;
   ConstView<Mobility> mobility;
   View<std::uint8_t> color;
   View<std::uint64_t> standing;
   View<std::uint64_t> taken;
-  std::uint32_t* left;
-  SCREE_HD void operator()(std::int64_t s) const {
+  SCREE_HD void operator()(std::int64_t k) const {
+    const std::int64_t s = list[k];
     if (color[s] != uncolored) return;
     const Slot& slot = slots[s];
     const bool free_i = mobility[slot.i] == Mobility::free;
     const bool free_j = mobility[slot.j] == Mobility::free;
-    if ((free_i && standing[slot.end_i] != rank_of(s)) || (free_j && standing[slot.end_j] != rank_of(s))) {
-      add(left, 1u);
+    if ((free_i && standing[slot.end_i] != rank_of(s)) || (free_j && standing[slot.end_j] != rank_of(s)))
       return;
-    }
     const std::uint64_t used = (free_i ? taken[slot.end_i] : 0) | (free_j ? taken[slot.end_j] : 0);
     int lowest = 0;
     while ((used >> lowest & 1) != 0) ++lowest;
-    color[s] = static_cast<std::uint8_t>(lowest);
+    const bool hub = slot.end_i != slot.i || slot.end_j != slot.j;
+    color[s] = static_cast<std::uint8_t>(lowest | (hub ? of_hub : 0));
     if (free_i) taken[slot.end_i] |= std::uint64_t{1} << lowest;
     if (free_j) taken[slot.end_j] |= std::uint64_t{1} << lowest;
     // Nobody else stands here, so the next round may begin.
@@ -205,7 +254,8 @@ struct KeyOf {
   View<std::uint32_t> key;
   View<std::uint32_t> slot;
   SCREE_HD void operator()(std::int64_t s) const {
-    key[s] = color[s] + (is_of_balls(bodies, slots[s]) ? 0u : static_cast<std::uint32_t>(colors));
+    key[s] =
+        color[s] % of_hub + (is_of_balls(bodies, slots[s]) ? 0u : static_cast<std::uint32_t>(most_colors));
     slot[s] = static_cast<std::uint32_t>(s);
   }
 };
@@ -234,12 +284,11 @@ struct PlaceSlots {
   }
 };
 
-/// Looks its slot up among the old ones.
+/// What its slot remembered before.
 template <class Real>
 struct Recall {
   ConstView<Slot> places;
-  ConstView<Pair> old_pairs;
-  ConstView<std::int64_t> old_first;
+  ConstView<std::int64_t> was;
   ConstView<std::int64_t> old_place;
   std::int64_t ball_places, old_ball_places;
   ConstView<BallMemory<Real>> old_balls;
@@ -257,9 +306,8 @@ struct Recall {
     }
   }
   SCREE_HD std::int64_t old_place_of(const Slot& slot) const {
-    if (slot.i == Slot::empty) return -1;
-    const std::int64_t pair = find_pair(old_pairs, slot.i, slot.j);
-    return pair < 0 ? -1 : old_place[old_first[pair] + slot.surface];
+    if (slot.i == Slot::empty || was[slot.candidate] < 0) return -1;
+    return old_place[was[slot.candidate] + slot.surface];
   }
 };
 
@@ -270,12 +318,17 @@ void Slots<Space, Real>::build(ConstView<Pair> candidates, const ConstBodyView& 
   old_pairs_.swap(pairs_);
   old_first_.swap(first_);
   old_place_.swap(place_);
+  old_color_.swap(color_);
   old_ball_memory_.swap(ball_memory_);
   old_point_memory_.swap(point_memory_);
   old_ball_places_ = balls_.tiles() * parallel::tile;
   pairs_.resize(candidates.size());
   copy_bytes<Space, Space>(pairs_.data(), candidates.data(),
                            static_cast<std::size_t>(candidates.size()) * sizeof(Pair));
+  was_.resize(pairs_.size());
+  parallel::for_each<Space>("slots.recall", pairs_.size(),
+                            LookUpOld{std::as_const(pairs_).view(), std::as_const(old_pairs_).view(),
+                                      std::as_const(old_first_).view(), was_.view()});
   list_slots(bodies);
   split_hubs(bodies);
   color_slots(bodies);
@@ -335,31 +388,45 @@ void Slots<Space, Real>::split_hubs(const ConstBodyView& bodies) {
 template <class Space, class Real>
 void Slots<Space, Real>::color_slots(const ConstBodyView& bodies) {
   constexpr int rounds_at_once = 8;
+  // Colours that are kept leave gaps, so that their number creeps up.
+  constexpr int most_more = 3;
   const ConstView<Slot> slots = std::as_const(slots_).view();
-  color_.resize(slots.size());
   Array<std::uint64_t, Space> standing(solver_bodies_), taken(solver_bodies_);
-  Array<std::uint32_t, Space> left(1);
-  parallel::fill("slots.color", color_, uncolored);
   parallel::fill("slots.color", standing, ~std::uint64_t{0});
   parallel::fill("slots.color", taken, std::uint64_t{0});
-  // In each round the first in rank of all that are left finds its colour.
-  std::uint32_t uncolored_left = slots.size() > 0 ? 1 : 0;
-  while (uncolored_left > 0) {
-    for (int round = 0; round < rounds_at_once; ++round) {
-      parallel::fill("slots.color", left, 0u);
-      parallel::for_each<Space>("slots.color", slots.size(),
-                                Stand{slots, bodies.mobility, std::as_const(color_).view(), standing.view()});
-      parallel::for_each<Space>(
-          "slots.color", slots.size(),
-          TakeColor{slots, bodies.mobility, color_.view(), standing.view(), taken.view(), left.data()});
-    }
-    copy_bytes<Host, Space>(&uncolored_left, left.data(), sizeof(uncolored_left));
+  color_.resize(slots.size());
+  const bool keep = keeps_colors_ && colors_used() <= colors_at_first_ + most_more;
+  if (keep) {
+    parallel::for_each<Space>("slots.color", slots.size(),
+                              KeepColors{slots, bodies.mobility, std::as_const(was_).view(),
+                                         std::as_const(old_color_).view(), color_.view(), taken.view()});
+  } else {
+    parallel::fill("slots.color", color_, uncolored);
   }
+  Array<std::uint32_t, Space> list, shorter;
+  const Uncolored uncolored_slots{std::as_const(color_).view()};
+  parallel::select("slots.color", slots.size(), uncolored_slots, Uncolored::none, list);
+  // In each round the first in rank of all that are left finds its colour.
+  while (list.size() > 0) {
+    const ConstView<std::uint32_t> left = std::as_const(list).view();
+    for (int round = 0; round < rounds_at_once; ++round) {
+      parallel::for_each<Space>(
+          "slots.color", left.size(),
+          Stand{left, slots, bodies.mobility, std::as_const(color_).view(), standing.view()});
+      parallel::for_each<Space>(
+          "slots.color", left.size(),
+          TakeColor{left, slots, bodies.mobility, color_.view(), standing.view(), taken.view()});
+    }
+    parallel::select("slots.color", left.size(), StillUncolored{uncolored_slots, left}, Uncolored::none,
+                     shorter);
+    list.swap(shorter);
+  }
+  recolored_ = !keep;
 }
 
 template <class Space, class Real>
 void Slots<Space, Real>::place_slots(const ConstBodyView& bodies) {
-  constexpr int keys = 2 * colors;
+  constexpr int keys = 2 * most_colors;
   const ConstView<Slot> slots = std::as_const(slots_).view();
   Array<std::uint32_t, Space> key(slots.size()), slot(slots.size()), counts;
   parallel::for_each<Space>("slots.place", slots.size(),
@@ -372,14 +439,16 @@ void Slots<Space, Real>::place_slots(const ConstBodyView& bodies) {
   std::int64_t tiles = 0;
   balls_.begin.assign(1, 0);
   for (int k = 0; k < keys; ++k) {
-    ColorTiles& kind = k < colors ? balls_ : others_;
-    if (k == colors) others_.begin.assign(1, tiles);
+    ColorTiles& kind = k < most_colors ? balls_ : others_;
+    if (k == most_colors) others_.begin.assign(1, tiles);
     start.push_back({first, tiles * parallel::tile});
     first += count[static_cast<std::size_t>(k)];
     if (count[static_cast<std::size_t>(k)] == 0) continue;
     tiles += parallel::tiles_of(count[static_cast<std::size_t>(k)]);
     kind.begin.push_back(tiles);
   }
+  if (recolored_) colors_at_first_ = colors_used();
+  keeps_colors_ = true;
   Array<ColorStart, Space> starts;
   copy(starts, start);
   places_.resize(tiles * parallel::tile);
@@ -397,10 +466,10 @@ void Slots<Space, Real>::recall() {
   point_memory_.resize(places_.size() - ball_places);
   parallel::for_each<Space>(
       "slots.recall", places_.size(),
-      Recall<Real>{std::as_const(places_).view(), std::as_const(old_pairs_).view(),
-                   std::as_const(old_first_).view(), std::as_const(old_place_).view(), ball_places,
-                   old_ball_places_, std::as_const(old_ball_memory_).view(),
-                   std::as_const(old_point_memory_).view(), ball_memory_.view(), point_memory_.view()});
+      Recall<Real>{std::as_const(places_).view(), std::as_const(was_).view(),
+                   std::as_const(old_place_).view(), ball_places, old_ball_places_,
+                   std::as_const(old_ball_memory_).view(), std::as_const(old_point_memory_).view(),
+                   ball_memory_.view(), point_memory_.view()});
 }
 
 #define SCREE_INSTANTIATE(Space)       \

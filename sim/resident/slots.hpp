@@ -6,6 +6,7 @@
 #include "core/bodies.hpp"
 #include "sim/resident/layout.hpp"
 
+#include <algorithm>
 #include <cstdint>
 #include <vector>
 
@@ -35,6 +36,9 @@ SCREE_HD inline std::int64_t find_pair(ConstView<Pair> pairs, std::int32_t i, st
   return low < pairs.size() && pairs[low].i == i && pairs[low].j == j ? low : -1;
 }
 
+/// Slots of a body take no more: those of hubs are dealt to several.
+inline constexpr int most_colors = 64;
+
 /// Tiles of one colour after the other: slots of one colour share no free body.
 struct ColorTiles {
   std::vector<std::int64_t> begin;  ///< first tile of each colour; one more than colours
@@ -48,8 +52,10 @@ class Slots {
  public:
   /// Slots for the candidates (ordered by (i, j), each with a free body); those that were there before keep
   /// what they remember. Places are given in tiles of parallel::tile: first those of balls, colour by colour,
-  /// then the others. The result does not depend on the order of threads.
+  /// then the others. Most keep their colours, too. The result does not depend on the order of threads.
   void build(ConstView<Pair> candidates, const ConstBodyView& bodies);
+  /// Others of the bodies are free now: colours are not to be kept.
+  void forget_colors() { keeps_colors_ = false; }
 
   ConstView<Slot> places() const { return places_.view(); }
   const ColorTiles& balls() const { return balls_; }
@@ -70,11 +76,15 @@ class Slots {
   void color_slots(const ConstBodyView& bodies);
   void place_slots(const ConstBodyView& bodies);
   void recall();
+  int colors_used() const { return static_cast<int>(std::max(balls_.colors(), others_.colors())); }
 
   Array<Pair, Space> pairs_, old_pairs_;          // the candidates
   Array<std::int64_t, Space> first_, old_first_;  // slot of each; one more than candidates
   Array<Slot, Space> slots_;                      // in the order of the candidates
-  Array<std::uint8_t, Space> color_;              // of each slot
+  Array<std::int64_t, Space> was_;                // the first old slot of each candidate
+  Array<std::uint8_t, Space> color_, old_color_;  // of each slot
+  bool keeps_colors_ = false, recolored_ = false;
+  int colors_at_first_ = 0;                       // that were needed when all were coloured at once
   Array<Slot, Space> places_;                     // the same slots, tile by tile
   Array<std::int64_t, Space> place_, old_place_;  // of each slot
   ColorTiles balls_{{0}}, others_{{0}};

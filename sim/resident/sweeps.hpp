@@ -1,4 +1,4 @@
-// Visits to the contacts of a substep: sweeps that find the impulses, and sweeps that part what overlaps.
+// Visits to one contact of a substep: those that find its impulse, and those that part what overlaps.
 #pragma once
 
 #include "sim/resident/layout.hpp"
@@ -13,12 +13,13 @@ SCREE_HD inline void store_free(Record* bodies, std::int32_t k, const Record& bo
   if (body.inverse_mass > 0) bodies[k] = body;
 }
 
-/// What the sweeps of a substep know of one another; stays in the space.
+/// What the sweeps of a substep know of one another.
 struct SweepState {
   double last_step = 0;
   double beta = 0;  ///< by how much the next sweep goes on
   std::int32_t sweeps = 0;
-  std::int32_t converged = 0;
+  bool pushed = false;  ///< the bodies have what the contacts remember
+  bool converged = false;
 };
 
 /// Change of the impulses by a sweep, and their size: as ImpulseChange.
@@ -64,21 +65,13 @@ SCREE_HD inline lanes::PointLaw<Scalar<Real>> law_at(const PointContacts<Real>& 
 template <class Real>
 struct alignas(8 * sizeof(Real)) InertiaRecord : lanes::Symmetric<Scalar<Real>> {};
 
-/// True if a thread has a contact.
-SCREE_HD inline bool has_contact(const std::int32_t* found, std::int64_t place) {
-  return place % 256 < found[place / 256];
-}
-
 /// Gives the bodies of a contact of balls what its impulse is.
 template <class Real>
 struct PushBalls {
   BallContacts<Real> contacts;
   BodyRecord<Real>* bodies;
-  std::int64_t first;  ///< place
 
-  SCREE_HD void operator()(std::int64_t k) const {
-    const std::int64_t c = first + k;
-    if (!has_contact(contacts.found, c)) return;
+  SCREE_HD void operator()(std::int64_t c) const {
     const Ends ends = contacts.ends[c];
     BodyRecord<Real> i = bodies[ends.i];
     BodyRecord<Real> j = bodies[ends.j];
@@ -93,12 +86,9 @@ struct PushPoints {
   PointContacts<Real> contacts;
   const InertiaRecord<Real>* inertia;
   BodyRecord<Real>* bodies;
-  std::int64_t first;
 
-  SCREE_HD void operator()(std::int64_t k) const {
+  SCREE_HD void operator()(std::int64_t c) const {
     using C = PointContacts<Real>;
-    const std::int64_t c = first + k;
-    if (!has_contact(contacts.found, c)) return;
     const Ends ends = contacts.ends[c];
     BodyRecord<Real> i = bodies[ends.i];
     BodyRecord<Real> j = bodies[ends.j];
@@ -113,26 +103,27 @@ struct PushPoints {
   }
 };
 
-/// One sweep over contacts of balls. What the last sweep changed is gone on with by beta, which the bodies
-/// have done already.
+/// Solves a contact of balls. What the last sweep changed is gone on with by beta, which the bodies have done
+/// already.
 template <class Real>
 struct SweepBalls {
   BallContacts<Real> contacts;
   BodyRecord<Real>* bodies;
-  const SweepState* state;
-  std::int64_t first;
 
-  SCREE_HD SweepChange operator()(std::int64_t k) const {
+  SCREE_HD SweepChange operator()(std::int64_t c, Real beta) const {
     using C = BallContacts<Real>;
-    const std::int64_t c = first + k;
-    if (state->converged != 0 || !has_contact(contacts.found, c)) return {};
     const Ends ends = contacts.ends[c];
     BodyRecord<Real> i = bodies[ends.i];
     BodyRecord<Real> j = bodies[ends.j];
-    const auto balls = balls_at(contacts, c);
     const V3<Real> before = contacts.fields.vector(C::impulse, c);
-    const V3<Real> ahead =
-        before + static_cast<Real>(state->beta) * (before - contacts.fields.vector(C::last, c));
+    const V3<Real> last = contacts.fields.vector(C::last, c);
+    const V3<Real> ahead = before + beta * (before - last);
+    // Many contacts are open and stay so: they need no more.
+    if (is_zero<Real>(before) && is_zero<Real>(last) &&
+        dot(contacts.fields.vector(C::normal, c), j.velocity - i.velocity) >=
+            contacts.fields.at(C::target, c))
+      return {};
+    const auto balls = balls_at(contacts, c);
     const V3<Real> p = impulse_of(balls, ahead, i, j);
     const V3<Real> change = p - ahead;
     push(balls, change, i, j);
@@ -150,14 +141,10 @@ struct SweepPoints {
   PointContacts<Real> contacts;
   const InertiaRecord<Real>* inertia;
   BodyRecord<Real>* bodies;
-  const SweepState* state;
   int block_sweeps;
-  std::int64_t first;
 
-  SCREE_HD SweepChange operator()(std::int64_t k) const {
+  SCREE_HD SweepChange operator()(std::int64_t c, Real beta) const {
     using C = PointContacts<Real>;
-    const std::int64_t c = first + k;
-    if (state->converged != 0 || !has_contact(contacts.found, c)) return {};
     const Ends ends = contacts.ends[c];
     BodyRecord<Real> i = bodies[ends.i];
     BodyRecord<Real> j = bodies[ends.j];
@@ -166,7 +153,6 @@ struct SweepPoints {
     const V3<Real> n = contacts.fields.vector(C::normal, c);
     const Real friction = contacts.fields.at(C::friction, c);
     const int count = contacts.points[c];
-    const Real beta = static_cast<Real>(state->beta);
     const Fields<Real>& f = contacts.point_fields;
     V3<Real> now[Manifold::max_points];
     V3<Real> ahead[Manifold::max_points];
@@ -204,12 +190,9 @@ template <class Real>
 struct Accelerate {
   BodyRecord<Real>* bodies;
   BodyRecord<Real>* last;
-  const SweepState* state;
-  SCREE_HD void operator()(std::int64_t k) const {
-    if (state->converged != 0) return;
+  SCREE_HD void operator()(std::int64_t k, Real beta) const {
     const BodyRecord<Real> now = bodies[k];
-    if (state->beta > 0) {
-      const Real beta = static_cast<Real>(state->beta);
+    if (beta > 0) {
       BodyRecord<Real> ahead = now;
       const BodyRecord<Real> before = last[k];
       ahead.velocity = now.velocity + beta * (now.velocity - before.velocity);
@@ -217,22 +200,6 @@ struct Accelerate {
       bodies[k] = ahead;
     }
     last[k] = now;
-  }
-};
-
-/// After a sweep: have the impulses converged, and by how much does the next one go on (Sweeps).
-struct JudgeSweep {
-  SweepState* state;
-  const SweepChange* total;
-  int least;
-  double tolerance;
-  SCREE_HD void operator()(std::int64_t) const {
-    if (state->converged != 0) return;
-    ++state->sweeps;
-    state->converged = state->sweeps >= least && total->step <= tolerance * tolerance * total->size ? 1 : 0;
-    const double ratio = state->sweeps > 1 ? total->step / state->last_step : 0.0;
-    state->beta = ratio < 1.0 ? ratio : 0.0;
-    state->last_step = total->step;
   }
 };
 
@@ -244,37 +211,15 @@ struct Deepest {
   }
 };
 
-/// What the sweeps of the position correction know of one another.
-struct PartState {
-  float first = 0;  ///< deepest overlap that the first sweep has met, of the cap
-  std::int32_t sweeps = 0;
-  std::int32_t corrected = 0;
-};
-
-struct JudgeParting {
-  PartState* state;
-  const Deepest* deepest;
-  float enough;  ///< of the cap
-  SCREE_HD void operator()(std::int64_t) const {
-    if (state->corrected != 0) return;
-    if (state->sweeps++ == 0) state->first = deepest->overlap;
-    state->corrected = deepest->overlap <= enough ? 1 : 0;
-  }
-};
-
 /// Parts the bodies of a contact of balls: as the position correction of Host.
 template <class Real>
 struct PartBalls {
   BallContacts<Real> contacts;
   CentreRecord<Real>* bodies;
-  const PartState* state;
   Real share;
-  std::int64_t first;
 
-  SCREE_HD Deepest operator()(std::int64_t k) const {
+  SCREE_HD Deepest operator()(std::int64_t c) const {
     using C = BallContacts<Real>;
-    const std::int64_t c = first + k;
-    if (state->corrected != 0 || !has_contact(contacts.found, c)) return {};
     const Ends ends = contacts.ends[c];
     CentreRecord<Real> i = bodies[ends.i];
     CentreRecord<Real> j = bodies[ends.j];
@@ -299,14 +244,10 @@ struct PartPoints {
   const InertiaRecord<Real>* inertia;
   CentreRecord<Real>* bodies;
   CentreRecord<Real>* turns;
-  const PartState* state;
   Real share;
-  std::int64_t first;
 
-  SCREE_HD Deepest operator()(std::int64_t k) const {
+  SCREE_HD Deepest operator()(std::int64_t c) const {
     using C = PointContacts<Real>;
-    const std::int64_t c = first + k;
-    if (state->corrected != 0 || !has_contact(contacts.found, c)) return {};
     const Ends ends = contacts.ends[c];
     Moving<Real> i = load(ends.i);
     Moving<Real> j = load(ends.j);

@@ -1,0 +1,140 @@
+// Rounds of phases: work of many phases that wait for one another, and of which nobody knows beforehand how
+// often it is done, without the host between. For parallel libraries alone.
+#pragma once
+
+#include "core/array.hpp"
+#include "core/space_tiles.hpp"
+#include "core/timing.hpp"
+
+#include <algorithm>
+#include <cstdint>
+#include <vector>
+
+#if SCREE_WITH_CUDA
+#include <cooperative_groups.h>
+#endif
+
+namespace scree::parallel {
+
+namespace detail {
+
+/// Sum over a tile of a phase on Host.
+template <class Program>
+struct TileOfPhase {
+  const Program& program;
+  const typename Program::State& state;
+  int phase;
+  std::int64_t items;
+  typename Program::Sum* sums;
+  void operator()(std::int64_t t) const {
+    typename Program::Sum sum{};
+    const std::int64_t end = std::min((t + 1) * tile, items);
+    for (std::int64_t item = t * tile; item < end; ++item) sum = sum + program(state, phase, item);
+    sums[t] = sum;
+  }
+};
+
+template <class Program>
+typename Program::State run(Host, const char* label, const Program& program, typename Program::State state) {
+  constexpr std::int64_t fewest = 8;  // tiles worth waking threads for
+  std::vector<typename Program::Sum> sums;
+  for (int phases = program.phases(state); phases > 0; phases = program.phases(state)) {
+    typename Program::Sum total{};
+    for (int phase = 0; phase < phases; ++phase) {
+      const std::int64_t items = program.items(state, phase);
+      sums.resize(static_cast<std::size_t>(tiles_of(items)));
+      parallel::for_each<Host>(label, tiles_of(items),
+                               TileOfPhase<Program>{program, state, phase, items, sums.data()}, fewest);
+      for (const typename Program::Sum& sum : sums) total = total + sum;
+    }
+    state = program.judge(state, total);
+  }
+  return state;
+}
+
+#if SCREE_WITH_CUDA
+
+/// All blocks are on the GPU at once, and wait for each other between phases. Each keeps the state itself and
+/// judges alike, from the sums of all blocks, of which there are two sets: one may still be read by blocks
+/// that are behind.
+template <class Program>
+__global__ void __launch_bounds__(Program::threads, blocks_at_once<Program>())
+    run_phases(const Program program, typename Program::State state, typename Program::Sum* sums,
+               typename Program::State* out) {
+  using Sum = typename Program::Sum;
+  constexpr int threads = Program::threads;
+  __shared__ BlockRoom<Sum, threads> room;
+  const auto grid = cooperative_groups::this_grid();
+  Sum* const sums_of[] = {sums, sums + gridDim.x};
+  int turn = 0;
+  for (int phases = program.phases(state); phases > 0; phases = program.phases(state)) {
+    Sum mine{};
+    for (int phase = 0; phase < phases; ++phase) {
+      if (phase > 0) grid.sync();
+      const std::int64_t items = program.items(state, phase);
+      const std::int64_t stride = std::int64_t{gridDim.x} * threads;
+      for (std::int64_t i = std::int64_t{blockIdx.x} * threads + threadIdx.x; i < items; i += stride)
+        mine = mine + program(state, phase, i);
+    }
+    const Sum sum = sum_over_block<threads>(mine, room.data());
+    if (threadIdx.x == 0) sums_of[turn][blockIdx.x] = sum;
+    grid.sync();
+    Sum of_blocks{};
+    for (unsigned b = threadIdx.x; b < gridDim.x; b += threads) of_blocks = of_blocks + sums_of[turn][b];
+    sum_over_block<threads>(of_blocks, room.data());
+    __syncthreads();
+    state = program.judge(state, room.data()[0]);
+    __syncthreads();
+    turn = 1 - turn;
+  }
+  if (blockIdx.x == 0 && threadIdx.x == 0) *out = state;
+}
+
+/// Blocks that the GPU can hold at once.
+template <class Program>
+int most_blocks() {
+  static const int most = [] {
+    int device = 0, processors = 0, on_each = 0;
+    cudaGetDevice(&device);
+    cudaDeviceGetAttribute(&processors, cudaDevAttrMultiProcessorCount, device);
+    cudaOccupancyMaxActiveBlocksPerMultiprocessor(&on_each, run_phases<Program>, Program::threads, 0);
+    scree::detail::require_launched("the rounds' first");
+    return std::max(processors * on_each, 1);
+  }();
+  return most;
+}
+
+template <class Program>
+typename Program::State run(Device, const char* label, Program program, typename Program::State state) {
+  const timing::Call<Device> call(label);
+  const auto blocks = static_cast<unsigned>(std::clamp<std::int64_t>(
+      (program.most_items() + Program::threads - 1) / Program::threads, 1, most_blocks<Program>()));
+  Array<typename Program::Sum, Device> sums(2 * std::int64_t{blocks});
+  Array<typename Program::State, Device> out(1);
+  auto* sums_data = sums.data();
+  auto* out_data = out.data();
+  void* arguments[] = {&program, &state, &sums_data, &out_data};
+  cudaLaunchCooperativeKernel(run_phases<Program>, blocks, Program::threads, arguments);
+  scree::detail::require_launched(label);
+  copy_bytes<Host, Device>(&state, out.data(), sizeof(state));
+  return state;
+}
+
+#endif
+
+}  // namespace detail
+
+/// Runs rounds until none is left, and returns what was known at the end. A round is
+/// program.phases(state) phases, of which each is work on program.items(state, phase) items at once:
+/// program(state, phase, item), of type Program::Sum with an operator +. Then state = program.judge(state,
+/// sum over the round), and no phase is left where phases() is 0. No phase has more than
+/// program.most_items(). Program::threads make a block, a power of 2: fewer and larger blocks wait for one
+/// another more quickly, if registers suffice. On Device all rounds are one launch, in which a phase costs
+/// some microseconds; the sums depend on the GPU's size, and are the same from run to run.
+template <class Space, class Program>
+typename Program::State run_rounds(const char* label, const Program& program,
+                                   const typename Program::State& start) {
+  return detail::run(Space{}, label, program, start);
+}
+
+}  // namespace scree::parallel

@@ -1,0 +1,297 @@
+"""docs/performance.md and its plots, from the results of `performance.py measure` (bench/results/MACHINE/step/PART.jsonl)."""
+import json
+import math
+import os
+from pathlib import Path
+
+from plotting import COLORS, count, line_of, plot, table, three
+
+ROOT = Path(__file__).resolve().parents[1]
+PAGE = ROOT / "docs/performance.md"
+PICTURES = ROOT / "docs/pictures/performance"
+PEERS = ROOT / "bench/results/epyc-2-cores/peers.md"
+HEAP_BODIES = {"pile": 8000, "boxpile": 2000}
+STAGES = ["integration", "broadphase", "slots", "narrowphase", "impacts", "response", "correction"]
+
+HEAD = """# Performance
+
+<!-- Written by scripts/performance.py; run it again rather than edit this page. -->
+
+How fast whole steps are, and at which error: a speed counts only beside the error that it comes with. A step is everything: motion,
+candidates, contacts, impacts, impulses, correction, ledger. All bodies are awake; nothing is damped, put to sleep or cut off. Times are
+medians over steps, 100 where a run had the time, once the scene has settled for as long as its table says. Overlaps are of the true
+shapes at the end of a step, by the smaller body's size, the mean over all that overlap. Each table names the program that measured it
+(`scripts/performance.py`), the commit and the hardware; the files linked hold every run with its own command line.
+"""
+
+
+class Row(dict):
+    """A run: what was asked for and, over it, what it gave. Its keys are attributes."""
+
+    __getattr__ = dict.__getitem__
+
+    @property
+    def machine(self):
+        return self.hardware.split(" beside ")[0] if self.space == "cuda" else self.hardware
+
+    @property
+    def curve(self):
+        return f"{self.machine}, {self.precision}"
+
+
+def rows_of(*parts):
+    """(runs, [what did not run and why]), of all machines; of a run that was made again, the last that came to its end."""
+    done, failed = {}, {}
+    for part in parts:
+        for file in sorted((ROOT / "bench/results").glob(f"*/step/{part}.jsonl")):
+            for line in map(json.loads, file.read_text().splitlines()):
+                key = (file.parent.parent.name, line["space"], line["name"])
+                if "result" in line:
+                    line |= line.pop("result")
+                    done[key] = Row(line | line["varied"], file=file)
+                else:
+                    failed[key] = f'{key[0]}, {key[2]}, {key[1]}: {line["failed"]}'
+    rows = sorted(done.values(), key=lambda row: (row.space != "cuda", row.machine, row.precision != "mixed"))
+    return rows, [words for key, words in failed.items() if key not in done]
+
+
+def caption(rows):
+    """Who measured, where, and with which commit."""
+    lines = {}
+    for row in rows:
+        folder = row.file.parent.relative_to(ROOT)
+        command = f"scripts/performance.py measure BUILD {folder} {row.asked}"
+        link = os.path.relpath(row.file, PAGE.parent)
+        lines.setdefault((row.hardware, f"[`{command}`]({link})"), set()).add(row.commit[:10] + ("+" if row.commit.endswith("+") else ""))
+    by_origin = {}
+    for (hardware, command), commits in lines.items():
+        by_origin.setdefault((hardware, ", ".join(sorted(commits))), []).append(command)
+    words = [f'{hardware}, commit {commits}: {"; ".join(commands)}' for (hardware, commits), commands in by_origin.items()]
+    return ["Measured on " + ".\n\nMeasured on ".join(words) + ".", ""]
+
+
+def left_out(failed):
+    return [f"Did not run: {'; '.join(failed)}.", ""] if failed else []
+
+
+def curves_of(rows, x, y, key=lambda row: row.curve):
+    """A line for each value of `key`, through the rows as they come."""
+    names = list(dict.fromkeys(map(key, rows)))
+    return [([(x(row), y(row)) for row in rows if key(row) == name], line_of(k, name)) for k, name in enumerate(names)]
+
+
+def picture(name, settings, curves):
+    PICTURES.mkdir(parents=True, exist_ok=True)
+    return [f"![{name}]({os.path.relpath(plot(PICTURES, name, settings, curves), PAGE.parent)})", ""]
+
+
+def over_bodies(name, rows, y, label, scale="xy"):
+    settings = f"set logscale {scale}\nset format x '10^{{%T}}'\nset xlabel 'bodies'\nset ylabel '{label}'\nset yrange [{'*' if 'y' in scale else 0}:]\n"
+    return picture(name, settings, curves_of(rows, lambda row: row.bodies, y))
+
+
+def small(x):
+    return f"{x:.1e}"
+
+
+SPEED = {
+    "bodies": lambda row: count(row.bodies),
+    "contacts": lambda row: count(row.contacts),
+    "ms/step": lambda row: three(row.median_ms),
+    "steps/s": lambda row: three(row.steps_per_s),
+    "body-steps/s": lambda row: small(row.body_steps_per_s),
+    "substeps": lambda row: three(row.substeps),
+    "sweeps": lambda row: three(row.sweeps),
+}
+ERROR = {
+    "mean overlap": lambda row: small(row.penetration_relative_mean),
+    "worst": lambda row: small(row.penetration_relative_max),
+    "median speed (mm/s)": lambda row: three(1e3 * row.speed_median),
+    "unexplained energy": lambda row: small(row.unexplained),
+}
+WHERE = {"hardware": lambda row: row.machine, "precision": lambda row: row.precision}
+SETTLED = {"settled for (s)": lambda row: f"{row.time * row.settling_steps / (row.settling_steps + row.steps):.2g}", "steps": lambda row: f"{row.steps:.0f}"}
+
+
+def table_of(rows, columns):
+    return table(list(columns), [[cell(row) for cell in columns.values()] for row in rows])
+
+
+def scaling_rows():
+    rows, failed = rows_of("spheres", "spheres-double", "spheres-largest")
+    return sorted(rows, key=lambda row: (row.space != "cuda", row.machine, row.precision != "mixed", row.bodies)), failed
+
+
+def scaling(number):
+    rows, failed = scaling_rows()
+    if not rows:
+        return []
+    lines = [f"## {number}. Speed against the number of bodies", "",
+             "Spheres of +-20 % at rest in a box ([scene](../configs/bench/settled_spheres.yaml)), friction 0.5, step 1/240 s: as deep as wide up to a "
+             "million, which are 100 layers; more are as deep, and wider. Not all are at rest when they are timed: the median speed says it.", ""]
+    lines += over_bodies("steps", rows, lambda row: row.steps_per_s, "steps/s")
+    lines += over_bodies("body_steps", rows, lambda row: row.body_steps_per_s, "body-steps/s")
+    return lines + table_of(rows, WHERE | SPEED | ERROR | SETTLED) + left_out(failed) + caption(rows)
+
+
+def stages_of(row):
+    """Shares of the stages, and what is in none of them."""
+    seen = row.by_calls if row.space == "cuda" else row
+    total = row.by_calls["mean_ms"] if row.space == "cuda" else row.mean_ms
+    shares = [seen["stages_ms"].get(stage, 0) / total for stage in STAGES]
+    return shares + [max(0.0, 1 - sum(shares))]
+
+
+def stages(number):
+    rows, _ = scaling_rows()
+    if not rows:
+        return []
+    lines = [f"## {number}. Where the time goes", "",
+             "Shares of the stages ([method](method.md)) in the runs of section 1, which has their commands and commits. On Device from ten steps more in which each parallel call is waited for, "
+             "without which calls run side by side with those that come after.", ""]
+    for k, name in enumerate(dict.fromkeys(row.curve for row in rows)):
+        of_curve = [row for row in rows if row.curve == name]
+        bars = []
+        for s in reversed(range(len(STAGES) + 1)):
+            points = [(x, 100 * sum(stages_of(row)[: s + 1]), count(row.bodies)) for x, row in enumerate(of_curve)]
+            bars.append((points, f"using 1:2:xtic(3) with boxes lc rgb '{COLORS[s]}' title '{[*STAGES, 'the rest'][s]}'"))
+        lines += picture(f"stages_{k}", f"set title '{name}'\nset xlabel 'bodies'\nset ylabel '% of a step'\nset yrange [0:100]\n", bars)
+        row = min(of_curve, key=lambda row: abs(math.log(row.bodies / 1e6)))
+        calls = sorted(row.by_calls["calls_ms"].items(), key=lambda call: -call[1])[:8]
+        lines += [f"The longest calls of {count(row.bodies)} bodies, {name}, each waited for:", "",
+                  *table(["call", "ms/step", "%"], [[f"`{call}`", three(ms), f"{100 * ms / row.by_calls['mean_ms']:.0f}"] for call, ms in calls])]
+    return lines
+
+
+def memory(number):
+    rows = [row for row in scaling_rows()[0] if row.bodies >= 5000]  # or the program itself is most of it
+    if not rows:
+        return []
+    lines = [f"## {number}. Memory", "",
+             "On Device what the bodies, their contacts and all buffers have in use; on Host what the process has resident, the program (30 MB) and "
+             "the scene included. The runs, with their commands and commits, are those of section 1; the peak is that of a whole run up to the end of the "
+             "steps that are timed.", ""]
+    lines += over_bodies("memory", rows, lambda row: row.memory_peak_bytes / row.bodies, "bytes per body at the peak", "x")
+    columns = WHERE | {"bodies": SPEED["bodies"], "bytes/body": lambda row: three(row.memory_bytes / row.bodies),
+                       "at the peak": lambda row: three(row.memory_peak_bytes / row.bodies), "peak (GB)": lambda row: three(row.memory_peak_bytes / 1e9)}
+    return lines + table_of(rows, columns)
+
+
+def other_scenes(number):
+    rows, failed = rows_of("boxes", "decades", "drum")
+    if not rows:
+        return []
+    rows.sort(key=lambda row: (row.scene, row.space != "cuda", row.machine, row.precision != "mixed", row.bodies))
+    scene = {"scene": lambda row: f"[{row.scene}](../configs/bench/{row.scene}.yaml)"}
+    return [f"## {number}. Other scenes", "",
+            "Boxes at rest; balls with radii over two decades; a drum with a ball that thousands touch. Each scene says what it is, and how its number is "
+            "changed.", "", *table_of(rows, scene | WHERE | SPEED | ERROR | SETTLED), *left_out(failed), *caption(rows)]
+
+
+def crossings(rows):
+    """From how many bodies on a GPU is the faster, beside the same machine's Host."""
+    lines = []
+    for gpu in dict.fromkeys((row.file, row.machine) for row in rows if row.space == "cuda"):
+        for precision in ("double", "mixed"):
+            ms = {(row.space, row.bodies): row.median_ms for row in rows if row.file == gpu[0] and row.precision == precision}
+            both = sorted(n for space, n in ms if space == "host" and ("cuda", n) in ms)
+            faster = []
+            for n in reversed(both):
+                if ms["cuda", n] >= ms["host", n]:
+                    break
+                faster = [n, *faster]
+            if both:
+                lines.append(f"- {gpu[1]}, {precision}: " + (f"faster than its host from {count(faster[0])} bodies on, of those measured." if faster else
+                                                             f"slower than its host up to {count(both[-1])} bodies, the most that were measured."))
+    return lines + [""] if lines else []
+
+
+def crossover(number):
+    rows, failed = rows_of("crossover")
+    if not rows:
+        return []
+    rows.sort(key=lambda row: (row.bodies, row.space, row.precision))
+    lines = [f"## {number}. Host against Device", "",
+             "Spheres at rest, as in section 1, by the processor and by the GPU of one machine. On Host double takes Host's own step, and mixed the one that "
+             "Device takes ([decision 0022](decisions/0022-resident-steps.md)). Scenes of under 2,500 contact points are solved until they converge, "
+             "in more sweeps ([decision 0005](decisions/0005-sweeps-by-contacts.md)).", ""]
+    lines += over_bodies("crossover", rows, lambda row: row.median_ms, "ms/step") + crossings(rows)
+    return lines + table_of(rows, WHERE | SPEED | ERROR) + left_out(failed) + caption(rows)
+
+
+def speed_against_error(number):
+    rows, failed = rows_of("error")
+    if not rows:
+        return []
+    lines = [f"## {number}. Speed against error", "",
+             "Spheres at rest, as in section 1, in every combination of 1, 2 and 4 substeps with 3, 6, 12 and 24 sweeps "
+             "(`time.substeps`, `response.iterations`) and both precisions. `response.tolerance` is out of reach, so that sweeps end at their number, or, "
+             "mixed, where floats end. A line is a number of substeps, and sweeps go on along it.", ""]
+    rows.sort(key=lambda row: (row.space != "cuda", row.machine, row.precision != "mixed", row.substeps, row.iterations))
+    key = lambda row: f"{row.curve}, {row.substeps} to a step"
+    words = {"overlap": (lambda row: row.penetration_relative_mean, "mean overlap (of the radius)"),
+             "speed": (lambda row: 1e3 * row.speed_median, "median speed (mm/s)")}
+    for name, (error, label) in words.items():
+        lines += picture(f"error_{name}", f"set logscale xy\nset xlabel 'ms/step'\nset ylabel '{label}'\nset format y '10^{{%T}}'\n",
+                         curves_of(rows, lambda row: row.median_ms, error, key))
+    best = [row for row in rows if not any(other.median_ms < row.median_ms and other.penetration_relative_mean <= row.penetration_relative_mean and
+                                           other.machine == row.machine for other in rows)]
+    best.sort(key=lambda row: (row.machine, row.median_ms))
+    return [*lines, "Those that none beats in both time and mean overlap:", "",
+            *table_of(best, WHERE | {"bodies": SPEED["bodies"], "substeps": SPEED["substeps"], "sweeps asked": lambda row: row.iterations,
+                                        "sweeps of a step": SPEED["sweeps"], "ms/step": SPEED["ms/step"]} | ERROR),
+            *left_out(failed), *caption(rows)]
+
+
+def peers_of(case):
+    """Rows of the table of bench/peers, by the heads of its columns."""
+    rows, inside, head = [], False, None
+    for line in PEERS.read_text().splitlines():
+        cells = [cell.strip() for cell in line.strip().strip("|").split("|")]
+        if line.startswith("## "):
+            inside, head = line == f"## {case}", None
+        elif inside and line.startswith("| ") and head is None:
+            head = cells
+        elif inside and line.startswith("| "):
+            rows.append(dict(zip(head, cells)))
+    return [row for row in rows if row["engine"] != "scree" and row["us/step"] and row["penetration mean (r)"]]
+
+
+def peers(number):
+    rows, failed = rows_of("heaps")
+    if not rows:
+        return []
+    machine = PEERS.read_text().split(": ")[1].split(",")[0]
+    lines = [f"## {number}. Beside other engines", "",
+             "Two heaps as [the table of bench/peers](../bench/results/epyc-2-cores/peers.md) has them: 8,000 spheres at rest and 2,000 boxes that still topple. "
+             "The others are on one thread of the machine of that table; rows with * were measured earlier, on another machine. scree is on all cores or on the GPU, "
+             "after 2.5 s; on one thread it is in that table.", ""]
+    for case, bodies in HEAP_BODIES.items():
+        here = [row for row in rows if row.scene == case]
+        others = peers_of(case)
+        measured_here = {row["engine"] for row in others if not row["engine"].endswith("*")}
+        points = [(float(row["us/step"]) / 1e3, float(row["penetration mean (r)"]), f'{row["engine"]}, {row["setting"]}, {row["step (s)"]}') for row in others
+                  if row["engine"] in measured_here or row["engine"].split()[0] not in measured_here]
+        labelled = "using 1:2:3 with labels offset 0,0.8 font ',9' notitle"
+        lines += picture(f"peers_{case}", "set logscale xy\nset format y '10^{%T}'\nset offsets graph 0.2, graph 0.2, graph 0.1, graph 0.1\n"
+                         "set xlabel 'ms/step'\nset ylabel 'mean overlap (of the size)'\n",
+                         [(points, "using 1:2 with points pt 2 ps 1 lw 2 lc rgb '#444444' title 'others, one thread'"), (points, labelled),
+                          *curves_of(here, lambda row: row.median_ms, lambda row: row.penetration_relative_mean)])
+        cells = [[row.machine, f"scree, {row.precision}", "1/240", three(row.median_ms), small(row.body_steps_per_s), small(row.penetration_relative_mean),
+                  small(row.penetration_relative_max)] for row in here]
+        cells += [["another, one thread" if row["engine"].endswith("*") else f"{machine}, one thread", f'{row["engine"]}, {row["setting"]}', row["step (s)"], three(float(row["us/step"]) / 1e3), small(bodies / float(row["us/step"]) * 1e6),
+                   small(float(row["penetration mean (r)"])), small(float(row["penetration max (r)"]))] for row in others]
+        lines += table([f"{case}: hardware", "engine, setting", "step (s)", "ms/step", "body-steps/s", "mean overlap", "worst"], cells)
+    return lines + left_out(failed) + caption(rows)
+
+
+def write():
+    """Sections without results are left out."""
+    text = HEAD
+    number = 1
+    for section in (scaling, stages, memory, other_scenes, crossover, speed_against_error, peers):
+        if lines := section(number):
+            text += "\n" + "\n".join(lines).rstrip("\n") + "\n"
+            number += 1
+    PAGE.write_text(text)
+    print(PAGE)

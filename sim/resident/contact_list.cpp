@@ -1,0 +1,50 @@
+#include "sim/resident/contact_list.hpp"
+
+#include "core/parallel.hpp"
+
+#include <utility>
+
+namespace scree::resident {
+
+namespace {
+
+constexpr std::int64_t tile = 256;
+
+struct ListContacts {
+  const std::int32_t* found;
+  ConstView<std::int64_t> number;
+  View<std::int32_t> places;
+  SCREE_HD void operator()(std::int64_t place) const {
+    if (has_contact(found, place))
+      places[number[place / tile] + place % tile] = static_cast<std::int32_t>(place);
+  }
+};
+
+struct FirstOfColor {
+  ConstView<std::int64_t> number;
+  ConstView<std::int64_t> tile;
+  View<std::int64_t> first;
+  SCREE_HD void operator()(std::int64_t c) const { first[c] = number[tile[c]]; }
+};
+
+}  // namespace
+
+template <class Space>
+void ContactList<Space>::make(const ColorTiles& colors, const Array<std::int32_t, Space>& found) {
+  places_.resize(parallel::exclusive_scan("contacts.list", found, number_));
+  parallel::for_each<Space>("contacts.list", tile * colors.tiles(),
+                            ListContacts{found.data(), std::as_const(number_).view(), places_.view()});
+  std::vector<std::int64_t> tiles;
+  for (const std::int64_t t : colors.begin) tiles.push_back(t - colors.begin.front());
+  copy(tile_, tiles);
+  first_.resize(tile_.size());
+  parallel::for_each<Space>(
+      "contacts.list", tile_.size(),
+      FirstOfColor{std::as_const(number_).view(), std::as_const(tile_).view(), first_.view()});
+  copy(begin_, first_);
+}
+
+#define SCREE_INSTANTIATE(Space) template class ContactList<Space>;
+SCREE_FOR_EACH_SPACE(SCREE_INSTANTIATE)
+
+}  // namespace scree::resident
