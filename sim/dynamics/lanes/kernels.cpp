@@ -20,9 +20,9 @@ struct Lanes {
     return r;
   }
   static bool any(const decltype(V{} > V{}) & condition) {
-    bool any = false;
-    for (int l = 0; l < width; ++l) any = any || condition[l] != 0;
-    return any;
+    const auto fours = condition | __builtin_shufflevector(condition, condition, 4, 5, 6, 7, 0, 1, 2, 3);
+    const auto twos = fours | __builtin_shufflevector(fours, fours, 2, 3, 0, 1, 6, 7, 4, 5);
+    return (twos[0] | twos[1]) != 0;
   }
   static HalfTurn<Lanes> half_turn(const V& square) { return half_turn_series<Lanes>(square); }
 };
@@ -398,7 +398,12 @@ struct PointSweep {
     const V3 old = get(row.impulse.impulse);
     V3 p;
     if constexpr (rough) {
-      p = impulse_of(law_of(row), n, get(batch->friction), old, u);
+      const auto stuck = sticking(law_of(row), n, get(batch->friction), old, u);
+      const V pn = normal_impulse_of(law_of(row), n, old, u);
+      p = where(stuck.holds, stuck.impulse, pn * n);
+      // Where nothing slides, which costs as much as all before.
+      if (Lanes::any(~stuck.holds & (pn > 0)))
+        p = where(stuck.holds, p, sliding_impulse(law_of(row), n, get(batch->friction), old, u, pn));
     } else {
       p = smooth_impulse_of(n, get(row.target), get(row.normal_mass), old, dot(u, n));
     }
@@ -578,32 +583,36 @@ double fly_points(const PointBatch& batch, const PointRow* rows, PointParting* p
   return deepest;
 }
 
-/// As PointSweep.
+/// As PointSweep. All points of a contact have its normal, so that along it their bodies part alike.
 struct PointParts {
   const PointBatch* batch;
   PointParting* points;
   Bodies i, j;
+  V masses;
+  V parted, pushed;  // of the centres along the normal
   V least;
 
   [[gnu::always_inline]] void enter(const Body* bodies) {
     i = load(bodies, batch->ends.i);
     j = load(bodies, batch->ends.j);
-    least = all(0);
+    masses = i.inverse_mass + j.inverse_mass;
+    parted = dot(get(batch->normal), j.velocity - i.velocity);
+    pushed = least = all(0);
   }
   [[gnu::always_inline]] void visit(int k, double share) {
     PointParting& point = points[k];
-    const V3 n = get(batch->normal);
     const V3 turn_i = get(point.turn_i);
     const V3 turn_j = get(point.turn_j);
-    const V gap =
-        get(point.gap) + dot(n, j.velocity - i.velocity) + (dot(turn_j, j.spin) - dot(turn_i, i.spin));
+    const V gap = get(point.gap) + parted + (dot(turn_j, j.spin) - dot(turn_i, i.spin));
     const V more = part(gap, batch->cap, share, point.normal_mass, point.pushed);
-    push_centres(more * n, i, j);
+    parted += masses * more;
+    pushed += more;
     i.spin = i.spin - more * turn_i;
     j.spin = j.spin + more * turn_j;
     least = gap < least ? gap : least;
   }
-  [[gnu::always_inline]] double leave(Body* bodies) const {
+  [[gnu::always_inline]] double leave(Body* bodies) {
+    push_centres(pushed * get(batch->normal), i, j);
     store(i, bodies, batch->ends.i);
     store(j, bodies, batch->ends.j);
     return deepest(least, get(batch->cap));

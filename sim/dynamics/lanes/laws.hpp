@@ -8,6 +8,8 @@
 #include "core/space.hpp"
 #include "core/tolerances.hpp"
 
+#include <type_traits>
+
 #define SCREE_LAW [[gnu::always_inline]] SCREE_HD inline
 
 namespace scree::lanes {
@@ -306,22 +308,45 @@ SCREE_LAW Booked<A> booked(const Point<A>& at, const V3<A>& n, const V3<A>& p, c
   return {-normal_part, normal_part - dot(p, mean), of_i - of_j};
 }
 
-/// coulomb_update() of a point that carries p, given its relative velocity u.
+/// The parts of coulomb_update() of a point that carries p, given its relative velocity u: what would make it
+/// stick, and where that holds;
+template <class A, class Condition>
+struct Sticking {
+  V3<A> impulse;
+  Condition holds;
+};
+template <class A>
+SCREE_LAW auto sticking(const PointLaw<A>& law, const V3<A>& n, const typename A::V& friction, const V3<A>& p,
+                        const V3<A>& u) {
+  using V = typename A::V;
+  const V3<A> impulse = p - law.stick * (u - law.target * n);
+  const V pn = dot(impulse, n);
+  const V3<A> pt = impulse - pn * n;
+  const V radius = friction * pn;
+  const auto holds = (friction > 0) & (pn >= 0) & (dot(pt, pt) <= radius * radius);
+  return Sticking<A, std::remove_const_t<decltype(holds)>>{impulse, holds};
+}
+/// else the normal impulse,
+template <class A>
+SCREE_LAW typename A::V normal_impulse_of(const PointLaw<A>& law, const V3<A>& n, const V3<A>& p,
+                                          const V3<A>& u) {
+  return above_zero<A>(dot(p, n) - (dot(u, n) - law.target) * law.normal_mass);
+}
+/// and all of it.
+template <class A>
+SCREE_LAW V3<A> sliding_impulse(const PointLaw<A>& law, const V3<A>& n, const typename A::V& friction,
+                                const V3<A>& p, const V3<A>& u, const typename A::V& pn) {
+  const typename A::V pn_old = dot(p, n);
+  const V3<A> v = u + (pn - pn_old) * law.coupling;
+  const V3<A> pt = p - pn_old * n - law.tangent_mass * (v - dot(v, n) * n);
+  return on_disc(pn, pt, n, friction);
+}
 template <class A>
 SCREE_LAW V3<A> impulse_of(const PointLaw<A>& law, const V3<A>& n, const typename A::V& friction,
                            const V3<A>& p, const V3<A>& u) {
-  using V = typename A::V;
-  const V3<A> sticking = p - law.stick * (u - law.target * n);
-  const V pn_sticking = dot(sticking, n);
-  const V3<A> pt_sticking = sticking - pn_sticking * n;
-  const V radius = friction * pn_sticking;
-  const auto sticks =
-      (friction > 0) & (pn_sticking >= 0) & (dot(pt_sticking, pt_sticking) <= radius * radius);
-  const V pn_old = dot(p, n);
-  const V pn = above_zero<A>(pn_old - (dot(u, n) - law.target) * law.normal_mass);
-  const V3<A> v = u + (pn - pn_old) * law.coupling;
-  const V3<A> pt = p - pn_old * n - law.tangent_mass * (v - dot(v, n) * n);
-  return where(sticks, sticking, on_disc(pn, pt, n, friction));
+  const auto stuck = sticking(law, n, friction, p, u);
+  return where(stuck.holds, stuck.impulse,
+               sliding_impulse(law, n, friction, p, u, normal_impulse_of(law, n, p, u)));
 }
 
 /// What more a point pushes that has pushed so much (kg m), to close in on a gap of 0 by a share. Where
