@@ -131,6 +131,36 @@ bodies:
   EXPECT_NEAR(seen.coordination_mean, host.observe().coordination_mean, 0.3);
 }
 
+/// 60 layers: with the sweeps of a heap at rest alone they still overlap by 4e-4 on average, and swing.
+TEST_P(ResidentStep, ATallColumnComesToRest) {
+  if (is_mixed()) GTEST_SKIP() << "sweeps go by the same rule";
+  Simulation run = simulate(R"(
+gravity: [0, 0, -9.81]
+time: {end: 1.2, step: 0.004166666666666667}
+materials:
+  stone: {density: 1000, restitution: 0.1, friction: 0.5}
+  wall: {density: 1000, restitution: 0.1, friction: 0}
+bodies:
+  - {plane: {normal: [0, 0, 1], offset: 0}, material: stone}
+  - {plane: {normal: [1, 0, 0], offset: 0}, material: wall}
+  - {plane: {normal: [-1, 0, 0], offset: -0.655}, material: wall}
+  - {plane: {normal: [0, 1, 0], offset: 0}, material: wall}
+  - {plane: {normal: [0, -1, 0], offset: -0.655}, material: wall}
+  - sphere: {radius: {uniform: [0.05, 0.06]}}
+    at: [0.0608, 0.0608, 0.0605]
+    repeat: {count: [5, 5, 30], spacing: [0.1206, 0.1206, 0.1428], jitter: 0.0003}
+    material: stone
+  - sphere: {radius: {uniform: [0.04, 0.05]}}
+    at: [0.1211, 0.1211, 0.1319]
+    repeat: {count: [5, 5, 30], spacing: [0.1206, 0.1206, 0.1428], jitter: 0.0003}
+    material: stone)");
+  run_to_end(run);
+  const Observation& seen = run.observe();
+  EXPECT_LT(seen.penetration.relative_mean, 5e-5);
+  EXPECT_LT(seen.speed_rms, 4e-3);
+  EXPECT_LT(std::abs(seen.unexplained), 1e-12);
+}
+
 /// A heavy ball on a bed of many light ones that all touch it: its contacts are shared out.
 TEST_P(ResidentStep, AHubIsHeld) {
   Simulation run = simulate(std::string(grain) + R"(
