@@ -56,7 +56,7 @@ def lattice(n, most_layers, height, wall):
 def spheres(n, precision="mixed", **rest):
     settings = lattice(n, 71, 71 / 84, lambda side: 0.1206 * side + 0.052)
     return Run(**({"scene": "settled_spheres", "settings": settings, "settle": 2 if n < 10**6 else 5,
-                   "within": 15 if n < 10**6 else 60, "precision": precision, "varied": {"n": n}} | rest))
+                   "within": 15 if n < 10**6 else 110, "precision": precision, "varied": {"n": n}} | rest))
 
 
 def boxes(n, precision="mixed"):

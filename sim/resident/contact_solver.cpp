@@ -237,7 +237,8 @@ template <class Space, class Real>
 void ContactSolver<Space, Real>::find_impulses(const ResponseParameters& parameters, Counters& counters) {
   SweepPlan plan = plan_sweeps(parameters, counts_.contacts, counts_.points);
   if (std::is_same_v<Real, float>) plan.tolerance = std::max(plan.tolerance, tolerance::mixed_change);
-  if (is_heap(counts_.points)) {
+  // Of bodies that share several points the measure of slow modes tells mostly of how these share their load.
+  if (is_heap(counts_.points) && !shares_loads(counts_.contacts, counts_.points)) {
     plan.least *= patience_;
     plan.most = std::max(plan.most, plan.least);
   }
