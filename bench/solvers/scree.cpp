@@ -103,7 +103,9 @@ class Replay {
       const SolverBody j = solver_body(c.j);
       frames_.push_back(frame_of(c));
       ContactRow& row = set_.rows.view()[p];
-      row = c.balls ? make_ball_row(point.arm_i, point.arm_j, 0, i, j) : row_at(point.arm_i, point.arm_j, 0);
+      RowCoupling coupling;  // the sweeps make their own
+      row = c.balls ? make_ball_row(point.arm_i, point.arm_j, 0, i, j)
+                    : make_row(c.normal, point.arm_i, point.arm_j, 0, i, j, coupling);
       row.target = point.target;
     }
   }
