@@ -210,7 +210,8 @@ template <class Record>
 JoinHubs<Record> ContactSolver<Space, Real>::join_hubs(Array<Record, Space>& bodies) {
   const ConstView<std::int32_t> hub_of = slots_.hub_of_parts();
   parts_sums_.resize(hub_of.size());
-  return {slots_.hubs(), hub_of, bodies.size() - hub_of.size(), bodies.data(), parts_sums_.data()};
+  Record* const records = bodies.empty() ? nullptr : bodies.data();
+  return {slots_.hubs(), hub_of, bodies.size() - hub_of.size(), records, parts_sums_.data()};
 }
 
 template <class Space, class Real>
