@@ -1,6 +1,7 @@
 #include "sim/resident/contact_list.hpp"
 
 #include "core/parallel.hpp"
+#include "core/space_tiles.hpp"
 
 #include <utility>
 
@@ -8,7 +9,7 @@ namespace scree::resident {
 
 namespace {
 
-constexpr std::int64_t tile = 256;
+constexpr std::int64_t tile = parallel::tile;
 
 struct ListContacts {
   const std::int32_t* found;
