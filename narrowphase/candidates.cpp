@@ -2,6 +2,7 @@
 #include "narrowphase/candidates.hpp"
 
 #include "core/parallel.hpp"
+#include "narrowphase/far_apart.hpp"
 
 #include <bit>
 #include <limits>
@@ -53,7 +54,7 @@ struct CandidateKey {
  private:
   SCREE_HD std::uint64_t of_pair(const Pair& pair) const {
     const bool taken = (is_free(pair.i) || is_free(pair.j)) && !is_plane(pair.i) && !is_plane(pair.j);
-    return taken ? key.of(pair.i, pair.j) : no_key;
+    return taken && !are_far(pair.i, pair.j) ? key.of(pair.i, pair.j) : no_key;
   }
   SCREE_HD std::uint64_t of_plane(std::int32_t plane, std::int32_t body) const {
     if (!is_free(body) || bodies.mobility[plane] == Mobility::absent) return no_key;
@@ -62,6 +63,14 @@ struct CandidateKey {
         bounding_radius(bodies.shape[body], bodies.size[body]) + margin[plane] + margin[body];
     if (!(up.dot(bodies.position[body] - bodies.position[plane]) <= reach)) return no_key;
     return plane < body ? key.of(plane, body) : key.of(body, plane);
+  }
+  /// Spheres are in half of their boxes' volume: of a packing's pairs it takes two of five.
+  SCREE_HD bool are_far(std::int32_t i, std::int32_t j) const {
+    if (is_boundary(bodies.shape[i]) || is_boundary(bodies.shape[j])) return false;
+    const auto reach = [&](std::int32_t k) {
+      return bounding_radius(bodies.shape[k], bodies.size[k]) + margin[k];
+    };
+    return are_far_apart(bodies.position[i], bodies.position[j], reach(i) + reach(j));
   }
   SCREE_HD bool is_plane(std::int32_t k) const { return bodies.shape[k] == Shape::plane; }
   SCREE_HD bool is_free(std::int32_t k) const { return bodies.mobility[k] == Mobility::free; }

@@ -6,6 +6,7 @@
 #include "core/tolerances.hpp"
 #include "narrowphase/box_box_ccd.hpp"
 #include "narrowphase/box_box_crosscheck.hpp"
+#include "narrowphase/far_apart.hpp"
 #include "narrowphase/pair_contacts.hpp"
 
 #include <algorithm>
@@ -123,9 +124,7 @@ struct FindContacts {
 
   /// True if the spheres around two bodies are too far apart for a contact.
   bool are_far(std::int32_t i, std::int32_t j) const {
-    const double reach = extent[i] + extent[j];
-    return (bodies.position[j] - bodies.position[i]).squaredNorm() >
-           (1 + tolerance::far_rounding) * reach * reach;
+    return are_far_apart(bodies.position[i], bodies.position[j], extent[i] + extent[j]);
   }
 
   bool is_late(std::int32_t i, std::int32_t j) const {

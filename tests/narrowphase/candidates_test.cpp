@@ -62,14 +62,17 @@ TYPED_TEST(CandidatesTest, AreThePcsAndThePlanesInOrder) {
     }
   }
   std::vector<std::pair<std::int32_t, std::int32_t>> expected;
-  int near = 0;
+  int near = 0, close = 0, far = 0;
   for (std::int32_t i = 0; i < count; ++i) {
     for (std::int32_t j = i + 1; j < count; ++j) {
       if (b.mobility[i] != Mobility::free && b.mobility[j] != Mobility::free) continue;
       const bool plane_i = b.shape[i] == Shape::plane;
       if (!plane_i && b.shape[j] != Shape::plane) {
         const bool absent = b.mobility[i] == Mobility::absent || b.mobility[j] == Mobility::absent;
-        if (!absent && (i * j) % 3 != 0) expected.emplace_back(i, j);
+        if (absent || (i * j) % 3 == 0) continue;
+        const double gap = (b.position[j] - b.position[i]).norm() - b.size[i].x() - b.size[j].x();
+        (gap > 0.04 ? far : close) += 1;
+        if (gap <= 0.04) expected.emplace_back(i, j);
         continue;
       }
       const std::int32_t plane = plane_i ? i : j;
@@ -81,6 +84,8 @@ TYPED_TEST(CandidatesTest, AreThePcsAndThePlanesInOrder) {
     }
   }
   ASSERT_GT(near, 20);
+  ASSERT_GT(close, 50);
+  ASSERT_GT(far, 50);
   Bodies<TypeParam> bodies_there;
   Array<Pair, TypeParam> pcs_there;
   Array<double, TypeParam> margin_there;
