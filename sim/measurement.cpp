@@ -6,17 +6,16 @@
 
 namespace scree {
 
-void EnergyBaseline::start(const Totals& totals, double least_scale) {
-  first_potential_ = totals.potential;
-  first_total_ = totals.kinetic_linear + totals.kinetic_angular + totals.potential;
+void EnergyBaseline::start(const Energies& energies, double least_scale) {
+  first_potential_ = energies.potential;
+  first_total_ = energies.kinetic() + energies.potential;
   scale_ = least_scale;
-  extend(totals);
+  extend(energies);
 }
 
-void EnergyBaseline::extend(const Totals& totals) {
-  const double kinetic = totals.kinetic_linear + totals.kinetic_angular;
-  last_total_ = kinetic + totals.potential;
-  scale_ = std::max(scale_, kinetic + std::abs(totals.potential - first_potential_));
+void EnergyBaseline::extend(const Energies& energies) {
+  last_total_ = energies.kinetic() + energies.potential;
+  scale_ = std::max(scale_, energies.kinetic() + std::abs(energies.potential - first_potential_));
 }
 
 bool EnergyBaseline::is_finite() const { return std::isfinite(last_total_); }
@@ -34,8 +33,7 @@ void measure_totals(const Totals& totals, const EnergyBaseline& baseline, const 
   out.speed_kurtosis = count * totals.speed_fourth / (totals.speed_squared * totals.speed_squared);
   out.energy_scale = baseline.scale();
   const Ledger& l = out.ledger;
-  const double change =
-      totals.kinetic_linear + totals.kinetic_angular + totals.potential - baseline.first_total();
+  const double change = totals.kinetic() + totals.potential - baseline.first_total();
   const double explained =
       out.exchange.energy + l.work + l.integration - l.restitution - l.friction - l.correction;
   out.unexplained = out.energy_scale > 0 ? std::abs(change - explained) / out.energy_scale : 0.0;

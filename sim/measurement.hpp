@@ -18,8 +18,8 @@ namespace scree {
 /// rounding of its potential energy.
 class EnergyBaseline {
  public:
-  void start(const Totals& totals, double least_scale);
-  void extend(const Totals& totals);
+  void start(const Energies& energies, double least_scale);
+  void extend(const Energies& energies);
   /// Bodies came or went whose potential energy when they appeared was so much in sum (J).
   void exchange(double first_potential) { first_potential_ += first_potential; }
   bool is_finite() const;

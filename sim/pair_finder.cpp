@@ -108,8 +108,18 @@ template <class Space>
 ConstView<Pair> KeptPairs<Space>::covering(const Bodies<Space>& bodies,
                                            const Array<double, Space>& contact_margin, double reach,
                                            const ResponseParameters& parameters) {
+  {
+    const timing::Region region("broadphase");
+    if (cover(bodies, contact_margin)) return pairs_;
+  }
+  return make(bodies, contact_margin, reach, parameters);
+}
+
+template <class Space>
+ConstView<Pair> KeptPairs<Space>::make(const Bodies<Space>& bodies,
+                                       const Array<double, Space>& contact_margin, double reach,
+                                       const ResponseParameters& parameters) {
   const timing::Region region("broadphase");
-  if (cover(bodies, contact_margin)) return pairs_;
   boxes_.put_around(bodies, reach, parameters, contact_margin);
   const ConstView<Pair> pcs = finder_->find(bodies, boxes_.margin());
   pcs_size_ = pcs.size();

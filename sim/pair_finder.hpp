@@ -4,6 +4,7 @@
 
 #include "broadphase/broad_phase.hpp"
 #include "core/bodies.hpp"
+#include "core/tolerances.hpp"
 #include "narrowphase/candidates.hpp"
 #include "sim/dynamics/motion.hpp"
 #include "sim/inspection.hpp"
@@ -46,13 +47,25 @@ class KeptPairs {
     if (step % steps_kept == 0) forget();
   }
   /// Candidates among which are all pairs that may come as close as their contact margins (m). Where they
-  /// have to be made anew, they have room for the bodies' travel within `reach` (s). Valid until the next
-  /// call.
+  /// have to be made anew, they have room for the bodies' travel within `reach` (s). Valid until they are
+  /// made the next time.
   ConstView<Pair> covering(const Bodies<Space>& bodies, const Array<double, Space>& contact_margin,
                            double reach, const ResponseParameters& parameters);
+  /// Candidates made anew, likewise.
+  ConstView<Pair> make(const Bodies<Space>& bodies, const Array<double, Space>& contact_margin, double reach,
+                       const ResponseParameters& parameters);
+  /// Those last made.
+  ConstView<Pair> pairs() const { return pairs_; }
   /// Whether they still do, for the bodies where they are now.
   bool cover(const Bodies<Space>& bodies, const Array<double, Space>& contact_margin) const {
     return kept_ && boxes_.hold(bodies, contact_margin);
+  }
+  /// The same with the margins (m) of contacts within `foresight` (s), which are set.
+  bool cover(const Bodies<Space>& bodies, double foresight, const ResponseParameters& parameters,
+             Array<double, Space>& contact_margin) const {
+    if (kept_) return boxes_.hold(bodies, foresight, parameters, contact_margin);
+    contact_margins<Space>(bodies, foresight, tolerance::contact_slack, parameters, contact_margin);
+    return false;
   }
   /// Raises the margins (m) by what each body has moved since the pairs were made.
   void add_travel(const Bodies<Space>& bodies, Array<double, Space>& contact_margin) const {

@@ -86,6 +86,9 @@ class ResidentStepper final : public Stepper {
   void copy_state(BodyTable& out) const override { copy_bodies(out, bodies_); }
   SteppedBody body(std::int32_t id) const override;
   std::int32_t non_finite_body() const override { return first_non_finite<Space>(bodies_); }
+  Energies energies(const Vec3& reference) const override {
+    return energies_of<Space>(bodies_, parameters_.gravity, reference);
+  }
   Totals totals(const Vec3& reference) const override {
     return totals_of<Space>(bodies_, parameters_.gravity, reference);
   }
@@ -132,7 +135,7 @@ class ResidentStepper final : public Stepper {
   }
   void give_candidates(ConstView<Pair> pairs);
   ConstView<LoadedParts> loads_of(ConstView<Pair> pairs);
-  bool resolve_impacts(double h, double from, double reach);
+  bool resolve_impacts(double h, double from, double foresight, double reach);
   void add_impulse_on_driven(const Impact& impact);
   void add_impulses_on_driven();
 
@@ -169,11 +172,10 @@ void ResidentStepper<Space, Real>::substep(double h, double done) {
   struck_.clear();
   forces_.start_substep(bodies_);
   fly(grid_.time(step_) + done + 0.5 * h, 0.5 * h);
-  resolve_impacts(h, 0, reach_from(h, done));
+  const bool struck = resolve_impacts(h, 0, h, reach_from(h, done));
   const bool late = impacts_.any_is_late();
-
-  contact_margins<Space>(bodies_, h, tolerance::contact_slack, parameters_, contact_margin_);
-  give_candidates(kept_pairs_.covering(bodies_, contact_margin_, reach_from(h, done), parameters_));
+  give_candidates(struck ? kept_pairs_.covering(bodies_, contact_margin_, reach_from(h, done), parameters_)
+                         : kept_pairs_.pairs());
   counters.pcs_made = kept_pairs_.times_made();
   const double scale = last_substep_ > 0 ? h / last_substep_ : 1.0;
   const FlightStage flight = impacts_.stage(terms(h, 0), parameters_, views());
@@ -186,7 +188,7 @@ void ResidentStepper<Space, Real>::substep(double h, double done) {
     const timing::Region region("response");
     ledger = ledger + contacts_.solve(flight, late, counters);
   }
-  if (resolve_impacts(h, 0.5 * h, reach_from(h, done)))
+  if (resolve_impacts(h, 0.5 * h, 0.5 * h, reach_from(h, done)))
     contacts_.take_velocities(view_of(std::as_const(bodies_)));
   fly(grid_.time(step_) + done + h, 0.5 * h);
   ledger.work += forces_.work(bodies_);
@@ -215,29 +217,31 @@ ConstView<LoadedParts> ResidentStepper<Space, Real>::loads_of(ConstView<Pair> pa
   return std::as_const(loads_).view();
 }
 
-/// Impacts of the flight of a substep from `from` on; whether there were any. `reach`: to the end of the step
-/// (s).
+/// Impacts of the flight of a substep from `from` on; whether there were any. Margins are set for contacts
+/// within `foresight` (s) from now on, at least the flight's end. `reach`: to the end of the step (s).
 template <class Space, class Real>
-bool ResidentStepper<Space, Real>::resolve_impacts(double h, double from, double reach) {
+bool ResidentStepper<Space, Real>::resolve_impacts(double h, double from, double foresight, double reach) {
   constexpr int most_attempts = 8;
-  const auto set_margins = [&] {
-    contact_margins<Space>(bodies_, 0.5 * h, tolerance::contact_slack, parameters_, contact_margin_);
+  const auto cover = [&] {
+    const timing::Region region("broadphase");
+    return kept_pairs_.cover(bodies_, foresight, parameters_, contact_margin_);
   };
-  set_margins();
+  bool covered = cover();
   for (int attempt = 1;; ++attempt) {
-    const ConstView<Pair> pairs = kept_pairs_.covering(bodies_, contact_margin_, reach, parameters_);
+    const ConstView<Pair> pairs =
+        covered ? kept_pairs_.pairs() : kept_pairs_.make(bodies_, contact_margin_, reach, parameters_);
     const timing::Region region("impacts");
     const Ledger moved = impacts_.resolve(
         {.pairs = pairs, .loaded = loads_of(pairs), .terms = terms(h, from)}, parameters_, views());
     if (impacts_.impacts().size() == 0) return false;
     // What was struck may have left the boxes: others that it can meet now are not among the pairs.
-    set_margins();
-    if (attempt == most_attempts || kept_pairs_.cover(bodies_, contact_margin_)) {
+    if (cover() || attempt == most_attempts) {
       ledger = ledger + moved;
       break;
     }
     kept_pairs_.add_travel(bodies_, contact_margin_);
     impacts_.undo(views());
+    covered = false;
   }
   counters.impacts += impacts_.impacts().size();
   if (impacts_.hit_bound()) ++counters.unfinished_impacts;

@@ -104,7 +104,7 @@ struct Simulation::Parts {
     if (presence.count() < scene.bodies.count())
       stepper->change_bodies([this](Bodies<Host>& bodies) { presence.begin(bodies); });
     first_orientation = scene.bodies.orientation;
-    baseline.start(stepper->totals(origin), lifting_energy(scene));
+    baseline.start(stepper->energies(origin), lifting_energy(scene));
     contents = contents_before = region_contents();
   }
 
@@ -125,7 +125,7 @@ struct Simulation::Parts {
         stepper->substep(h, s * h);
         overlap = std::max(overlap, stepper->overlap());
       }
-      baseline.extend(stepper->totals(origin));
+      baseline.extend(stepper->energies(origin));
       if (!baseline.is_finite()) throw RunError(non_finite_body());
     } catch (const RunError& error) {
       stepper->undo_step();
@@ -149,7 +149,7 @@ struct Simulation::Parts {
         [&](Bodies<Host>& bodies) { change = presence.update(step, scene, origin, bodies); });
     exchange = exchange + change.exchange;
     baseline.exchange(change.first_potential);
-    baseline.extend(stepper->totals(origin));
+    baseline.extend(stepper->energies(origin));
   }
 
   void observe_bodies(double time) {

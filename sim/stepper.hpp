@@ -50,6 +50,7 @@ class Stepper {
   virtual SteppedBody body(std::int32_t id) const = 0;
   /// The first body whose state is no longer finite; -1 if there is none.
   virtual std::int32_t non_finite_body() const = 0;
+  virtual Energies energies(const Vec3& reference) const = 0;
   virtual Totals totals(const Vec3& reference) const = 0;
   virtual double largest_speed() const = 0;
   virtual RegionContents contents_of(const Region& region) const = 0;

@@ -237,6 +237,9 @@ SteppedBody Substepper::body(std::int32_t id) const {
 
 std::int32_t Substepper::non_finite_body() const { return first_non_finite<Host>(bodies_); }
 
+Energies Substepper::energies(const Vec3& reference) const {
+  return energies_of<Host>(bodies_, parameters_.gravity, reference);
+}
 Totals Substepper::totals(const Vec3& reference) const {
   return totals_of<Host>(bodies_, parameters_.gravity, reference);
 }

@@ -42,6 +42,7 @@ class Substepper final : public Stepper {
   void copy_state(BodyTable& out) const override { copy_bodies(out, bodies_); }
   SteppedBody body(std::int32_t id) const override;
   std::int32_t non_finite_body() const override;
+  Energies energies(const Vec3& reference) const override;
   Totals totals(const Vec3& reference) const override;
   double largest_speed() const override { return scree::largest_speed<Host>(bodies_); }
   RegionContents contents_of(const Region& region) const override {

@@ -2,15 +2,18 @@
 
 #include "core/parallel.hpp"
 #include "core/space_atomic.hpp"
+#include "core/space_tiles.hpp"
 
 #include <algorithm>
 #include <bit>
+#include <utility>
 
 namespace scree {
 
 namespace {
 
 using detail::FirstMeeting;
+using detail::FlightBounds;
 using detail::Foreseen;
 using detail::ImpactProgress;
 using detail::Resolved;
@@ -25,28 +28,29 @@ constexpr FirstMeeting none{detail::infinite, ~std::uint64_t{0}};
 struct StartFlight {
   FlightStage stage;
   View<std::uint32_t> joined_in;
-  ImpactProgress* progress;
-  SCREE_HD void operator()(std::int64_t k) const {
+  SCREE_HD FlightBounds operator()(std::int64_t k) const {
+    FlightBounds bounds;
     const ConstView<PairLaw> laws = stage.terms.laws.table;
-    if (k < laws.size()) raise(&progress->restitution, ordered_bits(laws[k].restitution));
-    if (k >= stage.clock.size()) return;
+    if (k < laws.size()) bounds.restitution = laws[k].restitution;
+    if (k >= stage.clock.size()) return bounds;
     const double from = stage.terms.from;
     stage.clock[k] = from > 0 ? fmax(stage.clock[k], from) : 0.0;
     stage.hits[k] = 0;
     joined_in[k] = not_yet;
     stage.bound(static_cast<std::int32_t>(k));
-    raise(&progress->top_speed, ordered_bits(stage.top_speed[k]));
-    lower(&progress->smallest, ordered_bits(stage.size_of(k)));
+    bounds.top_speed = stage.top_speed[k];
+    bounds.smallest = stage.size_of(k);
+    return bounds;
   }
 };
 
 struct SetHarmless {
   FlightStage stage;
+  ConstView<FlightBounds> bounds;
   ImpactProgress* progress;
   SCREE_HD void operator()(std::int64_t) const {
-    const double harmless = stage.harmless_speed(std::bit_cast<double>(progress->smallest),
-                                                 std::bit_cast<double>(progress->restitution));
-    const bool nobody = 2 * std::bit_cast<double>(progress->top_speed) <= harmless;
+    const double harmless = stage.harmless_speed(bounds[0].smallest, bounds[0].restitution);
+    const bool nobody = 2 * bounds[0].top_speed <= harmless;
     progress->harmless = nobody ? HUGE_VAL : harmless;
   }
 };
@@ -307,9 +311,11 @@ void ImpactRounds<Space>::start(const FlightStage& stage) {
   shared_progress_.resize(1);
   ImpactProgress* progress = shared_progress_.data();
   copy_bytes<Space, Host>(progress, &progress_, sizeof(progress_));
-  parallel::for_each<Space>("impact.start", std::max(stage.bodies.count(), stage.terms.laws.table.size()),
-                            StartFlight{stage, joined_in_.view(), progress});
-  parallel::for_each<Space>("impact.harmless", 1, SetHarmless{stage, progress});
+  bounds_.resize(1);
+  parallel::sum_into<FlightBounds, Space>(
+      "impact.start", std::max(stage.bodies.count(), stage.terms.laws.table.size()),
+      StartFlight{stage, joined_in_.view()}, bounds_scratch_, bounds_.data());
+  parallel::for_each<Space>("impact.start", 1, SetHarmless{stage, std::as_const(bounds_).view(), progress});
 }
 
 /// Lists the meetings of the next round.

@@ -7,6 +7,7 @@
 #include "sim/dynamics/impact.hpp"
 
 #include <bit>
+#include <cmath>
 #include <cstdint>
 
 namespace scree {
@@ -42,13 +43,20 @@ struct RoundCounts {
   std::uint64_t busy = 0;  ///< pairs, with those of the rounds before
 };
 
+/// What all bodies and laws stay within.
+struct FlightBounds {
+  double top_speed = 0;        ///< the largest of the bodies' (m/s)
+  double smallest = HUGE_VAL;  ///< of their sizes (m)
+  double restitution = 0;      ///< the largest of the laws'
+  SCREE_HD friend FlightBounds operator+(const FlightBounds& a, const FlightBounds& b) {
+    return {fmax(a.top_speed, b.top_speed), fmin(a.smallest, b.smallest), fmax(a.restitution, b.restitution)};
+  }
+};
+
 /// What the threads of a flight tell the host, which reads it once in a round.
 struct ImpactProgress {
   RoundCounts round;
-  std::uint64_t top_speed = 0;        ///< the largest of the bodies' (bits of m/s)
-  std::uint64_t smallest = infinite;  ///< the smallest of their sizes (bits of m)
-  std::uint64_t restitution = 0;      ///< the largest of the laws' (bits)
-  double harmless = 0;                ///< FlightStage::harmless; infinite where nobody is faster (m/s)
+  double harmless = 0;  ///< FlightStage::harmless; infinite where nobody is faster (m/s)
   std::uint64_t impacts = 0;
   std::uint64_t struck = 0;     ///< bodies
   std::uint32_t last_join = 0;  ///< the last round in which a body first had a meeting to come
@@ -103,6 +111,7 @@ class ImpactRounds {
   FlightLog<Space> log_;
   detail::ImpactProgress progress_;                       ///< as the host last saw it
   Array<detail::ImpactProgress, Space> shared_progress_;  // one
+  Array<detail::FlightBounds, Space> bounds_, bounds_scratch_;
   std::int64_t rounds_ = 0;
   Array<std::int64_t, Space> suspects_;             // pairs that are to be looked at in this round
   Array<std::int64_t, Space> busy_;                 // pairs of bodies that have joined

@@ -35,7 +35,16 @@ struct Rotate {
   }
 };
 
-/// The same of bodies side by side, on Host.
+struct Fly {
+  Translate translate;
+  Rotate rotate;
+  SCREE_HD double operator()(std::int64_t k) const {
+    translate(k);
+    return rotate(k);
+  }
+};
+
+/// Rotate of bodies side by side, on Host.
 struct RotateBatch {
   Rotate rotate;
   View<double> drift;
@@ -156,6 +165,16 @@ struct IsOut {
   }
 };
 
+/// The same of a margin that is yet to be set.
+struct IsOutWithMargin {
+  SetMargin margins;
+  IsOut is_out;
+  SCREE_HD std::int64_t operator()(std::int64_t k) const {
+    margins(k);
+    return is_out(k);
+  }
+};
+
 struct AddTravel {
   Travel travel;
   View<double> margin;
@@ -213,6 +232,15 @@ struct LoadSolverBody {
   }
 };
 
+struct BodyEnergies {
+  ConstBodyView bodies;
+  Vec3 gravity;
+  Vec3 reference;
+  SCREE_HD Energies operator()(std::int64_t k) const {
+    return energies_of_body(bodies, k, gravity, reference);
+  }
+};
+
 struct BodyTotals {
   ConstBodyView bodies;
   Vec3 gravity;
@@ -248,21 +276,25 @@ template <class Space>
 double advance(Bodies<Space>& bodies, double dt, const ResponseParameters& parameters) {
   const std::int64_t n = bodies.count();
   const BodyView views = view_of(bodies);
-  parallel::for_each<Space>("motion.translate", n, Translate{views, dt});
-  if (!parameters.rotation) return 0;
+  const Translate translate{views, dt};
   const Rotate rotate{views, dt, parameters.accurate ? RotationOrder::fourth : RotationOrder::second};
-  if (parameters.gyroscopic) {
-    if constexpr (std::is_same_v<Space, Host>) {
-      constexpr std::int64_t few_batches = 16;  // worth waking threads for
+  if (!parameters.rotation) {
+    parallel::for_each<Space>("motion.translate", n, translate);
+    return 0;
+  }
+  if constexpr (std::is_same_v<Space, Host>) {
+    constexpr std::int64_t few_batches = 16;  // worth waking threads for
+    if (parameters.gyroscopic) {
       Array<double, Host> drift(n);
+      parallel::for_each<Host>("motion.translate", n, translate);
       parallel::for_each<Host>("motion.rotate", (n + lanes::width - 1) / lanes::width,
                                RotateBatch{rotate, drift.view()}, few_batches);
       return parallel::sum_by_tiles<double, Host>("motion.rotate", n, LoadDrift{std::as_const(drift).view()});
-    } else {
-      return parallel::sum_by_tiles<double, Space>("motion.rotate", n, rotate);
     }
   }
-  parallel::for_each<Space>("motion.rotate", n, rotate);
+  if (parameters.gyroscopic)
+    return parallel::sum_by_tiles<double, Space>("motion.fly", n, Fly{translate, rotate});
+  parallel::for_each<Space>("motion.fly", n, Fly{translate, rotate});
   return 0;
 }
 
@@ -299,6 +331,18 @@ bool FatBoxes<Space>::hold(const Bodies<Space>& bodies, const Array<double, Spac
 }
 
 template <class Space>
+bool FatBoxes<Space>::hold(const Bodies<Space>& bodies, double dt, const ResponseParameters& parameters,
+                           Array<double, Space>& contact_margin) const {
+  contact_margin.resize(bodies.count());
+  const ConstBodyView views = view_of(bodies);
+  const SetMargin margins{views, contact_margin.view(), dt, tolerance::contact_slack, parameters};
+  const IsOut is_out{
+      {views, position_.view(), orientation_.view()}, margin_.view(), std::as_const(contact_margin).view()};
+  return parallel::sum_by_tiles<std::int64_t, Space>("motion.out", bodies.count(),
+                                                     IsOutWithMargin{margins, is_out}) == 0;
+}
+
+template <class Space>
 void FatBoxes<Space>::add_travel(const Bodies<Space>& bodies, Array<double, Space>& contact_margin) const {
   parallel::for_each<Space>(
       "motion.travel", bodies.count(),
@@ -316,6 +360,12 @@ template <class Space>
 void load_solver_bodies(const Bodies<Space>& bodies, Array<SolverBody, Space>& solver) {
   solver.resize(bodies.count());
   parallel::for_each<Space>("motion.load", bodies.count(), LoadSolverBody{view_of(bodies), solver.view()});
+}
+
+template <class Space>
+Energies energies_of(const Bodies<Space>& bodies, const Vec3& gravity, const Vec3& reference) {
+  return parallel::sum_by_tiles<Energies, Space>("motion.energies", bodies.count(),
+                                                 BodyEnergies{view_of(bodies), gravity, reference});
 }
 
 template <class Space>
@@ -343,6 +393,7 @@ std::int32_t first_non_finite(const Bodies<Space>& bodies) {
   template class FatBoxes<Space>;                                                                   \
   template double work_of_forces(const Bodies<Space>&, const Array<Vec3, Space>&, ConstView<Vec3>); \
   template void load_solver_bodies(const Bodies<Space>&, Array<SolverBody, Space>&);                \
+  template Energies energies_of<Space>(const Bodies<Space>&, const Vec3&, const Vec3&);             \
   template Totals totals_of<Space>(const Bodies<Space>&, const Vec3&, const Vec3&);                 \
   template double largest_speed<Space>(const Bodies<Space>&);                                       \
   template std::int32_t first_non_finite<Space>(const Bodies<Space>&);

@@ -30,6 +30,9 @@ class FatBoxes {
   /// Whether every body, wherever it is now, and with contacts that reach as far as given (m), is still in
   /// its box.
   bool hold(const Bodies<Space>& bodies, const Array<double, Space>& contact_margin) const;
+  /// The same with contact_margins() within dt (s), which are set.
+  bool hold(const Bodies<Space>& bodies, double dt, const ResponseParameters& parameters,
+            Array<double, Space>& contact_margin) const;
   /// Raises the margins (m) by what each body has moved since the boxes were put around it.
   void add_travel(const Bodies<Space>& bodies, Array<double, Space>& contact_margin) const;
   const Array<double, Space>& margin() const { return margin_; }  ///< (m)
@@ -49,11 +52,20 @@ double work_of_forces(const Bodies<Space>& bodies, const Array<Vec3, Space>& sta
 template <class Space>
 void load_solver_bodies(const Bodies<Space>& bodies, Array<SolverBody, Space>& solver);
 
-/// Sums over the free bodies.
-struct Totals {
+/// Sums over the free bodies: what every step asks for,
+struct Energies {
   double kinetic_linear = 0;
   double kinetic_angular = 0;
   double potential = 0;  ///< about the reference point
+
+  double kinetic() const { return kinetic_linear + kinetic_angular; }
+  SCREE_HD friend Energies operator+(const Energies& a, const Energies& b) {
+    return {a.kinetic_linear + b.kinetic_linear, a.kinetic_angular + b.kinetic_angular,
+            a.potential + b.potential};
+  }
+};
+/// and what an observation does.
+struct Totals : Energies {
   double mass = 0;
   Vec3 momentum = Vec3::Zero();
   Vec3 angular_momentum = Vec3::Zero();  ///< about the origin
@@ -63,9 +75,7 @@ struct Totals {
   std::int64_t count = 0;
 
   SCREE_HD friend Totals operator+(const Totals& a, const Totals& b) {
-    return {a.kinetic_linear + b.kinetic_linear,
-            a.kinetic_angular + b.kinetic_angular,
-            a.potential + b.potential,
+    return {static_cast<const Energies&>(a) + static_cast<const Energies&>(b),
             a.mass + b.mass,
             a.momentum + b.momentum,
             a.angular_momentum + b.angular_momentum,
@@ -77,16 +87,21 @@ struct Totals {
 };
 
 /// One body's share; nothing unless it is free. Potential energy is -m g.(x - reference).
+SCREE_HD inline Energies energies_of_body(const ConstBodyView& bodies, std::int64_t k, const Vec3& gravity,
+                                          const Vec3& reference) {
+  if (bodies.mobility[k] != Mobility::free) return {};
+  const double mass = 1.0 / bodies.inverse_mass[k];
+  return {0.5 * mass * bodies.velocity[k].squaredNorm(),
+          rotational_energy(bodies.orientation[k], bodies.spin[k], bodies.inverse_inertia[k]),
+          -mass * gravity.dot(bodies.position[k] - reference)};
+}
 SCREE_HD inline Totals totals_of_body(const ConstBodyView& bodies, std::int64_t k, const Vec3& gravity,
                                       const Vec3& reference) {
   if (bodies.mobility[k] != Mobility::free) return {};
   const double mass = 1.0 / bodies.inverse_mass[k];
   const Vec3& x = bodies.position[k];
   const Vec3& v = bodies.velocity[k];
-  Totals t;
-  t.kinetic_linear = 0.5 * mass * v.squaredNorm();
-  t.kinetic_angular = rotational_energy(bodies.orientation[k], bodies.spin[k], bodies.inverse_inertia[k]);
-  t.potential = -mass * gravity.dot(x - reference);
+  Totals t{energies_of_body(bodies, k, gravity, reference)};
   t.mass = mass;
   t.momentum = mass * v;
   t.angular_momentum =
@@ -98,6 +113,8 @@ SCREE_HD inline Totals totals_of_body(const ConstBodyView& bodies, std::int64_t 
   return t;
 }
 
+template <class Space>
+Energies energies_of(const Bodies<Space>& bodies, const Vec3& gravity, const Vec3& reference);
 template <class Space>
 Totals totals_of(const Bodies<Space>& bodies, const Vec3& gravity, const Vec3& reference);
 template <class Space>
