@@ -59,11 +59,15 @@ typename Program::State run(Host, const char* label, const Program& program, typ
 /// that are behind.
 template <class Program>
 __global__ void __launch_bounds__(Program::threads, blocks_at_once<Program>())
-    run_phases(const Program program, typename Program::State state, typename Program::Sum* sums,
+    run_phases(const Program program, const typename Program::State start, typename Program::Sum* sums,
                typename Program::State* out) {
   using Sum = typename Program::Sum;
   constexpr int threads = Program::threads;
   __shared__ BlockRoom<Sum, threads> room;
+  __shared__ BlockRoom<typename Program::State, 1> state_room;
+  typename Program::State& state = *state_room.data();
+  if (threadIdx.x == 0) state = start;
+  __syncthreads();
   const auto grid = cooperative_groups::this_grid();
   Sum* const sums_of[] = {sums, sums + gridDim.x};
   int turn = 0;
@@ -82,8 +86,7 @@ __global__ void __launch_bounds__(Program::threads, blocks_at_once<Program>())
     Sum of_blocks{};
     for (unsigned b = threadIdx.x; b < gridDim.x; b += threads) of_blocks = of_blocks + sums_of[turn][b];
     sum_over_block<threads>(of_blocks, room.data());
-    __syncthreads();
-    state = program.judge(state, room.data()[0]);
+    if (threadIdx.x == 0) state = program.judge(state, room.data()[0]);
     __syncthreads();
     turn = 1 - turn;
   }

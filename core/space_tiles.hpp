@@ -53,7 +53,8 @@ constexpr int blocks_at_once() {
 }
 
 template <class F>
-__global__ void __launch_bounds__(tile, blocks_at_once<F>()) compact_tile(F f, std::int32_t* counts) {
+__global__ void __launch_bounds__(tile, blocks_at_once<F>())
+    compact_tile(const __grid_constant__ F f, std::int32_t* counts) {
   __shared__ std::uint32_t sums[tile / 32];
   const std::int64_t first = std::int64_t{blockIdx.x} * tile;
   typename F::Record record;
@@ -85,7 +86,8 @@ struct BlockRoom {
 
 /// Each block adds up the tiles b, b + blocks, ...; sums[b] is its part.
 template <class T, class F>
-__global__ void __launch_bounds__(tile, blocks_at_once<F>()) sum_strided(F f, std::int64_t n, T* sums) {
+__global__ void __launch_bounds__(tile, blocks_at_once<F>())
+    sum_strided(const __grid_constant__ F f, std::int64_t n, T* sums) {
   __shared__ BlockRoom<T, tile> room;
   T mine{};
   const std::int64_t stride = std::int64_t{gridDim.x} * tile;

@@ -27,8 +27,6 @@ __device__ T sum_before(T value, T& total) {
   return sum - value;
 }
 
-/// The tests of the runs of 32 items, spread over the lanes of a warp: each test is a task, in the order of
-
 /// Sum of the values of the threads before, entered by all of a block; `total`: of all. `sums`: shared
 /// memory, a word for each warp, which must not be in use still.
 template <int threads>

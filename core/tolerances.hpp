@@ -40,6 +40,10 @@ inline constexpr double likely_closing = 0.75;
 inline constexpr double correction_share = 0.8;
 /// Overlap of the deepest contact (of smallest_size) at which it stops.
 inline constexpr double corrected_overlap = 1e-7;
+/// The same of a heap of balls, in which the deepest is one of many, and of the mean of its overlaps: the
+/// rest is for the next substeps. Smaller: a heap at rest takes more sweeps, and overlaps less.
+inline constexpr double heap_overlap = 1e-3;
+inline constexpr double heap_mean_overlap = 5e-6;
 /// Overlap that a substep may leave to be corrected (of the smaller smallest_size): after more, the next step
 /// is taken in twice as many substeps, if their number is free. It falls with the square of the substep's
 /// length. Smaller: impacts of many bodies at once cost more and are more accurate.
@@ -78,11 +82,13 @@ inline constexpr double impact_gain = 1e-12;
 inline constexpr double response_change = 1e-10;
 inline constexpr double heap_change = 3e-3;
 /// Power that normal impulses have on what they leave undone (of that on all they change), over which a heap
-/// is swept twice as often in the next substep, and under which half as often: it shows slow modes of many
+/// is swept twice as often in the next substeps, and under which half as often: it shows slow modes of many
 /// layers, of which one sweep's change tells nothing. Smaller: heaps come to rest sooner, and cost more until
 /// then.
 inline constexpr double undone_power = 0.01;
 inline constexpr double done_power = 0.004;
+/// Under this much (likewise) a heap is swept half as often as one usually is at least.
+inline constexpr double calm_power = 0.0004;
 /// The least change with impulses in float, whose rounding is 1e-7.
 inline constexpr double mixed_change = 2e-6;
 
@@ -145,7 +151,7 @@ inline constexpr double unit_length = 1e-14;
 /// A last step shorter than this share of a step is rounding of end / step, and none.
 inline constexpr double step_count = 1e-9;
 
-static_assert(done_power < undone_power);
+static_assert(calm_power < done_power && done_power < undone_power);
 static_assert(closed_gap < contact_slack);
 static_assert(corrected_overlap < closed_gap);
 static_assert(4 * coarser_overlap < substep_overlap);

@@ -117,6 +117,8 @@ SCREE_HD inline bool passes(std::uint8_t flags, bool loaded) { return (flags & f
 /// Of contacts of balls. Sets their gaps at the end, and remembers their impulses.
 template <class Real>
 struct BookBalls {
+  static constexpr int blocks_at_once = 2;
+
   BookStage<Real> stage;
   BallContacts<Real> contacts;
   View<BallMemory<Real>> memory;

@@ -186,20 +186,21 @@ void ContactSolver<Space, Real>::find(ConstView<double> margin, double scale, co
                               .struck = {flight},
                               .any_is_late = any_is_late};
   const std::int64_t balls = slots_.balls().tiles();
+  passing_.resize(balls * tile);
+  passing_count_.resize(1);
+  parallel::fill("contacts.passing", passing_count_, std::uint64_t{0});
+  const PassingList passing{passing_.view(), passing_count_.data()};
   parallel::compact_tiles<Space>("contacts.find balls", balls,
-                                 FindBalls<Real>{stage, store_.balls(), slots_.ball_memory()},
+                                 FindBalls<Real>{stage, store_.balls(), slots_.ball_memory(), passing},
                                  store_.ball_tiles().data());
+  parallel::for_each<Space>("contacts.passing", JudgePassing<Real>::threads,
+                            JudgePassing<Real>{stage, store_.balls(), passing});
   parallel::compact_tiles<Space>(
       "contacts.find", slots_.others().tiles(),
       FindPoints<Real>{stage, balls * tile, store_.points(), slots_.point_memory(), loads()},
       store_.point_tiles().data());
   ball_list_.make(slots_.balls(), store_.ball_tiles());
   point_list_.make(slots_.others(), store_.point_tiles());
-  parallel::select("contacts.passing", ball_list_.size(), MayPass<Real>{ball_list_.places(), store_.balls()},
-                   MayPass<Real>::none, passing_);
-  parallel::for_each<Space>(
-      "contacts.passing", passing_.size(),
-      OnContacts<JudgePassing<Real>>{std::as_const(passing_).view(), {stage, store_.balls()}});
   const std::int64_t points = parallel::sum_by_tiles<std::int64_t, Space>(
       "contacts.count", point_list_.size(), on_contacts(point_list_, CountPoints<Real>{store_.points()}));
   counts_ = {ball_list_.size() + point_list_.size(), ball_list_.size() + points};
@@ -240,7 +241,8 @@ void ContactSolver<Space, Real>::find_impulses(const ResponseParameters& paramet
   if (std::is_same_v<Real, float>) plan.tolerance = std::max(plan.tolerance, tolerance::mixed_change);
   // Of bodies that share several points the measure of slow modes tells mostly of how these share their load.
   if (is_heap(counts_.points) && !shares_loads(counts_.contacts, counts_.points)) {
-    plan.least *= patience_;
+    plan.least = plan.least * patience_ / 2;
+    if (parameters.iterations > 0) plan.least = std::min(plan.least, plan.most);
     plan.most = std::max(plan.most, plan.least);
   }
   const SweepState done =
@@ -274,18 +276,23 @@ Ledger ContactSolver<Space, Real>::book(const ConstBodyView& bodies, const Respo
   return ledger;
 }
 
-/// Sweeps of the next substep, by what those of this one have left undone. Fewer only after quiet substeps in
-/// a row: the slow modes are oscillations, and a number of sweeps that goes up and down with them pumps them.
+/// Sweeps of the next substeps, by what those of the last ones have left undone. It is judged over many
+/// substeps at once: the slow modes are oscillations, and a number of sweeps that goes up and down with them
+/// pumps them.
 template <class Space, class Real>
 void ContactSolver<Space, Real>::be_patient() {
-  constexpr int most = 16;
-  constexpr int enough_quiet = 64;
-  const double undone = std::abs(books_.gap_power);
-  quiet_ = undone < tolerance::done_power * books_.kick_power ? quiet_ + 1 : 0;
-  if (undone > tolerance::undone_power * books_.kick_power) patience_ = std::min(2 * patience_, most);
-  if (quiet_ < enough_quiet) return;
-  patience_ = std::max(patience_ / 2, 1);
-  quiet_ = 0;
+  constexpr int judged_together = 32;
+  constexpr int most = 32;
+  undone_ += std::abs(books_.gap_power);
+  kicked_ += books_.kick_power;
+  if (++judged_ < judged_together) return;
+  const bool fewest = patience_ == 1, usual = patience_ == 2;
+  if (undone_ > (fewest ? tolerance::done_power : tolerance::undone_power) * kicked_) {
+    patience_ = std::min(2 * patience_, most);
+  } else if (undone_ < (usual ? tolerance::calm_power : tolerance::done_power) * kicked_) {
+    patience_ = std::max(patience_ / 2, 1);
+  }
+  undone_ = kicked_ = judged_ = 0;
 }
 
 template <class Space, class Real>
@@ -364,12 +371,11 @@ Ledger ContactSolver<Space, Real>::correct(const FlightStage& flight, bool any_i
   if (overlap_ == 0 && !any_is_late) return {};
   parallel::for_each<Space>("correction.start", displacement_.size(),
                             ResetDisplacement<Real>{solver_.view(), displacement_.view(), turn_.view()});
-  const bool heap = is_heap(counts_.points);
-  const int most = !heap ? 100 : shares_loads(counts_.contacts, counts_.points) ? 24 : 6;
+  const PartingPlan plan = plan_parting();
   if (store_.point_places() == 0) {
-    run_parting_rounds<true>(most);
+    run_parting_rounds<true>(plan);
   } else {
-    run_parting_rounds<false>(most);
+    run_parting_rounds<false>(plan);
   }
   const BodyView& bodies = flight.bodies;
   Array<Ledger, Space> total(1);
@@ -382,24 +388,34 @@ Ledger ContactSolver<Space, Real>::correct(const FlightStage& flight, bool any_i
   return ledger;
 }
 
+/// Of a heap of balls the deepest contact is one of many, which do not wait for it.
+template <class Space, class Real>
+PartingPlan ContactSolver<Space, Real>::plan_parting() const {
+  using namespace tolerance;
+  if (!is_heap(counts_.points)) return {1, 100, corrected_overlap, corrected_overlap};
+  if (shares_loads(counts_.contacts, counts_.points)) return {1, 24, corrected_overlap, corrected_overlap};
+  return {2, 6, heap_overlap, heap_mean_overlap};
+}
+
 template <class Space, class Real>
 template <bool only_balls>
-void ContactSolver<Space, Real>::run_parting_rounds(int most) {
+void ContactSolver<Space, Real>::run_parting_rounds(const PartingPlan& plan) {
   parallel::run_rounds<Space>(
       "correction",
-      PartingRounds<Real, only_balls>{
-          .ball_colors = ColorPhases(ball_list_),
-          .point_colors = ColorPhases(point_list_),
-          .balls = store_.balls(),
-          .points = store_.points(),
-          .inertia = inertia_.data(),
-          .displacement = displacement_.data(),
-          .turn = turn_.data(),
-          .shifted_hubs = join_hubs(displacement_),
-          .turned_hubs = join_hubs(turn_),
-          .share = static_cast<Real>(tolerance::correction_share),
-          .most = most,
-          .enough = static_cast<float>(tolerance::corrected_overlap / tolerance::correction_cap)},
+      PartingRounds<Real, only_balls>{.ball_colors = ColorPhases(ball_list_),
+                                      .point_colors = ColorPhases(point_list_),
+                                      .balls = store_.balls(),
+                                      .points = store_.points(),
+                                      .inertia = inertia_.data(),
+                                      .displacement = displacement_.data(),
+                                      .turn = turn_.data(),
+                                      .shifted_hubs = join_hubs(displacement_),
+                                      .turned_hubs = join_hubs(turn_),
+                                      .share = static_cast<Real>(tolerance::correction_share),
+                                      .least = plan.least,
+                                      .most = plan.most,
+                                      .deepest = static_cast<float>(plan.deepest / tolerance::correction_cap),
+                                      .mean = static_cast<float>(plan.mean / tolerance::correction_cap)},
       PartingState{});
 }
 

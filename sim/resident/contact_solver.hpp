@@ -21,6 +21,13 @@
 
 namespace scree::resident {
 
+/// How often overlaps are swept: until the deepest and their mean are no more than this (of the smaller
+/// smallest_size).
+struct PartingPlan {
+  int least, most;
+  double deepest, mean;
+};
+
 /// The bodies are the caller's: at the midpoint for find() and solve(), at the end of the substep for
 /// correct().
 template <class Space, class Real>
@@ -75,8 +82,9 @@ class ContactSolver {
   void find_impulses(const ResponseParameters& parameters, Counters& counters);
   template <bool only_balls>
   SweepState run_impulse_rounds(const SweepPlan& plan);
+  PartingPlan plan_parting() const;
   template <bool only_balls>
-  void run_parting_rounds(int most);
+  void run_parting_rounds(const PartingPlan& plan);
   Ledger book(const ConstBodyView& bodies, const ResponseParameters& parameters);
   void be_patient();
   Ledger shift_late_bodies(const FlightStage& flight);
@@ -93,13 +101,15 @@ class ContactSolver {
 
   ContactStore<Space, Real> store_;
   ContactList<Space> ball_list_, point_list_;
-  Array<std::int32_t, Space> passing_;  // contacts of balls that may fly past
+  Array<std::int32_t, Space> passing_;  // contacts of balls that may fly past, in any order
+  Array<std::uint64_t, Space> passing_count_;
 
   ContactCounts counts_;
   Books books_;
   double overlap_ = 0;
-  int patience_ = 1;  // how many times the least number of sweeps
-  int quiet_ = 0;     // substeps in a row that have left little undone
+  int patience_ = 2;                // in halves of a heap's least number of sweeps
+  double undone_ = 0, kicked_ = 0;  // sums of gap_power and kick_power, of the substeps judged together
+  int judged_ = 0;                  // how many so far
   Array<std::uint32_t, Space> loads_, next_loads_;
 
   Array<Books, Space> books_scratch_;

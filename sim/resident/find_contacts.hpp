@@ -1,7 +1,9 @@
 // From slots to contacts: which of them have one at the midpoint, and what the sweeps need to know of it.
 #pragma once
 
+#include "core/space_atomic.hpp"
 #include "core/tolerances.hpp"
+#include "narrowphase/far_apart.hpp"
 #include "narrowphase/pair_contacts.hpp"
 #include "narrowphase/sphere_box.hpp"
 #include "narrowphase/sphere_plane.hpp"
@@ -20,6 +22,15 @@
 
 namespace scree::resident {
 
+/// A slot and its bodies, read at once: memory is asked for less often than by field.
+template <class Real>
+struct SlotBodies {
+  Slot slot;
+  MidBody<Real> a, b;
+  SCREE_HD double margin() const { return static_cast<double>(a.margin) + static_cast<double>(b.margin); }
+  SCREE_HD double size() const { return fmin(a.size, b.size); }
+};
+
 /// What contacts are made from.
 template <class Real>
 struct FindStage {
@@ -36,32 +47,37 @@ struct FindStage {
   StruckFlights struck;  ///< the bodies after their impacts
   bool any_is_late;      ///< one was struck after the midpoint
 
-  SCREE_HD double friction_of(const Slot& slot) const {
-    if (!parameters.friction) return 0;
-    return laws[mid[slot.i].material * materials + mid[slot.j].material].friction;
+  SCREE_HD SlotBodies<Real> load(const Slot& slot) const { return {slot, mid[slot.i], mid[slot.j]}; }
+  SCREE_HD double friction_of(const SlotBodies<Real>& at) const {
+    return parameters.friction ? laws[at.a.material * materials + at.b.material].friction : 0.0;
   }
-  SCREE_HD Real inverse_mass(std::int32_t body, std::int32_t end) const {
-    return body == end ? mid[body].inverse_mass : solver[end].inverse_mass;
+  SCREE_HD BallMasses masses_of(const SlotBodies<Real>& at, double arm_i, double arm_j) const {
+    const auto [mass_i, inertia_i] = inverses_of(at.a, at.slot.i, at.slot.end_i);
+    const auto [mass_j, inertia_j] = inverses_of(at.b, at.slot.j, at.slot.end_j);
+    return ball_masses(mass_i, inertia_i, arm_i * arm_i, mass_j, inertia_j, arm_j * arm_j);
   }
-  SCREE_HD Real inverse_inertia(std::int32_t body, std::int32_t end) const {
-    return body == end ? mid[body].inverse_inertia : solver[end].inverse_inertia;
+  SCREE_HD Vec3 kick_of(const MidBody<Real>& body, std::int32_t k) const {
+    return body.is_free() ? Vec3(step * parameters.acceleration_of(k)) : Vec3(Vec3::Zero());
   }
-  SCREE_HD Vec3 kick_of(std::int32_t body) const {
-    return mid[body].is_free() ? Vec3(step * parameters.acceleration_of(body)) : Vec3(Vec3::Zero());
+  SCREE_HD Vec3 kicked_velocity(const MidBody<Real>& body, std::int32_t k) const {
+    return vec3(body.velocity) + kick_of(body, k);
   }
-  SCREE_HD Vec3 kicked_velocity(std::int32_t body) const { return vec3(mid[body].velocity) + kick_of(body); }
+  /// Of j relative to i, before the kick and with it.
+  SCREE_HD static Vec3 relative_velocity(const SlotBodies<Real>& at) {
+    return vec3(at.b.velocity) - vec3(at.a.velocity);
+  }
+  SCREE_HD Vec3 kicked_relative_velocity(const SlotBodies<Real>& at) const {
+    return kicked_velocity(at.b, at.slot.j) - kicked_velocity(at.a, at.slot.i);
+  }
   /// After the midpoint, when a pair is to be seen (s); 0 for nearly all.
-  SCREE_HD double lead_of(const Slot& slot) const {
-    return any_is_late ? fmax(0.0, struck.time_of(slot.i, slot.j) - 0.5 * step) : 0.0;
-  }
+  SCREE_HD double lead_of(const Slot& slot) const { return any_is_late ? late_lead_of(slot.i, slot.j) : 0.0; }
   SCREE_HD Solid solid(std::int32_t body, double lead) const {
-    if (lead > 0) return struck.at(body, 0.5 * step + lead).solid;
+    if (lead > 0) return late_solid(body, lead);
     return {bodies.position[body], bodies.orientation[body], bodies.size[body]};
   }
   /// Where the centre is when a pair is seen.
-  SCREE_HD Vec3 centre(std::int32_t body, double lead) const {
-    const Vec3& position = mid[body].position;
-    return lead > 0 ? Vec3(position + lead * kicked_velocity(body)) : position;
+  SCREE_HD Vec3 centre(const MidBody<Real>& body, std::int32_t k, double lead) const {
+    return lead > 0 ? Vec3(body.position + lead * kicked_velocity(body, k)) : body.position;
   }
   SCREE_HD Vec3 remembered(const V3<Real>& impulse, const Vec3& normal, double friction) const {
     if (!parameters.warm_start) return Vec3::Zero();
@@ -83,29 +99,44 @@ struct FindStage {
 
   /// What the gap at the end has beside what the velocities after the response open (m): it bends; and a
   /// late contact is told from where its centres will be then, so that where they are now goes off.
-  SCREE_HD double opened_by_then(const Slot& slot, const Vec3& n, double bend, double lead) const {
-    if (lead > 0) return -n.dot(centre(slot.j, lead) - centre(slot.i, lead));
+  SCREE_HD double opened_by_then(const SlotBodies<Real>& at, const Vec3& n, double bend, double lead) const {
+    if (lead > 0) return -n.dot(centre(at.b, at.slot.j, lead) - centre(at.a, at.slot.i, lead));
     return 0.125 * step * step * bend;
   }
 
   /// Acceleration of the gap by the turning of the normal: of balls on one another, and of a ball along the
   /// wall of a tube (m/s^2).
-  SCREE_HD double bend_of(const Slot& slot, const Vec3& n) const {
-    const MidBody<Real>& a = mid[slot.i];
-    const MidBody<Real>& b = mid[slot.j];
-    const bool ball_a = a.shape == Shape::sphere;
-    const bool ball_b = b.shape == Shape::sphere;
+  SCREE_HD double bend_of(const SlotBodies<Real>& at, const Vec3& n) const {
+    const bool ball_a = at.a.shape == Shape::sphere;
+    const bool ball_b = at.b.shape == Shape::sphere;
     if (!ball_a && !ball_b) return 0;
-    const bool both = ball_a && ball_b;
-    const std::int32_t other = ball_a ? slot.j : slot.i;
-    if (!both && (mid[other].shape != Shape::tube || slot.surface != tube_wall)) return 0;
-    const Vec3 w = kicked_velocity(slot.j) - kicked_velocity(slot.i);
-    Vec3 across = w - w.dot(n) * n;
-    if (both) return across.squaredNorm() / (a.size + b.size);
-    const Vec3 axis = bodies.orientation[other] * Vec3::UnitZ();
-    across -= across.dot(axis) * axis;
-    const double reach = bodies.size[other].x() - (ball_a ? a.size : b.size);
-    return reach > 0 ? -across.squaredNorm() / reach : 0.0;
+    const Vec3 w = kicked_relative_velocity(at);
+    const Vec3 across = w - w.dot(n) * n;
+    if (ball_a && ball_b) return across.squaredNorm() / (at.a.size + at.b.size);
+    if ((ball_a ? at.b : at.a).shape != Shape::tube || at.slot.surface != tube_wall) return 0;
+    return bend_along_tube(across, ball_a ? at.slot.j : at.slot.i, at.size());
+  }
+
+ private:
+  struct Inverses {
+    double mass, inertia;
+  };
+  SCREE_HD Inverses inverses_of(const MidBody<Real>& body, std::int32_t k, std::int32_t end) const {
+    if (k == end) return {static_cast<double>(body.inverse_mass), static_cast<double>(body.inverse_inertia)};
+    return {static_cast<double>(solver[end].inverse_mass), static_cast<double>(solver[end].inverse_inertia)};
+  }
+  // What is rare must not take registers from the rest.
+  [[gnu::noinline]] SCREE_HD double late_lead_of(std::int32_t i, std::int32_t j) const {
+    return fmax(0.0, struck.time_of(i, j) - 0.5 * step);
+  }
+  [[gnu::noinline]] SCREE_HD Solid late_solid(std::int32_t body, double lead) const {
+    return struck.at(body, 0.5 * step + lead).solid;
+  }
+  [[gnu::noinline]] SCREE_HD double bend_along_tube(const Vec3& across, std::int32_t tube,
+                                                    double size) const {
+    const Vec3 axis = bodies.orientation[tube] * Vec3::UnitZ();
+    const double reach = bodies.size[tube].x() - size;
+    return reach > 0 ? -(across - across.dot(axis) * axis).squaredNorm() / reach : 0.0;
   }
 };
 
@@ -128,38 +159,86 @@ SCREE_HD inline const Manifold* manifold_on(int surface, bool corners, const Man
   return nullptr;
 }
 
-/// The contact of a slot of balls, at its time.
-template <class Real>
-SCREE_HD inline bool meet_balls(const FindStage<Real>& stage, const Slot& slot, double lead, Manifold& out) {
-  const MidBody<Real>& a = stage.mid[slot.i];
-  const MidBody<Real>& b = stage.mid[slot.j];
-  const double margin = static_cast<double>(a.margin) + static_cast<double>(b.margin);
-  const bool ball_a = a.shape == Shape::sphere;
-  const auto ball = [&](std::int32_t body, double radius) {
-    return Solid{stage.centre(body, lead), Quat::Identity(), Vec3(radius, 0, 0)};
+/// The contact of a slot of balls, at its time. With `rare`, of any; without, of balls and planes at the
+/// midpoint.
+template <bool rare, class Real>
+SCREE_HD inline bool meet(const FindStage<Real>& stage, const SlotBodies<Real>& at, double lead,
+                          Manifold& out) {
+  const bool ball_a = at.a.shape == Shape::sphere;
+  const bool ball_b = at.b.shape == Shape::sphere;
+  const auto ball = [&](const MidBody<Real>& body, std::int32_t k) {
+    return Solid{stage.centre(body, k, lead), Quat::Identity(), Vec3(body.size, 0, 0)};
   };
   out.part = 0;
-  if (ball_a && b.shape == Shape::sphere)
-    return sphere_sphere(ball(slot.i, a.size), ball(slot.j, b.size), margin, out);
-  const std::int32_t wall = ball_a ? slot.j : slot.i;
-  const Solid of_ball = ball_a ? ball(slot.i, a.size) : ball(slot.j, b.size);
+  if (ball_a && ball_b) return sphere_sphere(ball(at.a, at.slot.i), ball(at.b, at.slot.j), at.margin(), out);
+  const Solid of_ball = ball_a ? ball(at.a, at.slot.i) : ball(at.b, at.slot.j);
+  const Solid other = stage.solid(ball_a ? at.slot.j : at.slot.i, lead);
+  const Shape shape = ball_a ? at.b.shape : at.a.shape;
   bool found = false;
-  if (stage.mid[wall].shape == Shape::plane) {
-    found = sphere_plane(of_ball, stage.solid(wall, lead), margin, out);
-  } else if (stage.mid[wall].shape == Shape::box) {
-    found = sphere_box(of_ball, stage.solid(wall, lead), margin, out);
-  } else {
-    Manifold all[3];
-    const int count = sphere_tube(of_ball, stage.solid(wall, lead), margin, all);
-    const Manifold* on = manifold_on(slot.surface, false, all, count);
-    found = on != nullptr;
-    if (found) out = *on;
+  if (shape == Shape::plane) {
+    found = sphere_plane(of_ball, other, at.margin(), out);
+  } else if constexpr (rare) {
+    if (shape == Shape::box) {
+      found = sphere_box(of_ball, other, at.margin(), out);
+    } else {
+      Manifold all[3];
+      const Manifold* on =
+          manifold_on(at.slot.surface, false, all, sphere_tube(of_ball, other, at.margin(), all));
+      found = on != nullptr;
+      if (found) out = *on;
+    }
   }
   if (found && !ball_a) out.normal = -out.normal;
   return found;
 }
 
-/// Contacts of balls, all as if they met. Those that may fly past are marked.
+/// A contact of one point.
+struct Touch {
+  Vec3 normal;
+  Vec3 position;
+  double gap;
+};
+
+SCREE_HD inline Touch touch_of(const Manifold& m) {
+  return {m.normal, m.points[0].position, m.points[0].gap};
+}
+
+/// What is rare must take no registers from the rest, and so it is called.
+template <class Real>
+[[gnu::noinline]] SCREE_HD bool meet_rarely(const FindStage<Real>& stage, const Slot& slot, double lead,
+                                            Touch& out) {
+  Manifold m;
+  const bool found = meet<true>(stage, stage.load(slot), lead, m);
+  if (found) out = touch_of(m);
+  return found;
+}
+
+template <class Real>
+SCREE_HD inline bool meet_balls(const FindStage<Real>& stage, std::int64_t place, const SlotBodies<Real>& at,
+                                double lead, Touch& out) {
+  const auto is_common = [](Shape shape) { return shape == Shape::sphere || shape == Shape::plane; };
+  if (lead > 0 || !is_common(at.a.shape) || !is_common(at.b.shape)) {
+    Touch rare;  // in memory, as what is called asks for
+    const bool found = meet_rarely(stage, stage.places[place], lead, rare);
+    if (found) out = rare;
+    return found;
+  }
+  Manifold m;
+  const bool found = meet<false>(stage, at, 0, m);
+  if (found) out = touch_of(m);
+  return found;
+}
+
+/// Places of contacts that may fly past, in any order.
+struct PassingList {
+  View<std::int32_t> places;
+  std::uint64_t* count;
+  SCREE_HD void add(std::int64_t place) const {
+    places[static_cast<std::int64_t>(count_up(count))] = static_cast<std::int32_t>(place);
+  }
+};
+
+/// Contacts of balls, all as if they met. Those that may fly past are listed.
 template <class Real>
 struct FindBalls {
   struct Record {
@@ -169,57 +248,54 @@ struct FindBalls {
     double lead;
   };
 
-  static constexpr int blocks_at_once = 3;
+  static constexpr int blocks_at_once = 2;  // spilled registers cost more than threads that wait
 
   FindStage<Real> stage;
   BallContacts<Real> contacts;
   View<BallMemory<Real>> memory;
+  PassingList passing;
 
   SCREE_HD bool find(std::int64_t place, Record& record) const {
-    const Slot& slot = stage.places[place];
+    const Slot slot = stage.places[place];
     if (slot.i == Slot::empty) return false;
+    const SlotBodies<Real> at = stage.load(slot);
     record.lead = stage.lead_of(slot);
-    Manifold m;
-    if (!meet_balls(stage, slot, record.lead, m)) {
+    Touch m;
+    if (!meet_balls(stage, place, at, record.lead, m)) {
       memory[place] = {};
       return false;
     }
     record.normal = m.normal;
-    record.gap = m.points[0].gap;
-    const auto arm = [&](std::int32_t body) {
-      return stage.mid[body].is_free() ? m.normal.dot(m.points[0].position - stage.centre(body, record.lead))
-                                       : 0.0;
+    record.gap = m.gap;
+    const auto arm = [&](const MidBody<Real>& body, std::int32_t k) {
+      return body.is_free() ? m.normal.dot(m.position - stage.centre(body, k, record.lead)) : 0.0;
     };
-    record.arm_i = arm(slot.i);
-    record.arm_j = arm(slot.j);
+    record.arm_i = arm(at.a, slot.i);
+    record.arm_j = arm(at.b, slot.j);
     return true;
   }
 
   SCREE_HD void store(std::int64_t to, std::int64_t place, const Record& record) const {
     using C = BallContacts<Real>;
-    const Slot& slot = stage.places[place];
-    const MidBody<Real>& a = stage.mid[slot.i];
-    const MidBody<Real>& b = stage.mid[slot.j];
+    const Slot slot = stage.places[place];
+    const SlotBodies<Real> at = stage.load(slot);
+    const BallMemory<Real> remembered = memory[place];
     const Vec3& n = record.normal;
-    const double friction = stage.friction_of(slot);
-    const double bend = stage.bend_of(slot, n);
-    const double parting = n.dot(vec3(b.velocity) - vec3(a.velocity));
+    const double friction = stage.friction_of(at);
+    const double bend = stage.bend_of(at, n);
+    const double parting = n.dot(stage.relative_velocity(at));
     // A look at the normal velocity tells of nearly all that they are not held apart (flight_of_contact).
-    const double closing = n.dot(stage.kicked_velocity(slot.i) - stage.kicked_velocity(slot.j));
-    const bool may_pass = record.gap > 0 && !memory[place].is_loaded() &&
+    const double closing = -n.dot(stage.kicked_relative_velocity(at));
+    const bool may_pass = record.gap > 0 && !remembered.is_loaded() &&
                           (record.lead > 0 || closing * stage.step > tolerance::likely_closing * record.gap);
-    const BallMasses masses = ball_masses(
-        static_cast<double>(stage.inverse_mass(slot.i, slot.end_i)),
-        static_cast<double>(stage.inverse_inertia(slot.i, slot.end_i)), record.arm_i * record.arm_i,
-        static_cast<double>(stage.inverse_mass(slot.j, slot.end_j)),
-        static_cast<double>(stage.inverse_inertia(slot.j, slot.end_j)), record.arm_j * record.arm_j);
+    const BallMasses masses = stage.masses_of(at, record.arm_i, record.arm_j);
     contacts.ends[to] = {slot.end_i, slot.end_j};
     contacts.slot[to] = static_cast<std::uint8_t>(place % 256);
-    contacts.flags[to] =
-        static_cast<std::uint8_t>((may_pass ? flag_may_pass : 0) | (record.lead > 0 ? flag_late : 0));
+    contacts.flags[to] = static_cast<std::uint8_t>(record.lead > 0 ? flag_late : 0);
+    if (may_pass) passing.add(to);
     const Fields<Real>& f = contacts.fields;
     const auto put = [&](int field, double value) { f.at(field, to) = static_cast<Real>(value); };
-    const V3<Real> impulse = v3<Real>(stage.remembered(memory[place].impulse, n, friction));
+    const V3<Real> impulse = v3<Real>(stage.remembered(remembered.impulse, n, friction));
     f.set(C::normal, to, v3<Real>(n));
     put(C::arm_i, record.arm_i);
     put(C::arm_j, record.arm_j);
@@ -230,41 +306,37 @@ struct FindBalls {
     f.set(C::impulse, to, impulse);
     f.set(C::last, to, impulse);
     put(C::gap, record.gap);
-    put(C::flown, record.gap + stage.opened_by_then(slot, n, bend, record.lead));
+    put(C::flown, record.gap + stage.opened_by_then(at, n, bend, record.lead));
     put(C::pushed, 0);
-    put(C::cap, tolerance::correction_cap * fmin(a.size, b.size));
-  }
-};
-
-/// The places of those that may fly past.
-template <class Real>
-struct MayPass {
-  static constexpr std::int32_t none = -1;
-  ConstView<std::int32_t> places;  ///< of contacts
-  BallContacts<Real> contacts;
-  SCREE_HD std::int32_t operator()(std::int64_t k) const {
-    return (contacts.flags[places[k]] & flag_may_pass) != 0 ? places[k] : none;
+    put(C::cap, tolerance::correction_cap * at.size());
   }
 };
 
 /// Decides on them: work of another kind than that on the many which touch, and so it is done apart.
 template <class Real>
 struct JudgePassing {
+  static constexpr std::int64_t threads = 1 << 15;  ///< of which each takes one in so many
+
   FindStage<Real> stage;
   BallContacts<Real> contacts;
+  PassingList passing;
 
-  SCREE_HD void operator()(std::int64_t c) const {
+  SCREE_HD void operator()(std::int64_t thread) const {
+    const auto count = static_cast<std::int64_t>(*passing.count);
+    for (std::int64_t k = thread; k < count; k += threads) judge(passing.places[k]);
+  }
+
+ private:
+  SCREE_HD void judge(std::int64_t c) const {
     using C = BallContacts<Real>;
-    contacts.flags[c] &= static_cast<std::uint8_t>(~flag_may_pass);
-    const Slot& slot = stage.places[c - c % 256 + contacts.slot[c]];
+    const SlotBodies<Real> at = stage.load(stage.places[c - c % 256 + contacts.slot[c]]);
     Manifold m;
-    if (!meet_balls(stage, slot, stage.lead_of(slot), m)) return;
-    m.i = slot.i;
-    m.j = slot.j;
-    const double size = fmin(stage.mid[slot.i].size, stage.mid[slot.j].size);
-    if (!flight_of_contact(stage.struck, m, m.points, size, false).flying) return;
+    if (!meet<true>(stage, at, stage.lead_of(at.slot), m)) return;
+    m.i = at.slot.i;
+    m.j = at.slot.j;
+    if (!flight_of_contact(stage.struck, m, m.points, at.size(), false).flying) return;
     contacts.flags[c] |= flag_flying;
-    const double free = m.normal.dot(stage.kicked_velocity(slot.j) - stage.kicked_velocity(slot.i));
+    const double free = m.normal.dot(stage.kicked_relative_velocity(at));
     Real& target = contacts.fields.at(C::target, c);
     target = static_cast<Real>(stage.target_in_flight(static_cast<double>(target), free));
   }
@@ -285,19 +357,18 @@ struct FindPoints {
   ConstView<LoadedParts> loads;  ///< of candidates
 
   SCREE_HD bool find(std::int64_t k, Record& record) const {
-    const Slot& slot = stage.places[first_place + k];
+    const Slot slot = stage.places[first_place + k];
     if (slot.i == Slot::empty) return false;
-    const MidBody<Real>& a = stage.mid[slot.i];
-    const MidBody<Real>& b = stage.mid[slot.j];
-    const double margin = static_cast<double>(a.margin) + static_cast<double>(b.margin);
+    const SlotBodies<Real> at = stage.load(slot);
+    const Shape a = at.a.shape, b = at.b.shape;
     const double lead = stage.lead_of(slot);
     bool found = false;
-    if (lead > 0 || !are_far(slot, margin)) {
+    if (lead > 0 || !are_far(at)) {
       Manifold all[max_pair_manifolds];
-      const int count = find_pair_contacts(a.shape, stage.solid(slot.i, lead), b.shape,
-                                           stage.solid(slot.j, lead), margin, all);
-      const bool tube = a.shape == Shape::tube || b.shape == Shape::tube;
-      const bool corners = tube && (a.shape == Shape::box || b.shape == Shape::box);
+      const int count =
+          find_pair_contacts(a, stage.solid(slot.i, lead), b, stage.solid(slot.j, lead), at.margin(), all);
+      const bool tube = a == Shape::tube || b == Shape::tube;
+      const bool corners = tube && (a == Shape::box || b == Shape::box);
       const Manifold* on = manifold_on(slot.surface, corners, all, count);
       found = on != nullptr;
       if (found) record.manifold = *on;
@@ -310,7 +381,7 @@ struct FindPoints {
     m.i = slot.i;
     m.j = slot.j;
     const bool loaded = loads[slot.candidate].is_loaded(m.part);
-    record.flight = flight_of_contact(stage.struck, m, m.points, fmin(a.size, b.size), loaded);
+    record.flight = flight_of_contact(stage.struck, m, m.points, at.size(), loaded);
     return true;
   }
 
@@ -318,12 +389,13 @@ struct FindPoints {
     using C = PointContacts<Real>;
     const Manifold& m = record.manifold;
     const double lead = record.flight.lead;
-    const Slot& slot = stage.places[first_place + k];
-    const double friction = stage.friction_of(slot);
-    const double size = fmin(stage.mid[slot.i].size, stage.mid[slot.j].size);
-    const double shell = m.count == 1 ? 0.0 : tolerance::closed_gap * size;
-    const SolverBody i = solver_body(slot.i, slot.end_i);
-    const SolverBody j = solver_body(slot.j, slot.end_j);
+    const Slot slot = stage.places[first_place + k];
+    const SlotBodies<Real> pair = stage.load(slot);
+    const double friction = stage.friction_of(pair);
+    const double shell = m.count == 1 ? 0.0 : tolerance::closed_gap * pair.size();
+    const SolverBody i = solver_body(pair.a, slot.i, slot.end_i);
+    const SolverBody j = solver_body(pair.b, slot.j, slot.end_j);
+    const Vec3 kick = stage.kick_of(pair.b, slot.j) - stage.kick_of(pair.a, slot.i);
     PointMemory<Real> old = memory[k];
     PointMemory<Real>& now = memory[k];
     contacts.ends[to] = {slot.end_i, slot.end_j};
@@ -333,9 +405,9 @@ struct FindPoints {
     contacts.points[to] = m.count;
     contacts.fields.set(C::normal, to, v3<Real>(m.normal));
     contacts.fields.at(C::friction, to) = static_cast<Real>(friction);
-    contacts.fields.at(C::cap, to) = static_cast<Real>(tolerance::correction_cap * size);
+    contacts.fields.at(C::cap, to) = static_cast<Real>(tolerance::correction_cap * pair.size());
     now.count = m.count;
-    const double bend = stage.bend_of(slot, m.normal);
+    const double bend = stage.bend_of(pair, m.normal);
     for (int p = 0; p < m.count; ++p) {
       const ContactPoint& point = m.points[p];
       RowCoupling coupling;
@@ -348,7 +420,7 @@ struct FindPoints {
         if (old.feature[q] == point.feature) last = old.impulse[q];
       const V3<Real> impulse = v3<Real>(stage.remembered(last, m.normal, friction));
       const double parting = m.normal.dot(row.relative_velocity(i, j));
-      const double free = parting + m.normal.dot(stage.kick_of(slot.j) - stage.kick_of(slot.i));
+      const double free = parting + m.normal.dot(kick);
       const auto at = [p](int field) { return C::at_point(p, field); };
       const Fields<Real>& f = contacts.point_fields;
       const auto put = [&](int field, double value) { f.at(at(field), to) = static_cast<Real>(value); };
@@ -365,30 +437,27 @@ struct FindPoints {
       f.set(at(C::impulse), to, impulse);
       f.set(at(C::last), to, impulse);
       put(C::gap, point.gap);
-      put(C::flown, point.gap + stage.opened_by_then(slot, m.normal, bend, lead));
+      put(C::flown, point.gap + stage.opened_by_then(pair, m.normal, bend, lead));
       put(C::pushed, 0);
     }
   }
 
  private:
   /// Before the kick.
-  SCREE_HD SolverBody solver_body(std::int32_t body, std::int32_t end) const {
-    const double parts =
-        body == end || !stage.mid[body].is_free()
-            ? 1.0
-            : static_cast<double>(stage.solver[end].inverse_mass) / stage.bodies.inverse_mass[body];
-    return {
-        stage.bodies.velocity[body], stage.bodies.spin[body], parts * stage.bodies.inverse_mass[body],
-        parts * world_inverse_inertia(stage.bodies.orientation[body], stage.bodies.inverse_inertia[body])};
+  SCREE_HD SolverBody solver_body(const MidBody<Real>& body, std::int32_t k, std::int32_t end) const {
+    const ConstBodyView& bodies = stage.bodies;
+    const double parts = k == end || !body.is_free()
+                             ? 1.0
+                             : static_cast<double>(stage.solver[end].inverse_mass) / bodies.inverse_mass[k];
+    return {bodies.velocity[k], bodies.spin[k], parts * bodies.inverse_mass[k],
+            parts * world_inverse_inertia(bodies.orientation[k], bodies.inverse_inertia[k])};
   }
   /// True if the spheres around two bodies are too far apart for a contact.
-  SCREE_HD bool are_far(const Slot& slot, double margin) const {
-    const Shape a = stage.mid[slot.i].shape, b = stage.mid[slot.j].shape;
-    if (is_boundary(a) || is_boundary(b)) return false;
-    const double reach = bounding_radius(a, stage.bodies.size[slot.i]) +
-                         bounding_radius(b, stage.bodies.size[slot.j]) + margin;
-    return (stage.mid[slot.j].position - stage.mid[slot.i].position).squaredNorm() >
-           (1 + tolerance::far_rounding) * reach * reach;
+  SCREE_HD bool are_far(const SlotBodies<Real>& at) const {
+    if (is_boundary(at.a.shape) || is_boundary(at.b.shape)) return false;
+    const double reach = bounding_radius(at.a.shape, stage.bodies.size[at.slot.i]) +
+                         bounding_radius(at.b.shape, stage.bodies.size[at.slot.j]) + at.margin();
+    return are_far_apart(at.a.position, at.b.position, reach);
   }
 };
 

@@ -62,7 +62,7 @@ struct alignas(16) MidBody {
 };
 
 /// A place where a contact may arise while the candidates stay: one surface of a candidate pair.
-struct Slot {
+struct alignas(8) Slot {
   static constexpr std::int32_t empty = -1;
 
   std::int32_t i = empty, j = empty;          ///< bodies, i < j
@@ -162,9 +162,8 @@ SCREE_HD inline bool has_contact(const std::int32_t* found, std::int64_t place) 
 
 /// Of contacts.
 enum Flag : std::uint8_t {
-  flag_flying = 1,   ///< known not to meet in this substep: its rows only guard what the flight leaves free
-  flag_late = 2,     ///< its geometry is of a time after the midpoint
-  flag_may_pass = 4  ///< to be told whether it flies
+  flag_flying = 1,  ///< known not to meet in this substep: its rows only guard what the flight leaves free
+  flag_late = 2     ///< its geometry is of a time after the midpoint
 };
 
 /// What slots remember from substep to substep.

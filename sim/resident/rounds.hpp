@@ -40,7 +40,7 @@ struct ColorPhases {
 template <class Real, bool only_balls>
 struct ImpulseRounds {
   using State = SweepState;
-  using Sum = SweepChange;
+  using Sum = SweepChange<Real>;
   /// Memory is waited for: many contacts must be on their way.
   static constexpr int threads = only_balls ? 512 : 256;
   static constexpr int blocks_at_once = only_balls && std::is_same_v<Real, float> ? 2 : 1;
@@ -101,10 +101,12 @@ struct ImpulseRounds {
       return state;
     }
     ++state.sweeps;
-    state.converged = state.sweeps >= least && change.step <= tolerance * tolerance * change.size;
-    const double ratio = state.sweeps > 1 ? change.step / state.last_step : 0.0;
+    const auto step = static_cast<double>(change.step);
+    state.converged =
+        state.sweeps >= least && step <= tolerance * tolerance * static_cast<double>(change.size);
+    const double ratio = state.sweeps > 1 ? step / state.last_step : 0.0;
     state.beta = ratio < 1.0 ? ratio : 0.0;
-    state.last_step = change.step;
+    state.last_step = step;
     return state;
   }
 };
@@ -119,7 +121,7 @@ struct PartingState {
 template <class Real, bool only_balls>
 struct PartingRounds {
   using State = PartingState;
-  using Sum = Deepest;
+  using Sum = Overlaps;
   static constexpr int threads = only_balls ? 512 : 256;
   static constexpr int blocks_at_once = only_balls ? 2 : 1;
 
@@ -131,8 +133,8 @@ struct PartingRounds {
   CentreRecord<Real>* turn;  ///< none if all contacts are of balls
   JoinHubs<CentreRecord<Real>> shifted_hubs, turned_hubs;
   Real share;
-  int most;
-  float enough;  ///< overlap (of the cap)
+  int least, most;
+  float deepest, mean;  ///< that are left (of the cap)
 
   SCREE_HD int phases(const State& state) const {
     if (state.corrected || state.sweeps >= most) return 0;
@@ -163,8 +165,9 @@ struct PartingRounds {
     }
     return {};
   }
-  SCREE_HD State judge(const State& state, const Sum& deepest) const {
-    return {state.sweeps + 1, deepest.overlap <= enough};
+  SCREE_HD State judge(const State& state, const Sum& seen) const {
+    const int sweeps = state.sweeps + 1;
+    return {sweeps, sweeps >= least && seen.deepest <= deepest && seen.sum <= mean * seen.count};
   }
 };
 

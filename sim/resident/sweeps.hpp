@@ -23,9 +23,10 @@ struct SweepState {
 };
 
 /// Change of the impulses by a sweep, and their size: as ImpulseChange.
+template <class Real>
 struct SweepChange {
-  double step = 0;
-  double size = 0;
+  Real step = 0;
+  Real size = 0;
   SCREE_HD friend SweepChange operator+(const SweepChange& a, const SweepChange& b) {
     return {a.step + b.step, a.size + b.size};
   }
@@ -110,7 +111,7 @@ struct SweepBalls {
   BallContacts<Real> contacts;
   BodyRecord<Real>* bodies;
 
-  SCREE_HD SweepChange operator()(std::int64_t c, Real beta) const {
+  SCREE_HD SweepChange<Real> operator()(std::int64_t c, Real beta) const {
     using C = BallContacts<Real>;
     const Ends ends = contacts.ends[c];
     BodyRecord<Real> i = bodies[ends.i];
@@ -131,8 +132,7 @@ struct SweepBalls {
     store_free(bodies, ends.j, j);
     contacts.fields.set(C::last, c, before);
     contacts.fields.set(C::impulse, c, p);
-    return {static_cast<double>(dot(change, change) / balls.normal_mass),
-            static_cast<double>(dot(p, p) / balls.normal_mass)};
+    return {dot(change, change) / balls.normal_mass, dot(p, p) / balls.normal_mass};
   }
 };
 
@@ -143,7 +143,7 @@ struct SweepPoints {
   BodyRecord<Real>* bodies;
   int block_sweeps;
 
-  SCREE_HD SweepChange operator()(std::int64_t c, Real beta) const {
+  SCREE_HD SweepChange<Real> operator()(std::int64_t c, Real beta) const {
     using C = PointContacts<Real>;
     const Ends ends = contacts.ends[c];
     BodyRecord<Real> i = bodies[ends.i];
@@ -173,13 +173,12 @@ struct SweepPoints {
     }
     store_free(bodies, ends.i, i);
     store_free(bodies, ends.j, j);
-    SweepChange total;
+    SweepChange<Real> total;
     for (int p = 0; p < count; ++p) {
       f.set(C::at_point(p, C::impulse), c, now[p]);
       const V3<Real> change = now[p] - ahead[p];
       const Real mass = f.at(C::at_point(p, C::normal_mass), c);
-      total = total + SweepChange{static_cast<double>(dot(change, change) / mass),
-                                  static_cast<double>(dot(now[p], now[p]) / mass)};
+      total = total + SweepChange<Real>{dot(change, change) / mass, dot(now[p], now[p]) / mass};
     }
     return total;
   }
@@ -203,11 +202,18 @@ struct Accelerate {
   }
 };
 
-/// The deepest overlap, of the cap.
-struct Deepest {
-  float overlap = 0;
-  SCREE_HD friend Deepest operator+(const Deepest& a, const Deepest& b) {
-    return {a.overlap > b.overlap ? a.overlap : b.overlap};
+/// Overlaps as a sweep has found them, of the cap.
+struct Overlaps {
+  float deepest = 0;
+  float sum = 0;
+  float count = 0;
+
+  SCREE_HD static Overlaps of_gap(float gap) {
+    if (!(gap < 0)) return {};
+    return {-gap, -gap, 1};
+  }
+  SCREE_HD friend Overlaps operator+(const Overlaps& a, const Overlaps& b) {
+    return {a.deepest > b.deepest ? a.deepest : b.deepest, a.sum + b.sum, a.count + b.count};
   }
 };
 
@@ -218,7 +224,7 @@ struct PartBalls {
   CentreRecord<Real>* bodies;
   Real share;
 
-  SCREE_HD Deepest operator()(std::int64_t c) const {
+  SCREE_HD Overlaps operator()(std::int64_t c) const {
     using C = BallContacts<Real>;
     const Ends ends = contacts.ends[c];
     CentreRecord<Real> i = bodies[ends.i];
@@ -234,7 +240,7 @@ struct PartBalls {
     store_free(bodies, ends.i, i);
     store_free(bodies, ends.j, j);
     f.at(C::pushed, c) = pushed;
-    return {gap < 0 ? static_cast<float>(-gap / cap) : 0.0f};
+    return Overlaps::of_gap(static_cast<float>(gap / cap));
   }
 };
 
@@ -246,7 +252,7 @@ struct PartPoints {
   CentreRecord<Real>* turns;
   Real share;
 
-  SCREE_HD Deepest operator()(std::int64_t c) const {
+  SCREE_HD Overlaps operator()(std::int64_t c) const {
     using C = PointContacts<Real>;
     const Ends ends = contacts.ends[c];
     Moving<Real> i = load(ends.i);
@@ -271,7 +277,7 @@ struct PartPoints {
     }
     store(ends.i, i);
     store(ends.j, j);
-    return {static_cast<float>(-least / cap)};
+    return Overlaps::of_gap(static_cast<float>(least / cap));
   }
 
  private:

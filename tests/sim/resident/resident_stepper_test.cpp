@@ -136,7 +136,7 @@ TEST_P(ResidentStep, ATallColumnComesToRest) {
   if (is_mixed()) GTEST_SKIP() << "sweeps go by the same rule";
   Simulation run = simulate(R"(
 gravity: [0, 0, -9.81]
-time: {end: 1.2, step: 0.004166666666666667}
+time: {end: 1.8, step: 0.004166666666666667}
 materials:
   stone: {density: 1000, restitution: 0.1, friction: 0.5}
   wall: {density: 1000, restitution: 0.1, friction: 0}
