@@ -59,6 +59,12 @@ def spheres(n, precision="mixed", **rest):
                    "within": 15 if n < 10**6 else 110, "precision": precision, "varied": {"n": n}} | rest))
 
 
+def wide(n, precision="mixed"):
+    """20 layers, whatever their number."""
+    settings = lattice(n, 10, 10, lambda side: 0.1206 * side + 0.052)
+    return spheres(n, precision, settings=settings, settle=1.5, varied={"n": n, "layers": 20})
+
+
 def boxes(n, precision="mixed"):
     settings = lattice(n, 50, 50 / 100, lambda side: 0.1206 * side + 0.061)
     return Run("settled_boxes", settings, 4, 15 if n < 10**6 else 80, precision, varied={"n": n})
@@ -109,6 +115,7 @@ def heaps(space):
 PRECISIONS = ("mixed", "double")
 PARTS = {
     "spheres": lambda at_most, space: [spheres(n) for n in at_most(10**3, 10**4, 10**5, 10**6, 10**7)],
+    "wide": lambda at_most, space: [wide(n, p) for p in PRECISIONS for n in at_most(10**5, 10**6, 4 * 10**6, 10**7, 3 * 10**7)],
     "spheres-double": lambda at_most, space: [spheres(n, "double") for n in at_most(10**3, 10**4, 10**5, 10**6, 10**7)],
     "spheres-largest": lambda at_most, space: [spheres(n, p, within=130) for p in PRECISIONS for n in at_most(3 * 10**7, 10**8)],
     "boxes": lambda at_most, space: [boxes(n, p) for p in PRECISIONS for n in at_most(10**4, 10**5, 10**6)],

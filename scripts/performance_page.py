@@ -109,6 +109,7 @@ ERROR = {
     "median speed (mm/s)": lambda row: three(1e3 * row.speed_median),
     "unexplained energy": lambda row: small(row.unexplained),
 }
+MEMORY = {"bytes/body at the peak": lambda row: three(row.memory_peak_bytes / row.bodies)}
 WHERE = {"hardware": lambda row: row.machine, "precision": lambda row: row.precision}
 SETTLED = {"settled for (s)": lambda row: f"{row.time * row.settling_steps / (row.settling_steps + row.steps):.2g}", "steps": lambda row: f"{row.steps:.0f}"}
 
@@ -131,7 +132,12 @@ def scaling(number):
              "million, which are 100 layers; more are as deep, and wider. Not all are at rest when they are timed: the median speed says it.", ""]
     lines += over_bodies("steps", rows, lambda row: row.steps_per_s, "steps/s")
     lines += over_bodies("body_steps", rows, lambda row: row.body_steps_per_s, "body-steps/s")
-    return lines + table_of(rows, WHERE | SPEED | ERROR | SETTLED) + left_out(failed) + caption(rows)
+    lines += table_of(rows, WHERE | SPEED | ERROR | SETTLED) + left_out(failed) + caption(rows)
+    wide, failed = rows_of("wide")
+    if not wide:
+        return lines
+    in_order = sorted(wide, key=lambda row: (row.precision != "mixed", row.bodies))
+    return lines + ["The same in 20 layers, whatever their number:", "", *table_of(in_order, WHERE | SPEED | ERROR | MEMORY | SETTLED)] + left_out(failed) + caption(wide)
 
 
 def stages_of(row):

@@ -6,9 +6,8 @@
 // Runs until S seconds have passed, then times N steps. One JSON object: medians over these steps, the memory
 // that its space then has in use, and the state after the last. Settling ends, wherever it is, after W
 // seconds of wall time, and so do the timed steps. With --resident yes Host too takes the steps as Device
-// does. With
-// --calls yes ten more steps follow in which each parallel call is waited for: what they and the stages take,
-// which on Device cannot be told apart otherwise.
+// does. With --calls yes ten more steps follow in which each parallel call is waited for: what they and the
+// stages take, which on Device cannot be told apart otherwise.
 #include "bench/options.hpp"
 #include "core/error.hpp"
 #include "core/space.hpp"
