@@ -108,6 +108,9 @@ TYPED_TEST(MotionTest, SumsAndExtremesAreThoseOfALoop) {
   EXPECT_NEAR(totals.kinetic_linear, static_cast<double>(kinetic), 1e-10);
   EXPECT_NEAR(totals.potential, static_cast<double>(potential), 1e-9);
   EXPECT_LT((totals.momentum - momentum).norm(), 1e-11);
+  const Energies energies = energies_of<TypeParam>(bodies, gravity, reference);
+  EXPECT_NEAR(energies.kinetic(), totals.kinetic_linear + totals.kinetic_angular, 1e-10);
+  EXPECT_NEAR(energies.potential, totals.potential, 1e-9);
   EXPECT_NEAR(largest_speed<TypeParam>(bodies), fastest, 1e-14);
   const RegionContents contents = contents_of<TypeParam>(region, bodies);
   EXPECT_GT(inside_count, 50);
@@ -147,6 +150,17 @@ TYPED_TEST(MotionTest, BoxesHoldUntilABodyLeavesIts) {
     EXPECT_FALSE(hold_when_moved(body, 1.01));
   }
   EXPECT_TRUE(hold_when_moved(1, 100)) << "fixed bodies have no room, and need none";
+
+  for (const double dt : {0.0, 0.01}) {
+    for (const double share : {0.5, 2.0}) {
+      hold_when_moved(999, share);
+      contact_margins(bodies, dt, tolerance::contact_slack, {}, margin);
+      Array<double, TypeParam> set;
+      EXPECT_EQ(boxes.hold(bodies, dt, {}, set), boxes.hold(bodies, margin)) << dt << " s, " << share;
+      EXPECT_EQ(to_vector(set), to_vector(margin));
+    }
+  }
+  contact_margins(bodies, 0, tolerance::contact_slack, {}, margin);
 
   hold_when_moved(999, 1);
   const std::vector<double> before = to_vector(margin);
