@@ -9,6 +9,10 @@
 
 #include <memory>
 
+#if SCREE_WITH_CUDA
+#include <cuda_runtime.h>
+#endif
+
 namespace scree {
 namespace {
 
@@ -329,6 +333,48 @@ TYPED_TEST(Bricked, ManyPairsToAnObject) {
   ASSERT_TRUE(plan_of(boxes));
   expect_pairs_of_the_uniform_grid<TypeParam>(boxes, true);
 }
+
+#if SCREE_WITH_CUDA
+
+// What would pass for an entry that meets all others, those of its kind too: halves of 16 bits, all flags.
+constexpr uint4 meets_all = {0x80008000u, 0x80008000u, 0x80008000u, 0xf0000000u | body_mask};
+
+__global__ void spoil(unsigned items) {
+  extern __shared__ uint4 shared[];
+  for (unsigned k = threadIdx.x; k < items; k += blockDim.x) {
+    shared[k] = meets_all;
+    asm volatile("" ::"l"(&shared[k]) : "memory");  // or nobody would need it
+  }
+}
+
+void spoil_shared_memory() {
+  int processors = 0;
+  int bytes = 0;
+  ASSERT_EQ(cudaDeviceGetAttribute(&processors, cudaDevAttrMultiProcessorCount, 0), cudaSuccess);
+  ASSERT_EQ(cudaDeviceGetAttribute(&bytes, cudaDevAttrMaxSharedMemoryPerBlockOptin, 0), cudaSuccess);
+  ASSERT_EQ(cudaFuncSetAttribute(spoil, cudaFuncAttributeMaxDynamicSharedMemorySize, bytes), cudaSuccess);
+  spoil<<<static_cast<unsigned>(8 * processors), 256, static_cast<unsigned>(bytes)>>>(
+      static_cast<unsigned>(bytes) / sizeof(uint4));
+  ASSERT_EQ(cudaDeviceSynchronize(), cudaSuccess);
+}
+
+// Bricks with few entries read further than these: two decades of radii found pairs with bodies that are not.
+TEST(BricksOnDevice, PairsDoNotHangOnWhatTheMemoryHeld) {
+  const DeviceInfo info = device_info();
+  if (!info.available) GTEST_SKIP() << "no GPU: " << info.name;
+  for (const int n : {2, 3, 20, 100, 1000}) {
+    const double side = 2 * std::cbrt(n);
+    for (const Boxes& boxes : {equal_cloud(n, side, 0.8), log_cloud(n, side, 0.02, 2)}) {
+      const std::vector<Mobility> mobility = all_free(boxes);
+      const auto grid = make_broad_phase<Device>({});
+      spoil_shared_memory();
+      EXPECT_TRUE(same_pairs(by_definition(boxes, mobility), sorted(found(*grid, boxes, mobility)))) << n;
+      EXPECT_GT(grid->stats().bricks, 0) << n;
+    }
+  }
+}
+
+#endif
 
 // The sample does not see the crowd, and the grid does what bricks cannot.
 TYPED_TEST(Bricked, AHiddenCrowdIsLeftToTheGrid) {
