@@ -38,7 +38,7 @@ template <class Space, class F>
 void for_each(const char* label, std::int64_t n, F f, [[maybe_unused]] std::int64_t fewest = few) {
   const timing::Call<Space> call(label);
   if constexpr (std::is_same_v<Space, Host>) {
-    if (n < fewest) {
+    if (n < fewest || is_alone()) {
       for (std::int64_t i = 0; i < n; ++i) f(i);
       return;
     }
@@ -133,7 +133,7 @@ template <class T, class Space, class F, class Join>
 T reduce(const char* label, std::int64_t n, F f, T neutral, Join join) {
   const timing::Call<Space> call(label);
   if constexpr (std::is_same_v<Space, Host>) {
-    if (n < few) {
+    if (n < few || is_alone()) {
       T all = neutral;
       for (std::int64_t i = 0; i < n; ++i) all = join(all, f(i));
       return all;

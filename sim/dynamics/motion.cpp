@@ -116,6 +116,14 @@ struct LoadDrift {
   SCREE_HD double operator()(std::int64_t k) const { return drift[k]; }
 };
 
+/// No point of a body moves faster (m/s).
+SCREE_HD double surface_speed(const ConstBodyView& bodies, std::int64_t k) {
+  const Shape shape = bodies.shape[k];
+  const double turning =
+      shape == Shape::sphere ? 0.0 : bounding_radius(shape, bodies.size[k]) * bodies.spin[k].norm();
+  return bodies.velocity[k].norm() + turning;
+}
+
 struct SetMargin {
   ConstBodyView bodies;
   View<double> margin;
@@ -129,10 +137,8 @@ struct SetMargin {
       return;
     }
     const double fall = parameters.acceleration_of(k).norm() * dt * dt;
-    const double radius = bounding_radius(shape, bodies.size[k]);
-    const double turn = shape == Shape::sphere ? 0.0 : radius * bodies.spin[k].norm() * dt;
     margin[k] = (is_boundary(shape) ? 0.0 : slack * smallest_size(shape, bodies.size[k])) +
-                tolerance::travel_factor * (bodies.velocity[k].norm() * dt + turn + fall);
+                tolerance::travel_factor * (surface_speed(bodies, k) * dt + fall);
   }
 };
 
@@ -181,8 +187,8 @@ struct AddTravel {
   SCREE_HD void operator()(std::int64_t k) const { margin[k] += travel(k); }
 };
 
-/// At least the margin wanted and the skin, and what fast bodies travel in so long (s): they are few, and for
-/// them alone the boxes of all would have to be put anew.
+/// At least the margin wanted and the skin, and how far the surfaces of fast bodies travel in so long (s):
+/// they are few, and for them alone the boxes of all would have to be put anew.
 struct RaiseMargin {
   ConstBodyView bodies;
   ConstView<double> wanted;
@@ -191,25 +197,24 @@ struct RaiseMargin {
   SCREE_HD void operator()(std::int64_t k) const {
     if (bodies.mobility[k] == Mobility::fixed || is_boundary(bodies.shape[k])) return;
     const double size = smallest_size(bodies.shape[k], bodies.size[k]);
-    const double travel = tolerance::contact_slack * size + life * bodies.velocity[k].norm();
+    const double travel = tolerance::contact_slack * size + life * surface_speed(bodies, k);
     margin[k] = fmax(margin[k], fmax(wanted[k] + tolerance::pair_skin * size, travel));
   }
 };
 
-/// How fast a body leaves where it is, in its own smallest_size (1/s), squared.
+/// How fast bodies leave where they are, in their own smallest_size (1/s).
 struct Leaving {
-  double rate_squared = 0;
+  double rates = 0;  ///< their sum
   std::int64_t count = 0;
   SCREE_HD friend Leaving operator+(const Leaving& a, const Leaving& b) {
-    return {a.rate_squared + b.rate_squared, a.count + b.count};
+    return {a.rates + b.rates, a.count + b.count};
   }
 };
 struct LeavingOf {
   ConstBodyView bodies;
   SCREE_HD Leaving operator()(std::int64_t k) const {
     if (bodies.mobility[k] != Mobility::free) return {};
-    const double size = smallest_size(bodies.shape[k], bodies.size[k]);
-    return {bodies.velocity[k].squaredNorm() / (size * size), 1};
+    return {surface_speed(bodies, k) / smallest_size(bodies.shape[k], bodies.size[k]), 1};
   }
 };
 
@@ -311,8 +316,7 @@ void FatBoxes<Space>::put_around(const Bodies<Space>& bodies, double dt, const R
                                  const Array<double, Space>& contact_margin) {
   const auto leaving =
       parallel::sum_by_tiles<Leaving, Space>("motion.leaving", bodies.count(), LeavingOf{view_of(bodies)});
-  const double rate =
-      std::sqrt(leaving.rate_squared / static_cast<double>(std::max<std::int64_t>(leaving.count, 1)));
+  const double rate = leaving.rates / static_cast<double>(std::max<std::int64_t>(leaving.count, 1));
   const double longest = tolerance::most_pair_steps * dt;
   const double life =
       rate * longest > tolerance::pair_travel ? std::max(dt, tolerance::pair_travel / rate) : longest;

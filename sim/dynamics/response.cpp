@@ -227,25 +227,28 @@ int ResponseSolver::keep_from_gaining(std::int64_t bodies, lanes::Batches& batch
       if (ends.i[l] != batches.nobody) act(ends.i[l], ends.j[l], l);
     }
   };
+  const auto free_end = [this](std::int32_t i, std::int32_t j) { return sweeps_.is_free(i) ? i : j; };
   islands_.start(bodies);
-  for (std::int64_t b = 0; b < loss_.size(); ++b) {
-    for_each_contact(b, [&](std::int32_t i, std::int32_t j, int) {
-      if (sweeps_.is_free(i) && sweeps_.is_free(j)) islands_.unite(i, j);
-    });
-  }
-  const auto of_island = [&](auto& list, std::int32_t i, std::int32_t j) -> auto& {
-    return list[static_cast<std::size_t>(islands_.root(sweeps_.is_free(i) ? i : j))];
-  };
   moved_.assign(static_cast<std::size_t>(bodies), Moved{});
   for (std::int64_t b = 0; b < loss_.size(); ++b) {
     for_each_contact(b, [&](std::int32_t i, std::int32_t j, int l) {
-      of_island(moved_, i, j).linear -= loss_.view()[b].of.at[l];
+      moved_[static_cast<std::size_t>(free_end(i, j))].linear -= loss_.view()[b].of.at[l];
+      if (sweeps_.is_free(i) && sweeps_.is_free(j)) islands_.unite(i, j);
     });
   }
+  for (std::size_t body = 0; body < moved_.size(); ++body) {
+    const auto root = static_cast<std::size_t>(islands_.root(static_cast<std::int32_t>(body)));
+    if (root != body) moved_[root].linear += std::exchange(moved_[body].linear, 0.0);
+  }
   // So far that is what each island gains in all; those that do are looked at closely.
+  const auto gains = [](const Moved& moved) { return moved.linear > 0; };
+  if (std::ranges::none_of(moved_, gains)) return 0;
+  const auto of_island = [&](auto& list, std::int32_t i, std::int32_t j) -> auto& {
+    return list[static_cast<std::size_t>(islands_.root(free_end(i, j)))];
+  };
   scale_.resize(moved_.size());
   std::ranges::transform(moved_, scale_.begin(),
-                         [](const Moved& moved) { return moved.linear > 0 ? 0.0 : 1.0; });
+                         [&](const Moved& moved) { return gains(moved) ? 0.0 : 1.0; });
   const auto for_each_gaining_batch = [&](const auto& act) {
     for (std::int64_t b = 0; b < loss_.size(); ++b) {
       bool any = false;
@@ -264,9 +267,9 @@ int ResponseSolver::keep_from_gaining(std::int64_t bodies, lanes::Batches& batch
     if (scale_[island] == 1) continue;
     Moved& moved = moved_[island];
     moved.linear -= moved.square;
-    const bool gains = moved.gains(tolerance::response_gain);
-    scale_[island] = gains ? moved.scale_without_gain() : 1.0;
-    scaled += gains;
+    const bool too_much = moved.gains(tolerance::response_gain);
+    scale_[island] = too_much ? moved.scale_without_gain() : 1.0;
+    scaled += too_much;
   }
   if (scaled == 0) return 0;
   for_each_gaining_batch([&](std::int64_t b) {
