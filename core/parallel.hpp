@@ -3,11 +3,11 @@
 #pragma once
 
 #include "core/array.hpp"
+#include "core/crew.hpp"
 #include "core/space_matches.hpp"
 #include "core/space_policy.hpp"
 #include "core/timing.hpp"
 
-#include <tbb/global_control.h>
 #include <thrust/copy.h>
 #include <thrust/count.h>
 #include <thrust/extrema.h>
@@ -20,30 +20,34 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <vector>
 
 namespace scree::parallel {
 
-/// Under this many items the cost of waking threads exceeds the work, on the host.
+/// Under this many items the cost of sharing them out exceeds the work, on the host.
 inline constexpr std::int64_t few = 256;
 
 /// Whether the host has but one thread to work with.
-inline bool is_alone() {
-  return tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism) == 1;
-}
+inline bool is_alone() { return scree::detail::Crew::most_threads() == 1; }
 
 /// Calls f(i) for 0 <= i < n, in any order and at once. f is a copyable function object over views; on
 /// Device the call returns before the work is done. `label` names the work to a profiler. `fewest`: items
-/// worth waking threads for, on the host, where each is much work.
+/// worth sharing out, on the host, where each is much work.
 template <class Space, class F>
 void for_each(const char* label, std::int64_t n, F f, [[maybe_unused]] std::int64_t fewest = few) {
   const timing::Call<Space> call(label);
   if constexpr (std::is_same_v<Space, Host>) {
+    const auto run = [&f](std::int64_t begin, std::int64_t end) {
+      for (std::int64_t i = begin; i < end; ++i) f(i);
+    };
     if (n < fewest || is_alone()) {
-      for (std::int64_t i = 0; i < n; ++i) f(i);
-      return;
+      run(0, n);
+    } else {
+      scree::detail::Crew::get().share(n, run);
     }
+  } else {
+    thrust::for_each_n(scree::detail::policy(Space{}), thrust::counting_iterator<std::int64_t>(0), n, f);
   }
-  thrust::for_each_n(scree::detail::policy(Space{}), thrust::counting_iterator<std::int64_t>(0), n, f);
 }
 
 namespace detail {
@@ -112,8 +116,9 @@ T sum(const char* label, std::int64_t n, F f) {
     }
   }
   std::int64_t blocks = (n + detail::leaf - 1) / detail::leaf;
+  constexpr std::int64_t few_leaves = 2;
   Array<T, Space> partial(blocks);
-  parallel::for_each<Space>(label, blocks, detail::SumLeaf<T, F>{f, partial.data(), n});
+  parallel::for_each<Space>(label, blocks, detail::SumLeaf<T, F>{f, partial.data(), n}, few_leaves);
   while (blocks > 1) {
     const std::int64_t next = (blocks + detail::leaf - 1) / detail::leaf;
     Array<T, Space> level(next);
@@ -133,14 +138,24 @@ template <class T, class Space, class F, class Join>
 T reduce(const char* label, std::int64_t n, F f, T neutral, Join join) {
   const timing::Call<Space> call(label);
   if constexpr (std::is_same_v<Space, Host>) {
-    if (n < few || is_alone()) {
+    const auto of_range = [&](std::int64_t begin, std::int64_t end) {
       T all = neutral;
-      for (std::int64_t i = 0; i < n; ++i) all = join(all, f(i));
+      for (std::int64_t i = begin; i < end; ++i) all = join(all, f(i));
       return all;
-    }
+    };
+    if (n < few || is_alone()) return of_range(0, n);
+    const std::int64_t blocks = std::min<std::int64_t>(n / few + 1, 4 * scree::detail::Crew::most_threads());
+    std::vector<T> parts(static_cast<std::size_t>(blocks), neutral);
+    scree::detail::for_each_block(n, blocks, [&](std::int64_t b, std::int64_t begin, std::int64_t end) {
+      parts[static_cast<std::size_t>(b)] = of_range(begin, end);
+    });
+    T all = neutral;
+    for (const T& part : parts) all = join(all, part);
+    return all;
+  } else {
+    const thrust::counting_iterator<std::int64_t> first(0);
+    return thrust::transform_reduce(scree::detail::policy(Space{}), first, first + n, f, neutral, join);
   }
-  const thrust::counting_iterator<std::int64_t> first(0);
-  return thrust::transform_reduce(scree::detail::policy(Space{}), first, first + n, f, neutral, join);
 }
 
 /// Largest f(i), and `lowest` for n = 0. Exact, whatever the grouping.

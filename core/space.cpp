@@ -1,7 +1,9 @@
 #include "core/space.hpp"
 
+#include "core/crew.hpp"
 #include "core/error.hpp"
 
+#include <algorithm>
 #include <cstdint>
 #include <cstdlib>
 #include <cstring>
@@ -52,7 +54,19 @@ void Host::forget_peak() {
 
 template <>
 void copy_bytes<Host, Host>(void* to, const void* from, std::size_t bytes) {
-  if (bytes > 0) std::memcpy(to, from, bytes);
+  constexpr std::size_t page = 4096;
+  constexpr std::size_t few_pages = 16;
+  const auto copy = [&](std::size_t begin, std::size_t end) {
+    std::memcpy(static_cast<char*>(to) + begin, static_cast<const char*>(from) + begin, end - begin);
+  };
+  if (bytes < few_pages * page) {
+    if (bytes > 0) copy(0, bytes);
+    return;
+  }
+  const std::size_t pages = (bytes + page - 1) / page;
+  detail::Crew::get().share(static_cast<std::int64_t>(pages), [&](std::int64_t begin, std::int64_t end) {
+    copy(static_cast<std::size_t>(begin) * page, std::min(static_cast<std::size_t>(end) * page, bytes));
+  });
 }
 
 #if SCREE_WITH_CUDA

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "core/array.hpp"
+#include "core/crew.hpp"
 #include "core/matches.hpp"
 #include "core/timing.hpp"
 
@@ -253,6 +254,7 @@ class MatchFinder<Host, Match> {
       idle.push(chunk);
     };
     using tbb::filter_mode;
+    detail::Crew::get().dismiss();
     tbb::parallel_pipeline(under_way,
                            tbb::make_filter<void, Chunk*>(filter_mode::serial_in_order, begin) &
                                tbb::make_filter<Chunk*, Chunk*>(filter_mode::parallel, find) &

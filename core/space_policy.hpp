@@ -2,13 +2,12 @@
 // alone: include parallel.hpp instead.
 #pragma once
 
+#include "core/crew.hpp"
 #include "core/error.hpp"
 #include "core/space.hpp"
 
 #include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
 #include <tbb/parallel_reduce.h>
-#include <tbb/task_arena.h>
 #include <thrust/system/tbb/execution_policy.h>
 
 #include <algorithm>
@@ -27,17 +26,17 @@
 
 namespace scree::detail {
 
-inline auto policy(Host) { return thrust::tbb::par; }
+inline auto policy(Host) {
+  Crew::get().dismiss();
+  return thrust::tbb::par;
+}
 
 /// Calls work(b, begin, end) for each of `blocks` runs of like length among n items, at once.
 template <class Work>
 void for_each_block(std::int64_t n, std::int64_t blocks, const Work& work) {
-  const auto call = [&](std::int64_t b) { work(b, n * b / blocks, n * (b + 1) / blocks); };
-  if (blocks == 1) {
-    call(0);  // without waking a thread
-  } else {
-    tbb::parallel_for(std::int64_t{0}, blocks, call);
-  }
+  Crew::get().share(blocks, [&](std::int64_t b, std::int64_t end) {
+    for (; b < end; ++b) work(b, n * b / blocks, n * (b + 1) / blocks);
+  });
 }
 
 /// Stable radix sort of n unsigned keys by their lowest `bits` bits, from the lowest digit: each block of
@@ -50,8 +49,7 @@ void sort_by_digits(Key*& keys, Key*& spare_keys, std::int64_t n, int bits, cons
   const int passes = std::max(1, (bits + most_bits - 1) / most_bits);
   const int digit_bits = (bits + passes - 1) / passes;
   const std::int64_t buckets = std::int64_t{1} << digit_bits;
-  const std::int64_t blocks =
-      std::clamp<std::int64_t>(n / 16384, 1, 4 * tbb::this_task_arena::max_concurrency());
+  const std::int64_t blocks = std::clamp<std::int64_t>(n / 16384, 1, 4 * Crew::most_threads());
   std::vector<std::int64_t> places(static_cast<std::size_t>(blocks * buckets));
   for (int shift = 0; shift < passes * digit_bits; shift += digit_bits) {
     const auto digit = [=](Key key) { return static_cast<std::int64_t>(key >> shift) & (buckets - 1); };
@@ -108,6 +106,7 @@ void sort_keys(Host, Key*& keys, Key*& spare_keys, std::int64_t n, int bits) {
 template <class Samples>
 void histogram(Host, Samples samples, std::int64_t n, int bins, std::uint32_t* counts) {
   using Counts = std::vector<std::uint32_t>;
+  Crew::get().dismiss();
   const Counts total = tbb::parallel_reduce(
       tbb::blocked_range<std::int64_t>(0, n, 4096), Counts(static_cast<std::size_t>(bins)),
       [samples](const tbb::blocked_range<std::int64_t>& range, Counts sum) {

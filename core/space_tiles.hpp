@@ -36,7 +36,8 @@ struct CompactTile {
 
 template <class F>
 void compact(Host, const char* label, std::int64_t tiles, const F& f, std::int32_t* counts) {
-  parallel::for_each<Host>(label, tiles, CompactTile<F>{f, counts});
+  constexpr std::int64_t few_tiles = 2;
+  parallel::for_each<Host>(label, tiles, CompactTile<F>{f, counts}, few_tiles);
 }
 template <class T, class F>
 void add_up(Host, const char* label, std::int64_t n, const F& f, Array<T, Host>&, T* out) {

@@ -156,7 +156,7 @@ Manifolds NarrowPhase::find(const ConstBodyView& bodies, ConstView<Pair> pairs, 
                             const LateBodies* late) {
   // One pair's cost is next to nothing, so they are taken by the chunk; of the most that there are, each
   // holds as many as it must.
-  constexpr std::int64_t smallest_chunk = 256, most_chunks = 4096;
+  constexpr std::int64_t smallest_chunk = 64, most_chunks = 4096, few_chunks = 2;
   const std::int64_t chunk_size = std::max(smallest_chunk, (pairs.size() + most_chunks - 1) / most_chunks);
   const std::int64_t count = (pairs.size() + chunk_size - 1) / chunk_size;
   if (count > static_cast<std::int64_t>(chunks_.size())) chunks_.resize(static_cast<std::size_t>(count));
@@ -165,7 +165,8 @@ Manifolds NarrowPhase::find(const ConstBodyView& bodies, ConstView<Pair> pairs, 
   parallel::for_each<Host>("find contacts", count,
                            FindContacts{bodies, pairs, margin, std::as_const(extent_).view(),
                                         &tables[static_cast<int>(settings_.box_box)], settings_.crosscheck,
-                                        searches_++, late, chunk_size, chunks_.data()});
+                                        searches_++, late, chunk_size, chunks_.data()},
+                           few_chunks);
   stats_ = {};
   std::int64_t headers = 0;
   std::int64_t points = 0;

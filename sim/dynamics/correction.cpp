@@ -39,22 +39,22 @@ struct PositionCorrector::Stage {
   }
 };
 
-/// Flies a batch on from its midpoint; returns the deepest overlap (m).
+/// Flies a batch on from its midpoint, and sets its deepest overlap (m).
 struct PositionCorrector::FlyBalls {
   Stage stage;
   ConstView<lanes::Members> members;
   ConstView<lanes::BallBatch> batches;
   View<lanes::BallParting> partings;
-  double operator()(std::int64_t b) const {
+  double* deepest;
+  void operator()(std::int64_t b) const {
     lanes::BallParting& parting = partings[b];
-    double deepest = lanes::kernels().fly_balls(batches[b], parting, stage.displacement.data(), stage.step);
+    deepest[b] = lanes::kernels().fly_balls(batches[b], parting, stage.displacement.data(), stage.step);
     for (int l = 0; l < lanes::width; ++l) {
       if ((parting.apart >> l & 1) == 0) continue;
       parting.flown.at[l] =
           stage.flown_gap(stage.contacts[members[b].contact[l]], stage.rows[members[b].row[l]]);
-      deepest = fmax(deepest, -parting.flown.at[l]);
+      deepest[b] = fmax(deepest[b], -parting.flown.at[l]);
     }
-    return deepest;
   }
 };
 
@@ -64,20 +64,20 @@ struct PositionCorrector::FlyPoints {
   ConstView<lanes::PointBatch> batches;
   ConstView<lanes::PointRow> rows;
   View<lanes::PointParting> points;
-  double operator()(std::int64_t b) const {
+  double* deepest;
+  void operator()(std::int64_t b) const {
     const lanes::PointBatch& batch = batches[b];
     const std::int64_t first = batch.first_row;
-    double deepest = lanes::kernels().fly_points(batch, &rows[first], &points[first],
-                                                 stage.displacement.data(), stage.roots.data(), stage.step);
+    deepest[b] = lanes::kernels().fly_points(batch, &rows[first], &points[first], stage.displacement.data(),
+                                             stage.roots.data(), stage.step);
     for (int l = 0; batch.apart >> l != 0; ++l) {
       if ((batch.apart >> l & 1) == 0) continue;
       for (int k = 0; k < batch.count; ++k) {
         double& gap = points[first + k].gap.at[l];
         gap = stage.flown_gap(stage.contacts[members[b].contact[l]], stage.rows[members[b].row[l] + k]);
-        deepest = fmax(deepest, -gap);
+        deepest[b] = fmax(deepest[b], -gap);
       }
     }
-    return deepest;
   }
 };
 
@@ -166,16 +166,20 @@ Ledger PositionCorrector::correct(double step, const ResponseParameters& paramet
   const Stage stage{bodies,        solver.view(), set.contacts.view(), set.rows.view(), displacement_.view(),
                     roots_.view(), step};
   parallel::for_each<Host>("correction.load", displacement_.size(), LoadBody{stage});
-  const FlyBalls fly_balls{stage, batches.ball_members.view(), batches.balls.view(), batches.partings.view()};
-  const FlyPoints fly_points{stage, batches.point_members.view(), batches.points.view(), batches.rows.view(),
-                             batches.point_partings.view()};
-  const double deepest =
-      fmax(parallel::max<double, Host>("correction.gaps", batches.balls.size(), fly_balls, 0.0),
-           parallel::max<double, Host>("correction.gaps", batches.points.size(), fly_points, 0.0));
-  if (deepest == 0) return {};
-  parallel::for_each<Host>("correction.reset", displacement_.size(), Reset{stage});
   const std::int64_t balls = batches.balls.size();
   deepest_.resize(balls + batches.points.size());
+  const auto deepest = [this] {
+    return parallel::max<double, Host>("correction.deepest", deepest_.size(),
+                                       LoadDepth{std::as_const(deepest_).view()}, 0.0);
+  };
+  lanes::for_each_batch(
+      "correction.gaps", batches,
+      FlyBalls{stage, batches.ball_members.view(), batches.balls.view(), batches.partings.view(),
+               deepest_.data()},
+      FlyPoints{stage, batches.point_members.view(), batches.points.view(), batches.rows.view(),
+                batches.point_partings.view(), deepest_.data() + balls});
+  if (deepest() == 0) return {};
+  parallel::for_each<Host>("correction.reset", displacement_.size(), Reset{stage});
   // Few cost nothing; in a heap what is left is for the next substeps.
   const int most = !set.is_heap() ? 100 : set.shares_loads() ? 24 : 6;
   bool corrected = false;
@@ -184,9 +188,7 @@ Ledger PositionCorrector::correct(double step, const ResponseParameters& paramet
                           PartBalls{batches.partings.view(), displacement_.data(), deepest_.data()},
                           PartPoints{batches.points.view(), batches.point_partings.view(),
                                      displacement_.data(), deepest_.data() + balls});
-    const double overlap = tolerance::correction_cap *
-                           parallel::max<double, Host>("correction.deepest", deepest_.size(),
-                                                       LoadDepth{std::as_const(deepest_).view()}, 0.0);
+    const double overlap = tolerance::correction_cap * deepest();
     if (sweep == 0) overlap_ = overlap;
     corrected = overlap <= tolerance::corrected_overlap;
   }

@@ -131,18 +131,19 @@ struct LoadMean {
   }
 };
 
-struct BookBatch {
-  const lanes::Batches* batches;
+struct BookBalls {
+  ConstView<lanes::BallBatch> batches;
   const lanes::Body* mean;
-  View<lanes::Losses> losses;
+  lanes::Losses* losses;
+  void operator()(std::int64_t b) const { lanes::kernels().book_balls(batches[b], mean, losses[b]); }
+};
+struct BookPoints {
+  ConstView<lanes::PointBatch> batches;
+  ConstView<lanes::PointRow> rows;
+  const lanes::Body* mean;
+  lanes::Losses* losses;
   void operator()(std::int64_t b) const {
-    const std::int64_t balls = batches->balls.size();
-    if (b < balls) {
-      lanes::kernels().book_balls(batches->balls.view()[b], mean, losses[b]);
-      return;
-    }
-    const lanes::PointBatch& batch = batches->points.view()[b - balls];
-    lanes::kernels().book_points(batch, &batches->rows.view()[batch.first_row], mean, losses[b]);
+    lanes::kernels().book_points(batches[b], &rows[batches[b].first_row], mean, losses[b]);
   }
 };
 
@@ -154,13 +155,14 @@ struct LoadBooks {
 }  // namespace
 
 lanes::Books Sweeps::book(Array<lanes::Losses, Host>& losses) {
-  constexpr std::int64_t few_batches = 64;  // worth waking threads for
   losses.resize(batches_->balls.size() + batches_->points.size());
   last_.resize(bodies_.size());
   parallel::for_each<Host>("response.mean", bodies_.size(),
                            LoadMean{*stage_, std::as_const(bodies_).view(), last_.view()});
-  parallel::for_each<Host>("response.books", losses.size(), BookBatch{batches_, last_.data(), losses.view()},
-                           few_batches);
+  lanes::for_each_batch("response.books", *batches_,
+                        BookBalls{batches_->balls.view(), last_.data(), losses.data()},
+                        BookPoints{batches_->points.view(), batches_->rows.view(), last_.data(),
+                                   losses.data() + batches_->balls.size()});
   return parallel::sum<lanes::Books, Host>("response.books", losses.size(),
                                            LoadBooks{std::as_const(losses).view()});
 }

@@ -3,6 +3,7 @@
 #include "core/parallel.hpp"
 #include "core/tolerances.hpp"
 #include "sim/dynamics/contact_set.hpp"
+#include "sim/dynamics/lanes/colored.hpp"
 
 #include <array>
 
@@ -10,12 +11,6 @@ namespace scree::lanes {
 
 namespace {
 
-/// Batches worth waking threads for, where all of their contacts are made.
-constexpr std::int64_t few_batches = 32;
-
-/// Batches of one kind and colour hold as many points each: kind 0 is pairs of balls, kind 1 other balls, the
-/// rest are one more than their points.
-constexpr int kinds = most_points + 2;
 static_assert(most_points == Manifold::max_points);
 int kind_of(const Contact& contact) { return contact.aligned ? 1 : 1 + contact.count; }
 
@@ -236,9 +231,9 @@ struct StoreMasses {
   }
 };
 
-/// Lanes of pairs that nobody takes.
-void leave(BallBatch& batch, BallParting& parting, std::int32_t nobody) {
-  for (int l = 0; l < width; ++l) {
+/// Lanes of pairs that nobody takes, from the first of them on.
+void leave(BallBatch& batch, BallParting& parting, int first, std::int32_t nobody) {
+  for (int l = first; l < width; ++l) {
     batch.ends.i[l] = batch.ends.j[l] = nobody;
     put(batch.friction, l, 0);
     put(batch.impulse.impulse, l, Vec3::Zero());
@@ -253,8 +248,6 @@ void arrange(const Coloring& coloring, ConstView<Contact> contacts, std::int32_t
   batches.nobody = nobody;
   batches.lane_of.resize(std::ssize(coloring.order) - contacts.size());
   batches.last_is_serial = coloring.last_is_serial;
-  batches.ball_begin.assign(1, 0);
-  batches.point_begin.assign(1, 0);
   // Contacts that share a free body, in the serial colour, share no batch.
   const auto is_serial = [&](std::size_t color) { return coloring.last_is_serial && color + 1 == colors; };
   const auto kind_at = [&](std::int64_t place) {
@@ -263,51 +256,65 @@ void arrange(const Coloring& coloring, ConstView<Contact> contacts, std::int32_t
   };
   std::vector<std::array<std::int64_t, kinds>>& next = batches.next_lane;
   next.assign(colors, {});
-  std::int64_t rows = 0;
+  std::int64_t balls = 0, points = 0, rows = 0;
   for (std::size_t color = 0; color < colors; ++color) {
     std::array<std::int64_t, kinds> counts{};
     for (std::int64_t k = coloring.color_begin[color]; k < coloring.color_begin[color + 1]; ++k)
       ++counts[kind_at(k)];
-    std::int64_t balls = batches.ball_begin.back();
-    std::int64_t points = batches.point_begin.back();
     for (std::size_t kind = 0; kind < kinds; ++kind) {
       const std::int64_t batches_of_kind =
           is_serial(color) ? counts[kind] : (counts[kind] + width - 1) / width;
-      std::int64_t& begin = kind < 2 ? balls : points;
+      std::int64_t& begin = is_of_balls(kind) ? balls : points;
       next[color][kind] = begin * width;
       begin += batches_of_kind;
-      if (kind > 1) rows += static_cast<std::int64_t>(kind - 1) * batches_of_kind;
+      if (!is_of_balls(kind)) rows += static_cast<std::int64_t>(kind - 1) * batches_of_kind;
     }
-    batches.ball_begin.push_back(balls);
-    batches.point_begin.push_back(points);
   }
-  batches.balls.resize(batches.ball_begin.back());
+  batches.balls.resize(balls);
   batches.partings.resize(batches.balls.size());
   batches.ball_members.resize(batches.balls.size());
-  batches.points.resize(batches.point_begin.back());
+  batches.points.resize(points);
   batches.point_members.resize(batches.points.size());
   batches.rows.resize(rows);
   batches.point_partings.resize(rows);
   parallel::fill("lanes.reset", batches.ball_members, nothing);
   parallel::fill("lanes.reset", batches.point_members, nothing);
+  // Of the contacts given, and of the pairs of balls after them, each in its own order.
+  const std::int64_t pairs = std::ssize(coloring.order) - contacts.size();
+  const auto slab_of = [&](std::int64_t c) {
+    return c < contacts.size() ? c * slabs / contacts.size() : (c - contacts.size()) * slabs / pairs;
+  };
+  batches.slab_begin.resize(colors);
   for (std::size_t color = 0; color < colors; ++color) {
+    std::array<std::int64_t, kinds> slab{};  // the next to begin
     for (std::int64_t k = coloring.color_begin[color]; k < coloring.color_begin[color + 1]; ++k) {
       const std::int32_t c = coloring.order[static_cast<std::size_t>(k)];
       const std::size_t kind = kind_at(k);
       std::int64_t& lane = next[color][kind];
-      Array<Members, Host>& members = kind < 2 ? batches.ball_members : batches.point_members;
+      Array<Members, Host>& members = is_of_balls(kind) ? batches.ball_members : batches.point_members;
       Members& group = members.view()[lane / width];
+      if (lane % width == 0) {
+        for (const std::int64_t own = slab_of(c); slab[kind] <= own; ++slab[kind])
+          batches.slab_begin[color][kind][static_cast<std::size_t>(slab[kind])] = lane / width;
+      }
       if (kind == 0) {
-        if (lane % width == 0)
-          leave(batches.balls.view()[lane / width], batches.partings.view()[lane / width], nobody);
         group.are_pairs = true;
         batches.lane_of.view()[c - contacts.size()] = static_cast<std::int32_t>(lane);
       } else {
         group.contact[lane % width] = c;
         group.row[lane % width] = contacts[c].first_row;
       }
-      if (kind > 1) batches.points.view()[lane / width].count = static_cast<std::int32_t>(kind - 1);
+      if (!is_of_balls(kind)) batches.points.view()[lane / width].count = static_cast<std::int32_t>(kind - 1);
+      const bool is_last = k + 1 == coloring.color_begin[color + 1];  // pairs are, in each colour
+      if (kind == 0 && (is_serial(color) || is_last))
+        leave(batches.balls.view()[lane / width], batches.partings.view()[lane / width],
+              static_cast<int>(lane % width) + 1, nobody);
       lane += is_serial(color) ? width : 1;
+    }
+    for (std::size_t kind = 0; kind < kinds; ++kind) {
+      const std::int64_t end = (next[color][kind] + width - 1) / width;
+      for (; slab[kind] <= slabs; ++slab[kind])
+        batches.slab_begin[color][kind][static_cast<std::size_t>(slab[kind])] = end;
     }
   }
   std::int64_t first_row = 0;
@@ -320,14 +327,11 @@ void arrange(const Coloring& coloring, ConstView<Contact> contacts, std::int32_t
 void load(ConstView<Contact> contacts, ConstView<ContactRow> rows, ConstView<SolverBody> bodies,
           const Body* lane_bodies, const BallSource& balls, Batches& batches) {
   const Source from{contacts, rows, bodies, lane_bodies, batches.nobody};
-  parallel::for_each<Host>(
-      "lanes.load", batches.balls.size(),
+  for_each_batch(
+      "lanes.load", batches,
       LoadBalls{from, balls, batches.ball_members.view(), batches.balls.view(), batches.partings.view()},
-      few_batches);
-  parallel::for_each<Host>("lanes.load", batches.points.size(),
-                           LoadPoints{from, batches.point_members.view(), batches.points.view(),
-                                      batches.rows.view(), batches.point_partings.view()},
-                           few_batches);
+      LoadPoints{from, batches.point_members.view(), batches.points.view(), batches.rows.view(),
+                 batches.point_partings.view()});
 }
 
 void store_masses(const Batches& batches, View<ContactRow> rows) {

@@ -25,6 +25,18 @@ struct Members {
                    ///< listed
 };
 
+/// Batches of one kind and colour hold as many points each: kind 0 is pairs of balls, kind 1 other balls, the
+/// rest are one more than their points.
+inline constexpr std::size_t kinds = most_points + 2;
+inline constexpr bool is_of_balls(std::size_t kind) { return kind < 2; }
+
+/// The contacts, in their order, in parts of equal length: who has the same slabs of all colours has the same
+/// bodies, but for few.
+inline constexpr std::int64_t slabs = 128;
+
+/// Where the batches of one kind and colour begin, slab by slab, and end.
+using SlabBegins = std::array<std::int64_t, slabs + 1>;
+
 struct Batches {
   Array<BallBatch, Host> balls;
   Array<BallParting, Host> partings;  ///< of the balls
@@ -32,12 +44,12 @@ struct Batches {
   Array<PointBatch, Host> points;
   Array<Members, Host> point_members;
   Array<PointRow, Host> rows;
-  Array<PointParting, Host> point_partings;           ///< of the rows
-  std::vector<std::int64_t> ball_begin, point_begin;  ///< of each colour; one more than colours
-  bool last_is_serial = false;
+  Array<PointParting, Host> point_partings;               ///< of the rows
+  std::vector<std::array<SlabBegins, kinds>> slab_begin;  ///< of each colour, among the balls or the points
+  bool last_is_serial = false;                            ///< of the colours
   Array<std::int32_t, Host> lane_of;  ///< of each candidate of BallPairs that touches, in their order
   std::int32_t nobody = 0;            ///< the body that lanes without contact name
-  std::vector<std::array<std::int64_t, most_points + 2>> next_lane;  ///< scratch of arrange()
+  std::vector<std::array<std::int64_t, kinds>> next_lane;  ///< scratch of arrange()
 
   void clear() {
     balls.resize(0);
