@@ -1,5 +1,7 @@
 #include "core/crew.hpp"
 
+#include "core/space_pause.hpp"
+
 #include <tbb/global_control.h>
 #include <tbb/task_arena.h>
 
@@ -23,14 +25,6 @@ constexpr std::chrono::microseconds stand_by{200};
 constexpr std::chrono::microseconds long_wait{500};
 constexpr int most_waiting = 4;  // the job takes no longer than so many times the wait
 constexpr std::chrono::milliseconds alone_for{100};
-
-void pause() {
-#if defined(__x86_64__)
-  __builtin_ia32_pause();
-#else
-  std::this_thread::yield();
-#endif
-}
 
 /// Waits for what another thread is about to do.
 class Wait {
