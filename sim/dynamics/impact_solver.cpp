@@ -17,15 +17,16 @@ struct RememberedLoads {
   SCREE_HD bool is_loaded(int part) const { return memory.is_loaded(i, j, part); }
 };
 
-/// The first impact of each pair.
+/// The first impact of each pair; whether it has one.
 struct FindFirst {
   FlightStage stage;
   ConstView<Pair> pairs;
   ImpulseMemory::Index memory;
   View<Meeting> first;
-  void operator()(std::int64_t k) const {
+  int operator()(std::int64_t k) const {
     const auto [i, j] = pairs[k];
     first[k] = stage.next(i, j, RememberedLoads{memory, i, j});
+    return first[k].time <= stage.terms.step ? 1 : 0;
   }
 };
 
@@ -81,11 +82,11 @@ Ledger ImpactSolver::resolve(const ImpactProblem& problem, const ResponseParamet
   const ConstView<Pair> pairs = problem.pairs;
   const ImpulseMemory::Index memory = problem.memory.index();
   first_.resize(pairs.size());
-  parallel::for_each<Host>("impact.first", pairs.size(), FindFirst{stage, pairs, memory, first_.view()});
+  const FindFirst find_first{stage, pairs, memory, first_.view()};
+  if (parallel::max<int, Host>("impact.first", pairs.size(), find_first, 0) == 0) return {};
 
   events_.clear();
   for (std::int64_t k = 0; k < pairs.size(); ++k) foresee(stage, pairs[k].i, pairs[k].j, first_.view()[k]);
-  if (events_.empty()) return {};
   list_partners(pairs, bodies.count());
 
   const auto foresee_all_of = [&](std::int32_t body, std::int32_t but) {
