@@ -227,10 +227,11 @@ __global__ void __launch_bounds__(search_threads, 4)
   if (store.state->over_full) return;
   const std::uint32_t objects = store.counts[brick];
   std::uint32_t entries = 0;
-  // The last words of tests that are of nobody look at these against turned[32]. Numbers of 15 bits alone do
-  // not meet it.
-  static_assert(memory.entries >= 64 && search_threads >= 64);
-  if (threadIdx.x < 64) memory.entry[threadIdx.x] = {};
+  // Tests are done two words at a time. What is left of the last two looks at the first entries, however few
+  // there are, against turned[32], which numbers of 15 bits alone do not meet.
+  constexpr std::uint32_t in_two_words = 64;
+  static_assert(memory.entries >= in_two_words && search_threads >= in_two_words);
+  if (threadIdx.x < in_two_words) memory.entry[threadIdx.x] = {};
   if (objects > 0) entries = search.sort(store.entries + std::size_t{brick} * brick_objects, objects, memory);
   if (entries > memory.entries) {
     store.state->crowded = 1;
