@@ -68,23 +68,23 @@ SCREE_HD bool raise(T* place, T value) {
 }
 
 /// Adds one to a count and returns what it was: a place in a list, whose order hangs on the threads.
-SCREE_HD inline std::uint64_t count_up(std::uint64_t* count) {
-#if defined(__CUDA_ARCH__)
-  return atomicAdd(reinterpret_cast<unsigned long long*>(count), 1ull);
-#else
-  return std::atomic_ref<std::uint64_t>(*count).fetch_add(1, std::memory_order_relaxed);
-#endif
-}
-
 /// Adds to an integer; the sum does not hang on the order of threads.
 template <class T>
 SCREE_HD T add(T* place, T value) {
 #if defined(__CUDA_ARCH__)
-  return atomicAdd(place, value);
+  if constexpr (std::is_unsigned_v<T>) {
+    using Word = detail::CudaWord<T>;
+    return atomicAdd(reinterpret_cast<Word*>(place), static_cast<Word>(value));
+  } else {
+    return atomicAdd(place, value);
+  }
 #else
   return std::atomic_ref<T>(*place).fetch_add(value, std::memory_order_relaxed);
 #endif
 }
+
+/// Adds one to a count and returns what it was: a place in a list, whose order hangs on the threads.
+SCREE_HD inline std::uint64_t count_up(std::uint64_t* count) { return add(count, std::uint64_t{1}); }
 
 /// Sets the bits of `value`.
 template <class T>

@@ -13,9 +13,12 @@
 
 namespace scree {
 
-/// Impacts of one body in a flight after which it bounces no more, and after which it has no more.
-inline constexpr std::int32_t most_bounces = 64;
-inline constexpr std::int32_t most_hits = 256;
+/// How weary impacts make a body in a flight: each by 1 - e, at least by 1/32. What is caught between others
+/// bounces ever faster, and the contacts of the substep end that: the body bounces no more from the first sum
+/// on (after 256 impacts with e near 1, 9 with e = 0.1), and has no more impacts from the second on.
+inline constexpr double bounces_end = 8;
+inline constexpr double impacts_end = 16;
+SCREE_HD inline double weariness(double restitution) { return fmax(1 - restitution, 0.03125); }
 
 /// What holds in one flight. It ends with the substep.
 struct FlightTerms {
@@ -36,16 +39,16 @@ struct LoadedParts {
 /// Of each body in a flight.
 template <class Space>
 struct FlightLog {
-  Array<double, Space> clock;       ///< time of its last impact (s); the start if it had none
-  Array<std::int32_t, Space> hits;  ///< its impacts so far
-  Array<double, Space> turn;        ///< bound on the speed that turning gives its surface (m/s)
-  Array<double, Space> top_speed;   ///< bound on that of its surface, but for what gravity adds (m/s)
-  Array<double, Space> reach;       ///< of its surface from the midpoint, to either end of the substep (m)
+  Array<double, Space> clock;      ///< time of its last impact (s); the start if it had none
+  Array<double, Space> weary;      ///< sum of weariness() of its impacts so far
+  Array<double, Space> turn;       ///< bound on the speed that turning gives its surface (m/s)
+  Array<double, Space> top_speed;  ///< bound on that of its surface, but for what gravity adds (m/s)
+  Array<double, Space> reach;      ///< of its surface from the midpoint, to either end of the substep (m)
   Array<double, Space> extent;  ///< how far from its centre it may be in the substep (m); infinite: boundary
 
   void resize(std::int64_t bodies) {
     clock.resize(bodies);
-    hits.resize(bodies);
+    weary.resize(bodies);
     turn.resize(bodies);
     top_speed.resize(bodies);
     reach.resize(bodies);
@@ -73,7 +76,7 @@ struct FlightStage {
         parameters(r),
         bodies(b),
         clock(log.clock.view()),
-        hits(log.hits.view()),
+        weary(log.weary.view()),
         turn(log.turn.view()),
         top_speed(log.top_speed.view()),
         reach(log.reach.view()),
@@ -83,7 +86,7 @@ struct FlightStage {
   ResponseParameters parameters;
   BodyView bodies;
   View<double> clock;
-  View<std::int32_t> hits;
+  View<double> weary;
   View<double> turn;
   View<double> top_speed;
   View<double> reach;
@@ -91,6 +94,10 @@ struct FlightStage {
   double harmless = -1;  ///< two bodies whose top speeds sum to no more have no impact (m/s)
 
   SCREE_HD bool is_free(std::int32_t body) const { return bodies.mobility[body] == Mobility::free; }
+  /// Whether an impact with the other hardly moves a body.
+  SCREE_HD bool is_heavy_to(std::int32_t body, std::int32_t other) const {
+    return is_free(body) && tolerance::heavy_ratio * bodies.inverse_mass[body] <= bodies.inverse_mass[other];
+  }
   SCREE_HD bool is_late(std::int32_t body) const { return clock[body] > 0.5 * terms.step; }
 
   /// What the bodies' velocities have of the substep's kick already (m/s).
@@ -161,7 +168,8 @@ struct FlightStage {
   /// Whether two bodies, of which one is free, may meet in an impact, told without a look at their shapes;
   /// then sets what counts as one.
   SCREE_HD bool may_meet(std::int32_t i, std::int32_t j, ImpactLimits& limits) const {
-    if (top_speed[i] + top_speed[j] <= harmless || are_far(i, j) || std::max(hits[i], hits[j]) >= most_hits)
+    if (top_speed[i] + top_speed[j] <= harmless || are_far(i, j) ||
+        std::max(weary[i], weary[j]) >= impacts_end)
       return false;
     limits.earliest = std::max(clock[i], clock[j]);
     if (!(limits.earliest < terms.step)) return false;

@@ -55,7 +55,7 @@ SCREE_HD inline SolverBody struck_body(const FlightStage& stage, std::int32_t bo
                 : Mat3(Mat3::Zero())};
 }
 
-SCREE_HD inline void solve_impact(ContactRow* rows, const RowCoupling* couplings, int count,
+SCREE_HD inline void sweep_impact(ContactRow* rows, const RowCoupling* couplings, int count,
                                   const Vec3& normal, double friction, SolverBody& i, SolverBody& j) {
   constexpr int most_sweeps = 200;
   for (int sweep = 0; sweep < most_sweeps; ++sweep) {
@@ -89,6 +89,99 @@ SCREE_HD inline void keep_from_gaining(ContactRow* rows, const Vec3* before, int
   }
 }
 
+/// Turns a body from the midpoint to `s`, gives it the spin that it has there after an impact, and turns it
+/// back. Returns by how much its energy at the midpoint has grown (J).
+SCREE_HD inline double turn_on(const FlightStage& stage, std::int32_t body, const BodyFlight& flown,
+                               const Quat& orientation, const Vec3& spin, double s) {
+  stage.bodies.orientation[body] = orientation;
+  stage.bodies.spin[body] = spin;
+  rotate_freely(stage.bodies.orientation[body], stage.bodies.spin[body], flown.inverse_inertia,
+                flown.midpoint - s);
+  return rotational_energy(stage.bodies.orientation[body], stage.bodies.spin[body], flown.inverse_inertia) -
+         rotational_energy(flown.orientation, flown.spin, flown.inverse_inertia);
+}
+
+}  // namespace detail
+
+/// An impact at one configuration: solved, but not yet its bodies'.
+struct SolvedImpact {
+  std::int32_t i, j;
+  double time;
+  BodyFlight flight_i, flight_j;
+  BodyInstant at_i, at_j;
+  SolverBody after_i, after_j;
+  Vec3 normal;
+  Vec3 point;                             ///< mean of those that close (m)
+  ContactRow rows[Manifold::max_points];  ///< of these
+  Vec3 before[Manifold::max_points];      ///< their relative velocities (m/s)
+  int count;
+  double restitution;
+
+  SCREE_HD Vec3 impulse() const {
+    Vec3 sum = Vec3::Zero();
+    for (int k = 0; k < count; ++k) sum += rows[k].impulse;
+    return sum;
+  }
+  SCREE_HD Ledger moved() const {
+    Ledger ledger;
+    for (int k = 0; k < count; ++k) ledger = ledger + account(rows[k], normal, before[k], after_i, after_j);
+    return ledger;
+  }
+};
+
+/// Newton's law u+ = -e u- at all points that touch and close, with Coulomb friction. `loads` are those of
+/// the pair, as LoadedParts. False if no point closes.
+template <class Loads>
+SCREE_HD bool solve_impact(const FlightStage& stage, std::int32_t i, std::int32_t j, const Meeting& meeting,
+                           const Loads& loads, SolvedImpact& out) {
+  const double s = meeting.time;
+  out.i = i;
+  out.j = j;
+  out.time = s;
+  out.flight_i = stage.flight(i);
+  out.flight_j = stage.flight(j);
+  out.at_i = instant_of(out.flight_i, s);
+  out.at_j = instant_of(out.flight_j, s);
+  const double touching =
+      tolerance::closed_gap * std::min(smallest_size(out.flight_i.shape, out.flight_i.size),
+                                       smallest_size(out.flight_j.shape, out.flight_j.size));
+  Manifold m;
+  if (!contact_at(out.at_i, out.flight_i.shape, out.at_j, out.flight_j.shape, meeting.part, touching, m))
+    return false;
+  const PairLaw& law = stage.terms.laws.between(i, j);
+  const double friction = stage.parameters.friction ? law.friction : 0.0;
+  out.normal = m.normal;
+  SolverBody& a = out.after_i;
+  SolverBody& b = out.after_j;
+  a = detail::struck_body(stage, i, out.at_i, friction);
+  b = detail::struck_body(stage, j, out.at_j, friction);
+  RowCoupling couplings[Manifold::max_points];
+  Vec3 middle = Vec3::Zero();
+  double fastest = 0;
+  int count = 0;
+  for (int k = 0; k < m.count; ++k) {
+    const double closing = closing_speed(m.normal, m.points[k].position, out.at_i, out.at_j);
+    if (!(closing > 0)) continue;
+    const Vec3& point = m.points[k].position;
+    out.rows[count] = make_row(m.normal, point - out.at_i.solid.position, point - out.at_j.solid.position,
+                               0.0, a, b, couplings[count]);
+    out.before[count] = out.rows[count].relative_velocity(a, b);
+    fastest = std::max(fastest, closing);
+    middle += point;
+    ++count;
+  }
+  if (count == 0) return false;
+  const bool bounces = fastest > stage.slowest_bounce(i, j) && !loads.is_loaded(meeting.part) &&
+                       std::max(stage.weary[i], stage.weary[j]) < bounces_end;
+  out.restitution = bounces ? law.restitution : 0.0;
+  for (int k = 0; k < count; ++k) out.rows[k].target = -out.restitution * out.before[k].dot(m.normal);
+  detail::sweep_impact(out.rows, couplings, count, m.normal, friction, a, b);
+  detail::keep_from_gaining(out.rows, out.before, count, a, b);
+  out.point = middle / count;
+  out.count = count;
+  return true;
+}
+
 /// Gives a body the flight that leads from the impact on. Returns the drift of its energy on the way there
 /// and back (J).
 SCREE_HD inline double fly_on(const FlightStage& stage, std::int32_t body, const BodyFlight& flown,
@@ -98,77 +191,34 @@ SCREE_HD inline double fly_on(const FlightStage& stage, std::int32_t body, const
   stage.bodies.position[body] -= (s - flown.midpoint) * (velocity - flown.velocity);
   stage.bodies.velocity[body] = velocity + stage.kick_of(body);
   stage.clock[body] = s;
-  ++stage.hits[body];
   double drift = 0;
   if (stage.parameters.rotation) {
-    const auto energy = [&](const Quat& orientation, const Vec3& spin) {
-      return rotational_energy(orientation, spin, flown.inverse_inertia);
-    };
-    drift = energy(at.solid.orientation, at.spin) - energy(flown.orientation, flown.spin) -
-            energy(at.solid.orientation, after.spin);
-    stage.bodies.orientation[body] = at.solid.orientation;
-    stage.bodies.spin[body] = after.spin;
-    rotate_freely(stage.bodies.orientation[body], stage.bodies.spin[body], flown.inverse_inertia,
-                  flown.midpoint - s);
-    drift += energy(stage.bodies.orientation[body], stage.bodies.spin[body]);
+    const double given = rotational_energy(at.solid.orientation, after.spin, flown.inverse_inertia) -
+                         rotational_energy(at.solid.orientation, at.spin, flown.inverse_inertia);
+    drift = detail::turn_on(stage, body, flown, at.solid.orientation, after.spin, s) - given;
   }
   stage.bound(body);
   return drift;
 }
 
-}  // namespace detail
+/// What hardly moves a body does not weary it.
+SCREE_HD inline void weary(const FlightStage& stage, const SolvedImpact& solved) {
+  const auto tire = [&](std::int32_t body, std::int32_t other) {
+    if (!stage.is_free(body) || stage.is_heavy_to(body, other)) return;
+    stage.weary[body] += weariness(solved.restitution);
+  };
+  tire(solved.i, solved.j);
+  tire(solved.j, solved.i);
+}
 
-/// Newton's law u+ = -e u- at all points that touch and close, at one configuration, with Coulomb friction;
-/// then gives both bodies the flights that lead on from it. `loads` are those of the pair, as LoadedParts.
-/// Adds to `ledger` what it moved. False, and nothing has changed, if no point closes.
-template <class Loads>
-SCREE_HD bool resolve_impact(const FlightStage& stage, std::int32_t i, std::int32_t j, const Meeting& meeting,
-                             const Loads& loads, Impact& impact, Ledger& ledger) {
-  const double s = meeting.time;
-  const BodyFlight flight_i = stage.flight(i);
-  const BodyFlight flight_j = stage.flight(j);
-  const BodyInstant at_i = instant_of(flight_i, s);
-  const BodyInstant at_j = instant_of(flight_j, s);
-  const double touching = tolerance::closed_gap * std::min(smallest_size(flight_i.shape, flight_i.size),
-                                                           smallest_size(flight_j.shape, flight_j.size));
-  Manifold m;
-  if (!contact_at(at_i, flight_i.shape, at_j, flight_j.shape, meeting.part, touching, m)) return false;
-  const PairLaw& law = stage.terms.laws.between(i, j);
-  const double friction = stage.parameters.friction ? law.friction : 0.0;
-  SolverBody a = detail::struck_body(stage, i, at_i, friction);
-  SolverBody b = detail::struck_body(stage, j, at_j, friction);
-  ContactRow rows[Manifold::max_points];
-  RowCoupling couplings[Manifold::max_points];
-  Vec3 before[Manifold::max_points];
-  Vec3 middle = Vec3::Zero();
-  double fastest = 0;
-  int count = 0;
-  for (int k = 0; k < m.count; ++k) {
-    const double closing = closing_speed(m.normal, m.points[k].position, at_i, at_j);
-    if (!(closing > 0)) continue;
-    const Vec3& point = m.points[k].position;
-    rows[count] = make_row(m.normal, point - at_i.solid.position, point - at_j.solid.position, 0.0, a, b,
-                           couplings[count]);
-    before[count] = rows[count].relative_velocity(a, b);
-    fastest = std::max(fastest, closing);
-    middle += point;
-    ++count;
-  }
-  if (count == 0) return false;
-  const bool bounces = fastest > stage.slowest_bounce(i, j) && !loads.is_loaded(meeting.part) &&
-                       std::max(stage.hits[i], stage.hits[j]) < most_bounces;
-  const double restitution = bounces ? law.restitution : 0.0;
-  for (int k = 0; k < count; ++k) rows[k].target = -restitution * before[k].dot(m.normal);
-  detail::solve_impact(rows, couplings, count, m.normal, friction, a, b);
-  detail::keep_from_gaining(rows, before, count, a, b);
-  impact = {.i = i, .j = j, .impulse = Vec3::Zero(), .point = middle / count};
-  for (int k = 0; k < count; ++k) {
-    ledger = ledger + account(rows[k], m.normal, before[k], a, b);
-    impact.impulse += rows[k].impulse;
-  }
-  ledger.integration +=
-      detail::fly_on(stage, i, flight_i, at_i, a, s) + detail::fly_on(stage, j, flight_j, at_j, b, s);
-  return true;
+/// Gives both bodies the flights that lead on from an impact. Returns what it moved.
+SCREE_HD inline Ledger fly_on(const FlightStage& stage, const SolvedImpact& solved, Impact& impact) {
+  impact = {.i = solved.i, .j = solved.j, .impulse = solved.impulse(), .point = solved.point};
+  weary(stage, solved);
+  Ledger moved = solved.moved();
+  moved.integration += fly_on(stage, solved.i, solved.flight_i, solved.at_i, solved.after_i, solved.time) +
+                       fly_on(stage, solved.j, solved.flight_j, solved.at_j, solved.after_j, solved.time);
+  return moved;
 }
 
 }  // namespace scree

@@ -17,10 +17,12 @@ using detail::FlightBounds;
 using detail::Foreseen;
 using detail::ImpactProgress;
 using detail::Resolved;
+using detail::Volley;
 
 SCREE_HD std::uint64_t ordered_bits(double x) { return std::bit_cast<std::uint64_t>(x + 0.0); }
 
 constexpr std::uint32_t not_yet = ~std::uint32_t{0};
+constexpr std::uint32_t no_volley = ~std::uint32_t{0};
 constexpr FirstMeeting none{detail::infinite, ~std::uint64_t{0}};
 
 /// Who has had an impact later than the flight begins has been where it was before that. Also looks at the
@@ -35,7 +37,7 @@ struct StartFlight {
     if (k >= stage.clock.size()) return bounds;
     const double from = stage.terms.from;
     stage.clock[k] = from > 0 ? fmax(stage.clock[k], from) : 0.0;
-    stage.hits[k] = 0;
+    stage.weary[k] = 0;
     joined_in[k] = not_yet;
     stage.bound(static_cast<std::int32_t>(k));
     bounds.top_speed = stage.top_speed[k];
@@ -52,6 +54,7 @@ struct SetHarmless {
     const double harmless = stage.harmless_speed(bounds[0].smallest, bounds[0].restitution);
     const bool nobody = 2 * bounds[0].top_speed <= harmless;
     progress->harmless = nobody ? HUGE_VAL : harmless;
+    progress->speed = bounds[0].top_speed + stage.terms.step * stage.parameters.gravity.norm();
   }
 };
 
@@ -81,10 +84,14 @@ struct Suspect {
 
 /// The meetings of a round, in any order.
 struct MeetingList {
+  FlightStage stage;
+  ConstView<Pair> pairs;
   ImpactProgress* progress;
   View<Foreseen> list;
   SCREE_HD void add(const Foreseen& meeting) const {
     list[static_cast<std::int64_t>(count_up(&progress->round.meetings))] = meeting;
+    const auto [i, j] = pairs[meeting.pair];
+    if (stage.is_heavy_to(i, j) || stage.is_heavy_to(j, i)) count_up(&progress->round.with_heavy);
   }
 };
 
@@ -151,7 +158,29 @@ struct Round {
   View<Foreseen> meetings;
   View<FirstMeeting> first;
   View<std::uint32_t> waits_in;
+  View<std::uint32_t> volley_of;
+  View<Volley> volleys;  ///< by the meeting
+  const ImpactProgress* progress;
   std::uint32_t number;
+
+  /// Whether a meeting with the other has its turn among those of a body.
+  SCREE_HD bool counts_for(std::int32_t body, std::int32_t other) const {
+    return stage.is_free(body) && !stage.is_heavy_to(body, other);
+  }
+  /// All that are first; no two of them share a body but one that is heavy to both others.
+  SCREE_HD bool is_first(const Foreseen& meeting) const {
+    const auto [i, j] = pairs[meeting.pair];
+    return is_first_of(i, j, meeting) && is_first_of(j, i, meeting);
+  }
+  /// That of a heavy body.
+  SCREE_HD Volley& volley(std::int32_t heavy) const { return volleys[volley_of[heavy]]; }
+  SCREE_HD detail::VolleyUnits units(std::int32_t heavy) const { return {stage, heavy, progress->speed}; }
+
+ private:
+  SCREE_HD bool is_first_of(std::int32_t body, std::int32_t other, const Foreseen& meeting) const {
+    if (!counts_for(body, other)) return true;
+    return first[body].pair == static_cast<std::uint64_t>(meeting.pair) && waits_in[body] != number;
+  }
 };
 
 struct FindFirstTimes {
@@ -159,26 +188,40 @@ struct FindFirstTimes {
   SCREE_HD void operator()(std::int64_t e) const {
     const Foreseen& meeting = round.meetings[e];
     const auto [i, j] = round.pairs[meeting.pair];
-    for (const std::int32_t body : {i, j}) {
-      if (round.stage.is_free(body)) lower(&round.first[body].time, ordered_bits(meeting.time));
-    }
+    find(i, j, meeting);
+    find(j, i, meeting);
+  }
+
+ private:
+  SCREE_HD void find(std::int32_t body, std::int32_t other, const Foreseen& meeting) const {
+    if (round.counts_for(body, other)) lower(&round.first[body].time, ordered_bits(meeting.time));
   }
 };
 
+/// Also gives each heavy body a volley.
 struct FindFirstPairs {
   Round round;
   SCREE_HD void operator()(std::int64_t e) const {
     const Foreseen& meeting = round.meetings[e];
     const auto [i, j] = round.pairs[meeting.pair];
-    for (const std::int32_t body : {i, j}) {
-      FirstMeeting& first = round.first[body];
-      if (first.time == ordered_bits(meeting.time))
-        lower(&first.pair, static_cast<std::uint64_t>(meeting.pair));
+    find(i, j, meeting, static_cast<std::uint32_t>(e));
+    find(j, i, meeting, static_cast<std::uint32_t>(e));
+  }
+
+ private:
+  SCREE_HD void find(std::int32_t body, std::int32_t other, const Foreseen& meeting, std::uint32_t e) const {
+    FirstMeeting& first = round.first[body];
+    if (round.stage.is_heavy_to(body, other)) {
+      lower(&round.volley_of[body], e);
+    } else if (first.time == ordered_bits(meeting.time)) {
+      lower(&first.pair, static_cast<std::uint64_t>(meeting.pair));
     }
   }
 };
 
-/// Of two bodies that could meet, one may have to wait for the other.
+/// Of two bodies that could meet, the one whose first meeting is later waits for the other's, if that could
+/// drive the other into it before. Of a heavy body and a lighter one the lighter waits if they are at the
+/// same time: both would change the heavy one.
 struct MakeWait {
   Round round;
   ConstView<std::int64_t> busy;
@@ -186,13 +229,51 @@ struct MakeWait {
     const auto [i, j] = round.pairs[busy[b]];
     const std::uint64_t time_i = round.first[i].time;
     const std::uint64_t time_j = round.first[j].time;
-    if (time_i == time_j) return;
-    const std::int32_t later = time_i < time_j ? j : i;
-    if (round.first[later].time != detail::infinite) raise(&round.waits_in[later], round.number);
+    if (time_i == detail::infinite || time_j == detail::infinite) return;
+    if (time_i < time_j || (time_i == time_j && round.stage.is_heavy_to(i, j))) {
+      if (may_meet_before(i, j)) raise(&round.waits_in[j], round.number);
+    } else if (time_j < time_i || round.stage.is_heavy_to(j, i)) {
+      if (may_meet_before(j, i)) raise(&round.waits_in[i], round.number);
+    }
+  }
+
+ private:
+  /// Whether a body may meet another one between its first meeting and the other's.
+  SCREE_HD bool may_meet_before(std::int32_t body, std::int32_t other) const {
+    const FlightStage& stage = round.stage;
+    const auto [i, j] = round.pairs[static_cast<std::int64_t>(round.first[body].pair)];
+    const double from = std::bit_cast<double>(round.first[body].time);
+    const double until = std::bit_cast<double>(round.first[other].time);
+    const double driven =
+        stage.top_speed[body] + 2 * stage.top_speed[i == body ? j : i];  // as by a moving wall
+    const BodyFlight flight = stage.flight(body);
+    const BodyFlight others = stage.flight(other);
+    const double near = bounding_radius(flight.shape, flight.size) +
+                        bounding_radius(others.shape, others.size) +
+                        (driven + stage.top_speed[other]) * (until - from);
+    return (others.position_at(from) - flight.position_at(from)).squaredNorm() <= near * near;
   }
 };
 
-/// Resolves the meetings that are first. No two of them share a body that is free.
+/// Adds up what the first meetings give to heavy bodies.
+struct GatherVolleys {
+  Round round;
+  ConstView<LoadedParts> loaded;
+  SCREE_HD void operator()(std::int64_t e) const {
+    const Foreseen& meeting = round.meetings[e];
+    const auto [i, j] = round.pairs[meeting.pair];
+    const bool heavy_is_i = round.stage.is_heavy_to(i, j);
+    if ((!heavy_is_i && !round.stage.is_heavy_to(j, i)) || !round.is_first(meeting)) return;
+    SolvedImpact solved;
+    if (!solve_impact(round.stage, i, j, {.time = meeting.time, .part = meeting.part},
+                      loads_of(loaded, meeting.pair), solved))
+      return;
+    const std::int32_t heavy = heavy_is_i ? i : j;
+    detail::add_to_volley(solved, heavy_is_i, meeting.pair, round.units(heavy), round.volley(heavy));
+  }
+};
+
+/// Resolves the meetings that are first.
 struct ResolveFirst {
   Round round;
   ConstView<LoadedParts> loaded;
@@ -204,39 +285,62 @@ struct ResolveFirst {
 
   SCREE_HD void operator()(std::int64_t e) const {
     Foreseen& meeting = round.meetings[e];
+    if (!round.is_first(meeting)) return;
     const auto [i, j] = round.pairs[meeting.pair];
-    if (!is_first(meeting, i) || !is_first(meeting, j)) return;
     const FlightStage& stage = round.stage;
     const StruckBody before_i = before_impacts(stage, i);
     const StruckBody before_j = before_impacts(stage, j);
-    Resolved outcome;
-    if (!resolve_impact(stage, i, j, {.time = meeting.time, .part = meeting.part},
-                        loads_of(loaded, meeting.pair), outcome.impact, outcome.moved)) {
+    SolvedImpact solved;
+    if (!solve_impact(stage, i, j, {.time = meeting.time, .part = meeting.part},
+                      loads_of(loaded, meeting.pair), solved)) {
       meeting.time = HUGE_VAL;
       return;
     }
-    mark(before_i);
-    mark(before_j);
+    const bool heavy_i = stage.is_heavy_to(i, j);
+    const bool heavy_j = stage.is_heavy_to(j, i);
     const auto place = static_cast<std::int64_t>(count_up(&progress->impacts));
-    resolved[place] = outcome;
+    if (heavy_i || heavy_j) {
+      const std::int32_t heavy = heavy_i ? i : j;
+      Volley& volley = round.volley(heavy);
+      const double scale = detail::VolleyOutcome(stage, heavy, volley, round.units(heavy)).scale();
+      resolved[place].moved = detail::fly_on_scaled(stage, solved, heavy_i, scale, resolved[place].impact);
+      if (volley.first_missing == ~static_cast<std::uint64_t>(meeting.pair))
+        volley.place = static_cast<std::uint64_t>(place);
+    } else {
+      resolved[place].moved = fly_on(stage, solved, resolved[place].impact);
+    }
+    if (!heavy_i) mark(before_i);
+    if (!heavy_j) mark(before_j);
     key[place] = static_cast<std::uint64_t>(round.number) * static_cast<std::uint64_t>(round.pairs.size()) +
                  static_cast<std::uint64_t>(meeting.pair);
     if (meeting.time > 0.5 * stage.terms.step) raise(&progress->late, 1u);
-    if (std::max(stage.hits[i], stage.hits[j]) >= most_bounces) raise(&progress->hit_bound, 1u);
-  }
-
- private:
-  SCREE_HD bool is_first(const Foreseen& meeting, std::int32_t body) const {
-    if (!round.stage.is_free(body)) return true;
-    return round.first[body].pair == static_cast<std::uint64_t>(meeting.pair) &&
-           round.waits_in[body] != round.number;
+    if (std::max(heavy_i ? 0.0 : stage.weary[i], heavy_j ? 0.0 : stage.weary[j]) >= impacts_end)
+      raise(&progress->hit_bound, 1u);
   }
 
   SCREE_HD void mark(const StruckBody& before) const {
     if (!round.stage.is_free(before.body)) return;
+    if (struck_in[before.body] == 0) struck[static_cast<std::int64_t>(count_up(&progress->struck))] = before;
     struck_in[before.body] = round.number;
-    if (round.stage.hits[before.body] > 1) return;
-    struck[static_cast<std::int64_t>(count_up(&progress->struck))] = before;
+  }
+};
+
+/// Gives each volley to its heavy body.
+struct EndVolleys {
+  ResolveFirst resolve;
+  SCREE_HD void operator()(std::int64_t e) const {
+    const Round& round = resolve.round;
+    const auto [i, j] = round.pairs[round.meetings[e].pair];
+    if (!round.stage.is_heavy_to(i, j) && !round.stage.is_heavy_to(j, i)) return;
+    const std::int32_t heavy = round.stage.is_heavy_to(i, j) ? i : j;
+    if (round.volley_of[heavy] != static_cast<std::uint32_t>(e)) return;
+    round.volley_of[heavy] = no_volley;
+    const Volley& volley = round.volleys[e];
+    if (volley.impacts == 0) return;
+    resolve.mark(before_impacts(round.stage, heavy));
+    const detail::VolleyOutcome outcome(round.stage, heavy, volley, round.units(heavy));
+    Ledger& moved = resolve.resolved[static_cast<std::int64_t>(volley.place)].moved;
+    moved = moved + outcome.fly_on(round.stage, heavy);
   }
 };
 
@@ -333,7 +437,7 @@ void ImpactRounds<Space>::foresee(const FlightStage& stage, const Problem& probl
   for (bool fits = false; !fits;) {
     const std::int64_t room = suspects_.size();
     meetings_.resize(room + last_.size());
-    const MeetingList meetings{progress, meetings_.view()};
+    const MeetingList meetings{stage, pairs, progress, meetings_.view()};
     copy_bytes<Space, Host>(&progress->round, &start, sizeof(start));
     parallel::for_each<Space>("impact.keep", last_.size(),
                               KeepMeetings{last_.view(), pairs, struck_in, round, meetings});
@@ -365,6 +469,8 @@ void ImpactRounds<Space>::resolve_first(const FlightStage& stage, const Problem&
     first_.resize(n);
     parallel::fill("impact.reset", struck_in_, std::uint32_t{0});
     parallel::fill("impact.reset", waits_in_, std::uint32_t{0});
+    volley_of_.resize(n);
+    parallel::fill("impact.reset", volley_of_, no_volley);
   }
   parallel::fill("impact.reset", first_, none);
   const std::int64_t count = meetings_.size();
@@ -373,18 +479,29 @@ void ImpactRounds<Space>::resolve_first(const FlightStage& stage, const Problem&
   make_room(resolved_, impacts, impacts + count);
   make_room(key_, impacts, impacts + count);
   make_room(struck_, struck, struck + 2 * count);
+  const bool any_heavy = progress_.round.with_heavy > 0;
+  if (any_heavy) {
+    volleys_.resize(count);
+    parallel::fill("impact.reset", volleys_, Volley{});
+  }
   const Round round{.stage = stage,
                     .pairs = problem.pairs,
                     .meetings = meetings_.view(),
                     .first = first_.view(),
                     .waits_in = waits_in_.view(),
+                    .volley_of = volley_of_.view(),
+                    .volleys = volleys_.view(),
+                    .progress = shared_progress_.data(),
                     .number = static_cast<std::uint32_t>(rounds_)};
+  const ResolveFirst resolve{
+      round,       problem.loaded, struck_in_.view(), shared_progress_.data(), resolved_.view(),
+      key_.view(), struck_.view()};
   parallel::for_each<Space>("impact.times", count, FindFirstTimes{round});
   parallel::for_each<Space>("impact.pairs", count, FindFirstPairs{round});
   parallel::for_each<Space>("impact.wait", signed_count(progress_.round.busy), MakeWait{round, busy_.view()});
-  parallel::for_each<Space>("impact.resolve", count,
-                            ResolveFirst{round, problem.loaded, struck_in_.view(), shared_progress_.data(),
-                                         resolved_.view(), key_.view(), struck_.view()});
+  if (any_heavy) parallel::for_each<Space>("impact.volley", count, GatherVolleys{round, problem.loaded});
+  parallel::for_each<Space>("impact.resolve", count, resolve);
+  if (any_heavy) parallel::for_each<Space>("impact.volley", count, EndVolleys{resolve});
 }
 
 /// Returns the sum of what the impacts moved.

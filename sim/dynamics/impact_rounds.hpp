@@ -5,6 +5,7 @@
 #include "core/array.hpp"
 #include "narrowphase/narrow_phase.hpp"
 #include "sim/dynamics/impact.hpp"
+#include "sim/dynamics/volley.hpp"
 
 #include <bit>
 #include <cmath>
@@ -40,7 +41,8 @@ inline constexpr auto infinite = std::bit_cast<std::uint64_t>(HUGE_VAL);
 struct RoundCounts {
   std::uint64_t suspects = 0;
   std::uint64_t meetings = 0;
-  std::uint64_t busy = 0;  ///< pairs, with those of the rounds before
+  std::uint64_t with_heavy = 0;  ///< of these, with a body that is heavy to the other
+  std::uint64_t busy = 0;        ///< pairs, with those of the rounds before
 };
 
 /// What all bodies and laws stay within.
@@ -56,6 +58,7 @@ struct FlightBounds {
 /// What the threads of a flight tell the host, which reads it once in a round.
 struct ImpactProgress {
   RoundCounts round;
+  double speed = 0;     ///< the largest (m/s)
   double harmless = 0;  ///< FlightStage::harmless; infinite where nobody is faster (m/s)
   std::uint64_t impacts = 0;
   std::uint64_t struck = 0;     ///< bodies
@@ -67,10 +70,12 @@ struct ImpactProgress {
 }  // namespace detail
 
 /// The same impacts as ImpactSolver's, with its bounds. In each round a meeting is resolved if no other of
-/// its two bodies is earlier, nor any of a body that could meet these: what comes later in one place waits
-/// for what is earlier there, while places apart do not wait for each other. A chain that would run through
-/// two bodies and reach a third before its own meeting comes too late for that, and strikes it right after.
-/// Bodies that are not free change nothing, and nobody waits for them. Results do not depend on the threads.
+/// its two bodies is earlier, nor any that could drive a body into these before: what comes later in one
+/// place waits for what is earlier there, while places apart do not wait for each other. A chain that would
+/// run through two bodies and reach a third before its own meeting comes too late for that, and strikes it
+/// right after. Bodies that are not free change nothing, and nobody waits for them. A heavy body is struck by
+/// many light ones in one round, and between light ones it is as one that is not free. Results do not depend
+/// on the threads.
 template <class Space>
 class ImpactRounds {
  public:
@@ -119,8 +124,10 @@ class ImpactRounds {
   Array<detail::FirstMeeting, Space> first_;        // of each body
   Array<std::uint32_t, Space> joined_in_;  // of each body: the round that first foresaw one of its own
   Array<std::uint32_t, Space> struck_in_, waits_in_;  // of each body: the last such round, 0 for none
-  Array<detail::Resolved, Space> resolved_;           // impacts, in any order
-  Array<std::uint64_t, Space> key_;                   // of each one's place
+  Array<std::uint32_t, Space> volley_of_;  // of each body: its first meeting with a lighter one in meetings_
+  Array<detail::Volley, Space> volleys_;   // as many as there are meetings
+  Array<detail::Resolved, Space> resolved_;  // impacts, in any order
+  Array<std::uint64_t, Space> key_;          // of each one's place
   Array<std::int64_t, Space> order_;
   Array<Impact, Space> impacts_;
   Array<StruckBody, Space> struck_;

@@ -70,7 +70,7 @@ Ledger ImpactSolver::resolve(const ImpactProblem& problem, const ResponseParamet
   const std::int64_t n = bodies.count();
   log_.resize(n);
   parallel::for_each<Host>("impact.reset", n, StartClock{log_.clock.view(), problem.terms.from});
-  parallel::fill("impact.reset", log_.hits, std::int32_t{0});
+  parallel::fill("impact.reset", log_.weary, 0.0);
   impacts_.clear();
   saved_.clear();
   hit_bound_ = false;
@@ -86,6 +86,7 @@ Ledger ImpactSolver::resolve(const ImpactProblem& problem, const ResponseParamet
   if (parallel::max<int, Host>("impact.first", pairs.size(), find_first, 0) == 0) return {};
 
   events_.clear();
+  version_.assign(static_cast<std::size_t>(n), 0);
   for (std::int64_t k = 0; k < pairs.size(); ++k) foresee(stage, pairs[k].i, pairs[k].j, first_.view()[k]);
   list_partners(pairs, bodies.count());
 
@@ -100,7 +101,7 @@ Ledger ImpactSolver::resolve(const ImpactProblem& problem, const ResponseParamet
     for (std::int64_t p = begin_[k]; p < begin_[k + 1]; ++p) look_at(partners_[static_cast<std::size_t>(p)]);
   };
   const auto save = [&](std::int32_t body) {
-    if (!stage.is_free(body) || stage.hits[body] > 0) return;
+    if (!stage.is_free(body) || version_[static_cast<std::size_t>(body)] > 0) return;
     saved_.push_back(before_impacts(stage, body));
   };
   Ledger ledger;
@@ -108,19 +109,23 @@ Ledger ImpactSolver::resolve(const ImpactProblem& problem, const ResponseParamet
     std::pop_heap(events_.begin(), events_.end(), std::greater<>());
     const Event event = events_.back();
     events_.pop_back();
-    const auto [meeting, i, j, hits_i, hits_j] = event;
-    if (stage.hits[i] != hits_i || stage.hits[j] != hits_j) continue;
+    const auto [meeting, i, j, version_i, version_j] = event;
+    std::int32_t& now_i = version_[static_cast<std::size_t>(i)];
+    std::int32_t& now_j = version_[static_cast<std::size_t>(j)];
+    if (now_i != version_i || now_j != version_j) continue;
     const std::size_t saved = saved_.size();
     save(i);
     save(j);
     const RememberedLoads loads{memory, i, j};
-    Impact impact;
-    if (!resolve_impact(stage, i, j, meeting, loads, impact, ledger)) {
+    SolvedImpact solved;
+    if (!solve_impact(stage, i, j, meeting, loads, solved)) {
       saved_.resize(saved);
       continue;
     }
-    impacts_.push_back(impact);
-    hit_bound_ = hit_bound_ || std::max(stage.hits[i], stage.hits[j]) >= most_bounces;
+    ledger = ledger + fly_on(stage, solved, impacts_.emplace_back());
+    if (stage.is_free(i)) ++now_i;
+    if (stage.is_free(j)) ++now_j;
+    hit_bound_ = hit_bound_ || std::max(stage.weary[i], stage.weary[j]) >= impacts_end;
     foresee(stage, i, j, stage.next(i, j, loads));
     foresee_all_of(i, j);
     foresee_all_of(j, i);
@@ -130,7 +135,8 @@ Ledger ImpactSolver::resolve(const ImpactProblem& problem, const ResponseParamet
 
 void ImpactSolver::foresee(const FlightStage& stage, std::int32_t i, std::int32_t j, const Meeting& meeting) {
   if (meeting.time > stage.terms.step) return;
-  events_.push_back({meeting, i, j, stage.hits[i], stage.hits[j]});
+  events_.push_back(
+      {meeting, i, j, version_[static_cast<std::size_t>(i)], version_[static_cast<std::size_t>(j)]});
   std::push_heap(events_.begin(), events_.end(), std::greater<>());
 }
 

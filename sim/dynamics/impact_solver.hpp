@@ -55,7 +55,7 @@ class ImpactSolver {
   struct Event {
     Meeting meeting;
     std::int32_t i, j;
-    std::int32_t hits_i, hits_j;  // of the bodies when it was foreseen
+    std::int32_t version_i, version_j;  // of the bodies' flights when it was foreseen
 
     friend bool operator>(const Event& a, const Event& b) {
       return std::tuple(a.meeting.time, a.i, a.j, a.meeting.part) >
@@ -67,8 +67,9 @@ class ImpactSolver {
   void list_partners(ConstView<Pair> pairs, std::int64_t bodies);
 
   FlightLog<Host> log_;
-  Array<Meeting, Host> first_;       // of each candidate
-  std::vector<std::int64_t> begin_;  // of the partners of each body
+  Array<Meeting, Host> first_;         // of each candidate
+  std::vector<std::int32_t> version_;  // of each body's flight: how many impacts led to it
+  std::vector<std::int64_t> begin_;    // of the partners of each body
   std::vector<std::int32_t> partners_;
   std::vector<std::int64_t> next_;  // scratch of list_partners()
   std::vector<Impact> impacts_;

@@ -67,20 +67,21 @@ template <class Real>
 struct LoadPart {
   ConstView<Hub> hubs;
   ConstView<std::int32_t> hub_of;
+  ConstView<double> share;
   std::int64_t bodies;
   View<BodyRecord<Real>> solver;
   View<InertiaRecord<Real>> inertia;
   SCREE_HD void operator()(std::int64_t p) const {
     const Hub& hub = hubs[hub_of[p]];
-    const auto parts = static_cast<Real>(hub.parts);
+    const auto lighter = static_cast<Real>(1 / share[p]);
     BodyRecord<Real> part = solver[hub.body];
-    part.inverse_mass *= parts;
-    part.inverse_inertia *= parts;
+    part.inverse_mass *= lighter;
+    part.inverse_inertia *= lighter;
     solver[bodies + p] = part;
     if (inertia.size() == 0) return;
     const InertiaRecord<Real>& whole = inertia[hub.body];
-    inertia[bodies + p] = {parts * whole.xx, parts * whole.yy, parts * whole.zz,
-                           parts * whole.xy, parts * whole.xz, parts * whole.yz};
+    inertia[bodies + p] = {lighter * whole.xx, lighter * whole.yy, lighter * whole.zz,
+                           lighter * whole.xy, lighter * whole.xz, lighter * whole.yz};
   }
 };
 

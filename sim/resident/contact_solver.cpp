@@ -160,9 +160,9 @@ void ContactSolver<Space, Real>::load_bodies(const ConstBodyView& bodies, ConstV
   parallel::for_each<Space>(
       "contacts.bodies", n,
       LoadBody<Real>{bodies, margin, parameters, step_, mid_.view(), solver_.view(), inertia_.view()});
-  parallel::for_each<Space>(
-      "contacts.bodies", all - n,
-      LoadPart<Real>{slots_.hubs(), slots_.hub_of_parts(), n, solver_.view(), inertia_.view()});
+  parallel::for_each<Space>("contacts.bodies", all - n,
+                            LoadPart<Real>{slots_.hubs(), slots_.hub_of_parts(), slots_.share_of_parts(), n,
+                                           solver_.view(), inertia_.view()});
   copy(free_, solver_);
 }
 
@@ -212,7 +212,8 @@ JoinHubs<Record> ContactSolver<Space, Real>::join_hubs(Array<Record, Space>& bod
   const ConstView<std::int32_t> hub_of = slots_.hub_of_parts();
   parts_sums_.resize(hub_of.size());
   Record* const records = bodies.empty() ? nullptr : bodies.data();
-  return {slots_.hubs(), hub_of, bodies.size() - hub_of.size(), records, parts_sums_.data()};
+  return {slots_.hubs(),     hub_of, slots_.share_of_parts(), bodies.size() - hub_of.size(), records,
+          parts_sums_.data()};
 }
 
 template <class Space, class Real>

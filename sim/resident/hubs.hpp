@@ -10,7 +10,7 @@
 
 namespace scree::resident {
 
-/// Sum of two vectors over parts of a hub.
+/// Sum of two vectors over parts of a hub, by their shares.
 struct PartsSum {
   Vec3 velocity = Vec3::Zero();
   Vec3 spin = Vec3::Zero();
@@ -27,6 +27,7 @@ struct JoinHubs {
 
   ConstView<Hub> hubs;
   ConstView<std::int32_t> hub_of;  ///< of each part
+  ConstView<double> share;         ///< of its hub's mass
   std::int64_t first_part;         ///< among the records
   Record* bodies;                  ///< nobody's if there is nothing to join
   PartsSum* sums;                  ///< of each part, room
@@ -61,7 +62,7 @@ struct JoinHubs {
     PartsSum sum;
     for (int k = 0; k < together && k < more; ++k) {
       const Record& body = bodies[first_part + part + k];
-      sum = sum + PartsSum{vec3(body.velocity), spin_of(body)};
+      sum = sum + PartsSum{share[part + k] * vec3(body.velocity), share[part + k] * spin_of(body)};
     }
     sums[part] = sum;
   }
@@ -73,10 +74,9 @@ struct JoinHubs {
   SCREE_HD void share_mean(std::int64_t part) const {
     const Hub& hub = hubs[hub_of[part]];
     const PartsSum& sum = sums[first_of(hub)];
-    const auto mean = [&](const Vec3& of) { return v3<Real>(of / static_cast<double>(hub.parts)); };
     const auto set = [&](Record& body) {
-      body.velocity = mean(sum.velocity);
-      if constexpr (requires { body.spin; }) body.spin = mean(sum.spin);
+      body.velocity = v3<Real>(sum.velocity);
+      if constexpr (requires { body.spin; }) body.spin = v3<Real>(sum.spin);
     };
     set(bodies[first_part + part]);
     if (part == first_of(hub)) set(bodies[hub.body]);

@@ -5,6 +5,8 @@
 #include "core/space_tiles.hpp"
 
 #include <algorithm>
+#include <bit>
+#include <cmath>
 #include <utility>
 
 namespace scree::resident {
@@ -104,39 +106,74 @@ struct MarkHubEnds {
     on_hub[e] = number[body + 1] > number[body] ? 1 : 0;
   }
 };
+/// In the order of hubs, and those on the heaviest bodies first: the bits of a float that is not negative are
+/// in the order of such floats.
 struct ListHubEnds {
+  ConstBodyView bodies;
   ConstView<Slot> slots;
   ConstView<std::int64_t> number;
   ConstView<std::int64_t> to;
-  View<std::uint32_t> hub;
+  View<std::uint64_t> key;
   View<std::uint64_t> ends;
   SCREE_HD void operator()(std::int64_t e) const {
     if (to[e] == to[e + 1]) return;
     const Slot& slot = slots[e / 2];
-    hub[to[e]] = static_cast<std::uint32_t>(number[e % 2 == 0 ? slot.i : slot.j]);
+    const std::int32_t body = e % 2 == 0 ? slot.i : slot.j;
+    const auto lightness = static_cast<float>(bodies.inverse_mass[e % 2 == 0 ? slot.j : slot.i]);
+    key[to[e]] = static_cast<std::uint64_t>(number[body]) << 32 | std::bit_cast<std::uint32_t>(lightness);
     ends[to[e]] = static_cast<std::uint64_t>(e);
   }
 };
-/// The ends of a hub, in their order, are dealt to its parts.
+/// The ends of a hub, in their order, are dealt to its parts, each by one thread, which adds up what they
+/// weigh, but each at most as much as the hub.
 struct DealHubEnds {
-  ConstView<std::uint32_t> hub;
+  ConstBodyView bodies;
+  ConstView<std::uint64_t> key;
   ConstView<std::uint64_t> ends;
   ConstView<Hub> hubs;
+  ConstView<std::int32_t> hub_of;
+  std::int64_t first_part;
   View<Slot> slots;
-  SCREE_HD void operator()(std::int64_t k) const {
-    std::int64_t low = 0, high = k;  // where those of the hub begin
+  View<double> weight;
+  SCREE_HD void operator()(std::int64_t p) const {
+    const std::int64_t begin = first_of(hub_of[p]) + (first_part + p - hubs[hub_of[p]].first) * most_slots;
+    const double least = bodies.inverse_mass[hubs[hub_of[p]].body];
+    double sum = 0;
+    for (std::int64_t k = begin; k < begin + most_slots && k < ends.size() && hub_at(k) == hub_of[p]; ++k) {
+      Slot& slot = slots[static_cast<std::int64_t>(ends[k] / 2)];
+      const bool is_i = ends[k] % 2 == 0;
+      (is_i ? slot.end_i : slot.end_j) = static_cast<std::int32_t>(first_part + p);
+      sum += 1 / fmax(least, bodies.inverse_mass[is_i ? slot.j : slot.i]);
+    }
+    weight[p] = sum;
+  }
+
+ private:
+  SCREE_HD std::int32_t hub_at(std::int64_t k) const { return static_cast<std::int32_t>(key[k] >> 32); }
+  SCREE_HD std::int64_t first_of(std::int32_t hub) const {
+    std::int64_t low = 0, high = key.size();
     while (low < high) {
       const std::int64_t middle = (low + high) / 2;
-      if (hub[middle] < hub[k]) {
+      if (hub_at(middle) < hub) {
         low = middle + 1;
       } else {
         high = middle;
       }
     }
-    const Hub& of = hubs[hub[k]];
-    const auto part = static_cast<std::int32_t>(of.first + (k - low) / most_slots);
-    Slot& slot = slots[static_cast<std::int64_t>(ends[k] / 2)];
-    (ends[k] % 2 == 0 ? slot.end_i : slot.end_j) = part;
+    return low;
+  }
+};
+/// Half by weight, half alike.
+struct ShareHub {
+  ConstView<Hub> hubs;
+  std::int64_t first_part;
+  View<double> weight;
+  SCREE_HD void operator()(std::int64_t h) const {
+    const std::int64_t begin = hubs[h].first - first_part;
+    double all = 0;
+    for (std::int64_t p = begin; p < begin + hubs[h].parts; ++p) all += weight[p];
+    for (std::int64_t p = begin; p < begin + hubs[h].parts; ++p)
+      weight[p] = 0.5 * (weight[p] / all + 1.0 / hubs[h].parts);
   }
 };
 
@@ -361,6 +398,7 @@ void Slots<Space, Real>::split_hubs(const ConstBodyView& bodies) {
   hubs_.resize(parallel::exclusive_scan("slots.hubs", marks, number));
   solver_bodies_ = n;
   hub_of_.resize(0);
+  share_.resize(0);
   if (hubs_.empty()) return;
   Array<std::int32_t, Space> parts(hubs_.size());
   parallel::for_each<Space>(
@@ -374,15 +412,19 @@ void Slots<Space, Real>::split_hubs(const ConstBodyView& bodies) {
   parallel::for_each<Space>("slots.hub ends", ends,
                             MarkHubEnds{slots, std::as_const(number).view(), marks.view()});
   const std::int64_t on_hubs = parallel::exclusive_scan("slots.hub ends", marks, to);
-  Array<std::uint32_t, Space> hub(on_hubs);
-  Array<std::uint64_t, Space> end(on_hubs);
+  Array<std::uint64_t, Space> key(on_hubs), end(on_hubs);
+  parallel::for_each<Space>("slots.hub ends", ends,
+                            ListHubEnds{bodies, slots, std::as_const(number).view(), std::as_const(to).view(),
+                                        key.view(), end.view()});
+  parallel::sort_by_key("slots.hub ends", key, end,
+                        32 + std::bit_width(static_cast<std::uint64_t>(hubs_.size())));
+  share_.resize(hub_of_.size());
   parallel::for_each<Space>(
-      "slots.hub ends", ends,
-      ListHubEnds{slots, std::as_const(number).view(), std::as_const(to).view(), hub.view(), end.view()});
-  parallel::sort_by_key("slots.hub ends", hub, end);
-  parallel::for_each<Space>("slots.hub ends", on_hubs,
-                            DealHubEnds{std::as_const(hub).view(), std::as_const(end).view(),
-                                        std::as_const(hubs_).view(), slots_.view()});
+      "slots.hub ends", hub_of_.size(),
+      DealHubEnds{bodies, std::as_const(key).view(), std::as_const(end).view(), std::as_const(hubs_).view(),
+                  std::as_const(hub_of_).view(), n, slots_.view(), share_.view()});
+  parallel::for_each<Space>("slots.hub ends", hubs_.size(),
+                            ShareHub{std::as_const(hubs_).view(), n, share_.view()});
 }
 
 template <class Space, class Real>

@@ -12,9 +12,12 @@
 
 namespace scree::resident {
 
-/// A free body with so many slots that they would make too many colours. It is solved as several equal parts
-/// that share its mass, and that move alike after each sweep (mass splitting: Tonge, Benevolenski, Voroshilov
-/// 2012, "Mass splitting for jitter-free parallel rigid body simulation", sec. 4).
+/// A free body with so many slots that they would make too many colours. It is solved as several parts that
+/// share its mass, and that move alike after each sweep (mass splitting: Tonge, Benevolenski, Voroshilov
+/// 2012, "Mass splitting for jitter-free parallel rigid body simulation", sec. 4). The heaviest of what it
+/// may touch are on the same part, and half of the mass is shared out by what they weigh, since a part that
+/// carries the hub must stop it: with equal shares of a ball with thousands of grains on it, what it lies on
+/// would slow a thousandth of it in a sweep.
 struct Hub {
   std::int32_t body;
   std::int32_t first;  ///< of its parts among the bodies of the solver
@@ -66,6 +69,8 @@ class Slots {
   ConstView<Hub> hubs() const { return hubs_.view(); }
   /// Number of its hub, of each part of hubs.
   ConstView<std::int32_t> hub_of_parts() const { return hub_of_.view(); }
+  /// Share of its hub's mass, of each part.
+  ConstView<double> share_of_parts() const { return share_.view(); }
   /// Of the solver: all bodies, then the parts of the hubs.
   std::int64_t solver_bodies() const { return solver_bodies_; }
   ConstView<Pair> candidates() const { return pairs_.view(); }
@@ -93,6 +98,7 @@ class Slots {
   std::int64_t old_ball_places_ = 0;
   Array<Hub, Space> hubs_;
   Array<std::int32_t, Space> hub_of_;
+  Array<double, Space> share_;
   std::int64_t solver_bodies_ = 0;
 };
 

@@ -36,6 +36,11 @@ struct FlightScene {
   void add_ball(double radius, const Vec3& position, const Vec3& velocity) {
     add(Shape::sphere, Vec3::Constant(radius), position, velocity);
   }
+  /// Makes a body, of 1 kg until then, weigh so much (kg).
+  void weigh(std::int32_t body, double mass) {
+    bodies.inverse_mass[static_cast<std::size_t>(body)] /= mass;
+    bodies.inverse_inertia[static_cast<std::size_t>(body)] /= mass;
+  }
   void add_plane(const Vec3& normal, double offset) {
     add(Shape::plane, Vec3::Zero(), offset * normal, Vec3::Zero(), false);
     Mat3 axes;

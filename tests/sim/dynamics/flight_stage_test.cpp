@@ -59,7 +59,7 @@ TEST_P(Harmless, TwoSlowBodiesHaveNoImpact) {
       FlightStage stage(terms, parameters, view_of(bodies), log);
       for (std::int32_t k = 0; k < count; ++k) {
         stage.clock[k] = from;
-        stage.hits[k] = 0;
+        stage.weary[k] = 0;
         stage.bound(k);
       }
       const double harmless = stage.harmless_speed(0.03, 0.6);
