@@ -9,28 +9,29 @@
 
 namespace scree {
 
+namespace detail {
+
+/// What CUDA calls the integers of T's size: of two types of 64 bits it knows one.
+template <class T>
+using CudaWord = std::conditional_t<sizeof(T) == 8, unsigned long long,
+                                    std::conditional_t<std::is_unsigned_v<T>, unsigned, int>>;
+
+}  // namespace detail
+
 /// Puts `value` in its place and returns what was there, at one stroke. All that a thread has written before
 /// can be read by the thread that gets its value.
 template <class T>
 SCREE_HD T exchange(T* place, T value) {
 #if defined(__CUDA_ARCH__)
   __threadfence();
-  const T before = atomicExch(place, value);
+  using Word = detail::CudaWord<T>;
+  const auto before = static_cast<T>(atomicExch(reinterpret_cast<Word*>(place), static_cast<Word>(value)));
   __threadfence();
   return before;
 #else
   return std::atomic_ref<T>(*place).exchange(value, std::memory_order_acq_rel);
 #endif
 }
-
-namespace detail {
-
-/// What CUDA calls the unsigned integers of T's size.
-template <class T>
-requires std::is_unsigned_v<T>
-using CudaWord = std::conditional_t<sizeof(T) == 8, unsigned long long, unsigned>;
-
-}  // namespace detail
 
 /// Lowers what is in a place to `value`, if that is smaller: exact, whatever the order of the threads. True
 /// for the thread that did.
@@ -72,12 +73,8 @@ SCREE_HD bool raise(T* place, T value) {
 template <class T>
 SCREE_HD T add(T* place, T value) {
 #if defined(__CUDA_ARCH__)
-  if constexpr (std::is_unsigned_v<T>) {
-    using Word = detail::CudaWord<T>;
-    return atomicAdd(reinterpret_cast<Word*>(place), static_cast<Word>(value));
-  } else {
-    return atomicAdd(place, value);
-  }
+  using Word = detail::CudaWord<T>;
+  return static_cast<T>(atomicAdd(reinterpret_cast<Word*>(place), static_cast<Word>(value)));
 #else
   return std::atomic_ref<T>(*place).fetch_add(value, std::memory_order_relaxed);
 #endif

@@ -122,6 +122,8 @@ inline constexpr double flight_margin = 1e-9;
 /// are (of their size). Both are met to rounding; energy depends on neither.
 inline constexpr double impact_time = 1e-15;
 inline constexpr double impact_residual = 1e-15;
+/// Under this much (likewise) a change that has stopped to fall is rounding of the bodies' velocities.
+inline constexpr double impact_rounding = 1e-10;
 
 /// Gap at which bodies touch in the search for the time of an impact (of the smaller smallest_size): rounding
 /// of positions. Smaller: the search may step through a contact. Must stay well under closed_gap.

@@ -55,9 +55,19 @@ SCREE_HD inline SolverBody struck_body(const FlightStage& stage, std::int32_t bo
                 : Mat3(Mat3::Zero())};
 }
 
+SCREE_HD inline bool is_of_balls(const FlightStage& stage, std::int32_t i, std::int32_t j) {
+  const auto is_ball = [&](std::int32_t body) {
+    return !stage.is_free(body) || stage.bodies.shape[body] == Shape::sphere;
+  };
+  return is_ball(i) && is_ball(j);
+}
+
+/// One point of balls is solved by one sweep. Others go on until only rounding changes, which does not fall.
 SCREE_HD inline void sweep_impact(ContactRow* rows, const RowCoupling* couplings, int count,
-                                  const Vec3& normal, double friction, SolverBody& i, SolverBody& j) {
-  constexpr int most_sweeps = 200;
+                                  const Vec3& normal, double friction, bool of_balls, SolverBody& i,
+                                  SolverBody& j) {
+  const int most_sweeps = of_balls ? 1 : 200;
+  double last_change = HUGE_VAL;
   for (int sweep = 0; sweep < most_sweeps; ++sweep) {
     double change = 0;
     double size = 0;
@@ -69,6 +79,8 @@ SCREE_HD inline void sweep_impact(ContactRow* rows, const RowCoupling* couplings
       size += rows[k].impulse.norm();
     }
     if (change <= tolerance::impact_residual * size) break;
+    if (change >= last_change && change <= tolerance::impact_rounding * size) break;
+    last_change = change;
   }
 }
 
@@ -175,7 +187,8 @@ SCREE_HD bool solve_impact(const FlightStage& stage, std::int32_t i, std::int32_
                        std::max(stage.weary[i], stage.weary[j]) < bounces_end;
   out.restitution = bounces ? law.restitution : 0.0;
   for (int k = 0; k < count; ++k) out.rows[k].target = -out.restitution * out.before[k].dot(m.normal);
-  detail::sweep_impact(out.rows, couplings, count, m.normal, friction, a, b);
+  detail::sweep_impact(out.rows, couplings, count, m.normal, friction, detail::is_of_balls(stage, i, j), a,
+                       b);
   detail::keep_from_gaining(out.rows, out.before, count, a, b);
   out.point = middle / count;
   out.count = count;

@@ -54,7 +54,6 @@ struct SetHarmless {
     const double harmless = stage.harmless_speed(bounds[0].smallest, bounds[0].restitution);
     const bool nobody = 2 * bounds[0].top_speed <= harmless;
     progress->harmless = nobody ? HUGE_VAL : harmless;
-    progress->speed = bounds[0].top_speed + stage.terms.step * stage.parameters.gravity.norm();
   }
 };
 
@@ -136,16 +135,21 @@ struct ListBusy {
   }
 };
 
-/// Of the last round's meetings those that have stayed as they were.
+/// Of the last round's meetings those that have stayed as they were; its first ones are no more.
 struct KeepMeetings {
   ConstView<Foreseen> last;
   ConstView<Pair> pairs;
   ConstView<std::uint32_t> struck_in;
+  View<FirstMeeting> first;
   std::uint32_t round;
   MeetingList meetings;
   SCREE_HD void operator()(std::int64_t e) const {
     const Foreseen& meeting = last[e];
     const auto [i, j] = pairs[meeting.pair];
+    for (const std::int32_t body : {i, j}) {
+      exchange(&first[body].time, none.time);
+      exchange(&first[body].pair, none.pair);
+    }
     if (meeting.time == HUGE_VAL || struck_in[i] == round - 1 || struck_in[j] == round - 1) return;
     meetings.add(meeting);
   }
@@ -160,7 +164,6 @@ struct Round {
   View<std::uint32_t> waits_in;
   View<std::uint32_t> volley_of;
   View<Volley> volleys;  ///< by the meeting
-  const ImpactProgress* progress;
   std::uint32_t number;
 
   /// Whether a meeting with the other has its turn among those of a body.
@@ -174,7 +177,6 @@ struct Round {
   }
   /// That of a heavy body.
   SCREE_HD Volley& volley(std::int32_t heavy) const { return volleys[volley_of[heavy]]; }
-  SCREE_HD detail::VolleyUnits units(std::int32_t heavy) const { return {stage, heavy, progress->speed}; }
 
  private:
   SCREE_HD bool is_first_of(std::int32_t body, std::int32_t other, const Foreseen& meeting) const {
@@ -255,6 +257,22 @@ struct MakeWait {
   }
 };
 
+/// The speeds that volleys have to do with.
+struct ScaleVolleys {
+  Round round;
+  SCREE_HD void operator()(std::int64_t e) const {
+    const auto [i, j] = round.pairs[round.meetings[e].pair];
+    scale(i, j);
+    scale(j, i);
+  }
+
+ private:
+  SCREE_HD void scale(std::int32_t body, std::int32_t other) const {
+    if (round.stage.is_heavy_to(body, other))
+      raise(&round.volley(body).fastest, ordered_bits(round.stage.top_speed[other]));
+  }
+};
+
 /// Adds up what the first meetings give to heavy bodies.
 struct GatherVolleys {
   Round round;
@@ -269,7 +287,7 @@ struct GatherVolleys {
                       loads_of(loaded, meeting.pair), solved))
       return;
     const std::int32_t heavy = heavy_is_i ? i : j;
-    detail::add_to_volley(solved, heavy_is_i, meeting.pair, round.units(heavy), round.volley(heavy));
+    detail::add_to_volley(round.stage, heavy, solved, meeting.pair, round.volley(heavy));
   }
 };
 
@@ -302,8 +320,8 @@ struct ResolveFirst {
     if (heavy_i || heavy_j) {
       const std::int32_t heavy = heavy_i ? i : j;
       Volley& volley = round.volley(heavy);
-      const double scale = detail::VolleyOutcome(stage, heavy, volley, round.units(heavy)).scale();
-      resolved[place].moved = detail::fly_on_scaled(stage, solved, heavy_i, scale, resolved[place].impact);
+      const double scale = detail::VolleyOutcome(stage, heavy, volley).scale();
+      resolved[place].moved = detail::fly_on_scaled(stage, heavy, solved, scale, resolved[place].impact);
       if (volley.first_missing == ~static_cast<std::uint64_t>(meeting.pair))
         volley.place = static_cast<std::uint64_t>(place);
     } else {
@@ -338,7 +356,7 @@ struct EndVolleys {
     const Volley& volley = round.volleys[e];
     if (volley.impacts == 0) return;
     resolve.mark(before_impacts(round.stage, heavy));
-    const detail::VolleyOutcome outcome(round.stage, heavy, volley, round.units(heavy));
+    const detail::VolleyOutcome outcome(round.stage, heavy, volley);
     Ledger& moved = resolve.resolved[static_cast<std::int64_t>(volley.place)].moved;
     moved = moved + outcome.fly_on(round.stage, heavy);
   }
@@ -440,7 +458,7 @@ void ImpactRounds<Space>::foresee(const FlightStage& stage, const Problem& probl
     const MeetingList meetings{stage, pairs, progress, meetings_.view()};
     copy_bytes<Space, Host>(&progress->round, &start, sizeof(start));
     parallel::for_each<Space>("impact.keep", last_.size(),
-                              KeepMeetings{last_.view(), pairs, struck_in, round, meetings});
+                              KeepMeetings{last_.view(), pairs, struck_in, first_.view(), round, meetings});
     parallel::for_each<Space>(
         "impact.suspect", rounds_ > 0 ? busy : pairs.size(),
         Suspect{stage, pairs, busy_.view(), struck_in, round, progress, suspects_.view()});
@@ -471,8 +489,8 @@ void ImpactRounds<Space>::resolve_first(const FlightStage& stage, const Problem&
     parallel::fill("impact.reset", waits_in_, std::uint32_t{0});
     volley_of_.resize(n);
     parallel::fill("impact.reset", volley_of_, no_volley);
+    parallel::fill("impact.reset", first_, none);
   }
-  parallel::fill("impact.reset", first_, none);
   const std::int64_t count = meetings_.size();
   const std::int64_t impacts = signed_count(progress_.impacts);
   const std::int64_t struck = signed_count(progress_.struck);
@@ -491,7 +509,6 @@ void ImpactRounds<Space>::resolve_first(const FlightStage& stage, const Problem&
                     .waits_in = waits_in_.view(),
                     .volley_of = volley_of_.view(),
                     .volleys = volleys_.view(),
-                    .progress = shared_progress_.data(),
                     .number = static_cast<std::uint32_t>(rounds_)};
   const ResolveFirst resolve{
       round,       problem.loaded, struck_in_.view(), shared_progress_.data(), resolved_.view(),
@@ -499,7 +516,10 @@ void ImpactRounds<Space>::resolve_first(const FlightStage& stage, const Problem&
   parallel::for_each<Space>("impact.times", count, FindFirstTimes{round});
   parallel::for_each<Space>("impact.pairs", count, FindFirstPairs{round});
   parallel::for_each<Space>("impact.wait", signed_count(progress_.round.busy), MakeWait{round, busy_.view()});
-  if (any_heavy) parallel::for_each<Space>("impact.volley", count, GatherVolleys{round, problem.loaded});
+  if (any_heavy) {
+    parallel::for_each<Space>("impact.volley", count, ScaleVolleys{round});
+    parallel::for_each<Space>("impact.volley", count, GatherVolleys{round, problem.loaded});
+  }
   parallel::for_each<Space>("impact.resolve", count, resolve);
   if (any_heavy) parallel::for_each<Space>("impact.volley", count, EndVolleys{resolve});
 }

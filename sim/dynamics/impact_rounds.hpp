@@ -58,7 +58,6 @@ struct FlightBounds {
 /// What the threads of a flight tell the host, which reads it once in a round.
 struct ImpactProgress {
   RoundCounts round;
-  double speed = 0;     ///< the largest (m/s)
   double harmless = 0;  ///< FlightStage::harmless; infinite where nobody is faster (m/s)
   std::uint64_t impacts = 0;
   std::uint64_t struck = 0;     ///< bodies

@@ -16,34 +16,15 @@
 #include "core/space_atomic.hpp"
 #include "sim/dynamics/impact.hpp"
 
+#include <bit>
 #include <cmath>
 #include <cstdint>
 
 namespace scree::detail {
 
-/// Units of a heavy body's sums. They are counted in integers, so that a sum does not hang on the order of
-/// its terms: as fine as the rounding of the body's own state, and with room for hundreds of times its
-/// momentum.
-class VolleyUnits {
- public:
-  /// `speed`: of the bodies of the flight (m/s).
-  SCREE_HD VolleyUnits(const FlightStage& stage, std::int32_t heavy, double speed)
-      : momentum(unit(speed / stage.bodies.inverse_mass[heavy])),
-        delayed(unit(stage.terms.step) * momentum * steps),
-        angular(unit(bounding_radius(stage.bodies.shape[heavy], stage.bodies.size[heavy])) * momentum *
-                steps),
-        energy(unit(speed) * momentum * steps) {}
-
-  double momentum, delayed, angular, energy;
-
- private:
-  static constexpr double steps = 0x1p54;
-  /// A power of two, so that nothing is rounded but to whole units.
-  SCREE_HD static double unit(double of) { return exp2(ceil(log2(fmax(of, 1e-200)))) / steps; }
-};
-
-/// The sums, in units.
+/// What impacts of lighter bodies give to a heavy one, in units.
 struct Volley {
+  std::uint64_t fastest;         ///< of the lighter bodies, as the bits of a speed (m/s)
   std::uint64_t momentum[3];     ///< given to the heavy body
   std::uint64_t delayed[3];      ///< the same times the time into the substep
   std::uint64_t angular[3];      ///< about its centre
@@ -55,6 +36,28 @@ struct Volley {
   std::uint64_t impacts;
   std::uint64_t first_missing;  ///< of the pairs that are in it the first, as ~pair: 0 for none
   std::uint64_t place;          ///< of that one's impact among all resolved
+};
+
+/// Units of the sums. They are counted in integers, so that a sum does not hang on the order of its terms: as
+/// fine as the rounding of the body's own state, and with room for hundreds of times its momentum.
+class VolleyUnits {
+ public:
+  SCREE_HD VolleyUnits(const FlightStage& stage, std::int32_t heavy, const Volley& volley) {
+    constexpr double steps = 0x1p54;
+    const double speed = std::bit_cast<double>(volley.fastest) + stage.top_speed[heavy] +
+                         stage.terms.step * stage.parameters.gravity.norm();
+    const double size = bounding_radius(stage.bodies.shape[heavy], stage.bodies.size[heavy]);
+    momentum = power_over(speed / stage.bodies.inverse_mass[heavy]) / steps;
+    delayed = power_over(stage.terms.step) * momentum;
+    angular = power_over(size) * momentum;
+    energy = power_over(speed) * momentum;
+  }
+
+  double momentum, delayed, angular, energy;
+
+ private:
+  /// A power of two, so that nothing is rounded but to whole units.
+  SCREE_HD static double power_over(double x) { return exp2(ceil(log2(x))); }
 };
 
 SCREE_HD inline void add_units(std::uint64_t* sum, double value, double unit) {
@@ -93,9 +96,10 @@ struct HeavySide {
 };
 
 /// Adds an impact.
-SCREE_HD inline void add_to_volley(const SolvedImpact& solved, bool heavy_is_i, std::int64_t pair,
-                                   const VolleyUnits& unit, Volley& volley) {
-  const HeavySide side(solved, heavy_is_i);
+SCREE_HD inline void add_to_volley(const FlightStage& stage, std::int32_t heavy, const SolvedImpact& solved,
+                                   std::int64_t pair, Volley& volley) {
+  const VolleyUnits unit(stage, heavy, volley);
+  const HeavySide side(solved, solved.i == heavy);
   double square = 0;
   for (int k = 0; k < solved.count; ++k) {
     const ContactRow& row = solved.rows[k];
@@ -119,13 +123,13 @@ SCREE_HD inline void add_to_volley(const SolvedImpact& solved, bool heavy_is_i, 
 /// What a volley does to its heavy body.
 class VolleyOutcome {
  public:
-  SCREE_HD VolleyOutcome(const FlightStage& stage, std::int32_t heavy, const Volley& volley,
-                         const VolleyUnits& unit)
-      : flight_(stage.flight(heavy)),
-        momentum_(value_of(volley.momentum, unit.momentum)),
-        delayed_(value_of(volley.delayed, unit.delayed)),
-        angular_(value_of(volley.angular, unit.angular)),
-        turning_(value_of(volley.turning, unit.energy)) {
+  SCREE_HD VolleyOutcome(const FlightStage& stage, std::int32_t heavy, const Volley& volley)
+      : flight_(stage.flight(heavy)) {
+    const VolleyUnits unit(stage, heavy, volley);
+    momentum_ = value_of(volley.momentum, unit.momentum);
+    delayed_ = value_of(volley.delayed, unit.delayed);
+    angular_ = value_of(volley.angular, unit.angular);
+    turning_ = value_of(volley.turning, unit.energy);
     const double weight = value_of(volley.weight, unit.momentum);
     time_ = weight > 0 ? value_of(volley.delayed_weight, unit.delayed) / weight : flight_.midpoint;
     at_ = instant_of(flight_, time_);
@@ -168,8 +172,9 @@ class VolleyOutcome {
 };
 
 /// Gives the share of an impact in a volley to the lighter body. Returns what the impact moved.
-SCREE_HD inline Ledger fly_on_scaled(const FlightStage& stage, const SolvedImpact& solved, bool heavy_is_i,
+SCREE_HD inline Ledger fly_on_scaled(const FlightStage& stage, std::int32_t heavy, const SolvedImpact& solved,
                                      double scale, Impact& impact) {
+  const bool heavy_is_i = solved.i == heavy;
   const BodyInstant& at = heavy_is_i ? solved.at_j : solved.at_i;
   SolverBody after = heavy_is_i ? solved.after_j : solved.after_i;
   after.velocity = at.velocity + scale * (after.velocity - at.velocity);

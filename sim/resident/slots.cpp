@@ -13,9 +13,12 @@ namespace scree::resident {
 
 namespace {
 
-/// Slots that a free body of the solver may have. Two such bodies leave one of 64 colours for what they
-/// share.
-constexpr std::int32_t most_slots = 32;
+/// Slots that a free body may have before it is a hub, and those of a part of one. Two bodies leave one of 64
+/// colours for what they share. Most bodies of a heap have fewer; each colour that only few need is a wait
+/// for all.
+constexpr std::int32_t most_slots = 24;
+constexpr std::int32_t slots_of_part = 12;
+static_assert(2 * most_slots <= most_colors);
 /// A slot's color in its lower bits, and whether it is on a part of a hub.
 constexpr std::uint8_t of_hub = 64;
 constexpr std::uint8_t uncolored = 255;
@@ -79,7 +82,7 @@ struct ListHubs {
   View<std::int32_t> parts;
   SCREE_HD void operator()(std::int64_t b) const {
     if (number[b] == number[b + 1]) return;
-    parts[number[b]] = (counts[b] + most_slots - 1) / most_slots;
+    parts[number[b]] = (counts[b] + slots_of_part - 1) / slots_of_part;
     hubs[number[b]] = {.body = static_cast<std::int32_t>(b), .first = 0, .parts = parts[number[b]]};
   }
 };
@@ -136,10 +139,11 @@ struct DealHubEnds {
   View<Slot> slots;
   View<double> weight;
   SCREE_HD void operator()(std::int64_t p) const {
-    const std::int64_t begin = first_of(hub_of[p]) + (first_part + p - hubs[hub_of[p]].first) * most_slots;
+    const std::int64_t begin = first_of(hub_of[p]) + (first_part + p - hubs[hub_of[p]].first) * slots_of_part;
     const double least = bodies.inverse_mass[hubs[hub_of[p]].body];
     double sum = 0;
-    for (std::int64_t k = begin; k < begin + most_slots && k < ends.size() && hub_at(k) == hub_of[p]; ++k) {
+    for (std::int64_t k = begin; k < begin + slots_of_part && k < ends.size() && hub_at(k) == hub_of[p];
+         ++k) {
       Slot& slot = slots[static_cast<std::int64_t>(ends[k] / 2)];
       const bool is_i = ends[k] % 2 == 0;
       (is_i ? slot.end_i : slot.end_j) = static_cast<std::int32_t>(first_part + p);

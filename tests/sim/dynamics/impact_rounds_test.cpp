@@ -431,6 +431,18 @@ TYPED_TEST(Rounds, AHeavyBodyIsStruckAsInTheOrderOfTimesTheMoreTheHeavierItIs) {
   EXPECT_LT(last, 1e-2);
 }
 
+/// The surface of a plane that tilts has no bound on its speed.
+TYPED_TEST(Rounds, AHeavyBodyIsStruckWhereAWallTilts) {
+  FlightScene scene = under_fire(Shape::sphere, 1e5);
+  scene.add_plane(Vec3::UnitZ(), -10);
+  scene.bodies.mobility.back() = Mobility::prescribed;
+  scene.bodies.spin.back() = Vec3(0.1, 0, 0);
+  const std::vector<Pair> pairs = scene.pairs(0.02);
+  const Outcome rounds = in_rounds<TypeParam>(scene, pairs);
+  EXPECT_GT(rounds.impacts.size(), 500u);
+  EXPECT_LT((rounds.bodies.velocity[0] - in_time_order(scene, pairs).bodies.velocity[0]).norm(), 2e-5);
+}
+
 TYPED_TEST(Rounds, OneLightBallOnAHeavyOneIsAsInTheOrderOfTimes) {
   FlightScene scene = under_fire(Shape::box, 1e5);
   scene.law = {.restitution = 0.7, .friction = 0.4};
