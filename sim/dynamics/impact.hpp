@@ -62,11 +62,17 @@ SCREE_HD inline bool is_of_balls(const FlightStage& stage, std::int32_t i, std::
   return is_ball(i) && is_ball(j);
 }
 
-/// One point of balls is solved by one sweep. Others go on until only rounding changes, which does not fall.
+/// Balls touch at one point, where nothing couples: that is solved at once, and cannot gain energy.
+SCREE_HD inline void strike_balls(ContactRow& row, const Vec3& before, const Vec3& normal, double friction,
+                                  SolverBody& i, SolverBody& j) {
+  row.impulse = natural_map(row, normal, friction, before);
+  row.push(row.impulse, i, j);
+}
+
+/// Goes on until only rounding changes, which does not fall.
 SCREE_HD inline void sweep_impact(ContactRow* rows, const RowCoupling* couplings, int count,
-                                  const Vec3& normal, double friction, bool of_balls, SolverBody& i,
-                                  SolverBody& j) {
-  const int most_sweeps = of_balls ? 1 : 200;
+                                  const Vec3& normal, double friction, SolverBody& i, SolverBody& j) {
+  constexpr int most_sweeps = 200;
   double last_change = HUGE_VAL;
   for (int sweep = 0; sweep < most_sweeps; ++sweep) {
     double change = 0;
@@ -167,6 +173,7 @@ SCREE_HD bool solve_impact(const FlightStage& stage, std::int32_t i, std::int32_
   SolverBody& b = out.after_j;
   a = detail::struck_body(stage, i, out.at_i, friction);
   b = detail::struck_body(stage, j, out.at_j, friction);
+  const bool of_balls = detail::is_of_balls(stage, i, j);
   RowCoupling couplings[Manifold::max_points];
   Vec3 middle = Vec3::Zero();
   double fastest = 0;
@@ -175,8 +182,10 @@ SCREE_HD bool solve_impact(const FlightStage& stage, std::int32_t i, std::int32_
     const double closing = closing_speed(m.normal, m.points[k].position, out.at_i, out.at_j);
     if (!(closing > 0)) continue;
     const Vec3& point = m.points[k].position;
-    out.rows[count] = make_row(m.normal, point - out.at_i.solid.position, point - out.at_j.solid.position,
-                               0.0, a, b, couplings[count]);
+    const Vec3 arm_i = point - out.at_i.solid.position;
+    const Vec3 arm_j = point - out.at_j.solid.position;
+    out.rows[count] = of_balls ? make_ball_row(arm_i, arm_j, 0.0, a, b)
+                               : make_row(m.normal, arm_i, arm_j, 0.0, a, b, couplings[count]);
     out.before[count] = out.rows[count].relative_velocity(a, b);
     fastest = std::max(fastest, closing);
     middle += point;
@@ -187,9 +196,12 @@ SCREE_HD bool solve_impact(const FlightStage& stage, std::int32_t i, std::int32_
                        std::max(stage.weary[i], stage.weary[j]) < bounces_end;
   out.restitution = bounces ? law.restitution : 0.0;
   for (int k = 0; k < count; ++k) out.rows[k].target = -out.restitution * out.before[k].dot(m.normal);
-  detail::sweep_impact(out.rows, couplings, count, m.normal, friction, detail::is_of_balls(stage, i, j), a,
-                       b);
-  detail::keep_from_gaining(out.rows, out.before, count, a, b);
+  if (of_balls) {
+    detail::strike_balls(out.rows[0], out.before[0], m.normal, friction, a, b);
+  } else {
+    detail::sweep_impact(out.rows, couplings, count, m.normal, friction, a, b);
+    detail::keep_from_gaining(out.rows, out.before, count, a, b);
+  }
   out.point = middle / count;
   out.count = count;
   return true;

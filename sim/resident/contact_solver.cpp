@@ -279,11 +279,13 @@ Ledger ContactSolver<Space, Real>::book(const ConstBodyView& bodies, const Respo
 
 /// Sweeps of the next substeps, by what those of the last ones have left undone. It is judged over many
 /// substeps at once: the slow modes are oscillations, and a number of sweeps that goes up and down with them
-/// pumps them.
+/// pumps them. While some overlap so deeply that steps become finer, bodies are on their way, and there are
+/// none yet.
 template <class Space, class Real>
 void ContactSolver<Space, Real>::be_patient() {
   constexpr int judged_together = 32;
-  constexpr int most = 32;
+  const bool deep = tolerance::correction_cap * books_.deepest > tolerance::coarser_overlap;
+  const int most = deep ? 16 : 32;
   undone_ += std::abs(books_.gap_power);
   kicked_ += books_.kick_power;
   if (++judged_ < judged_together) return;

@@ -23,7 +23,7 @@ struct PartsSum {
 /// sums of these, and what everyone gets.
 template <class Record>
 struct JoinHubs {
-  static constexpr int together = 32;  // parts to a first sum
+  static constexpr int together = 64;  // parts to a first sum: the root of many
 
   ConstView<Hub> hubs;
   ConstView<std::int32_t> hub_of;  ///< of each part

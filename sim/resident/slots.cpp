@@ -91,10 +91,21 @@ struct PlaceHubs {
   ConstView<std::int64_t> first;
   std::int64_t bodies;
   View<Hub> hubs;
-  View<std::int32_t> hub_of;
   SCREE_HD void operator()(std::int64_t h) const {
     hubs[h].first = static_cast<std::int32_t>(bodies + first[h]);
-    for (std::int64_t p = first[h]; p < first[h + 1]; ++p) hub_of[p] = static_cast<std::int32_t>(h);
+  }
+};
+/// The hub of each part: the last that does not begin after it.
+struct NameHubs {
+  ConstView<std::int64_t> first;
+  View<std::int32_t> hub_of;
+  SCREE_HD void operator()(std::int64_t p) const {
+    std::int64_t low = 0, high = first.size() - 1;
+    while (high - low > 1) {
+      const std::int64_t middle = (low + high) / 2;
+      (first[middle] <= p ? low : high) = middle;
+    }
+    hub_of[p] = static_cast<std::int32_t>(low);
   }
 };
 
@@ -127,8 +138,8 @@ struct ListHubEnds {
     ends[to[e]] = static_cast<std::uint64_t>(e);
   }
 };
-/// The ends of a hub, in their order, are dealt to its parts, each by one thread, which adds up what they
-/// weigh, but each at most as much as the hub.
+/// The ends of a hub, in their order, are dealt to its parts. Adds up what they weigh for each, but each at
+/// most as much as the hub: in integers, since sums of these do not hang on the order of threads.
 struct DealHubEnds {
   ConstBodyView bodies;
   ConstView<std::uint64_t> key;
@@ -137,17 +148,19 @@ struct DealHubEnds {
   ConstView<std::int32_t> hub_of;
   std::int64_t first_part;
   View<Slot> slots;
-  View<double> weight;
+  View<std::int64_t> weight;
   SCREE_HD void operator()(std::int64_t p) const {
+    constexpr double unit = 0x1p40;  // of the hub's mass
     const std::int64_t begin = first_of(hub_of[p]) + (first_part + p - hubs[hub_of[p]].first) * slots_of_part;
     const double least = bodies.inverse_mass[hubs[hub_of[p]].body];
-    double sum = 0;
+    std::int64_t sum = 0;
     for (std::int64_t k = begin; k < begin + slots_of_part && k < ends.size() && hub_at(k) == hub_of[p];
          ++k) {
       Slot& slot = slots[static_cast<std::int64_t>(ends[k] / 2)];
       const bool is_i = ends[k] % 2 == 0;
       (is_i ? slot.end_i : slot.end_j) = static_cast<std::int32_t>(first_part + p);
-      sum += 1 / fmax(least, bodies.inverse_mass[is_i ? slot.j : slot.i]);
+      sum += 1 + static_cast<std::int64_t>(
+                     unit * (least / fmax(least, bodies.inverse_mass[is_i ? slot.j : slot.i])));
     }
     weight[p] = sum;
   }
@@ -167,17 +180,18 @@ struct DealHubEnds {
     return low;
   }
 };
-/// Half by weight, half alike.
+/// Half by weight, half alike: `before` has the weights of all parts before each.
 struct ShareHub {
   ConstView<Hub> hubs;
+  ConstView<std::int32_t> hub_of;
   std::int64_t first_part;
-  View<double> weight;
-  SCREE_HD void operator()(std::int64_t h) const {
-    const std::int64_t begin = hubs[h].first - first_part;
-    double all = 0;
-    for (std::int64_t p = begin; p < begin + hubs[h].parts; ++p) all += weight[p];
-    for (std::int64_t p = begin; p < begin + hubs[h].parts; ++p)
-      weight[p] = 0.5 * (weight[p] / all + 1.0 / hubs[h].parts);
+  ConstView<std::int64_t> weight, before;
+  View<double> share;
+  SCREE_HD void operator()(std::int64_t p) const {
+    const Hub& hub = hubs[hub_of[p]];
+    const std::int64_t first = hub.first - first_part;
+    const auto all = static_cast<double>(before[first + hub.parts] - before[first]);
+    share[p] = 0.5 * (static_cast<double>(weight[p]) / all + 1.0 / hub.parts);
   }
 };
 
@@ -410,8 +424,8 @@ void Slots<Space, Real>::split_hubs(const ConstBodyView& bodies) {
       ListHubs{std::as_const(counts).view(), std::as_const(number).view(), hubs_.view(), parts.view()});
   hub_of_.resize(parallel::exclusive_scan("slots.hubs", parts, to));
   solver_bodies_ += hub_of_.size();
-  parallel::for_each<Space>("slots.hubs", hubs_.size(),
-                            PlaceHubs{std::as_const(to).view(), n, hubs_.view(), hub_of_.view()});
+  parallel::for_each<Space>("slots.hubs", hubs_.size(), PlaceHubs{std::as_const(to).view(), n, hubs_.view()});
+  parallel::for_each<Space>("slots.hubs", hub_of_.size(), NameHubs{std::as_const(to).view(), hub_of_.view()});
   marks.resize(ends);
   parallel::for_each<Space>("slots.hub ends", ends,
                             MarkHubEnds{slots, std::as_const(number).view(), marks.view()});
@@ -422,13 +436,17 @@ void Slots<Space, Real>::split_hubs(const ConstBodyView& bodies) {
                                         key.view(), end.view()});
   parallel::sort_by_key("slots.hub ends", key, end,
                         32 + std::bit_width(static_cast<std::uint64_t>(hubs_.size())));
-  share_.resize(hub_of_.size());
+  Array<std::int64_t, Space> weight(hub_of_.size()), before;
   parallel::for_each<Space>(
       "slots.hub ends", hub_of_.size(),
       DealHubEnds{bodies, std::as_const(key).view(), std::as_const(end).view(), std::as_const(hubs_).view(),
-                  std::as_const(hub_of_).view(), n, slots_.view(), share_.view()});
-  parallel::for_each<Space>("slots.hub ends", hubs_.size(),
-                            ShareHub{std::as_const(hubs_).view(), n, share_.view()});
+                  std::as_const(hub_of_).view(), n, slots_.view(), weight.view()});
+  parallel::exclusive_scan("slots.hub ends", weight, before);
+  share_.resize(hub_of_.size());
+  parallel::for_each<Space>(
+      "slots.hub ends", hub_of_.size(),
+      ShareHub{std::as_const(hubs_).view(), std::as_const(hub_of_).view(), n, std::as_const(weight).view(),
+               std::as_const(before).view(), share_.view()});
 }
 
 template <class Space, class Real>
