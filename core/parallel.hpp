@@ -188,10 +188,10 @@ void running_max(const char* label, Array<T, Space>& values) {
                          values.data(), thrust::maximum<T>());
 }
 
-/// offsets[i] = counts[0] + ... + counts[i-1] for 0 <= i <= n; returns offsets[n]. 64-bit throughout.
+/// offsets[i] = counts[0] + ... + counts[i-1] for 0 <= i <= n, which nobody waits for. 64-bit throughout.
 template <class Space, class T>
-std::int64_t exclusive_scan(const char* label, const Array<T, Space>& counts,
-                            Array<std::int64_t, Space>& offsets) {
+void exclusive_scan_into(const char* label, const Array<T, Space>& counts,
+                         Array<std::int64_t, Space>& offsets) {
   const std::int64_t n = counts.size();
   offsets.resize(n + 1);
   parallel::for_each<Space>(label, 1, detail::Set<std::int64_t>{offsets.data(), 0});
@@ -199,8 +199,15 @@ std::int64_t exclusive_scan(const char* label, const Array<T, Space>& counts,
                                                      detail::Widen<T>{counts.data()});
   const timing::Call<Space> call(label);
   thrust::inclusive_scan(scree::detail::policy(Space{}), first, first + n, offsets.data() + 1);
+}
+
+/// The same; returns offsets[n].
+template <class Space, class T>
+std::int64_t exclusive_scan(const char* label, const Array<T, Space>& counts,
+                            Array<std::int64_t, Space>& offsets) {
+  exclusive_scan_into(label, counts, offsets);
   std::int64_t total = 0;
-  copy_bytes<Host, Space>(&total, offsets.data() + n, sizeof(total));
+  copy_bytes<Host, Space>(&total, offsets.data() + counts.size(), sizeof(total));
   return total;
 }
 

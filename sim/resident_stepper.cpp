@@ -218,10 +218,15 @@ ConstView<LoadedParts> ResidentStepper<Space, Real>::loads_of(ConstView<Pair> pa
 }
 
 /// Impacts of the flight of a substep from `from` on; whether there were any. Margins are set for contacts
-/// within `foresight` (s) from now on, at least the flight's end. `reach`: to the end of the step (s).
+/// within `foresight` (s) from now on, at least the flight's end, unless all are too slow in the second half.
+/// `reach`: to the end of the step (s).
 template <class Space, class Real>
 bool ResidentStepper<Space, Real>::resolve_impacts(double h, double from, double foresight, double reach) {
   constexpr int most_attempts = 8;
+  if (from > 0) {
+    const timing::Region region("impacts");
+    if (!impacts_.any_may_meet(terms(h, from), parameters_, views())) return false;
+  }
   const auto cover = [&] {
     const timing::Region region("broadphase");
     return kept_pairs_.cover(bodies_, foresight, parameters_, contact_margin_);

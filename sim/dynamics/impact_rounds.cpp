@@ -405,6 +405,15 @@ std::int64_t signed_count(std::uint64_t count) { return static_cast<std::int64_t
 }  // namespace
 
 template <class Space>
+bool ImpactRounds<Space>::any_may_meet(const FlightTerms& terms, const ResponseParameters& parameters,
+                                       BodyView bodies) {
+  log_.resize(bodies.count());
+  start({terms, parameters, bodies, log_});
+  copy_bytes<Host, Space>(&progress_, shared_progress_.data(), sizeof(progress_));
+  return progress_.harmless != HUGE_VAL;
+}
+
+template <class Space>
 Ledger ImpactRounds<Space>::resolve(const Problem& problem, const ResponseParameters& parameters,
                                     BodyView bodies) {
   constexpr std::int64_t most_rounds = 1 << 16;

@@ -85,6 +85,8 @@ class ImpactRounds {
     FlightTerms terms;
   };
 
+  /// False if all are too slow for one in the flight, wherever they are.
+  bool any_may_meet(const FlightTerms& terms, const ResponseParameters& parameters, BodyView bodies);
   /// Finds and resolves the impacts of the flight, as ImpactSolver::resolve(). All views are of the space.
   Ledger resolve(const Problem& problem, const ResponseParameters& parameters, BodyView bodies);
   /// Puts the bodies back to where they were before the last resolve().

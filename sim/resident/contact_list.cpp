@@ -32,8 +32,9 @@ struct FirstOfColor {
 
 template <class Space>
 void ContactList<Space>::make(const ColorTiles& colors, const Array<std::int32_t, Space>& found) {
-  places_.resize(parallel::exclusive_scan("contacts.list", found, number_));
-  parallel::for_each<Space>("contacts.list", tile * colors.tiles(),
+  parallel::exclusive_scan_into("contacts.list", found, number_);
+  places_.resize(tile * colors.tiles());
+  parallel::for_each<Space>("contacts.list", places_.size(),
                             ListContacts{found.data(), std::as_const(number_).view(), places_.view()});
   std::vector<std::int64_t> tiles;
   for (const std::int64_t t : colors.begin) tiles.push_back(t - colors.begin.front());
@@ -43,6 +44,7 @@ void ContactList<Space>::make(const ColorTiles& colors, const Array<std::int32_t
       "contacts.list", tile_.size(),
       FirstOfColor{std::as_const(number_).view(), std::as_const(tile_).view(), first_.view()});
   copy(begin_, first_);
+  places_.resize(begin_.back());
 }
 
 #define SCREE_INSTANTIATE(Space) template class ContactList<Space>;

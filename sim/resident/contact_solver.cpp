@@ -279,13 +279,11 @@ Ledger ContactSolver<Space, Real>::book(const ConstBodyView& bodies, const Respo
 
 /// Sweeps of the next substeps, by what those of the last ones have left undone. It is judged over many
 /// substeps at once: the slow modes are oscillations, and a number of sweeps that goes up and down with them
-/// pumps them. While some overlap so deeply that steps become finer, bodies are on their way, and there are
-/// none yet.
+/// pumps them.
 template <class Space, class Real>
 void ContactSolver<Space, Real>::be_patient() {
   constexpr int judged_together = 32;
-  const bool deep = tolerance::correction_cap * books_.deepest > tolerance::coarser_overlap;
-  const int most = deep ? 16 : 32;
+  constexpr int most = 32;
   undone_ += std::abs(books_.gap_power);
   kicked_ += books_.kick_power;
   if (++judged_ < judged_together) return;
@@ -397,7 +395,7 @@ PartingPlan ContactSolver<Space, Real>::plan_parting() const {
   using namespace tolerance;
   if (!is_heap(counts_.points)) return {1, 100, corrected_overlap, corrected_overlap};
   if (shares_loads(counts_.contacts, counts_.points)) return {1, 24, corrected_overlap, corrected_overlap};
-  return {2, 6, heap_overlap, heap_mean_overlap};
+  return {1, 6, heap_overlap, heap_mean_overlap};
 }
 
 template <class Space, class Real>
