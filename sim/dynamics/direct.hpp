@@ -2,6 +2,7 @@
 #pragma once
 
 #include "sim/dynamics/islands.hpp"
+#include "sim/observation.hpp"
 
 namespace scree {
 
@@ -17,6 +18,17 @@ inline constexpr DirectLimits quick_limits{.passes = 16, .products = 4e5, .produ
 inline constexpr DirectLimits patient_limits{.passes = 40, .products = 1e7, .products_in_all = 1e8};
 /// Where a solution is worth its time.
 inline constexpr DirectLimits thorough_limits{.passes = 300, .products = 1e8, .products_in_all = 1e11};
+
+/// Sweeps after which what has not converged creeps. Warm-started contacts take one or two.
+inline constexpr int sweeps_before_direct = 10;
+
+/// Large islands that creep are worth a long direct solution, if nearly all succeed in the scene: then warm
+/// starts keep what was found. Where everything tumbles they do not (docs/decisions/0017).
+bool pays_patience(const Counters& counters);
+
+/// Whether some contacts carry so little beside others that to solve all together to the tolerance leaves
+/// them unsolved: then each island is looked at by itself. Empty where nobody asks.
+bool loads_differ(ConstView<ImpulseChange> change, double tolerance);
 
 /// One island of the contact problem of a substep.
 struct IslandProblem {

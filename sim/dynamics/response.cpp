@@ -129,30 +129,6 @@ struct MinusSlipEnd {
   SCREE_HD double operator()(std::int64_t c) const { return -end(c); }
 };
 
-/// Large islands that creep are worth a long direct solution, if nearly all succeed in the scene: then warm
-/// starts keep what was found. Where everything tumbles they do not (docs/decisions/0017).
-bool pays_patience(const Counters& counters) {
-  constexpr std::int64_t failures_to_start = 2;
-  constexpr std::int64_t solved_per_failure = 4;
-  return counters.patient_failed <= failures_to_start + counters.patient / solved_per_failure;
-}
-
-/// Whether some contacts carry so little beside others that to solve all together to the tolerance leaves
-/// them unsolved: then each island is looked at by itself. Empty where nobody asks.
-bool loads_differ(ConstView<ImpulseChange> change, double tolerance) {
-  double least = HUGE_VAL;
-  double all = 0;
-  for (const ImpulseChange& contact : change) {
-    if (contact.size > 0) least = std::min(least, contact.size);
-    all += contact.size;
-  }
-  constexpr double accuracy = tolerance::least_load_accuracy;
-  return tolerance * tolerance * all > accuracy * accuracy * least;
-}
-
-/// Sweeps after which what has not converged creeps. Warm-started contacts take one or two.
-constexpr int sweeps_before_direct = 10;
-
 }  // namespace
 
 bool ResponseSolver::count_outcomes(std::int64_t& solved, std::int64_t& failed) const {

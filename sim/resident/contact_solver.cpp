@@ -4,6 +4,7 @@
 #include "core/space_rounds.hpp"
 #include "core/space_tiles.hpp"
 #include "core/tolerances.hpp"
+#include "sim/resident/few_contacts.hpp"
 #include "sim/resident/rounds.hpp"
 
 #include <algorithm>
@@ -123,6 +124,7 @@ Inspection<Real> ContactSolver<Space, Real>::inspect() const {
   seen.places.resize(static_cast<std::size_t>(slots_.places().size()));
   copy_bytes<Host, Space>(seen.places.data(), slots_.places().data(), seen.places.size() * sizeof(Slot));
   copy(seen.free, free_);
+  copy(seen.inertia, inertia_);
   seen.contacts.copy_from(store_);
   seen.step = step_;
   return seen;
@@ -246,10 +248,44 @@ void ContactSolver<Space, Real>::find_impulses(const ResponseParameters& paramet
     if (parameters.iterations > 0) plan.least = std::min(plan.least, plan.most);
     plan.most = std::max(plan.most, plan.least);
   }
+  const bool few = plan.direct && slots_.places().size() <= few_places && solver_.size() <= few_bodies;
+  const bool converged = few ? solve_few(plan, counters) : sweep(plan, counters);
+  counters.unconverged += !converged;
+}
+
+/// The bodies of the solver are without contacts.
+template <class Space, class Real>
+bool ContactSolver<Space, Real>::sweep(const SweepPlan& plan, Counters& counters) {
   const SweepState done =
       store_.point_places() == 0 ? run_impulse_rounds<true>(plan) : run_impulse_rounds<false>(plan);
   counters.sweeps += done.sweeps;
-  counters.unconverged += !done.converged;
+  return done.converged;
+}
+
+/// Sweeps; islands on which they creep go to Host's direct solver, as in Host's own steps.
+template <class Space, class Real>
+bool ContactSolver<Space, Real>::solve_few(const SweepPlan& plan, Counters& counters) {
+  SweepPlan first = plan, rest = plan;
+  first.most = std::min(plan.most, sweeps_before_direct);
+  rest.most = std::max(plan.most - first.most, sweeps_before_direct);
+  const auto solve_islands = [&](const DirectLimits& limits, bool converged, std::int64_t& solved,
+                                 std::int64_t& failed) {
+    Inspection<Real> seen = inspect();
+    FewContacts<Real> contacts(seen);
+    if (converged && !contacts.loads_differ(plan.tolerance)) return true;
+    const bool all = contacts.solve(plan.tolerance, limits, solved, failed);
+    const std::vector<BodyRecord<Real>> bodies = contacts.put_back();
+    store_.copy_from(seen.contacts);
+    copy(solver_, bodies);
+    return all;
+  };
+  bool converged = sweep(first, counters);
+  converged = solve_islands(quick_limits, converged, counters.direct, counters.direct_failed);
+  if (converged) return true;
+  copy(solver_, free_);
+  if (sweep(rest, counters)) return true;
+  return pays_patience(counters) &&
+         solve_islands(patient_limits, false, counters.patient, counters.patient_failed);
 }
 
 template <class Space, class Real>
@@ -395,7 +431,7 @@ PartingPlan ContactSolver<Space, Real>::plan_parting() const {
   using namespace tolerance;
   if (!is_heap(counts_.points)) return {1, 100, corrected_overlap, corrected_overlap};
   if (shares_loads(counts_.contacts, counts_.points)) return {1, 24, corrected_overlap, corrected_overlap};
-  return {1, 6, heap_overlap, heap_mean_overlap};
+  return {2, 6, heap_overlap, heap_mean_overlap};
 }
 
 template <class Space, class Real>

@@ -80,6 +80,8 @@ class ContactSolver {
   template <class Record>
   JoinHubs<Record> join_hubs(Array<Record, Space>& bodies);
   void find_impulses(const ResponseParameters& parameters, Counters& counters);
+  bool sweep(const SweepPlan& plan, Counters& counters);
+  bool solve_few(const SweepPlan& plan, Counters& counters);
   template <bool only_balls>
   SweepState run_impulse_rounds(const SweepPlan& plan);
   PartingPlan plan_parting() const;

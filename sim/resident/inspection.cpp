@@ -1,66 +1,8 @@
 #include "sim/resident/inspection.hpp"
 
 #include "sim/dynamics/rotation.hpp"
-#include "sim/resident/sweeps.hpp"
 
 namespace scree::resident {
-
-namespace {
-
-struct SeenPoint {
-  Vec3 arm_i, arm_j;
-  double target;
-  Vec3 impulse;
-};
-
-struct SeenContact {
-  Slot slot;
-  Vec3 normal;
-  double friction;
-  bool balls;
-  std::vector<SeenPoint> points;
-};
-
-/// visit(contact) for all of them.
-template <class Real, class Visit>
-void for_each_contact(Inspection<Real>& seen, Visit visit) {
-  using B = BallContacts<Real>;
-  using P = PointContacts<Real>;
-  const auto number = [](Real value) { return static_cast<double>(value); };
-  const B balls = seen.contacts.balls();
-  const auto slot_of = [&](std::int64_t first, std::int64_t c, std::uint8_t slot) {
-    return seen.places[static_cast<std::size_t>(first + c - c % 256 + slot)];
-  };
-  for (std::int64_t c = 0; c < seen.contacts.ball_places(); ++c) {
-    if (!has_contact(seen.contacts.ball_tiles().data(), c)) continue;
-    const Fields<Real>& f = balls.fields;
-    const Vec3 normal = vec3(f.vector(B::normal, c));
-    visit(SeenContact{slot_of(0, c, balls.slot[c]),
-                      normal,
-                      number(f.at(B::friction, c)),
-                      true,
-                      {{number(f.at(B::arm_i, c)) * normal, number(f.at(B::arm_j, c)) * normal,
-                        number(f.at(B::target, c)), vec3(f.vector(B::impulse, c))}}});
-  }
-  const P points = seen.contacts.points();
-  for (std::int64_t c = 0; c < seen.contacts.point_places(); ++c) {
-    if (!has_contact(seen.contacts.point_tiles().data(), c)) continue;
-    SeenContact contact{slot_of(seen.contacts.ball_places(), c, points.slot[c]),
-                        vec3(points.fields.vector(P::normal, c)),
-                        number(points.fields.at(P::friction, c)),
-                        false,
-                        {}};
-    const Fields<Real>& f = points.point_fields;
-    for (int k = 0; k < points.points[c]; ++k) {
-      contact.points.push_back(
-          {vec3(f.vector(P::at_point(k, P::arm_i), c)), vec3(f.vector(P::at_point(k, P::arm_j), c)),
-           number(f.at(P::at_point(k, P::target), c)), vec3(f.vector(P::at_point(k, P::impulse), c))});
-    }
-    visit(contact);
-  }
-}
-
-}  // namespace
 
 template <class Real>
 ContactProblem problem_of(Inspection<Real>& seen, const BodyTable& bodies) {

@@ -4,7 +4,9 @@
 #include "core/bodies.hpp"
 #include "sim/inspection.hpp"
 #include "sim/resident/contact_store.hpp"
+#include "sim/resident/sweeps.hpp"
 
+#include <cstdint>
 #include <vector>
 
 namespace scree::resident {
@@ -13,10 +15,67 @@ namespace scree::resident {
 template <class Real>
 struct Inspection {
   std::vector<Slot> places;
-  std::vector<BodyRecord<Real>> free;  ///< bodies of the solver as they would be without contacts
+  std::vector<BodyRecord<Real>> free;        ///< bodies of the solver as they would be without contacts
+  std::vector<InertiaRecord<Real>> inertia;  ///< theirs; none if all contacts are of balls
   ContactStore<Host, Real> contacts;
   double step = 0;  ///< length of the substep (s)
 };
+
+struct SeenPoint {
+  Vec3 arm_i, arm_j;
+  double target;
+  Vec3 impulse;
+};
+
+struct SeenContact {
+  Slot slot;
+  std::int64_t place;  ///< among those of its kind
+  Vec3 normal;
+  double friction;
+  bool balls;
+  std::vector<SeenPoint> points;
+};
+
+/// visit(contact) for all of them, in the order of their places, those of balls first.
+template <class Real, class Visit>
+void for_each_contact(Inspection<Real>& seen, Visit visit) {
+  using B = BallContacts<Real>;
+  using P = PointContacts<Real>;
+  const auto number = [](Real value) { return static_cast<double>(value); };
+  const B balls = seen.contacts.balls();
+  const auto slot_of = [&](std::int64_t first, std::int64_t c, std::uint8_t slot) {
+    return seen.places[static_cast<std::size_t>(first + c - c % 256 + slot)];
+  };
+  for (std::int64_t c = 0; c < seen.contacts.ball_places(); ++c) {
+    if (!has_contact(seen.contacts.ball_tiles().data(), c)) continue;
+    const Fields<Real>& f = balls.fields;
+    const Vec3 normal = vec3(f.vector(B::normal, c));
+    visit(SeenContact{slot_of(0, c, balls.slot[c]),
+                      c,
+                      normal,
+                      number(f.at(B::friction, c)),
+                      true,
+                      {{number(f.at(B::arm_i, c)) * normal, number(f.at(B::arm_j, c)) * normal,
+                        number(f.at(B::target, c)), vec3(f.vector(B::impulse, c))}}});
+  }
+  const P points = seen.contacts.points();
+  for (std::int64_t c = 0; c < seen.contacts.point_places(); ++c) {
+    if (!has_contact(seen.contacts.point_tiles().data(), c)) continue;
+    SeenContact contact{slot_of(seen.contacts.ball_places(), c, points.slot[c]),
+                        c,
+                        vec3(points.fields.vector(P::normal, c)),
+                        number(points.fields.at(P::friction, c)),
+                        false,
+                        {}};
+    const Fields<Real>& f = points.point_fields;
+    for (int k = 0; k < points.points[c]; ++k) {
+      contact.points.push_back(
+          {vec3(f.vector(P::at_point(k, P::arm_i), c)), vec3(f.vector(P::at_point(k, P::arm_j), c)),
+           number(f.at(P::at_point(k, P::target), c)), vec3(f.vector(P::at_point(k, P::impulse), c))});
+    }
+    visit(contact);
+  }
+}
 
 template <class Real>
 ContactProblem problem_of(Inspection<Real>& seen, const BodyTable& bodies);
