@@ -179,6 +179,21 @@ bodies:
   EXPECT_LT(run.body(slab).velocity.norm(), 1e-3);
 }
 
+/// Sweeps creep where a heavy body lies on a light one: that is for the direct solver.
+TEST_P(ResidentStep, AHeavyCubeLiesOnALightOne) {
+  Simulation run = simulate(R"(
+materials: {foam: {density: 1, friction: 0.5}, lead: {density: 3000, friction: 0.5}}
+gravity: [0, 0, -9.81]
+time: {end: 2, step: 0.01}
+bodies:
+  - {plane: {normal: [0, 0, 1], offset: 0}, material: foam}
+  - {box: {size: 1}, at: [0, 0, 0.5], material: foam}
+  - {box: {size: 1}, name: heavy, at: [0, 0, 1.5], material: lead})");
+  run_to_end(run);
+  EXPECT_NEAR(run.body(2).position.z(), 1.5, is_mixed() ? 1e-3 : 1e-5);
+  EXPECT_GT(run.observe().counters.direct, 0);
+}
+
 TEST_P(ResidentStep, ForcesOnWallsAreThoseOfTheScene) {
   Simulation run = simulate(std::string(grain) + R"(
 gravity: [0, 0, -9.81]

@@ -141,6 +141,34 @@ TYPED_TEST(SlotsTest, AHubIsSplitSoThatColoursStayFew) {
   }
 }
 
+/// A ball that lies on a plane and two heavy balls, with a thousand light ones around it: what carries it is
+/// on one part.
+TYPED_TEST(SlotsTest, TheHeaviestNeighboursOfAHubShareAPart) {
+  BodyTable bodies = balls(1005, false);
+  std::vector<Pair> pairs = {{0, 1}};
+  bodies.inverse_mass[0] = 0;
+  bodies.inverse_mass[1] = 1e-3;
+  for (std::int32_t k = 2; k < 1005; ++k) {
+    bodies.inverse_mass[static_cast<std::size_t>(k)] = k == 500 || k == 900 ? 2e-3 : 1;
+    pairs.push_back({1, k});
+  }
+  Built<TypeParam> built(bodies);
+  built.build(pairs);
+  std::vector<double> share(static_cast<std::size_t>(built.slots.share_of_parts().size()));
+  copy_bytes<Host, TypeParam>(share.data(), built.slots.share_of_parts().data(),
+                              share.size() * sizeof(double));
+  double sum = 0;
+  for (const double part : share) sum += part;
+  EXPECT_NEAR(sum, 1, 1e-12);
+  for (const Slot& slot : built.places()) {
+    if (slot.i == Slot::empty || (slot.i != 0 && slot.j != 500 && slot.j != 900)) continue;
+    EXPECT_EQ(slot.i == 0 ? slot.end_j : slot.end_i, 1005);
+  }
+  // Half of it by weight: 1,000 for the plane, 500 for each ball, 9 light ones, of 3,001; the rest alike.
+  EXPECT_NEAR(share[0], 0.5 * (2009.0 / 3001 + 1.0 / static_cast<double>(share.size())), 1e-3);
+  EXPECT_LT(share[1], 0.01);
+}
+
 template <class Real>
 struct Remember {
   ConstView<Slot> places;
