@@ -57,7 +57,7 @@ class VolleyUnits {
 
  private:
   /// A power of two, so that nothing is rounded but to whole units.
-  SCREE_HD static double power_over(double x) { return exp2(ceil(log2(x))); }
+  SCREE_HD static double power_over(double x) { return scalbn(1.0, ilogb(x) + 1); }
 };
 
 SCREE_HD inline void add_units(std::uint64_t* sum, double value, double unit) {
