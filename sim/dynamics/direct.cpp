@@ -380,15 +380,4 @@ bool pays_patience(const Counters& counters) {
   return counters.patient_failed <= failures_to_start + counters.patient / solved_per_failure;
 }
 
-bool loads_differ(ConstView<ImpulseChange> change, double tolerance) {
-  double least = HUGE_VAL;
-  double all = 0;
-  for (const ImpulseChange& contact : change) {
-    if (contact.size > 0) least = std::min(least, contact.size);
-    all += contact.size;
-  }
-  constexpr double accuracy = tolerance::least_load_accuracy;
-  return tolerance * tolerance * all > accuracy * accuracy * least;
-}
-
 }  // namespace scree

@@ -1,8 +1,11 @@
 // The direct solver: the contact problem of one island by Newton's method, where sweeps creep.
 #pragma once
 
+#include "core/tolerances.hpp"
 #include "sim/dynamics/islands.hpp"
 #include "sim/observation.hpp"
+
+#include <cmath>
 
 namespace scree {
 
@@ -26,9 +29,22 @@ inline constexpr int sweeps_before_direct = 10;
 /// starts keep what was found. Where everything tumbles they do not (docs/decisions/0017).
 bool pays_patience(const Counters& counters);
 
-/// Whether some contacts carry so little beside others that to solve all together to the tolerance leaves
-/// them unsolved: then each island is looked at by itself. Empty where nobody asks.
-bool loads_differ(ConstView<ImpulseChange> change, double tolerance);
+/// Loads of contacts, as ImpulseChange::size (J).
+struct LoadSpread {
+  double least = HUGE_VAL;  ///< but for those without
+  double all = 0;
+
+  SCREE_HD static LoadSpread of(double load) { return {load > 0 ? load : HUGE_VAL, load}; }
+  SCREE_HD friend LoadSpread operator+(const LoadSpread& a, const LoadSpread& b) {
+    return {fmin(a.least, b.least), a.all + b.all};
+  }
+  /// Whether some carry so little beside others that to solve all together to the tolerance leaves them
+  /// unsolved: then each island is looked at by itself.
+  SCREE_HD bool is_wide(double tolerance) const {
+    constexpr double accuracy = tolerance::least_load_accuracy;
+    return tolerance * tolerance * all > accuracy * accuracy * least;
+  }
+};
 
 /// One island of the contact problem of a substep.
 struct IslandProblem {

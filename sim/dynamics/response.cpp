@@ -141,6 +141,12 @@ bool ResponseSolver::count_outcomes(std::int64_t& solved, std::int64_t& failed) 
   return all_solved;
 }
 
+LoadSpread ResponseSolver::spread_of_loads() const {
+  LoadSpread spread;
+  for (const ImpulseChange& contact : change_.view()) spread = spread + LoadSpread::of(contact.size);
+  return spread;
+}
+
 void ResponseSolver::list_all(ContactSet& set, SolveStage& stage) {
   set.list_all(stage.solver);
   stage.contacts = set.contacts.view();
@@ -171,7 +177,7 @@ bool ResponseSolver::find_impulses(SolveStage stage, const ResponseParameters& p
   const int first = plan.direct ? std::min(plan.most, sweeps_before_direct) : plan.most;
   bool converged = sweep(first);
   if (parameters.accurate || (!converged && first < plan.most) ||
-      (converged && loads_differ(std::as_const(change_).view(), plan.tolerance))) {
+      (converged && spread_of_loads().is_wide(plan.tolerance))) {
     islands_.find(set.contacts.view(), stage.solver);
     outcome_.resize(islands_.count());
     converged = solve_islands(parameters.accurate ? thorough_limits : quick_limits, counters.direct,

@@ -37,6 +37,8 @@ class ResponseSolver {
   double slip_end() const { return slip_end_; }
 
  private:
+  /// Of the last sweep; of none where nobody asks.
+  LoadSpread spread_of_loads() const;
   /// Lists what only the batches have, for those who look at contacts one by one.
   void list_all(ContactSet& set, SolveStage& stage);
   /// Scales down the impulses of each island that gains energy, to where it gains none: those in the

@@ -34,6 +34,29 @@ struct LookUpLoads {
   }
 };
 
+template <class Real>
+struct BallLoad {
+  BallContacts<Real> contacts;
+  SCREE_HD LoadSpread operator()(std::int64_t c) const {
+    using C = BallContacts<Real>;
+    const Vec3 impulse = vec3(contacts.fields.vector(C::impulse, c));
+    return LoadSpread::of(impulse.squaredNorm() / contacts.fields.at(C::normal_mass, c));
+  }
+};
+template <class Real>
+struct PointLoad {
+  PointContacts<Real> contacts;
+  SCREE_HD LoadSpread operator()(std::int64_t c) const {
+    using C = PointContacts<Real>;
+    double load = 0;
+    for (int k = 0; k < contacts.points[c]; ++k) {
+      const Vec3 impulse = vec3(contacts.point_fields.vector(C::at_point(k, C::impulse), c));
+      load += impulse.squaredNorm() / contacts.point_fields.at(C::at_point(k, C::normal_mass), c);
+    }
+    return LoadSpread::of(load);
+  }
+};
+
 struct ImpulseSum {
   Vec3 impulse = Vec3::Zero();
   SCREE_HD friend ImpulseSum operator+(const ImpulseSum& a, const ImpulseSum& b) {
@@ -262,30 +285,34 @@ bool ContactSolver<Space, Real>::sweep(const SweepPlan& plan, Counters& counters
   return done.converged;
 }
 
+template <class Space, class Real>
+LoadSpread ContactSolver<Space, Real>::spread_of_loads() {
+  return parallel::sum_by_tiles<LoadSpread, Space>("sweeps.loads", ball_list_.size(),
+                                                   on_contacts(ball_list_, BallLoad<Real>{store_.balls()})) +
+         parallel::sum_by_tiles<LoadSpread, Space>(
+             "sweeps.loads", point_list_.size(), on_contacts(point_list_, PointLoad<Real>{store_.points()}));
+}
+
 /// Sweeps; islands on which they creep go to Host's direct solver, as in Host's own steps.
 template <class Space, class Real>
 bool ContactSolver<Space, Real>::solve_few(const SweepPlan& plan, Counters& counters) {
   SweepPlan first = plan, rest = plan;
   first.most = std::min(plan.most, sweeps_before_direct);
   rest.most = std::max(plan.most - first.most, sweeps_before_direct);
-  const auto solve_islands = [&](const DirectLimits& limits, bool converged, std::int64_t& solved,
-                                 std::int64_t& failed) {
+  const auto solve_islands = [&](const DirectLimits& limits, std::int64_t& solved, std::int64_t& failed) {
     Inspection<Real> seen = inspect();
     FewContacts<Real> contacts(seen);
-    if (converged && !contacts.loads_differ(plan.tolerance)) return true;
     const bool all = contacts.solve(plan.tolerance, limits, solved, failed);
     const std::vector<BodyRecord<Real>> bodies = contacts.put_back();
     store_.copy_from(seen.contacts);
     copy(solver_, bodies);
     return all;
   };
-  bool converged = sweep(first, counters);
-  converged = solve_islands(quick_limits, converged, counters.direct, counters.direct_failed);
-  if (converged) return true;
+  if (sweep(first, counters) && !spread_of_loads().is_wide(plan.tolerance)) return true;
+  if (solve_islands(quick_limits, counters.direct, counters.direct_failed)) return true;
   copy(solver_, free_);
   if (sweep(rest, counters)) return true;
-  return pays_patience(counters) &&
-         solve_islands(patient_limits, false, counters.patient, counters.patient_failed);
+  return pays_patience(counters) && solve_islands(patient_limits, counters.patient, counters.patient_failed);
 }
 
 template <class Space, class Real>

@@ -4,6 +4,7 @@
 #include "core/array.hpp"
 #include "core/bodies.hpp"
 #include "sim/dynamics/contact_set.hpp"
+#include "sim/dynamics/direct.hpp"
 #include "sim/dynamics/state.hpp"
 #include "sim/dynamics/sweeps.hpp"
 #include "sim/resident/bodies.hpp"
@@ -82,6 +83,7 @@ class ContactSolver {
   void find_impulses(const ResponseParameters& parameters, Counters& counters);
   bool sweep(const SweepPlan& plan, Counters& counters);
   bool solve_few(const SweepPlan& plan, Counters& counters);
+  LoadSpread spread_of_loads();
   template <bool only_balls>
   SweepState run_impulse_rounds(const SweepPlan& plan);
   PartingPlan plan_parting() const;

@@ -63,16 +63,6 @@ FewContacts<Real>::FewContacts(Inspection<Real>& seen) : seen_(seen) {
 }
 
 template <class Real>
-bool FewContacts<Real>::loads_differ(double tolerance) const {
-  std::vector<ImpulseChange> sizes;
-  for (const Contact& contact : contacts_.view()) {
-    ImpulseChange& change = sizes.emplace_back();
-    for (int k = 0; k < contact.count; ++k) change.add(rows_.view()[contact.first_row + k], Vec3::Zero());
-  }
-  return scree::loads_differ({sizes.data(), static_cast<std::int64_t>(sizes.size())}, tolerance);
-}
-
-template <class Real>
 bool FewContacts<Real>::solve(double tolerance, const DirectLimits& limits, std::int64_t& solved,
                               std::int64_t& failed) {
   bool all = true;

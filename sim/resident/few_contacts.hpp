@@ -20,8 +20,6 @@ class FewContacts {
   /// As sweeps have left them.
   explicit FewContacts(Inspection<Real>& seen);
 
-  /// As the function of this name.
-  bool loads_differ(double tolerance) const;
   /// Solves the islands whose natural residual is beyond the tolerance. Adds to `solved` and `failed`; true
   /// if none is left to the sweeps.
   bool solve(double tolerance, const DirectLimits& limits, std::int64_t& solved, std::int64_t& failed);
