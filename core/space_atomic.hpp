@@ -68,7 +68,6 @@ SCREE_HD bool raise(T* place, T value) {
 #endif
 }
 
-/// Adds one to a count and returns what it was: a place in a list, whose order hangs on the threads.
 /// Adds to an integer; the sum does not hang on the order of threads.
 template <class T>
 SCREE_HD T add(T* place, T value) {

@@ -71,9 +71,9 @@ inline constexpr double least_loss = 0.02;
 /// through one another by then. Smaller: impacts where the response would do.
 inline constexpr double deep_approach = 0.25;
 
-/// Mass, of the other's, from which on a body is so heavy that it does not wait for its impacts with lighter ones, nor they
-/// for each other's. Smaller: fewer rounds of impacts, and what one gives to the heavy body is seen by the next only in
-/// the next round.
+/// Mass, of the other's, from which on a body is so heavy that it does not wait for its impacts with lighter
+/// ones, nor they for each other's. Smaller: fewer rounds of impacts, and what one gives to the heavy body is
+/// seen by the next only in the next round.
 inline constexpr double heavy_ratio = 100;
 
 /// Slowest approach that can count as an impact, relative to the bodies' speeds: under it, it is rounding.

@@ -452,12 +452,14 @@ TYPED_TEST(Rounds, OneLightBallOnAHeavyOneIsAsInTheOrderOfTimes) {
     if (pair.i != 0) continue;
     const Outcome order = in_time_order(scene, {pair});
     const Outcome rounds = in_rounds<TypeParam>(scene, {pair});
+    // The heavy body turns with some 1e5 J: their rounding.
     ASSERT_NO_FATAL_FAILURE(expect_same(rounds, order, 1e-9)) << pair.j;
     impacts += order.impacts.size();
   }
   EXPECT_GT(impacts, 500u);
 }
 
+/// Not so dense that a light ball would meet the bound of its bounces between two heavy ones.
 TYPED_TEST(Rounds, HeavyBodiesInAGasKeepItsEnergy) {
   FlightScene scene = gas(0.2);
   scene.parameters.rotation = false;
