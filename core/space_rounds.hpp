@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <type_traits>
 #include <vector>
 
 #if SCREE_WITH_CUDA
@@ -59,9 +60,10 @@ typename Program::State run(Host, const char* label, const Program& program, typ
 /// that are behind.
 template <class Program>
 __global__ void __launch_bounds__(Program::threads, blocks_at_once<Program>())
-    run_phases(const Program program, const typename Program::State start, typename Program::Sum* sums,
-               typename Program::State* out) {
+    run_phases(const __grid_constant__ Program program, const typename Program::State start,
+               typename Program::Sum* sums, typename Program::State* out) {
   using Sum = typename Program::Sum;
+  constexpr bool adds_up = !std::is_empty_v<Sum>;
   constexpr int threads = Program::threads;
   __shared__ BlockRoom<Sum, threads> room;
   __shared__ BlockRoom<typename Program::State, 1> state_room;
@@ -80,13 +82,17 @@ __global__ void __launch_bounds__(Program::threads, blocks_at_once<Program>())
       for (std::int64_t i = std::int64_t{blockIdx.x} * threads + threadIdx.x; i < items; i += stride)
         mine = mine + program(state, phase, i);
     }
-    const Sum sum = sum_over_block<threads>(mine, room.data());
-    if (threadIdx.x == 0) sums_of[turn][blockIdx.x] = sum;
+    if constexpr (adds_up) {
+      const Sum sum = sum_over_block<threads>(mine, room.data());
+      if (threadIdx.x == 0) sums_of[turn][blockIdx.x] = sum;
+    }
     grid.sync();
     Sum of_blocks{};
-    for (unsigned b = threadIdx.x; b < gridDim.x; b += threads) of_blocks = of_blocks + sums_of[turn][b];
-    sum_over_block<threads>(of_blocks, room.data());
-    if (threadIdx.x == 0) state = program.judge(state, room.data()[0]);
+    if constexpr (adds_up) {
+      for (unsigned b = threadIdx.x; b < gridDim.x; b += threads) of_blocks = of_blocks + sums_of[turn][b];
+      of_blocks = sum_over_block<threads>(of_blocks, room.data());
+    }
+    if (threadIdx.x == 0) state = program.judge(state, of_blocks);
     __syncthreads();
     turn = 1 - turn;
   }
@@ -131,9 +137,10 @@ typename Program::State run(Device, const char* label, Program program, typename
 /// program.phases(state) phases, of which each is work on program.items(state, phase) items at once:
 /// program(state, phase, item), of type Program::Sum with an operator +. Then state = program.judge(state,
 /// sum over the round), and no phase is left where phases() is 0. No phase has more than
-/// program.most_items(). Program::threads make a block, a power of 2: fewer and larger blocks wait for one
-/// another more quickly, if registers suffice. On Device all rounds are one launch, in which a phase costs
-/// some microseconds; the sums depend on the GPU's size, and are the same from run to run.
+/// program.most_items(). Sum may be empty. Program::threads make a block, a power of 2: fewer and larger
+/// blocks wait for one another more quickly, if registers suffice. On Device all rounds are one launch, in
+/// which a phase costs some microseconds; the sums depend on the GPU's size, and are the same from run to
+/// run.
 template <class Space, class Program>
 typename Program::State run_rounds(const char* label, const Program& program,
                                    const typename Program::State& start) {

@@ -17,7 +17,7 @@ inline constexpr double contact_slack = 0.02;
 
 /// How much further the boxes of the broad phase reach (of smallest_size): the pairs last until a body has
 /// moved about this far. Larger: fewer broad phases, more pairs for the narrow phase. Never changes a result.
-inline constexpr double pair_skin = 0.05;
+inline constexpr double pair_skin = 0.03;
 /// How far most bodies may travel while the pairs last (likewise): boxes of faster ones have room for as long
 /// a time. Larger: likewise.
 inline constexpr double pair_travel = 0.05;
@@ -92,8 +92,10 @@ inline constexpr double heap_change = 3e-3;
 /// then.
 inline constexpr double undone_power = 0.01;
 inline constexpr double done_power = 0.004;
-/// Under this much (likewise) a heap is swept half as often as one usually is at least.
+/// Under this much (likewise) a heap is swept half as often as one usually is at least, and then a third;
+/// over the second no longer that.
 inline constexpr double calm_power = 0.0004;
+inline constexpr double stirring_power = 0.001;
 /// The least change with impulses in float, whose rounding is 1e-7.
 inline constexpr double mixed_change = 2e-6;
 
@@ -158,7 +160,8 @@ inline constexpr double unit_length = 1e-14;
 /// A last step shorter than this share of a step is rounding of end / step, and none.
 inline constexpr double step_count = 1e-9;
 
-static_assert(calm_power < done_power && done_power < undone_power);
+static_assert(calm_power < stirring_power && stirring_power < done_power);
+static_assert(done_power < undone_power);
 static_assert(closed_gap < contact_slack);
 static_assert(corrected_overlap < closed_gap);
 static_assert(4 * coarser_overlap < substep_overlap);

@@ -62,7 +62,7 @@ def spheres(n, precision="mixed", **rest):
 def wide(n, precision="mixed"):
     """20 layers, whatever their number."""
     settings = lattice(n, 10, 10, lambda side: 0.1206 * side + 0.052)
-    return spheres(n, precision, settings=settings, settle=1.5, varied={"n": n, "layers": 20})
+    return spheres(n, precision, settings=settings, settle=3, varied={"n": n, "layers": 20})
 
 
 def boxes(n, precision="mixed"):
@@ -72,8 +72,8 @@ def boxes(n, precision="mixed"):
 
 def decades(n, precision="mixed"):
     scale = (n / 10**6) ** (1 / 3)
-    settings = {"bodies[5].scatter.count": n, "bodies[5].scatter.to": f"[{40 * scale:.6g},{40 * scale:.6g},{25 * scale:.6g}]",
-                "bodies[5].sphere.radius.powerlaw": f"[0.05,{5 * min(1, (n / 10**5) ** (1 / 3)):.6g},3.5]",
+    settings = {"bodies[5].scatter.count": n, "bodies[5].scatter.to": f"[{40 * scale:.6g},{40 * scale:.6g},{22 * scale:.6g}]",
+                "bodies[5].sphere.radius.powerlaw": f"[0.05,{5 * min(1, (n / (2 * 10**5)) ** (1 / 3)):.6g},3.5]",
                 **{f"bodies[{k}].plane.offset": f"{-40 * scale:.6g}" for k in (2, 4)}}
     return Run("two_decades", settings, 6, 15 if n < 10**6 else 100, precision, varied={"n": n})
 

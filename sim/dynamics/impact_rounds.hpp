@@ -3,47 +3,14 @@
 #pragma once
 
 #include "core/array.hpp"
-#include "narrowphase/narrow_phase.hpp"
-#include "sim/dynamics/impact.hpp"
-#include "sim/dynamics/volley.hpp"
+#include "sim/dynamics/impact_program.hpp"
 
-#include <bit>
 #include <cmath>
 #include <cstdint>
 
 namespace scree {
 
 namespace detail {
-
-/// A meeting, as foreseen.
-struct Foreseen {
-  double time;        ///< into the substep (s); infinite: it has come to nothing
-  std::int64_t pair;  ///< in the list of the pairs
-  std::int32_t part;
-};
-
-/// The first meeting of a body: the earliest, of equal ones that of the first pair.
-struct FirstMeeting {
-  std::uint64_t time;  ///< its bits, which are in the order of times
-  std::uint64_t pair;
-};
-
-/// An impact, and what it moved.
-struct Resolved {
-  Impact impact;
-  Ledger moved;
-};
-
-/// The bits of a number that is not negative are in the order of such numbers. Those of infinity:
-inline constexpr auto infinite = std::bit_cast<std::uint64_t>(HUGE_VAL);
-
-/// How many a round has found.
-struct RoundCounts {
-  std::uint64_t suspects = 0;
-  std::uint64_t meetings = 0;
-  std::uint64_t with_heavy = 0;  ///< of these, with a body that is heavy to the other
-  std::uint64_t busy = 0;        ///< pairs, with those of the rounds before
-};
 
 /// What all bodies and laws stay within.
 struct FlightBounds {
@@ -53,17 +20,6 @@ struct FlightBounds {
   SCREE_HD friend FlightBounds operator+(const FlightBounds& a, const FlightBounds& b) {
     return {fmax(a.top_speed, b.top_speed), fmin(a.smallest, b.smallest), fmax(a.restitution, b.restitution)};
   }
-};
-
-/// What the threads of a flight tell the host, which reads it once in a round.
-struct ImpactProgress {
-  RoundCounts round;
-  double harmless = 0;  ///< FlightStage::harmless; infinite where nobody is faster (m/s)
-  std::uint64_t impacts = 0;
-  std::uint64_t struck = 0;     ///< bodies
-  std::uint32_t last_join = 0;  ///< the last round in which a body first had a meeting to come
-  std::uint32_t late = 0;       ///< whether one of them was struck after the midpoint
-  std::uint32_t hit_bound = 0;
 };
 
 }  // namespace detail
@@ -110,8 +66,9 @@ class ImpactRounds {
 
  private:
   void start(const FlightStage& stage);
-  void foresee(const FlightStage& stage, const Problem& problem);
-  void resolve_first(const FlightStage& stage, const Problem& problem);
+  detail::ImpactProgram program(const FlightStage& stage, const Problem& problem);
+  /// For rounds that have halted for want of it.
+  void make_room(detail::RoundsState& state);
   Ledger put_in_order(std::int64_t pairs);
 
   FlightLog<Space> log_;
@@ -119,19 +76,18 @@ class ImpactRounds {
   Array<detail::ImpactProgress, Space> shared_progress_;  // one
   Array<detail::FlightBounds, Space> bounds_, bounds_scratch_;
   std::int64_t rounds_ = 0;
-  Array<std::int64_t, Space> suspects_;             // pairs that are to be looked at in this round
-  Array<std::int64_t, Space> busy_;                 // pairs of bodies that have joined
-  Array<detail::Foreseen, Space> meetings_, last_;  // of this round, and of the one before
-  Array<detail::FirstMeeting, Space> first_;        // of each body
-  Array<std::uint32_t, Space> joined_in_;  // of each body: the round that first foresaw one of its own
-  Array<std::uint32_t, Space> struck_in_, waits_in_;  // of each body: the last such round, 0 for none
-  Array<std::uint32_t, Space> volley_of_;  // of each body: its first meeting with a lighter one in meetings_
-  Array<detail::Volley, Space> volleys_;   // as many as there are meetings
-  Array<detail::Resolved, Space> resolved_;  // impacts, in any order
-  Array<std::uint64_t, Space> key_;          // of each one's place
+  // As in detail::ImpactProgram:
+  Array<detail::FirstMeeting, Space> first_;
+  Array<std::uint32_t, Space> joined_in_, struck_in_, waits_in_, volley_of_;
+  Array<std::int64_t, Space> suspects_, busy_;
+  Array<detail::Foreseen, Space> meetings_[2];
+  Array<detail::Volley, Space> volleys_;
+  Array<detail::Resolved, Space> resolved_;
+  Array<std::uint64_t, Space> key_;
+  Array<StruckBody, Space> struck_;
+  // In order:
   Array<std::int64_t, Space> order_;
   Array<Impact, Space> impacts_;
-  Array<StruckBody, Space> struck_;
 };
 
 }  // namespace scree

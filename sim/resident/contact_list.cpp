@@ -31,14 +31,21 @@ struct FirstOfColor {
 }  // namespace
 
 template <class Space>
-void ContactList<Space>::make(const ColorTiles& colors, const Array<std::int32_t, Space>& found) {
-  parallel::exclusive_scan_into("contacts.list", found, number_);
-  places_.resize(tile * colors.tiles());
-  parallel::for_each<Space>("contacts.list", places_.size(),
-                            ListContacts{found.data(), std::as_const(number_).view(), places_.view()});
+void ContactList<Space>::take(const ColorTiles& colors) {
   std::vector<std::int64_t> tiles;
   for (const std::int64_t t : colors.begin) tiles.push_back(t - colors.begin.front());
   copy(tile_, tiles);
+  places_.resize(0);
+  begin_.assign(tiles.size(), 0);
+}
+
+template <class Space>
+void ContactList<Space>::make(const Array<std::int32_t, Space>& found) {
+  if (found.empty()) return;
+  parallel::exclusive_scan_into("contacts.list", found, number_);
+  places_.resize(tile * found.size());
+  parallel::for_each<Space>("contacts.list", places_.size(),
+                            ListContacts{found.data(), std::as_const(number_).view(), places_.view()});
   first_.resize(tile_.size());
   parallel::for_each<Space>(
       "contacts.list", tile_.size(),

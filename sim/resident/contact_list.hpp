@@ -13,9 +13,10 @@ namespace scree::resident {
 template <class Space>
 class ContactList {
  public:
-  /// Of tiles of these colours, of which each has `found` so many at its front. The host waits for the
-  /// counts.
-  void make(const ColorTiles& colors, const Array<std::int32_t, Space>& found);
+  /// Contacts will be in tiles of these colours.
+  void take(const ColorTiles& colors);
+  /// Of the tiles, each has `found` so many at its front. The host waits for the counts.
+  void make(const Array<std::int32_t, Space>& found);
 
   std::int64_t size() const { return places_.size(); }
   /// Counted from the first tile, colour by colour.

@@ -123,6 +123,8 @@ void ContactSolver<Space, Real>::take_candidates(ConstView<Pair> candidates, con
   const std::int64_t balls = slots_.balls().tiles() * tile;
   const std::int64_t others = places - balls;
   store_.resize(balls, others, tile);
+  ball_list_.take(slots_.balls());
+  point_list_.take(slots_.others());
   for (auto* loads : {&loads_, &next_loads_}) {
     loads->resize((candidates.size() + 3) / 4);
     parallel::fill("contacts.loads", *loads, 0u);
@@ -224,11 +226,13 @@ void ContactSolver<Space, Real>::find(ConstView<double> margin, double scale, co
       "contacts.find", slots_.others().tiles(),
       FindPoints<Real>{stage, balls * tile, store_.points(), slots_.point_memory(), loads()},
       store_.point_tiles().data());
-  ball_list_.make(slots_.balls(), store_.ball_tiles());
-  point_list_.make(slots_.others(), store_.point_tiles());
-  const std::int64_t points = parallel::sum_by_tiles<std::int64_t, Space>(
+  ball_list_.make(store_.ball_tiles());
+  point_list_.make(store_.point_tiles());
+  counts_ = {ball_list_.size(), ball_list_.size()};
+  if (point_list_.size() == 0) return;
+  counts_.contacts += point_list_.size();
+  counts_.points += parallel::sum_by_tiles<std::int64_t, Space>(
       "contacts.count", point_list_.size(), on_contacts(point_list_, CountPoints<Real>{store_.points()}));
-  counts_ = {ball_list_.size() + point_list_.size(), ball_list_.size() + points};
 }
 
 template <class Space, class Real>
@@ -257,7 +261,8 @@ SweepState ContactSolver<Space, Real>::run_impulse_rounds(const SweepPlan& plan)
                                                                      .least = plan.least,
                                                                      .most = plan.most,
                                                                      .block_sweeps = plan.block_sweeps,
-                                                                     .tolerance = plan.tolerance},
+                                                                     .tolerance = plan.tolerance,
+                                                                     .momentum = momentum_},
                                      SweepState{});
 }
 
@@ -265,9 +270,11 @@ template <class Space, class Real>
 void ContactSolver<Space, Real>::find_impulses(const ResponseParameters& parameters, Counters& counters) {
   SweepPlan plan = plan_sweeps(parameters, counts_.contacts, counts_.points);
   if (std::is_same_v<Real, float>) plan.tolerance = std::max(plan.tolerance, tolerance::mixed_change);
+  momentum_ = true;
   // Of bodies that share several points the measure of slow modes tells mostly of how these share their load.
   if (is_heap(counts_.points) && !shares_loads(counts_.contacts, counts_.points)) {
-    plan.least = plan.least * patience_ / 2;
+    plan.least = std::max(plan.least / 3, (plan.least << patience_) / 4);
+    momentum_ = patience_ > 0;
     if (parameters.iterations > 0) plan.least = std::min(plan.least, plan.most);
     plan.most = std::max(plan.most, plan.least);
   }
@@ -319,19 +326,17 @@ template <class Space, class Real>
 Ledger ContactSolver<Space, Real>::book(const ConstBodyView& bodies, const ResponseParameters& parameters) {
   const BookStage<Real> stage{slots_.places(), bodies, free_.view(),      solver_.view(),
                               parameters,      step_,  next_loads_.view()};
-  Array<Books, Space> totals(2);
-  parallel::sum_into<Books, Space>(
-      "books.balls", ball_list_.size(),
-      on_contacts(ball_list_, BookBalls<Real>{stage, store_.balls(), slots_.ball_memory()}), books_scratch_,
-      totals.data());
-  parallel::sum_into<Books, Space>(
-      "books.points", point_list_.size(),
-      on_contacts(point_list_,
-                  BookPoints<Real>{stage, store_.ball_places(), store_.points(), slots_.point_memory()}),
-      books_scratch_, totals.data() + 1);
-  Books both[2];
-  copy_bytes<Host, Space>(both, totals.data(), sizeof(both));
-  books_ = both[0] + both[1];
+  books_ = {};
+  if (ball_list_.size() > 0) {
+    books_ = parallel::sum_by_tiles<Books, Space>(
+        "books.balls", ball_list_.size(),
+        on_contacts(ball_list_, BookBalls<Real>{stage, store_.balls(), slots_.ball_memory()}));
+  }
+  if (point_list_.size() > 0) {
+    const BookPoints<Real> points{stage, store_.ball_places(), store_.points(), slots_.point_memory()};
+    books_ = books_ + parallel::sum_by_tiles<Books, Space>("books.points", point_list_.size(),
+                                                           on_contacts(point_list_, points));
+  }
   Ledger ledger;
   ledger.restitution = books_.restitution;
   ledger.friction = books_.friction;
@@ -346,15 +351,20 @@ Ledger ContactSolver<Space, Real>::book(const ConstBodyView& bodies, const Respo
 template <class Space, class Real>
 void ContactSolver<Space, Real>::be_patient() {
   constexpr int judged_together = 32;
-  constexpr int most = 32;
+  using namespace tolerance;
+  // Of each degree: more of them where more is left undone, fewer where less is.
+  constexpr struct {
+    double more, less;
+  } degrees[] = {{stirring_power, 0},        {done_power, calm_power},   {undone_power, calm_power},
+                 {undone_power, done_power}, {undone_power, done_power}, {undone_power, done_power},
+                 {HUGE_VAL, done_power}};
   undone_ += std::abs(books_.gap_power);
   kicked_ += books_.kick_power;
   if (++judged_ < judged_together) return;
-  const bool fewest = patience_ == 1, usual = patience_ == 2;
-  if (undone_ > (fewest ? tolerance::done_power : tolerance::undone_power) * kicked_) {
-    patience_ = std::min(2 * patience_, most);
-  } else if (undone_ < (usual ? tolerance::calm_power : tolerance::done_power) * kicked_) {
-    patience_ = std::max(patience_ / 2, 1);
+  if (undone_ > degrees[patience_].more * kicked_) {
+    ++patience_;
+  } else if (undone_ < degrees[patience_].less * kicked_) {
+    --patience_;
   }
   undone_ = kicked_ = judged_ = 0;
 }
@@ -458,7 +468,7 @@ PartingPlan ContactSolver<Space, Real>::plan_parting() const {
   using namespace tolerance;
   if (!is_heap(counts_.points)) return {1, 100, corrected_overlap, corrected_overlap};
   if (shares_loads(counts_.contacts, counts_.points)) return {1, 24, corrected_overlap, corrected_overlap};
-  return {2, 6, heap_overlap, heap_mean_overlap};
+  return {patience_ > 0 ? 2 : 1, 6, heap_overlap, heap_mean_overlap};
 }
 
 template <class Space, class Real>

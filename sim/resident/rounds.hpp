@@ -35,7 +35,7 @@ struct ColorPhases {
 };
 
 /// Finds impulses. The first round gives the bodies what their contacts remember, each other one is a sweep:
-/// the bodies go on by beta, then each colour, then the parts of hubs agree.
+/// the bodies go on by beta (with momentum), then each colour, then the parts of hubs agree.
 /// only_balls: there are no other contacts, whose laws ask for many registers.
 template <class Real, bool only_balls>
 struct ImpulseRounds {
@@ -55,13 +55,15 @@ struct ImpulseRounds {
   JoinHubs<BodyRecord<Real>> hubs;
   int least, most, block_sweeps;
   double tolerance;
+  bool momentum;
 
+  SCREE_HD bool goes_on(const State& state) const { return state.pushed && momentum; }
   SCREE_HD int phases(const State& state) const {
     if (state.converged || state.sweeps >= most) return 0;
-    return (state.pushed ? 1 : 0) + ball_colors.count + point_colors.count + hubs.phases();
+    return (goes_on(state) ? 1 : 0) + ball_colors.count + point_colors.count + hubs.phases();
   }
   SCREE_HD std::int64_t items(const State& state, int phase) const {
-    if (state.pushed && phase-- == 0) return body_count;
+    if (goes_on(state) && phase-- == 0) return body_count;
     if (phase < ball_colors.count) return ball_colors.items(phase);
     phase -= ball_colors.count;
     if (phase < point_colors.count) return point_colors.items(phase);
@@ -72,13 +74,13 @@ struct ImpulseRounds {
   }
   SCREE_HD Sum operator()(const State& state, int phase, std::int64_t item) const {
     const auto beta = static_cast<Real>(state.beta);
-    if (state.pushed && phase-- == 0) {
+    if (goes_on(state) && phase-- == 0) {
       Accelerate<Real>{bodies, last}(item, beta);
       return {};
     }
     if (phase < ball_colors.count) {
       const std::int64_t c = ball_colors.place(phase, item);
-      if (state.pushed) return SweepBalls<Real>{balls, bodies}(c, beta);
+      if (state.pushed) return SweepBalls<Real>{balls, bodies, momentum}(c, beta);
       PushBalls<Real>{balls, bodies}(c);
       return {};
     }
@@ -104,7 +106,7 @@ struct ImpulseRounds {
     const auto step = static_cast<double>(change.step);
     state.converged =
         state.sweeps >= least && step <= tolerance * tolerance * static_cast<double>(change.size);
-    const double ratio = state.sweeps > 1 ? step / state.last_step : 0.0;
+    const double ratio = goes_on(state) && state.sweeps > 1 ? step / state.last_step : 0.0;
     state.beta = ratio < 1.0 ? ratio : 0.0;
     state.last_step = step;
     return state;

@@ -110,6 +110,7 @@ template <class Real>
 struct SweepBalls {
   BallContacts<Real> contacts;
   BodyRecord<Real>* bodies;
+  bool momentum;  ///< else beta is 0, and the last sweep is not remembered
 
   SCREE_HD SweepChange<Real> operator()(std::int64_t c, Real beta) const {
     using C = BallContacts<Real>;
@@ -117,7 +118,7 @@ struct SweepBalls {
     BodyRecord<Real> i = bodies[ends.i];
     BodyRecord<Real> j = bodies[ends.j];
     const V3<Real> before = contacts.fields.vector(C::impulse, c);
-    const V3<Real> last = contacts.fields.vector(C::last, c);
+    const V3<Real> last = momentum ? contacts.fields.vector(C::last, c) : before;
     const V3<Real> ahead = before + beta * (before - last);
     // Many contacts are open and stay so: they need no more.
     if (is_zero<Real>(before) && is_zero<Real>(last) &&
@@ -130,7 +131,7 @@ struct SweepBalls {
     push(balls, change, i, j);
     store_free(bodies, ends.i, i);
     store_free(bodies, ends.j, j);
-    contacts.fields.set(C::last, c, before);
+    if (momentum) contacts.fields.set(C::last, c, before);
     contacts.fields.set(C::impulse, c, p);
     return {dot(change, change) / balls.normal_mass, dot(p, p) / balls.normal_mass};
   }

@@ -262,6 +262,28 @@ TYPED_TEST(Rounds, SlowBodiesHaveNone) {
   EXPECT_FALSE(rounds.late);
 }
 
+/// All touch at the start, where each closes with the next one; the last is heavy to the first.
+TYPED_TEST(Rounds, NobodyWaitsInACircle) {
+  FlightScene scene;
+  const double apart = 0.2 - 1e-6;
+  const Vec3 at[] = {Vec3(0, 0, 0), Vec3(apart, 0, 0), Vec3(0.5, std::sqrt(0.75), 0) * apart};
+  const Vec3 velocity[] = {Vec3(1, 0, 0), Vec3(0, 0, 0), Vec3(1, 0, 0)};
+  const double mass[] = {1, 12, 144};
+  for (std::int32_t k = 0; k < 3; ++k) {
+    scene.add_ball(0.1, at[k] + 0.5 * scene.step * velocity[k], velocity[k]);
+    scene.weigh(k, mass[k]);
+  }
+  std::vector<Pair> pairs = {{0, 1}, {0, 2}, {1, 2}};
+  std::vector<int> order = {0, 1, 2};
+  do {
+    std::vector<Pair> ordered;
+    for (const int k : order) ordered.push_back(pairs[static_cast<std::size_t>(k)]);
+    const Outcome rounds = in_rounds<TypeParam>(scene, ordered);
+    EXPECT_LE(rounds.rounds, 8);
+    EXPECT_GE(rounds.impacts.size(), 2u);
+  } while (std::next_permutation(order.begin(), order.end()));
+}
+
 TYPED_TEST(Rounds, WhatWasLoadedDoesNotBounce) {
   FlightScene scene;
   for (int k = 0; k < 2; ++k) {
