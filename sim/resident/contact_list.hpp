@@ -17,10 +17,6 @@ class ContactList {
   void take(const ColorTiles& colors);
   /// Of the tiles, each has `found` so many at its front. The host waits for the counts.
   void make(const Array<std::int32_t, Space>& found);
-  /// Colours the contacts that there are by themselves: of places that may have one there are several times
-  /// as many, with more colours. `ends`: of the places; `solver_bodies`: beyond those of `mobility` all are
-  /// free.
-  void recolor(ConstView<Ends> ends, ConstView<Mobility> mobility, std::int64_t solver_bodies);
 
   std::int64_t size() const { return places_.size(); }
   /// Counted from the first tile, colour by colour.
@@ -32,9 +28,6 @@ class ContactList {
   Array<std::int32_t, Space> places_;
   Array<std::int64_t, Space> number_;        // of the first contact of each tile
   Array<std::int64_t, Space> tile_, first_;  // of each colour
-  Array<std::uint8_t, Space> color_;         // of each contact, and of each body of the solver:
-  Array<std::uint64_t, Space> standing_, taken_;
-  Array<std::uint32_t, Space> counts_;  // of contacts in each colour
   std::vector<std::int64_t> begin_;
 };
 

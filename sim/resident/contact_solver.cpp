@@ -267,8 +267,7 @@ SweepState ContactSolver<Space, Real>::run_impulse_rounds(const SweepPlan& plan)
 }
 
 template <class Space, class Real>
-void ContactSolver<Space, Real>::find_impulses(const ResponseParameters& parameters,
-                                               ConstView<Mobility> mobility, Counters& counters) {
+void ContactSolver<Space, Real>::find_impulses(const ResponseParameters& parameters, Counters& counters) {
   SweepPlan plan = plan_sweeps(parameters, counts_.contacts, counts_.points);
   if (std::is_same_v<Real, float>) plan.tolerance = std::max(plan.tolerance, tolerance::mixed_change);
   momentum_ = true;
@@ -279,22 +278,9 @@ void ContactSolver<Space, Real>::find_impulses(const ResponseParameters& paramet
     if (parameters.iterations > 0) plan.least = std::min(plan.least, plan.most);
     plan.most = std::max(plan.most, plan.least);
   }
-  if (is_heap(counts_.points)) {
-    recolor_where_it_pays(ball_list_, store_.balls().ends, mobility, plan);
-    recolor_where_it_pays(point_list_, store_.points().ends, mobility, plan);
-  }
   const bool few = plan.direct && slots_.places().size() <= few_places && solver_.size() <= few_bodies;
   const bool converged = few ? solve_few(plan, counters) : sweep(plan, counters);
   counters.unconverged += !converged;
-}
-
-/// Each colour of each sweep is a wait for all, of which colouring anew costs some sixty.
-template <class Space, class Real>
-void ContactSolver<Space, Real>::recolor_where_it_pays(ContactList<Space>& list, ConstView<Ends> ends,
-                                                       ConstView<Mobility> mobility, const SweepPlan& plan) {
-  constexpr int needed = 14, worth = 60;
-  const int colors = static_cast<int>(list.begin().size()) - 1;
-  if ((colors - needed) * (plan.least + 2) > worth) list.recolor(ends, mobility, slots_.solver_bodies());
 }
 
 /// The bodies of the solver are without contacts.
@@ -391,7 +377,7 @@ Ledger ContactSolver<Space, Real>::solve(const FlightStage& flight, bool any_is_
   books_ = {};
   parallel::fill("books.loads", next_loads_, 0u);
   if (counts_.contacts > 0) {
-    find_impulses(parameters, bodies.mobility, counters);
+    find_impulses(parameters, counters);
     ledger = book(bodies, parameters);
   }
   if (parameters.torque.size() > 0) {

@@ -80,9 +80,7 @@ class ContactSolver {
   ConstView<Slot> places_of_points() const;
   template <class Record>
   JoinHubs<Record> join_hubs(Array<Record, Space>& bodies);
-  void find_impulses(const ResponseParameters& parameters, ConstView<Mobility> mobility, Counters& counters);
-  void recolor_where_it_pays(ContactList<Space>& list, ConstView<Ends> ends, ConstView<Mobility> mobility,
-                             const SweepPlan& plan);
+  void find_impulses(const ResponseParameters& parameters, Counters& counters);
   bool sweep(const SweepPlan& plan, Counters& counters);
   bool solve_few(const SweepPlan& plan, Counters& counters);
   LoadSpread spread_of_loads();

@@ -195,6 +195,14 @@ struct ShareHub {
   }
 };
 
+/// A slot's rank among its neighbours: as good as random, and never the same twice.
+SCREE_HD std::uint64_t rank_of(std::int64_t slot) {
+  auto x = static_cast<std::uint64_t>(slot) * 0x9e3779b97f4a7c15u;
+  x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9u;
+  x ^= x >> 31;
+  return (x & 0xffffffff00000000u) | static_cast<std::uint32_t>(slot);
+}
+
 /// The first of the old slots of each pair, -1 for new pairs.
 struct LookUpOld {
   ConstView<Pair> pairs, old_pairs;

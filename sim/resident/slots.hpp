@@ -42,14 +42,6 @@ SCREE_HD inline std::int64_t find_pair(ConstView<Pair> pairs, std::int32_t i, st
 /// Slots of a body take no more: those of hubs are dealt to several.
 inline constexpr int most_colors = 64;
 
-/// A slot's rank among its neighbours: as good as random, and never the same twice.
-SCREE_HD inline std::uint64_t rank_of(std::int64_t slot) {
-  auto x = static_cast<std::uint64_t>(slot) * 0x9e3779b97f4a7c15u;
-  x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9u;
-  x ^= x >> 31;
-  return (x & 0xffffffff00000000u) | static_cast<std::uint32_t>(slot);
-}
-
 /// Tiles of one colour after the other: slots of one colour share no free body.
 struct ColorTiles {
   std::vector<std::int64_t> begin;  ///< first tile of each colour; one more than colours
