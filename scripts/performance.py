@@ -75,7 +75,7 @@ def decades(n, precision="mixed"):
     settings = {"bodies[5].scatter.count": n, "bodies[5].scatter.to": f"[{40 * scale:.6g},{40 * scale:.6g},{22 * scale:.6g}]",
                 "bodies[5].sphere.radius.powerlaw": f"[0.05,{5 * min(1, (n / (2 * 10**5)) ** (1 / 3)):.6g},3.5]",
                 **{f"bodies[{k}].plane.offset": f"{-40 * scale:.6g}" for k in (2, 4)}}
-    return Run("two_decades", settings, 6, 15 if n < 10**6 else 100, precision, varied={"n": n})
+    return Run("two_decades", settings, 6, 15 if n < 10**6 else 300, precision, varied={"n": n})
 
 
 def drum(n, precision="mixed"):
@@ -156,7 +156,7 @@ def measure(arguments):
         run.space = run.space or arguments.space
         if (left := end - time.monotonic()) < 10:
             sys.exit("no time is left for: " + run.name)
-        words = run.words(max(1, min(run.within, left / 4)))
+        words = run.words(max(1, min(run.within, left / 2.2)))
         command = shlex.join(["scree", "bench", "step", *words])
         print(f"+ {command}", file=sys.stderr)
         line = {"part": arguments.part, "asked": asked, "name": run.name, "varied": run.varied, "scene": run.scene, "precision": run.precision,
