@@ -52,7 +52,7 @@ struct ContactProblem {
     double target;  ///< of the normal velocity of j relative to i (m/s)
     Vec3 impulse;   ///< on j, as the response has found it (N s)
   };
-  std::vector<Body> bodies;
+  std::vector<Body> bodies;  ///< by id, and then points of walls that turn, if contacts act on these
   std::vector<Contact> contacts;
   std::vector<Point> points;
 };

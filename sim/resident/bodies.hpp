@@ -85,6 +85,18 @@ struct LoadPart {
   }
 };
 
+/// Points of walls are not free; those of contacts get their velocities when these are found.
+template <class Real>
+struct ClearWallPoint {
+  std::int64_t first;
+  View<BodyRecord<Real>> solver;
+  View<InertiaRecord<Real>> inertia;
+  SCREE_HD void operator()(std::int64_t k) const {
+    solver[first + k] = {};
+    if (inertia.size() > 0) inertia[first + k] = {};
+  }
+};
+
 /// What the contacts have made of the velocities.
 template <class Real>
 struct StoreVelocities {

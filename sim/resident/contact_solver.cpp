@@ -151,6 +151,7 @@ Inspection<Real> ContactSolver<Space, Real>::inspect() const {
   copy(seen.free, free_);
   copy(seen.inertia, inertia_);
   seen.contacts.copy_from(store_);
+  seen.first_wall_point = slots_.first_wall_point();
   seen.step = step_;
   return seen;
 }
@@ -187,10 +188,12 @@ void ContactSolver<Space, Real>::load_bodies(const ConstBodyView& bodies, ConstV
   parallel::for_each<Space>(
       "contacts.bodies", n,
       LoadBody<Real>{bodies, margin, parameters, step_, mid_.view(), solver_.view(), inertia_.view()});
-  parallel::for_each<Space>("contacts.bodies", all - n,
+  parallel::for_each<Space>("contacts.bodies", slots_.hub_of_parts().size(),
                             LoadPart<Real>{slots_.hubs(), slots_.hub_of_parts(), slots_.share_of_parts(), n,
                                            solver_.view(), inertia_.view()});
-  copy(free_, solver_);
+  const std::int64_t walls = slots_.first_wall_point();
+  parallel::for_each<Space>("contacts.bodies", all - walls,
+                            ClearWallPoint<Real>{walls, solver_.view(), inertia_.view()});
 }
 
 template <class Space, class Real>
@@ -217,15 +220,17 @@ void ContactSolver<Space, Real>::find(ConstView<double> margin, double scale, co
   passing_count_.resize(1);
   parallel::fill("contacts.passing", passing_count_, std::uint64_t{0});
   const PassingList passing{passing_.view(), passing_count_.data()};
-  parallel::compact_tiles<Space>("contacts.find balls", balls,
-                                 FindBalls<Real>{stage, store_.balls(), slots_.ball_memory(), passing},
-                                 store_.ball_tiles().data());
+  parallel::compact_tiles<Space>(
+      "contacts.find balls", balls,
+      FindBalls<Real>{stage, store_.balls(), slots_.ball_memory(), solver_.view(), passing},
+      store_.ball_tiles().data());
   parallel::for_each<Space>("contacts.passing", JudgePassing<Real>::threads,
                             JudgePassing<Real>{stage, store_.balls(), passing});
   parallel::compact_tiles<Space>(
       "contacts.find", slots_.others().tiles(),
       FindPoints<Real>{stage, balls * tile, store_.points(), slots_.point_memory(), loads()},
       store_.point_tiles().data());
+  copy(free_, solver_);
   ball_list_.make(store_.ball_tiles());
   point_list_.make(store_.point_tiles());
   counts_ = {ball_list_.size(), ball_list_.size()};
@@ -241,8 +246,9 @@ JoinHubs<Record> ContactSolver<Space, Real>::join_hubs(Array<Record, Space>& bod
   const ConstView<std::int32_t> hub_of = slots_.hub_of_parts();
   parts_sums_.resize(hub_of.size());
   Record* const records = bodies.empty() ? nullptr : bodies.data();
-  return {slots_.hubs(),     hub_of, slots_.share_of_parts(), bodies.size() - hub_of.size(), records,
-          parts_sums_.data()};
+  return {
+      slots_.hubs(),     hub_of, slots_.share_of_parts(), slots_.first_wall_point() - hub_of.size(), records,
+      parts_sums_.data()};
 }
 
 template <class Space, class Real>
@@ -256,7 +262,7 @@ SweepState ContactSolver<Space, Real>::run_impulse_rounds(const SweepPlan& plan)
                                                                      .inertia = inertia_.data(),
                                                                      .bodies = solver_.data(),
                                                                      .last = last_.data(),
-                                                                     .body_count = solver_.size(),
+                                                                     .body_count = slots_.first_wall_point(),
                                                                      .hubs = join_hubs(solver_),
                                                                      .least = plan.least,
                                                                      .most = plan.most,
@@ -278,7 +284,8 @@ void ContactSolver<Space, Real>::find_impulses(const ResponseParameters& paramet
     if (parameters.iterations > 0) plan.least = std::min(plan.least, plan.most);
     plan.most = std::max(plan.most, plan.least);
   }
-  const bool few = plan.direct && slots_.places().size() <= few_places && solver_.size() <= few_bodies;
+  const bool few =
+      plan.direct && slots_.places().size() <= few_places && slots_.first_wall_point() <= few_bodies;
   const bool converged = few ? solve_few(plan, counters) : sweep(plan, counters);
   counters.unconverged += !converged;
 }
@@ -428,9 +435,9 @@ void ContactSolver<Space, Real>::take_velocities(const ConstBodyView& bodies) {
 template <class Space, class Real>
 void ContactSolver<Space, Real>::fly_late(const FlightStage& flight) {
   const ConstBodyView bodies = read_only(flight.bodies);
-  parallel::for_each<Space>(
-      "late.fly", ball_list_.size(),
-      on_contacts(ball_list_, FlyLateBalls<Real>{store_.balls(), slots_.places(), bodies}));
+  parallel::for_each<Space>("late.fly", ball_list_.size(),
+                            on_contacts(ball_list_, FlyLateBalls<Real>{store_.balls(), slots_.places(),
+                                                                       solver_.view(), bodies, flight}));
   parallel::for_each<Space>(
       "late.fly", point_list_.size(),
       on_contacts(point_list_, FlyLatePoints<Real>{store_.points(), places_of_points(), bodies, flight}));

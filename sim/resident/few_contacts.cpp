@@ -26,10 +26,10 @@ FewContacts<Real>::FewContacts(Inspection<Real>& seen) : seen_(seen) {
   std::vector<Contact> contacts;
   std::vector<ContactRow> rows;
   for_each_contact(seen, [&](const SeenContact& c) {
-    SolverBody& i = bodies_.view()[c.slot.i];
-    SolverBody& j = bodies_.view()[c.slot.j];
-    contacts.push_back({.i = c.slot.i,
-                        .j = c.slot.j,
+    SolverBody& i = bodies_.view()[c.i];
+    SolverBody& j = bodies_.view()[c.j];
+    contacts.push_back({.i = c.i,
+                        .j = c.j,
                         .first_row = static_cast<std::int64_t>(rows.size()),
                         .count = static_cast<std::int32_t>(c.points.size()),
                         .loaded = true,

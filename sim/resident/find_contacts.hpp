@@ -69,6 +69,20 @@ struct FindStage {
   SCREE_HD Vec3 kicked_relative_velocity(const SlotBodies<Real>& at) const {
     return kicked_velocity(at.b, at.slot.j) - kicked_velocity(at.a, at.slot.i);
   }
+  /// Whether a body that is not free is a point of a wall that turns, in the contact of a slot.
+  SCREE_HD static bool is_wall_point(const MidBody<Real>& body, std::int32_t k, std::int32_t end) {
+    return !body.is_free() && end != k;
+  }
+  /// Of a wall at a point, when a pair is seen (m/s). Rare: what is called takes no registers from the rest.
+  [[gnu::noinline]] SCREE_HD V3<Real> wall_velocity(std::int32_t wall, const Vec3& point, double lead) const {
+    const Vec3 centre = bodies.position[wall] + lead * bodies.velocity[wall];
+    return v3<Real>(bodies.velocity[wall] + bodies.spin[wall].cross(point - centre));
+  }
+  /// Walls move as their points do.
+  SCREE_HD void take_wall_points(SlotBodies<Real>& at) const {
+    if (is_wall_point(at.a, at.slot.i, at.slot.end_i)) at.a.velocity = solver[at.slot.end_i].velocity;
+    if (is_wall_point(at.b, at.slot.j, at.slot.end_j)) at.b.velocity = solver[at.slot.end_j].velocity;
+  }
   /// After the midpoint, when a pair is to be seen (s); 0 for nearly all.
   SCREE_HD double lead_of(const Slot& slot) const { return any_is_late ? late_lead_of(slot.i, slot.j) : 0.0; }
   SCREE_HD Solid solid(std::int32_t body, double lead) const {
@@ -253,6 +267,7 @@ struct FindBalls {
   FindStage<Real> stage;
   BallContacts<Real> contacts;
   View<BallMemory<Real>> memory;
+  View<BodyRecord<Real>> solver;  ///< gets the points of walls
   PassingList passing;
 
   SCREE_HD bool find(std::int64_t place, Record& record) const {
@@ -278,11 +293,13 @@ struct FindBalls {
   SCREE_HD void store(std::int64_t to, std::int64_t place, const Record& record) const {
     using C = BallContacts<Real>;
     const Slot slot = stage.places[place];
-    const SlotBodies<Real> at = stage.load(slot);
+    SlotBodies<Real> at = stage.load(slot);
     const BallMemory<Real> remembered = memory[place];
     const Vec3& n = record.normal;
     const double friction = stage.friction_of(at);
     const double bend = stage.bend_of(at, n);
+    const double opened = stage.opened_by_then(at, n, bend, record.lead);
+    set_wall_points(at, record);
     const double parting = n.dot(stage.relative_velocity(at));
     // A look at the normal velocity tells of nearly all that they are not held apart (flight_of_contact).
     const double closing = -n.dot(stage.kicked_relative_velocity(at));
@@ -306,9 +323,25 @@ struct FindBalls {
     f.set(C::impulse, to, impulse);
     f.set(C::last, to, impulse);
     put(C::gap, record.gap);
-    put(C::flown, record.gap + stage.opened_by_then(at, n, bend, record.lead));
+    put(C::flown, record.gap + opened);
     put(C::pushed, 0);
     put(C::cap, tolerance::correction_cap * at.size());
+  }
+
+ private:
+  /// The ball has the contact on its normal.
+  SCREE_HD void set_wall_points(SlotBodies<Real>& at, const Record& record) const {
+    const Slot& slot = at.slot;
+    if (stage.is_wall_point(at.a, slot.i, slot.end_i)) {
+      const Vec3 point = stage.centre(at.b, slot.j, record.lead) + record.arm_j * record.normal;
+      solver[slot.end_i].velocity = stage.wall_velocity(slot.i, point, record.lead);
+    } else if (stage.is_wall_point(at.b, slot.j, slot.end_j)) {
+      const Vec3 point = stage.centre(at.a, slot.i, record.lead) + record.arm_i * record.normal;
+      solver[slot.end_j].velocity = stage.wall_velocity(slot.j, point, record.lead);
+    } else {
+      return;
+    }
+    stage.take_wall_points(at);
   }
 };
 
@@ -329,13 +362,14 @@ struct JudgePassing {
  private:
   SCREE_HD void judge(std::int64_t c) const {
     using C = BallContacts<Real>;
-    const SlotBodies<Real> at = stage.load(stage.places[c - c % 256 + contacts.slot[c]]);
+    SlotBodies<Real> at = stage.load(stage.places[c - c % 256 + contacts.slot[c]]);
     Manifold m;
     if (!meet<true>(stage, at, stage.lead_of(at.slot), m)) return;
     m.i = at.slot.i;
     m.j = at.slot.j;
     if (!flight_of_contact(stage.struck, m, m.points, at.size(), false).flying) return;
     contacts.flags[c] |= flag_flying;
+    stage.take_wall_points(at);
     const double free = m.normal.dot(stage.kicked_relative_velocity(at));
     Real& target = contacts.fields.at(C::target, c);
     target = static_cast<Real>(stage.target_in_flight(static_cast<double>(target), free));

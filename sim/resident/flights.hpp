@@ -59,8 +59,9 @@ struct ReloadBody {
   View<BodyRecord<Real>> solver;
   SCREE_HD void operator()(std::int64_t k) const {
     const std::int64_t count = bodies.position.size();
-    const std::int64_t body = k < count ? k : hubs[hub_of[k - count]].body;
     solver[k] = before[k];
+    if (k >= count + hub_of.size()) return;  // a point of a wall
+    const std::int64_t body = k < count ? k : hubs[hub_of[k - count]].body;
     solver[k].velocity = v3<Real>(bodies.velocity[body]);
     solver[k].spin = v3<Real>(bodies.spin[body]);
   }
@@ -71,13 +72,23 @@ template <class Real>
 struct FlyLateBalls {
   BallContacts<Real> contacts;
   ConstView<Slot> places;
+  ConstView<BodyRecord<Real>> solver;
   ConstBodyView bodies;
+  FlightStage flight;
   SCREE_HD void operator()(std::int64_t c) const {
     using C = BallContacts<Real>;
     if ((contacts.flags[c] & flag_late) == 0) return;
     const Slot& slot = places[c - c % 256 + contacts.slot[c]];
-    contacts.fields.at(C::flown, c) += static_cast<Real>(
-        vec3(contacts.fields.vector(C::normal, c)).dot(bodies.position[slot.j] - bodies.position[slot.i]));
+    const double left = flight.terms.step - fmax(flight.clock[slot.i], flight.clock[slot.j]);
+    const Vec3 turned = turning_of(slot.j, slot.end_j) - turning_of(slot.i, slot.end_i);
+    const Vec3 apart = bodies.position[slot.j] - bodies.position[slot.i] + left * turned;
+    contacts.fields.at(C::flown, c) +=
+        static_cast<Real>(vec3(contacts.fields.vector(C::normal, c)).dot(apart));
+  }
+  /// Velocity of the point of a wall beside that of the wall.
+  SCREE_HD Vec3 turning_of(std::int32_t body, std::int32_t end) const {
+    const bool is_wall_point = bodies.mobility[body] != Mobility::free && end != body;
+    return is_wall_point ? Vec3(vec3(solver[end].velocity) - bodies.velocity[body]) : Vec3(Vec3::Zero());
   }
 };
 template <class Real>

@@ -13,8 +13,13 @@ ContactProblem problem_of(Inspection<Real>& seen, const BodyTable& bodies) {
                               world_inverse_inertia(bodies.orientation[k], bodies.inverse_inertia[k]),
                               vec3(seen.free[k].velocity), vec3(seen.free[k].spin)});
   }
+  // Then the points of walls that turn.
+  const auto first = static_cast<std::int32_t>(seen.first_wall_point - std::ssize(bodies.position));
+  for (auto k = static_cast<std::size_t>(seen.first_wall_point); k < seen.free.size(); ++k)
+    problem.bodies.push_back({0, Mat3::Zero(), vec3(seen.free[k].velocity), Vec3::Zero()});
+  const auto number = [&](std::int32_t k) { return k >= seen.first_wall_point ? k - first : k; };
   for_each_contact(seen, [&](const SeenContact& c) {
-    problem.contacts.push_back({c.slot.i, c.slot.j, static_cast<std::int64_t>(problem.points.size()),
+    problem.contacts.push_back({number(c.i), number(c.j), static_cast<std::int64_t>(problem.points.size()),
                                 static_cast<std::int32_t>(c.points.size()), c.normal, c.friction, c.balls});
     for (const SeenPoint& p : c.points) problem.points.push_back({p.arm_i, p.arm_j, p.target, p.impulse});
   });

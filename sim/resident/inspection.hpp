@@ -18,7 +18,8 @@ struct Inspection {
   std::vector<BodyRecord<Real>> free;        ///< bodies of the solver as they would be without contacts
   std::vector<InertiaRecord<Real>> inertia;  ///< theirs; none if all contacts are of balls
   ContactStore<Host, Real> contacts;
-  double step = 0;  ///< length of the substep (s)
+  std::int64_t first_wall_point = 0;  ///< among the bodies of the solver
+  double step = 0;                    ///< length of the substep (s)
 };
 
 struct SeenPoint {
@@ -29,6 +30,7 @@ struct SeenPoint {
 
 struct SeenContact {
   Slot slot;
+  std::int32_t i, j;   ///< bodies, or points of walls that turn
   std::int64_t place;  ///< among those of its kind
   Vec3 normal;
   double friction;
@@ -46,11 +48,17 @@ void for_each_contact(Inspection<Real>& seen, Visit visit) {
   const auto slot_of = [&](std::int64_t first, std::int64_t c, std::uint8_t slot) {
     return seen.places[static_cast<std::size_t>(first + c - c % 256 + slot)];
   };
+  const auto whole = [&](std::int32_t body, std::int32_t end) {
+    return end >= seen.first_wall_point ? end : body;
+  };
   for (std::int64_t c = 0; c < seen.contacts.ball_places(); ++c) {
     if (!has_contact(seen.contacts.ball_tiles().data(), c)) continue;
     const Fields<Real>& f = balls.fields;
     const Vec3 normal = vec3(f.vector(B::normal, c));
-    visit(SeenContact{slot_of(0, c, balls.slot[c]),
+    const Slot slot = slot_of(0, c, balls.slot[c]);
+    visit(SeenContact{slot,
+                      whole(slot.i, slot.end_i),
+                      whole(slot.j, slot.end_j),
                       c,
                       normal,
                       number(f.at(B::friction, c)),
@@ -61,7 +69,10 @@ void for_each_contact(Inspection<Real>& seen, Visit visit) {
   const P points = seen.contacts.points();
   for (std::int64_t c = 0; c < seen.contacts.point_places(); ++c) {
     if (!has_contact(seen.contacts.point_tiles().data(), c)) continue;
-    SeenContact contact{slot_of(seen.contacts.ball_places(), c, points.slot[c]),
+    const Slot slot = slot_of(seen.contacts.ball_places(), c, points.slot[c]);
+    SeenContact contact{slot,
+                        slot.i,
+                        slot.j,
                         c,
                         vec3(points.fields.vector(P::normal, c)),
                         number(points.fields.at(P::friction, c)),

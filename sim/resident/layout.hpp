@@ -66,7 +66,7 @@ struct alignas(8) Slot {
   static constexpr std::int32_t empty = -1;
 
   std::int32_t i = empty, j = empty;          ///< bodies, i < j
-  std::int32_t end_i = empty, end_j = empty;  ///< bodies of the solver: a hub has several
+  std::int32_t end_i = empty, end_j = empty;  ///< bodies of the solver: a hub has several, as a turning wall
   std::int32_t candidate = empty;             ///< number of the pair in the list of candidates
   std::int32_t surface = 0;                   ///< which of the pair's manifolds
 };
@@ -98,8 +98,8 @@ struct alignas(8) Ends {
   std::int32_t i, j;
 };
 
-/// Contacts of balls with balls, or with bodies that are not free and do not turn, tile by tile: those of a
-/// tile of slots are at its front, in the order of the slots.
+/// Contacts of balls with balls, or with bodies that are not free, tile by tile: those of a tile of slots are
+/// at its front, in the order of the slots.
 template <class Real>
 struct BallContacts {
   enum Field {

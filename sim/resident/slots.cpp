@@ -203,6 +203,52 @@ SCREE_HD std::uint64_t rank_of(std::int64_t slot) {
   return (x & 0xffffffff00000000u) | static_cast<std::uint32_t>(slot);
 }
 
+/// Balls on balls, or on what is not free.
+SCREE_HD bool is_of_balls(const ConstBodyView& bodies, const Slot& slot) {
+  const auto is_ball = [&](std::int32_t body) {
+    return bodies.mobility[body] != Mobility::free || bodies.shape[body] == Shape::sphere;
+  };
+  return is_ball(slot.i) && is_ball(slot.j);
+}
+
+SCREE_HD bool is_turning_wall(const ConstBodyView& bodies, std::int32_t body) {
+  return bodies.mobility[body] != Mobility::free && !bodies.spin[body].isZero(0);
+}
+struct CountTurningWalls {
+  ConstBodyView bodies;
+  SCREE_HD std::int64_t operator()(std::int64_t b) const {
+    return is_turning_wall(bodies, static_cast<std::int32_t>(b)) ? 1 : 0;
+  }
+};
+struct MarkWallPoints {
+  ConstBodyView bodies;
+  ConstView<Slot> slots;
+  View<std::uint8_t> marks;
+  SCREE_HD void operator()(std::int64_t s) const {
+    const Slot& slot = slots[s];
+    marks[s] =
+        is_of_balls(bodies, slot) && (is_turning_wall(bodies, slot.i) || is_turning_wall(bodies, slot.j));
+  }
+};
+struct NumberWallPoints {
+  ConstBodyView bodies;
+  ConstView<std::int64_t> number;
+  std::int64_t first;
+  View<Slot> slots;
+  SCREE_HD void operator()(std::int64_t s) const {
+    if (number[s] == number[s + 1]) return;
+    Slot& slot = slots[s];
+    (is_turning_wall(bodies, slot.i) ? slot.end_i : slot.end_j) =
+        static_cast<std::int32_t>(first + number[s]);
+  }
+};
+
+/// Whether a slot is on a part of a hub.
+SCREE_HD bool is_on_part(ConstView<Mobility> mobility, const Slot& slot) {
+  return (mobility[slot.i] == Mobility::free && slot.end_i != slot.i) ||
+         (mobility[slot.j] == Mobility::free && slot.end_j != slot.j);
+}
+
 /// The first of the old slots of each pair, -1 for new pairs.
 struct LookUpOld {
   ConstView<Pair> pairs, old_pairs;
@@ -226,7 +272,7 @@ struct KeepColors {
     const Slot& slot = slots[s];
     const std::int64_t old = was[slot.candidate];
     color[s] = uncolored;
-    if (old < 0 || slot.end_i != slot.i || slot.end_j != slot.j) return;
+    if (old < 0 || is_on_part(mobility, slot)) return;
     const std::uint8_t kept = old_color[old + slot.surface];
     if ((kept & of_hub) != 0) return;
     color[s] = kept;
@@ -283,8 +329,7 @@ struct TakeColor {
     const std::uint64_t used = (free_i ? taken[slot.end_i] : 0) | (free_j ? taken[slot.end_j] : 0);
     int lowest = 0;
     while ((used >> lowest & 1) != 0) ++lowest;
-    const bool hub = slot.end_i != slot.i || slot.end_j != slot.j;
-    color[s] = static_cast<std::uint8_t>(lowest | (hub ? of_hub : 0));
+    color[s] = static_cast<std::uint8_t>(lowest | (is_on_part(mobility, slot) ? of_hub : 0));
     if (free_i) taken[slot.end_i] |= std::uint64_t{1} << lowest;
     if (free_j) taken[slot.end_j] |= std::uint64_t{1} << lowest;
     // Nobody else stands here, so the next round may begin.
@@ -292,15 +337,6 @@ struct TakeColor {
     if (free_j) standing[slot.end_j] = ~std::uint64_t{0};
   }
 };
-
-/// Balls on balls, or on what is not free and does not turn.
-SCREE_HD bool is_of_balls(const ConstBodyView& bodies, const Slot& slot) {
-  for (const std::int32_t body : {slot.i, slot.j}) {
-    const bool free = bodies.mobility[body] == Mobility::free;
-    if (free ? bodies.shape[body] != Shape::sphere : !bodies.spin[body].isZero(0)) return false;
-  }
-  return true;
-}
 
 struct KeyOf {
   ConstBodyView bodies;
@@ -386,6 +422,7 @@ void Slots<Space, Real>::build(ConstView<Pair> candidates, const ConstBodyView& 
                                       std::as_const(old_first_).view(), was_.view()});
   list_slots(bodies);
   split_hubs(bodies);
+  number_wall_points(bodies);
   color_slots(bodies);
   place_slots(bodies);
   recall();
@@ -450,12 +487,28 @@ void Slots<Space, Real>::split_hubs(const ConstBodyView& bodies) {
 }
 
 template <class Space, class Real>
+void Slots<Space, Real>::number_wall_points(const ConstBodyView& bodies) {
+  first_wall_point_ = solver_bodies_;
+  const auto walls =
+      parallel::sum_by_tiles<std::int64_t, Space>("slots.walls", bodies.count(), CountTurningWalls{bodies});
+  if (walls == 0) return;
+  Array<std::uint8_t, Space> marks(slots_.size());
+  Array<std::int64_t, Space> number;
+  parallel::for_each<Space>("slots.walls", slots_.size(),
+                            MarkWallPoints{bodies, std::as_const(slots_).view(), marks.view()});
+  solver_bodies_ += parallel::exclusive_scan("slots.walls", marks, number);
+  parallel::for_each<Space>(
+      "slots.walls", slots_.size(),
+      NumberWallPoints{bodies, std::as_const(number).view(), first_wall_point_, slots_.view()});
+}
+
+template <class Space, class Real>
 void Slots<Space, Real>::color_slots(const ConstBodyView& bodies) {
   constexpr int rounds_at_once = 8;
   // Colours that are kept leave gaps, so that their number creeps up.
   constexpr int most_more = 3;
   const ConstView<Slot> slots = std::as_const(slots_).view();
-  Array<std::uint64_t, Space> standing(solver_bodies_), taken(solver_bodies_);
+  Array<std::uint64_t, Space> standing(first_wall_point_), taken(first_wall_point_);
   parallel::fill("slots.color", standing, ~std::uint64_t{0});
   parallel::fill("slots.color", taken, std::uint64_t{0});
   color_.resize(slots.size());

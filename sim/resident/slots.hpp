@@ -71,13 +71,16 @@ class Slots {
   ConstView<std::int32_t> hub_of_parts() const { return hub_of_.view(); }
   /// Share of its hub's mass, of each part.
   ConstView<double> share_of_parts() const { return share_.view(); }
-  /// Of the solver: all bodies, then the parts of the hubs.
+  /// Of the solver: all bodies, then the parts of the hubs, then what balls touch of walls that turn, a body
+  /// for each slot, which moves as the wall does there.
   std::int64_t solver_bodies() const { return solver_bodies_; }
+  std::int64_t first_wall_point() const { return first_wall_point_; }
   ConstView<Pair> candidates() const { return pairs_.view(); }
 
  private:
   void list_slots(const ConstBodyView& bodies);
   void split_hubs(const ConstBodyView& bodies);
+  void number_wall_points(const ConstBodyView& bodies);
   void color_slots(const ConstBodyView& bodies);
   void place_slots(const ConstBodyView& bodies);
   void recall();
@@ -99,7 +102,7 @@ class Slots {
   Array<Hub, Space> hubs_;
   Array<std::int32_t, Space> hub_of_;
   Array<double, Space> share_;
-  std::int64_t solver_bodies_ = 0;
+  std::int64_t solver_bodies_ = 0, first_wall_point_ = 0;
 };
 
 }  // namespace scree::resident

@@ -108,16 +108,28 @@ TYPED_TEST(SlotsTest, EachCandidateHasOnePlaceAndColoursShareNoFreeBody) {
   EXPECT_EQ(built.slots.others().tiles(), 0);
 }
 
-TYPED_TEST(SlotsTest, ATubeHasASlotForEachSurfaceAndOneThatTurnsIsNoBall) {
+TYPED_TEST(SlotsTest, ATubeHasASlotForEachSurfaceAndOneThatTurnsAPointForEach) {
   Built<TypeParam> built(balls(10, true));
   built.build({{0, 2}, {1, 2}, {1, 3}, {2, 3}});
-  std::multiset<std::pair<std::int32_t, std::int32_t>> others;
-  const std::int64_t first = built.slots.balls().tiles() * parallel::tile;
-  const std::vector<Slot> places = built.places();
-  for (auto p = static_cast<std::size_t>(first); p < places.size(); ++p)
-    if (places[p].i != Slot::empty) others.insert({places[p].candidate, places[p].surface});
-  EXPECT_EQ(others, (std::multiset<std::pair<std::int32_t, std::int32_t>>{
-                        {1, 0}, {1, 1}, {1, 2}, {2, 0}, {2, 1}, {2, 2}}));
+  EXPECT_EQ(built.slots.others().tiles(), 0);
+  EXPECT_EQ(built.slots.first_wall_point(), 10);
+  EXPECT_EQ(built.slots.solver_bodies(), 16);
+  std::multiset<std::pair<std::int32_t, std::int32_t>> on_tube;
+  std::set<std::int32_t> points;
+  for (const Slot& slot : built.places()) {
+    if (slot.i == Slot::empty) continue;
+    EXPECT_EQ(slot.end_j, slot.j);
+    if (slot.i != 1) {
+      EXPECT_EQ(slot.end_i, slot.i);
+      continue;
+    }
+    on_tube.insert({slot.candidate, slot.surface});
+    EXPECT_TRUE(points.insert(slot.end_i).second);
+    EXPECT_GE(slot.end_i, 10);
+    EXPECT_LT(slot.end_i, 16);
+  }
+  EXPECT_EQ(on_tube, (std::multiset<std::pair<std::int32_t, std::int32_t>>{
+                         {1, 0}, {1, 1}, {1, 2}, {2, 0}, {2, 1}, {2, 2}}));
 }
 
 /// A ball that touches a thousand is many parts, each with few slots, so that colours stay few.
