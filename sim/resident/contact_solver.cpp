@@ -151,7 +151,7 @@ Inspection<Real> ContactSolver<Space, Real>::inspect() const {
   copy(seen.free, free_);
   copy(seen.inertia, inertia_);
   seen.contacts.copy_from(store_);
-  seen.first_wall_point = slots_.first_wall_point();
+  seen.first_wall_point = slots_.solver_bodies().first_wall_point();
   seen.step = step_;
   return seen;
 }
@@ -178,7 +178,7 @@ template <class Space, class Real>
 void ContactSolver<Space, Real>::load_bodies(const ConstBodyView& bodies, ConstView<double> margin,
                                              const ResponseParameters& parameters) {
   const std::int64_t n = bodies.count();
-  const std::int64_t all = slots_.solver_bodies();
+  const std::int64_t all = slots_.solver_bodies().count();
   mid_.resize(n);
   for (auto* records : {&solver_, &free_, &last_}) records->resize(all);
   displacement_.resize(all);
@@ -188,10 +188,11 @@ void ContactSolver<Space, Real>::load_bodies(const ConstBodyView& bodies, ConstV
   parallel::for_each<Space>(
       "contacts.bodies", n,
       LoadBody<Real>{bodies, margin, parameters, step_, mid_.view(), solver_.view(), inertia_.view()});
-  parallel::for_each<Space>("contacts.bodies", slots_.hub_of_parts().size(),
-                            LoadPart<Real>{slots_.hubs(), slots_.hub_of_parts(), slots_.share_of_parts(), n,
-                                           solver_.view(), inertia_.view()});
-  const std::int64_t walls = slots_.first_wall_point();
+  parallel::for_each<Space>(
+      "contacts.bodies", slots_.solver_bodies().hub_of_parts().size(),
+      LoadPart<Real>{slots_.solver_bodies().hubs(), slots_.solver_bodies().hub_of_parts(),
+                     slots_.solver_bodies().share_of_parts(), n, solver_.view(), inertia_.view()});
+  const std::int64_t walls = slots_.solver_bodies().first_wall_point();
   parallel::for_each<Space>("contacts.bodies", all - walls,
                             ClearWallPoint<Real>{walls, solver_.view(), inertia_.view()});
 }
@@ -243,33 +244,33 @@ void ContactSolver<Space, Real>::find(ConstView<double> margin, double scale, co
 template <class Space, class Real>
 template <class Record>
 JoinHubs<Record> ContactSolver<Space, Real>::join_hubs(Array<Record, Space>& bodies) {
-  const ConstView<std::int32_t> hub_of = slots_.hub_of_parts();
+  const ConstView<std::int32_t> hub_of = slots_.solver_bodies().hub_of_parts();
   parts_sums_.resize(hub_of.size());
   Record* const records = bodies.empty() ? nullptr : bodies.data();
-  return {
-      slots_.hubs(),     hub_of, slots_.share_of_parts(), slots_.first_wall_point() - hub_of.size(), records,
-      parts_sums_.data()};
+  return {slots_.solver_bodies().hubs(),       hub_of,  slots_.solver_bodies().share_of_parts(),
+          slots_.solver_bodies().first_part(), records, parts_sums_.data()};
 }
 
 template <class Space, class Real>
 template <bool only_balls>
 SweepState ContactSolver<Space, Real>::run_impulse_rounds(const SweepPlan& plan) {
-  return parallel::run_rounds<Space>("sweeps",
-                                     ImpulseRounds<Real, only_balls>{.ball_colors = ColorPhases(ball_list_),
-                                                                     .point_colors = ColorPhases(point_list_),
-                                                                     .balls = store_.balls(),
-                                                                     .points = store_.points(),
-                                                                     .inertia = inertia_.data(),
-                                                                     .bodies = solver_.data(),
-                                                                     .last = last_.data(),
-                                                                     .body_count = slots_.first_wall_point(),
-                                                                     .hubs = join_hubs(solver_),
-                                                                     .least = plan.least,
-                                                                     .most = plan.most,
-                                                                     .block_sweeps = plan.block_sweeps,
-                                                                     .tolerance = plan.tolerance,
-                                                                     .momentum = momentum_},
-                                     SweepState{});
+  return parallel::run_rounds<Space>(
+      "sweeps",
+      ImpulseRounds<Real, only_balls>{.ball_colors = ColorPhases(ball_list_),
+                                      .point_colors = ColorPhases(point_list_),
+                                      .balls = store_.balls(),
+                                      .points = store_.points(),
+                                      .inertia = inertia_.data(),
+                                      .bodies = solver_.data(),
+                                      .last = last_.data(),
+                                      .body_count = slots_.solver_bodies().first_wall_point(),
+                                      .hubs = join_hubs(solver_),
+                                      .least = plan.least,
+                                      .most = plan.most,
+                                      .block_sweeps = plan.block_sweeps,
+                                      .tolerance = plan.tolerance,
+                                      .momentum = momentum_},
+      SweepState{});
 }
 
 template <class Space, class Real>
@@ -284,8 +285,8 @@ void ContactSolver<Space, Real>::find_impulses(const ResponseParameters& paramet
     if (parameters.iterations > 0) plan.least = std::min(plan.least, plan.most);
     plan.most = std::max(plan.most, plan.least);
   }
-  const bool few =
-      plan.direct && slots_.places().size() <= few_places && slots_.first_wall_point() <= few_bodies;
+  const bool few = plan.direct && slots_.places().size() <= few_places &&
+                   slots_.solver_bodies().first_wall_point() <= few_bodies;
   const bool converged = few ? solve_few(plan, counters) : sweep(plan, counters);
   counters.unconverged += !converged;
 }
@@ -422,7 +423,8 @@ template <class Space, class Real>
 void ContactSolver<Space, Real>::take_velocities(const ConstBodyView& bodies) {
   parallel::for_each<Space>(
       "late.reload", solver_.size(),
-      ReloadBody<Real>{bodies, slots_.hubs(), slots_.hub_of_parts(), solver_.view(), last_.view()});
+      ReloadBody<Real>{bodies, slots_.solver_bodies().hubs(), slots_.solver_bodies().hub_of_parts(),
+                       solver_.view(), last_.view()});
   parallel::for_each<Space>(
       "late.fly", ball_list_.size(),
       on_contacts(ball_list_, FlyBalls<Real>{store_.balls(), solver_.view(), last_.view(), step_}));

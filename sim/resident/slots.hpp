@@ -5,24 +5,13 @@
 #include "core/array.hpp"
 #include "core/bodies.hpp"
 #include "sim/resident/layout.hpp"
+#include "sim/resident/solver_bodies.hpp"
 
 #include <algorithm>
 #include <cstdint>
 #include <vector>
 
 namespace scree::resident {
-
-/// A free body with so many slots that they would make too many colours. It is solved as several parts that
-/// share its mass, and that move alike after each sweep (mass splitting: Tonge, Benevolenski, Voroshilov
-/// 2012, "Mass splitting for jitter-free parallel rigid body simulation", sec. 4). The heaviest of what it
-/// may touch are on the same part, and half of the mass is shared out by what they weigh, since a part that
-/// carries the hub must stop it: with equal shares of a ball with thousands of grains on it, what it lies on
-/// would slow a thousandth of it in a sweep.
-struct Hub {
-  std::int32_t body;
-  std::int32_t first;  ///< of its parts among the bodies of the solver
-  std::int32_t parts;
-};
 
 /// The number of a pair in a list ordered by (i, j); -1 if it is not there.
 SCREE_HD inline std::int64_t find_pair(ConstView<Pair> pairs, std::int32_t i, std::int32_t j) {
@@ -38,9 +27,6 @@ SCREE_HD inline std::int64_t find_pair(ConstView<Pair> pairs, std::int32_t i, st
   }
   return low < pairs.size() && pairs[low].i == i && pairs[low].j == j ? low : -1;
 }
-
-/// Slots of a body take no more: those of hubs are dealt to several.
-inline constexpr int most_colors = 64;
 
 /// Tiles of one colour after the other: slots of one colour share no free body.
 struct ColorTiles {
@@ -66,21 +52,12 @@ class Slots {
   View<BallMemory<Real>> ball_memory() { return ball_memory_.view(); }
   View<PointMemory<Real>> point_memory() { return point_memory_.view(); }
 
-  ConstView<Hub> hubs() const { return hubs_.view(); }
-  /// Number of its hub, of each part of hubs.
-  ConstView<std::int32_t> hub_of_parts() const { return hub_of_.view(); }
-  /// Share of its hub's mass, of each part.
-  ConstView<double> share_of_parts() const { return share_.view(); }
-  /// Of the solver: all bodies, then the parts of the hubs, then what balls touch of walls that turn, a body
-  /// for each slot, which moves as the wall does there.
-  std::int64_t solver_bodies() const { return solver_bodies_; }
-  std::int64_t first_wall_point() const { return first_wall_point_; }
+  /// Which the ends of slots are.
+  const SolverBodies<Space>& solver_bodies() const { return solver_bodies_; }
   ConstView<Pair> candidates() const { return pairs_.view(); }
 
  private:
   void list_slots(const ConstBodyView& bodies);
-  void split_hubs(const ConstBodyView& bodies);
-  void number_wall_points(const ConstBodyView& bodies);
   void color_slots(const ConstBodyView& bodies);
   void place_slots(const ConstBodyView& bodies);
   void recall();
@@ -99,10 +76,7 @@ class Slots {
   Array<BallMemory<Real>, Space> ball_memory_, old_ball_memory_;     // of each place
   Array<PointMemory<Real>, Space> point_memory_, old_point_memory_;  // of each place after those of balls
   std::int64_t old_ball_places_ = 0;
-  Array<Hub, Space> hubs_;
-  Array<std::int32_t, Space> hub_of_;
-  Array<double, Space> share_;
-  std::int64_t solver_bodies_ = 0, first_wall_point_ = 0;
+  SolverBodies<Space> solver_bodies_;
 };
 
 }  // namespace scree::resident

@@ -112,8 +112,8 @@ TYPED_TEST(SlotsTest, ATubeHasASlotForEachSurfaceAndOneThatTurnsAPointForEach) {
   Built<TypeParam> built(balls(10, true));
   built.build({{0, 2}, {1, 2}, {1, 3}, {2, 3}});
   EXPECT_EQ(built.slots.others().tiles(), 0);
-  EXPECT_EQ(built.slots.first_wall_point(), 10);
-  EXPECT_EQ(built.slots.solver_bodies(), 16);
+  EXPECT_EQ(built.slots.solver_bodies().first_wall_point(), 10);
+  EXPECT_EQ(built.slots.solver_bodies().count(), 16);
   std::multiset<std::pair<std::int32_t, std::int32_t>> on_tube;
   std::set<std::int32_t> points;
   for (const Slot& slot : built.places()) {
@@ -142,11 +142,11 @@ TYPED_TEST(SlotsTest, AHubIsSplitSoThatColoursStayFew) {
   const std::vector<Slot> places = built.places();
   expect_colors_apart(places, built.slots.balls(), bodies);
   EXPECT_LE(built.slots.balls().colors(), 64);
-  ASSERT_EQ(built.slots.hubs().size(), 1);
+  ASSERT_EQ(built.slots.solver_bodies().hubs().size(), 1);
   std::map<std::int32_t, int> of_part;
   for (const Slot& slot : places)
     if (slot.i != Slot::empty) ++of_part[slot.end_i];
-  EXPECT_EQ(built.slots.solver_bodies(), 1002 + static_cast<std::int64_t>(of_part.size()));
+  EXPECT_EQ(built.slots.solver_bodies().count(), 1002 + static_cast<std::int64_t>(of_part.size()));
   for (const auto& [part, count] : of_part) {
     EXPECT_GE(part, 1002);
     EXPECT_LE(count, 32);
@@ -166,8 +166,8 @@ TYPED_TEST(SlotsTest, TheHeaviestNeighboursOfAHubShareAPart) {
   }
   Built<TypeParam> built(bodies);
   built.build(pairs);
-  std::vector<double> share(static_cast<std::size_t>(built.slots.share_of_parts().size()));
-  copy_bytes<Host, TypeParam>(share.data(), built.slots.share_of_parts().data(),
+  std::vector<double> share(static_cast<std::size_t>(built.slots.solver_bodies().share_of_parts().size()));
+  copy_bytes<Host, TypeParam>(share.data(), built.slots.solver_bodies().share_of_parts().data(),
                               share.size() * sizeof(double));
   double sum = 0;
   for (const double part : share) sum += part;
