@@ -5,6 +5,7 @@
 #include "narrowphase/far_apart.hpp"
 
 #include <bit>
+#include <cmath>
 #include <limits>
 #include <utility>
 
@@ -66,11 +67,22 @@ struct CandidateKey {
   }
   /// Spheres are in half of their boxes' volume: of a packing's pairs it takes two of five.
   SCREE_HD bool are_far(std::int32_t i, std::int32_t j) const {
-    if (is_boundary(bodies.shape[i]) || is_boundary(bodies.shape[j])) return false;
-    const auto reach = [&](std::int32_t k) {
-      return bounding_radius(bodies.shape[k], bodies.size[k]) + margin[k];
-    };
+    if (is_boundary(bodies.shape[i])) return is_within(i, j, reach(j) + margin[i]);
+    if (is_boundary(bodies.shape[j])) return is_within(j, i, reach(i) + margin[j]);
     return are_far_apart(bodies.position[i], bodies.position[j], reach(i) + reach(j));
+  }
+  SCREE_HD double reach(std::int32_t k) const {
+    return bounding_radius(bodies.shape[k], bodies.size[k]) + margin[k];
+  }
+  /// Whether a body is within a tube, and farther than `reach` (m) from its wall and its caps.
+  SCREE_HD bool is_within(std::int32_t tube, std::int32_t body, double reach) const {
+    const Vec3 up = bodies.orientation[tube] * Vec3::UnitZ();
+    const Vec3 from = bodies.position[body] - bodies.position[tube];
+    const double along = up.dot(from);
+    const double across = (from - along * up).norm();
+    const Vec3& size = bodies.size[tube];
+    const double rounding = tolerance::far_rounding * (size.x() + size.z());
+    return across + reach + rounding < size.x() && fabs(along) + reach + rounding < size.z();
   }
   SCREE_HD bool is_plane(std::int32_t k) const { return bodies.shape[k] == Shape::plane; }
   SCREE_HD bool is_free(std::int32_t k) const { return bodies.mobility[k] == Mobility::free; }

@@ -14,9 +14,9 @@ template <class Space>
 class Candidates {
  public:
   /// Of the pairs of which one is free, and of each plane with each free body, those that may have a gap of
-  /// no more than the sum of their margins (m), as told from the spheres around the bodies: each once,
-  /// ordered by (i, j), whatever the order of the PCS. Pairs with planes in the PCS are left out: boxes are
-  /// too coarse for them. The view is valid until the next call.
+  /// no more than the sum of their margins (m), as told from the spheres around the bodies (of a tube, from
+  /// its wall and its caps): each once, ordered by (i, j), whatever the order of the PCS. Pairs with planes
+  /// in the PCS are left out: boxes are too coarse for them. The view is valid until the next call.
   ConstView<Pair> list(const ConstBodyView& bodies, ConstView<Pair> pcs, ConstView<double> margin);
 
  private:

@@ -104,6 +104,54 @@ TYPED_TEST(CandidatesTest, AreThePcsAndThePlanesInOrder) {
   }
 }
 
+/// Balls within a tilted tube, and some without: those near its wall or its caps are candidates.
+TYPED_TEST(CandidatesTest, OfATubeAreThoseNearItsSurface) {
+  BodyTable table = {};
+  Bodies<Host> bodies = crowd();
+  copy_bodies(table, bodies);
+  std::vector<Pair> pcs;
+  table.shape.assign(count, Shape::sphere);
+  table.mobility.assign(count, Mobility::free);
+  for (std::size_t k = 0; k < count; ++k) table.size[k] = Vec3::Constant(0.05);
+  table.shape[7] = Shape::tube;
+  table.mobility[7] = Mobility::prescribed;
+  table.size[7] = Vec3(0.8, 0, 0.9);
+  table.position[7] = Vec3(0.1, 0, -0.1);
+  Array<double, Host> margin(count);
+  parallel::fill("margin", margin, 0.02);
+  margin.data()[7] = 0.1;
+  std::vector<std::pair<std::int32_t, std::int32_t>> expected;
+  int far = 0, outside = 0;
+  for (std::int32_t k = 0; k < count; ++k) {
+    if (k == 7) continue;
+    const Pair pair{std::min(k, 7), std::max(k, 7)};
+    pcs.push_back(pair);
+    const Vec3 at =
+        table.orientation[7].conjugate() * (table.position[static_cast<std::size_t>(k)] - table.position[7]);
+    const double gap = std::min(0.8 - std::hypot(at.x(), at.y()), 0.9 - std::abs(at.z())) - 0.05;
+    far += gap > 0.12;
+    outside += gap < -0.1;
+    if (gap <= 0.12) expected.emplace_back(pair.i, pair.j);
+  }
+  ASSERT_GT(far, 20);
+  ASSERT_GT(outside, 20);
+  std::ranges::sort(expected);
+  Bodies<TypeParam> bodies_there;
+  Array<Pair, TypeParam> pcs_there;
+  Array<double, TypeParam> margin_there;
+  copy_bodies(bodies_there, table);
+  copy(pcs_there, pcs);
+  copy(margin_there, margin);
+  Candidates<TypeParam> candidates;
+  const ConstView<Pair> found =
+      candidates.list(view_of(std::as_const(bodies_there)), std::as_const(pcs_there).view(),
+                      std::as_const(margin_there).view());
+  std::vector<Pair> pairs(static_cast<std::size_t>(found.size()));
+  copy_bytes<Host, TypeParam>(pairs.data(), found.data(), pairs.size() * sizeof(Pair));
+  ASSERT_EQ(pairs.size(), expected.size());
+  for (std::size_t k = 0; k < pairs.size(); ++k) ASSERT_EQ(std::pair(pairs[k].i, pairs[k].j), expected[k]);
+}
+
 TYPED_TEST(CandidatesTest, OfNothingAreNone) {
   Bodies<TypeParam> bodies;
   Array<double, TypeParam> margin;
