@@ -262,6 +262,27 @@ TYPED_TEST(Rounds, SlowBodiesHaveNone) {
   EXPECT_FALSE(rounds.late);
 }
 
+/// Of each four the first strikes the second, which may then strike two more: there are more suspects in the
+/// second round than there is room for, while the first round's meetings and busy pairs are to be kept.
+TYPED_TEST(Rounds, RoomMayBeLackingInALaterRound) {
+  constexpr std::int32_t lanes = 3000;
+  FlightScene scene;
+  std::vector<Pair> pairs;
+  for (std::int32_t k = 0; k < lanes; ++k) {
+    const Vec3 lane(0, k, 0);
+    scene.add_ball(0.1, lane, Vec3(3, 0, 0));
+    scene.add_ball(0.1, lane + Vec3(0.2005, 0, 0), Vec3(0, 0, 0));
+    scene.add_ball(0.1, lane + Vec3(0.3746, 0.1001, 0), Vec3(0, 0, 0));
+    scene.add_ball(0.1, lane + Vec3(0.3752, -0.1002, 0), Vec3(0, 0, 0));
+    for (std::int32_t i = 0; i < 4; ++i)
+      for (std::int32_t j = i + 1; j < 4; ++j) pairs.push_back({4 * k + i, 4 * k + j});
+  }
+  const Outcome rounds = in_rounds<TypeParam>(scene, pairs);
+  EXPECT_GT(rounds.rounds, 2);
+  ASSERT_GE(rounds.impacts.size(), static_cast<std::size_t>(3 * lanes));
+  expect_same(rounds, in_time_order(scene, pairs), 1e-11);
+}
+
 /// All touch at the start, where each closes with the next one; the last is heavy to the first.
 TYPED_TEST(Rounds, NobodyWaitsInACircle) {
   FlightScene scene;
