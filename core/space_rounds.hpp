@@ -133,14 +133,13 @@ typename Program::State run(Device, const char* label, Program program, typename
 
 }  // namespace detail
 
-/// Runs rounds until none is left, and returns what was known at the end. A round is
-/// program.phases(state) phases, of which each is work on program.items(state, phase) items at once:
-/// program(state, phase, item), of type Program::Sum with an operator +. Then state = program.judge(state,
-/// sum over the round), and no phase is left where phases() is 0. No phase has more than
-/// program.most_items(). Sum may be empty. Program::threads make a block, a power of 2: fewer and larger
-/// blocks wait for one another more quickly, if registers suffice. On Device all rounds are one launch, in
-/// which a phase costs some microseconds; the sums depend on the GPU's size, and are the same from run to
-/// run.
+/// Runs rounds until none is left, and returns what was known at the end. A round is program.phases(state)
+/// phases, of which each is work on program.items(state, phase) items at once: program(state, phase, item),
+/// of type Program::Sum with an operator +, which may be empty. Then state = program.judge(state, sum over
+/// the round), and no phase is left where phases() is 0. More threads than program.most_items() would not
+/// help. Program::threads make a block, a power of 2: fewer and larger blocks wait for one another more
+/// quickly, if registers suffice. On Device all rounds are one launch, in which a phase costs some
+/// microseconds; the sums depend on the GPU's size, and are the same from run to run.
 template <class Space, class Program>
 typename Program::State run_rounds(const char* label, const Program& program,
                                    const typename Program::State& start) {

@@ -168,8 +168,8 @@ struct ImpactProgram {
   }
 
  private:
-  static constexpr int run =
-      8;  // pairs that a thread looks at, so that it waits for all their bodies at once
+  /// Pairs that a thread looks at, so that it waits for all their bodies at once.
+  static constexpr int run = 8;
 
   SCREE_HD std::int64_t runs() const { return (pairs.size() + run - 1) / run; }
   SCREE_HD static std::int64_t meetings_of(const State& state) {
