@@ -281,7 +281,8 @@ void ContactSolver<Space, Real>::find_impulses(const ResponseParameters& paramet
   // Of bodies that share several points the measure of slow modes tells mostly of how these share their load.
   if (is_heap(counts_.points) && !shares_loads(counts_.contacts, counts_.points)) {
     plan.least = std::max(plan.least / 3, (plan.least << patience_) / 4);
-    momentum_ = patience_ > 0;
+    // Who asks for a tolerance may get many sweeps.
+    momentum_ = patience_ > 0 || parameters.tolerance > 0;
     if (parameters.iterations > 0) plan.least = std::min(plan.least, plan.most);
     plan.most = std::max(plan.most, plan.least);
   }
