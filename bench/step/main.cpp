@@ -167,6 +167,7 @@ int run(int argc, char** argv) {
             {"substeps", static_cast<double>(seen.counters.substeps - before.substeps) / n},
             {"sweeps", static_cast<double>(seen.counters.sweeps - before.sweeps) / n},
             {"unconverged", seen.counters.unconverged - before.unconverged},
+            {"unfinished_impacts", seen.counters.unfinished_impacts - before.unfinished_impacts},
             {"impacts", static_cast<double>(seen.counters.impacts - before.impacts) / n},
             {"pcs_made", seen.counters.pcs_made - before.pcs_made},
             {"penetration_relative_mean", seen.penetration.relative_mean},
