@@ -116,18 +116,12 @@ struct ImpactProgram {
       return waiting + meetings_of(state);
     }
     if (progress->harmless == HUGE_VAL) return 0;
-    const RoundCounts& counts = progress->counts[state.round % 2];
-    switch (phase) {
-      case 0:
-        return state.kept + (state.round > 1 ? static_cast<std::int64_t>(state.busy) : runs());
-      case 1: {
-        const std::int64_t found = std::min(static_cast<std::int64_t>(counts.suspects), suspects.size());
-        return found + (state.round > 1 || found == 0 ? 0 : first.size());
-      }
-      default:
-        return std::min(static_cast<std::int64_t>(counts.meetings), meetings[0].size()) +
-               (progress->last_join == state.round ? runs() : 0);
+    if (phase == 0) return state.kept + (state.round > 1 ? static_cast<std::int64_t>(state.busy) : runs());
+    if (phase == 1) {
+      const std::int64_t listed = suspects_listed(state);
+      return listed + (state.round > 1 || listed == 0 ? 0 : first.size());
     }
+    return meetings_listed(state) + (progress->last_join == state.round ? runs() : 0);
   }
   std::int64_t most_items() const { return std::max(runs(), suspects.size()); }
 
@@ -175,6 +169,14 @@ struct ImpactProgram {
   SCREE_HD static std::int64_t meetings_of(const State& state) {
     return static_cast<std::int64_t>(state.counts.meetings);
   }
+  /// As far as there is room, in the first half.
+  SCREE_HD std::int64_t suspects_listed(const State& state) const {
+    return std::min(static_cast<std::int64_t>(progress->counts[state.round % 2].suspects), suspects.size());
+  }
+  SCREE_HD std::int64_t meetings_listed(const State& state) const {
+    return std::min(static_cast<std::int64_t>(progress->counts[state.round % 2].meetings),
+                    meetings[0].size());
+  }
   SCREE_HD Foreseen& meeting(const State& state, std::int64_t e) const {
     return meetings[state.round % 2][e];
   }
@@ -210,16 +212,14 @@ struct ImpactProgram {
             [&](std::int64_t k) { suspect(state, k); });
       }
     } else if (phase == 1) {
-      const auto found = static_cast<std::int64_t>(progress->counts[state.round % 2].suspects);
-      const std::int64_t listed = std::min(found, suspects.size());
+      const std::int64_t listed = suspects_listed(state);
       if (item < listed) {
         foresee_pair(state, suspects[item]);
       } else {
         reset(item - listed);
       }
     } else {
-      const auto found = static_cast<std::int64_t>(progress->counts[state.round % 2].meetings);
-      const std::int64_t listed = std::min(found, meetings[0].size());
+      const std::int64_t listed = meetings_listed(state);
       if (item < listed) {
         find_first_times(state, item);
       } else {

@@ -4,6 +4,7 @@
 #include "core/space_rounds.hpp"
 #include "core/space_tiles.hpp"
 #include "core/tolerances.hpp"
+#include "sim/resident/contact_sums.hpp"
 #include "sim/resident/few_contacts.hpp"
 #include "sim/resident/rounds.hpp"
 
@@ -16,103 +17,6 @@ namespace scree::resident {
 namespace {
 
 constexpr int tile = parallel::tile;
-
-template <class Real>
-struct CountPoints {
-  PointContacts<Real> contacts;
-  SCREE_HD std::int64_t operator()(std::int64_t c) const { return contacts.points[c]; }
-};
-
-/// What is known of pairs in another list.
-struct LookUpLoads {
-  ConstView<Pair> pairs, known;
-  ConstView<LoadedParts> loads;
-  View<LoadedParts> out;
-  SCREE_HD void operator()(std::int64_t k) const {
-    const std::int64_t at = find_pair(known, pairs[k].i, pairs[k].j);
-    out[k] = at < 0 ? LoadedParts{} : loads[at];
-  }
-};
-
-template <class Real>
-struct BallLoad {
-  BallContacts<Real> contacts;
-  SCREE_HD LoadSpread operator()(std::int64_t c) const {
-    using C = BallContacts<Real>;
-    const Vec3 impulse = vec3(contacts.fields.vector(C::impulse, c));
-    return LoadSpread::of(impulse.squaredNorm() / contacts.fields.at(C::normal_mass, c));
-  }
-};
-template <class Real>
-struct PointLoad {
-  PointContacts<Real> contacts;
-  SCREE_HD LoadSpread operator()(std::int64_t c) const {
-    using C = PointContacts<Real>;
-    double load = 0;
-    for (int k = 0; k < contacts.points[c]; ++k) {
-      const Vec3 impulse = vec3(contacts.point_fields.vector(C::at_point(k, C::impulse), c));
-      load += impulse.squaredNorm() / contacts.point_fields.at(C::at_point(k, C::normal_mass), c);
-    }
-    return LoadSpread::of(load);
-  }
-};
-
-struct ImpulseSum {
-  Vec3 impulse = Vec3::Zero();
-  SCREE_HD friend ImpulseSum operator+(const ImpulseSum& a, const ImpulseSum& b) {
-    return {a.impulse + b.impulse};
-  }
-};
-
-/// What a contact gave to a body, if it is one of its two.
-template <class Real>
-struct BallImpulseOn {
-  std::int32_t body;
-  BallContacts<Real> contacts;
-  ConstView<Slot> places;
-  SCREE_HD ImpulseSum operator()(std::int64_t c) const {
-    const Slot& slot = places[c - c % tile + contacts.slot[c]];
-    if (slot.i != body && slot.j != body) return {};
-    const Vec3 impulse = vec3(contacts.fields.vector(BallContacts<Real>::impulse, c));
-    return {slot.j == body ? impulse : Vec3(-impulse)};
-  }
-};
-template <class Real>
-struct PointImpulseOn {
-  std::int32_t body;
-  PointContacts<Real> contacts;
-  ConstView<Slot> places;
-  SCREE_HD ImpulseSum operator()(std::int64_t c) const {
-    using C = PointContacts<Real>;
-    const Slot& slot = places[c - c % tile + contacts.slot[c]];
-    if (slot.i != body && slot.j != body) return {};
-    Vec3 impulse = Vec3::Zero();
-    for (int k = 0; k < contacts.points[c]; ++k)
-      impulse += vec3(contacts.point_fields.vector(C::at_point(k, C::impulse), c));
-    return {slot.j == body ? impulse : Vec3(-impulse)};
-  }
-};
-
-/// What a slot remembers is what was loaded, when candidates are made anew.
-template <class Real>
-struct MarkBallLoads {
-  BookStage<Real> stage;
-  ConstView<BallMemory<Real>> memory;
-  SCREE_HD void operator()(std::int64_t place) const {
-    const Slot& slot = stage.places[place];
-    if (slot.i != Slot::empty && memory[place].is_loaded()) stage.mark_loaded(slot, stage.part_of(slot));
-  }
-};
-template <class Real>
-struct MarkPointLoads {
-  BookStage<Real> stage;
-  std::int64_t first_place;
-  ConstView<PointMemory<Real>> memory;
-  SCREE_HD void operator()(std::int64_t place) const {
-    const Slot& slot = stage.places[first_place + place];
-    if (slot.i != Slot::empty && memory[place].is_loaded()) stage.mark_loaded(slot, stage.part_of(slot));
-  }
-};
 
 }  // namespace
 
@@ -335,17 +239,20 @@ template <class Space, class Real>
 Ledger ContactSolver<Space, Real>::book(const ConstBodyView& bodies, const ResponseParameters& parameters) {
   const BookStage<Real> stage{slots_.places(), bodies, free_.view(),      solver_.view(),
                               parameters,      step_,  next_loads_.view()};
-  books_ = {};
-  if (ball_list_.size() > 0) {
-    books_ = parallel::sum_by_tiles<Books, Space>(
-        "books.balls", ball_list_.size(),
-        on_contacts(ball_list_, BookBalls<Real>{stage, store_.balls(), slots_.ball_memory()}));
-  }
-  if (point_list_.size() > 0) {
-    const BookPoints<Real> points{stage, store_.ball_places(), store_.points(), slots_.point_memory()};
-    books_ = books_ + parallel::sum_by_tiles<Books, Space>("books.points", point_list_.size(),
-                                                           on_contacts(point_list_, points));
-  }
+  // Both kinds are waited for once, and one that is not there costs nothing.
+  books_totals_.resize(2);
+  std::size_t kinds = 0;
+  const auto add_up = [&](const char* label, const ContactList<Space>& list, const auto& book) {
+    if (list.size() == 0) return;
+    parallel::sum_into<Books, Space>(label, list.size(), on_contacts(list, book), books_scratch_,
+                                     books_totals_.data() + kinds++);
+  };
+  add_up("books.balls", ball_list_, BookBalls<Real>{stage, store_.balls(), slots_.ball_memory()});
+  add_up("books.points", point_list_,
+         BookPoints<Real>{stage, store_.ball_places(), store_.points(), slots_.point_memory()});
+  Books of_kind[2];
+  copy_bytes<Host, Space>(of_kind, books_totals_.data(), kinds * sizeof(Books));
+  books_ = of_kind[0] + of_kind[1];
   Ledger ledger;
   ledger.restitution = books_.restitution;
   ledger.friction = books_.friction;

@@ -117,6 +117,7 @@ class ContactSolver {
   int judged_ = 0;                  // how many so far
   Array<std::uint32_t, Space> loads_, next_loads_;
 
+  Array<Books, Space> books_scratch_, books_totals_;
   Array<Ledger, Space> ledger_scratch_;
 };
 

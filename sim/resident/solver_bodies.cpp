@@ -18,6 +18,7 @@ namespace {
 constexpr std::int32_t most_slots = 24;
 constexpr std::int32_t slots_of_part = 12;
 static_assert(2 * most_slots <= most_colors);
+
 struct CountSlots {
   ConstView<Slot> slots;
   ConstView<Mobility> mobility;

@@ -47,6 +47,29 @@ Bodies<Host> crowd() {
   return bodies;
 }
 
+/// Twice, since what is kept from the first time must not show.
+template <class Space>
+void expect_listed(const Bodies<Host>& bodies, const std::vector<Pair>& pcs,
+                   const Array<double, Host>& margin,
+                   const std::vector<std::pair<std::int32_t, std::int32_t>>& expected) {
+  Bodies<Space> bodies_there;
+  Array<Pair, Space> pcs_there;
+  Array<double, Space> margin_there;
+  copy_bodies(bodies_there, bodies);
+  copy(pcs_there, pcs);
+  copy(margin_there, margin);
+  Candidates<Space> candidates;
+  for (int again = 0; again < 2; ++again) {
+    const ConstView<Pair> found =
+        candidates.list(view_of(std::as_const(bodies_there)), std::as_const(pcs_there).view(),
+                        std::as_const(margin_there).view());
+    ASSERT_EQ(found.size(), static_cast<std::int64_t>(expected.size()));
+    std::vector<Pair> pairs(expected.size());
+    copy_bytes<Host, Space>(pairs.data(), found.data(), pairs.size() * sizeof(Pair));
+    for (std::size_t k = 0; k < pairs.size(); ++k) ASSERT_EQ(std::pair(pairs[k].i, pairs[k].j), expected[k]);
+  }
+}
+
 TYPED_TEST(CandidatesTest, AreThePcsAndThePlanesInOrder) {
   const Bodies<Host> bodies = crowd();
   const ConstBodyView b = view_of(bodies);
@@ -86,22 +109,7 @@ TYPED_TEST(CandidatesTest, AreThePcsAndThePlanesInOrder) {
   ASSERT_GT(near, 20);
   ASSERT_GT(close, 50);
   ASSERT_GT(far, 50);
-  Bodies<TypeParam> bodies_there;
-  Array<Pair, TypeParam> pcs_there;
-  Array<double, TypeParam> margin_there;
-  copy_bodies(bodies_there, bodies);
-  copy(pcs_there, pcs);
-  copy(margin_there, margin);
-  Candidates<TypeParam> candidates;
-  for (int again = 0; again < 2; ++again) {
-    const ConstView<Pair> found =
-        candidates.list(view_of(std::as_const(bodies_there)), std::as_const(pcs_there).view(),
-                        std::as_const(margin_there).view());
-    ASSERT_EQ(found.size(), static_cast<std::int64_t>(expected.size()));
-    std::vector<Pair> pairs(expected.size());
-    copy_bytes<Host, TypeParam>(pairs.data(), found.data(), pairs.size() * sizeof(Pair));
-    for (std::size_t k = 0; k < pairs.size(); ++k) ASSERT_EQ(std::pair(pairs[k].i, pairs[k].j), expected[k]);
-  }
+  expect_listed<TypeParam>(bodies, pcs, margin, expected);
 }
 
 /// Balls within a tilted tube, and some without: those near its wall or its caps are candidates.
@@ -136,20 +144,8 @@ TYPED_TEST(CandidatesTest, OfATubeAreThoseNearItsSurface) {
   ASSERT_GT(far, 20);
   ASSERT_GT(outside, 20);
   std::ranges::sort(expected);
-  Bodies<TypeParam> bodies_there;
-  Array<Pair, TypeParam> pcs_there;
-  Array<double, TypeParam> margin_there;
-  copy_bodies(bodies_there, table);
-  copy(pcs_there, pcs);
-  copy(margin_there, margin);
-  Candidates<TypeParam> candidates;
-  const ConstView<Pair> found =
-      candidates.list(view_of(std::as_const(bodies_there)), std::as_const(pcs_there).view(),
-                      std::as_const(margin_there).view());
-  std::vector<Pair> pairs(static_cast<std::size_t>(found.size()));
-  copy_bytes<Host, TypeParam>(pairs.data(), found.data(), pairs.size() * sizeof(Pair));
-  ASSERT_EQ(pairs.size(), expected.size());
-  for (std::size_t k = 0; k < pairs.size(); ++k) ASSERT_EQ(std::pair(pairs[k].i, pairs[k].j), expected[k]);
+  copy_bodies(bodies, table);
+  expect_listed<TypeParam>(bodies, pcs, margin, expected);
 }
 
 TYPED_TEST(CandidatesTest, OfNothingAreNone) {

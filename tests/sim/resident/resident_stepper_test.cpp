@@ -222,6 +222,7 @@ bodies:
   - {sphere: {radius: 0.12}, at: [-0.3, -0.4, -0.88], velocity: [0, 0.5, 0], material: stone})";
   Simulation run = simulate(drum);
   Simulation host = simulation_of(drum);
+  int on_walls = 0;
   while (!run.finished()) {
     run.step();
     host.step();
@@ -234,11 +235,13 @@ bodies:
       const Vec3 at = run.body(static_cast<std::int32_t>(ball)).position +
                       (contact.i < contact.j ? point.arm_i : point.arm_j);
       EXPECT_EQ(problem.bodies[wall].inverse_mass, 0);
-      // The contact is of the midpoint, the ball of the end.
-      EXPECT_LT((problem.bodies[wall].velocity - Vec3(0.6, 0, 0.3).cross(at)).norm(), 0.01);
+      // The contact is of the midpoint, the ball of the end: half a step later.
+      EXPECT_LT((problem.bodies[wall].velocity - Vec3(0.6, 0, 0.3).cross(at)).norm(), 2e-3);
+      ++on_walls;
     }
     EXPECT_GE(problem.bodies.size(), 4u + 9u);
   }
+  EXPECT_GT(on_walls, 200);
   for (std::int32_t ball = 1; ball < 4; ++ball) {
     // Host cuts the step in which the first one begins to stick.
     const double tolerance = is_mixed() || ball == 1 ? 1e-5 : 1e-10;
