@@ -91,6 +91,31 @@ SCREE_HD inline bool edge_contact(const BoxPair& pair, const BoxAxis& axis, Mani
   return true;
 }
 
+namespace detail {
+
+/// Of the 12 edges of a box, those that may come within `margin` of the other one, a bit for each: all, but
+/// for those beyond the other's best face, if that separates the boxes.
+SCREE_HD inline std::uint32_t edges_within(const BoxPair& pair, const BoxAxes& axes, int box, double margin) {
+  const BoxAxis& face = axes.face[1 - box];
+  constexpr std::uint32_t all = (1u << 12) - 1;
+  if (!(face.separation > 0.0)) return all;
+  const Vec3 normal = (box == 0 ? -1.0 : 1.0) * normal_of(pair, face);  // from the other box
+  const Vec3 slope = (pair.axes[box].transpose() * normal).cwiseProduct(pair.half[box]);
+  const double lowest = -slope.cwiseAbs().sum();
+  // A margin is no bound of what rounds to it.
+  const double most = lowest - face.separation + margin + tolerance::same_feature * pair.smallest;
+  std::uint32_t within = 0;
+  for (int e = 0; e < 12; ++e) {
+    const int k = e % 3;
+    const double of_sides = (e / 3 & 1 ? slope[(k + 1) % 3] : -slope[(k + 1) % 3]) +
+                            (e / 3 & 2 ? slope[(k + 2) % 3] : -slope[(k + 2) % 3]);
+    if (of_sides - fabs(slope[k]) <= most) within |= 1u << e;
+  }
+  return within;
+}
+
+}  // namespace detail
+
 /// The contact of boxes that are apart and have no face over the other: the closest points of their edges.
 SCREE_HD inline bool closest_edges(const BoxPair& pair, const BoxAxes& axes, double margin, Manifold& out) {
   const BoxAxis& face = axes.face[axes.face[1].separation > axes.face[0].separation];
@@ -99,14 +124,18 @@ SCREE_HD inline bool closest_edges(const BoxPair& pair, const BoxAxes& axes, dou
   // closest point of the owner is on one of the 4 edges of the face.
   const double front = (box == 0 ? 1.0 : -1.0) * normal_of(pair, face).dot(pair.axes[box].col(face.index[0]));
   const BoxFeature candidates = face.separation > 0.0 ? box_side(face.index[0], front) : ~BoxFeature{0};
+  const std::uint32_t own_within = detail::edges_within(pair, axes, box, margin);
+  const std::uint32_t other_within = detail::edges_within(pair, axes, other, margin);
 
   double best = HUGE_VAL;
   detail::BoxEdge best_edge[2];
   detail::Closest best_at{};
   for (int e = 0; e < 12; ++e) {
+    if ((own_within >> e & 1) == 0) continue;
     const detail::BoxEdge own = detail::box_edge(pair, box, e);
     if (!(own.feature & candidates)) continue;
     for (int f = 0; f < 12; ++f) {
+      if ((other_within >> f & 1) == 0) continue;
       const detail::BoxEdge edge = detail::box_edge(pair, other, f);
       const detail::Closest at = detail::closest_points(own, edge);
       const Vec3 apart = point_on(edge, at.along[1]) - point_on(own, at.along[0]);

@@ -120,21 +120,7 @@ void ContactSolver<Space, Real>::find(ConstView<double> margin, double scale, co
                               .noise = tolerance::parting_speed * step_ * parameters.gravity.norm(),
                               .struck = {flight},
                               .any_is_late = any_is_late};
-  const std::int64_t balls = slots_.balls().tiles();
-  passing_.resize(balls * tile);
-  passing_count_.resize(1);
-  parallel::fill("contacts.passing", passing_count_, std::uint64_t{0});
-  const PassingList passing{passing_.view(), passing_count_.data()};
-  parallel::compact_tiles<Space>(
-      "contacts.find balls", balls,
-      FindBalls<Real>{stage, store_.balls(), slots_.ball_memory(), solver_.view(), passing},
-      store_.ball_tiles().data());
-  parallel::for_each<Space>("contacts.passing", JudgePassing<Real>::threads,
-                            JudgePassing<Real>{stage, store_.balls(), passing});
-  parallel::compact_tiles<Space>(
-      "contacts.find", slots_.others().tiles(),
-      FindPoints<Real>{stage, balls * tile, store_.points(), slots_.point_memory(), loads()},
-      store_.point_tiles().data());
+  finder_.find(stage, slots_, loads(), solver_.view(), store_);
   copy(free_, solver_);
   ball_list_.make(store_.ball_tiles());
   point_list_.make(store_.point_tiles());

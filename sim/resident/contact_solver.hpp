@@ -9,9 +9,9 @@
 #include "sim/dynamics/sweeps.hpp"
 #include "sim/resident/bodies.hpp"
 #include "sim/resident/books.hpp"
+#include "sim/resident/contact_finder.hpp"
 #include "sim/resident/contact_list.hpp"
 #include "sim/resident/contact_store.hpp"
-#include "sim/resident/find_contacts.hpp"
 #include "sim/resident/flights.hpp"
 #include "sim/resident/hubs.hpp"
 #include "sim/resident/inspection.hpp"
@@ -105,8 +105,7 @@ class ContactSolver {
 
   ContactStore<Space, Real> store_;
   ContactList<Space> ball_list_, point_list_;
-  Array<std::int32_t, Space> passing_;  // contacts of balls that may fly past, in any order
-  Array<std::uint64_t, Space> passing_count_;
+  ContactFinder<Space, Real> finder_;
 
   ContactCounts counts_;
   Books books_;

@@ -1,0 +1,181 @@
+// From the other slots to contacts of several points: which of them have one, and what the sweeps need to know
+// of it.
+#pragma once
+
+#include "narrowphase/far_apart.hpp"
+#include "narrowphase/pair_contacts.hpp"
+#include "sim/dynamics/rotation.hpp"
+#include "sim/resident/find_stage.hpp"
+
+namespace scree::resident {
+
+/// True if the spheres around two bodies are too far apart for a contact.
+template <class Real>
+SCREE_HD inline bool are_far(const FindStage<Real>& stage, const SlotBodies<Real>& at) {
+  if (is_boundary(at.a.shape) || is_boundary(at.b.shape)) return false;
+  const double reach = bounding_radius(at.a.shape, stage.bodies.size[at.slot.i]) +
+                       bounding_radius(at.b.shape, stage.bodies.size[at.slot.j]) + at.margin();
+  return are_far_apart(at.a.position, at.b.position, reach);
+}
+
+/// What is rare must take no registers from the rest, and so it is called.
+template <class Real>
+[[gnu::noinline]] SCREE_HD bool meet_any(const FindStage<Real>& stage, const SlotBodies<Real>& at,
+                                         double lead, Manifold& out) {
+  Manifold all[max_pair_manifolds];
+  const int count = find_pair_contacts(at.a.shape, stage.solid(at.slot.i, lead), at.b.shape,
+                                       stage.solid(at.slot.j, lead), at.margin(), all);
+  const auto is_of = [&](Shape shape) { return at.a.shape == shape || at.b.shape == shape; };
+  const bool corners = is_of(Shape::tube) && is_of(Shape::box);
+  const Manifold* on = manifold_on(at.slot.surface, corners, all, count);
+  if (on != nullptr) out = *on;
+  return on != nullptr;
+}
+
+/// The contact of a slot that is not of balls.
+template <class Real>
+SCREE_HD inline bool meet_points(const FindStage<Real>& stage, const SlotBodies<Real>& at, double lead,
+                                 Manifold& out) {
+  if (lead == 0 && are_far(stage, at)) return false;
+  const bool box_a = at.a.shape == Shape::box;
+  const bool box_b = at.b.shape == Shape::box;
+  const bool plane = at.a.shape == Shape::plane || at.b.shape == Shape::plane;
+  if (!(box_a && box_b) && !((box_a || box_b) && plane)) return meet_any(stage, at, lead, out);
+  const Solid a = stage.solid(at.slot.i, lead);
+  const Solid b = stage.solid(at.slot.j, lead);
+  out.part = 0;
+  if (!plane) return box_box(a, b, at.margin(), out);
+  const bool found = box_plane(box_a ? a : b, box_a ? b : a, at.margin(), out);
+  if (found && !box_a) out.normal = -out.normal;
+  return found;
+}
+
+/// Contacts that are not of balls alone, all as if they met. Those that may fly past are listed.
+template <class Real>
+struct FindPoints {
+  struct Record {
+    Manifold manifold;
+    double lead;
+  };
+
+  FindStage<Real> stage;
+  std::int64_t first_place;  ///< of the slots that are not of balls
+  PointContacts<Real> contacts;
+  View<PointMemory<Real>> memory;
+  ConstView<LoadedParts> loads;  ///< of candidates
+  PassingList passing;
+
+  SCREE_HD bool find(std::int64_t k, Record& record) const {
+    const Slot slot = stage.places[first_place + k];
+    if (slot.i == Slot::empty) return false;
+    record.lead = stage.lead_of(slot);
+    if (meet_points(stage, stage.load(slot), record.lead, record.manifold)) return true;
+    memory[k].count = 0;
+    return false;
+  }
+
+  SCREE_HD void store(std::int64_t to, std::int64_t k, const Record& record) const {
+    using C = PointContacts<Real>;
+    const Manifold& m = record.manifold;
+    const double lead = record.lead;
+    const Slot slot = stage.places[first_place + k];
+    const SlotBodies<Real> pair = stage.load(slot);
+    const double friction = stage.friction_of(pair);
+    const double shell = m.count == 1 ? 0.0 : tolerance::closed_gap * pair.size();
+    const SolverBody i = solver_body(pair.a, slot.i, slot.end_i);
+    const SolverBody j = solver_body(pair.b, slot.j, slot.end_j);
+    const Vec3 kick = stage.kick_of(pair.b, slot.j) - stage.kick_of(pair.a, slot.i);
+    PointMemory<Real> old = memory[k];
+    PointMemory<Real>& now = memory[k];
+    contacts.ends[to] = {slot.end_i, slot.end_j};
+    contacts.slot[to] = static_cast<std::uint8_t>(k % 256);
+    contacts.flags[to] = static_cast<std::uint8_t>(lead > 0 ? flag_late : 0);
+    contacts.points[to] = m.count;
+    contacts.fields.set(C::normal, to, v3<Real>(m.normal));
+    contacts.fields.at(C::friction, to) = static_cast<Real>(friction);
+    contacts.fields.at(C::cap, to) = static_cast<Real>(tolerance::correction_cap * pair.size());
+    now.count = m.count;
+    const double bend = stage.bend_of(pair, m.normal);
+    bool may_pass = false;
+    for (int p = 0; p < m.count; ++p) {
+      const ContactPoint& point = m.points[p];
+      RowCoupling coupling;
+      const ContactRow row =
+          make_row(m.normal, point.position - stage.bodies.position[slot.i],
+                   point.position - stage.bodies.position[slot.j], point.gap, i, j, coupling);
+      now.feature[p] = point.feature;
+      V3<Real> last{};
+      for (int q = 0; q < old.count; ++q)
+        if (old.feature[q] == point.feature) last = old.impulse[q];
+      const V3<Real> impulse = v3<Real>(stage.remembered(last, m.normal, friction));
+      const double parting = m.normal.dot(row.relative_velocity(i, j));
+      may_pass = may_pass || may_hold_apart(point.gap, -(parting + m.normal.dot(kick)), lead);
+      const auto at = [p](int field) { return C::at_point(p, field); };
+      const Fields<Real>& f = contacts.point_fields;
+      const auto put = [&](int field, double value) { f.at(at(field), to) = static_cast<Real>(value); };
+      f.set(at(C::arm_i), to, v3<Real>(row.arm_i));
+      f.set(at(C::arm_j), to, v3<Real>(row.arm_j));
+      const Mat3& w = coupling.stick;
+      const double stick[] = {w(0, 0), w(1, 1), w(2, 2), w(0, 1), w(0, 2), w(1, 2)};
+      for (int e = 0; e < 6; ++e) put(C::stick + e, stick[e]);
+      f.set(at(C::coupling), to, v3<Real>(coupling.normal));
+      put(C::target, stage.target_of(point.gap, shell, bend, parting, lead));
+      put(C::normal_mass, row.normal_mass);
+      put(C::tangent_mass, row.tangent_mass);
+      f.set(at(C::impulse), to, impulse);
+      f.set(at(C::last), to, impulse);
+      put(C::gap, point.gap);
+      put(C::flown, point.gap + stage.opened_by_then(pair, m.normal, bend, lead));
+      put(C::pushed, 0);
+    }
+    if (may_pass && !loads[slot.candidate].is_loaded(m.part)) passing.add(to);
+  }
+
+ private:
+  /// A look at a point's normal velocity tells of nearly all that they are not held apart (flight_of_contact).
+  SCREE_HD bool may_hold_apart(double gap, double closing, double lead) const {
+    return gap > 0 && (lead > 0 || closing * stage.step > tolerance::likely_closing * gap);
+  }
+  /// Before the kick.
+  SCREE_HD SolverBody solver_body(const MidBody<Real>& body, std::int32_t k, std::int32_t end) const {
+    const ConstBodyView& bodies = stage.bodies;
+    const double parts = k == end || !body.is_free()
+                             ? 1.0
+                             : static_cast<double>(stage.solver[end].inverse_mass) / bodies.inverse_mass[k];
+    return {bodies.velocity[k], bodies.spin[k], parts * bodies.inverse_mass[k],
+            parts * world_inverse_inertia(bodies.orientation[k], bodies.inverse_inertia[k])};
+  }
+};
+
+/// Of these contacts.
+template <class Real>
+struct JudgePoints {
+  FindStage<Real> stage;
+  std::int64_t first_place;
+  PointContacts<Real> contacts;
+
+  SCREE_HD void operator()(std::int64_t c) const {
+    using C = PointContacts<Real>;
+    const Slot slot = stage.places[first_place + c - c % 256 + contacts.slot[c]];
+    const SlotBodies<Real> at = stage.load(slot);
+    Manifold m;
+    if (!meet_points(stage, at, stage.lead_of(slot), m)) return;
+    m.i = slot.i;
+    m.j = slot.j;
+    if (!flight_of_contact(stage.struck, m, m.points, at.size(), false).flying) return;
+    contacts.flags[c] |= flag_flying;
+    const Vec3 kick = stage.kick_of(at.b, slot.j) - stage.kick_of(at.a, slot.i);
+    const auto velocity_at = [&](std::int32_t body, const Vec3& point) {
+      const Vec3 arm = point - stage.bodies.position[body];
+      return Vec3(stage.bodies.velocity[body] + stage.bodies.spin[body].cross(arm));
+    };
+    for (int p = 0; p < m.count; ++p) {
+      const Vec3& point = m.points[p].position;
+      const double free = m.normal.dot(velocity_at(slot.j, point) - velocity_at(slot.i, point) + kick);
+      Real& target = contacts.point_fields.at(C::at_point(p, C::target), c);
+      target = static_cast<Real>(stage.target_in_flight(static_cast<double>(target), free));
+    }
+  }
+};
+
+}  // namespace scree::resident
