@@ -186,7 +186,7 @@ void ResidentStepper<Space, Real>::substep(double h, double done) {
   }
   {
     const timing::Region region("response");
-    ledger = ledger + contacts_.solve(flight, late, counters);
+    ledger = ledger + contacts_.solve(flight, late, h / grid_.length(step_ + 1), counters);
   }
   if (resolve_impacts(h, 0.5 * h, 0.5 * h, reach_from(h, done)))
     contacts_.take_velocities(view_of(std::as_const(bodies_)));

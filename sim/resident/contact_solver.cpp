@@ -9,6 +9,7 @@
 #include "sim/resident/rounds.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <type_traits>
 #include <utility>
 
@@ -17,6 +18,7 @@ namespace scree::resident {
 namespace {
 
 constexpr int tile = parallel::tile;
+constexpr int most_patience = 6;  // a degree
 
 }  // namespace
 
@@ -164,13 +166,16 @@ SweepState ContactSolver<Space, Real>::run_impulse_rounds(const SweepPlan& plan)
 }
 
 template <class Space, class Real>
-void ContactSolver<Space, Real>::find_impulses(const ResponseParameters& parameters, Counters& counters) {
+void ContactSolver<Space, Real>::find_impulses(const ResponseParameters& parameters, double share,
+                                               Counters& counters) {
   SweepPlan plan = plan_sweeps(parameters, counts_.contacts, counts_.points);
   if (std::is_same_v<Real, float>) plan.tolerance = std::max(plan.tolerance, tolerance::mixed_change);
   momentum_ = true;
   // Of bodies that share several points the measure of slow modes tells mostly of how these share their load.
   if (is_heap(counts_.points) && !shares_loads(counts_.contacts, counts_.points)) {
-    plan.least = std::max(plan.least / 3, (plan.least << patience_) / 4);
+    // Substeps share the sweeps of a step: each starts from the impulses of the last.
+    const int patience = std::min(patience_, most_patience - std::ilogb(1 / share));
+    plan.least = std::max(plan.least / 3, (plan.least << patience) / 4);
     // Who asks for a tolerance may get many sweeps.
     momentum_ = patience_ > 0 || parameters.tolerance > 0;
     if (parameters.iterations > 0) plan.least = std::min(plan.least, plan.most);
@@ -257,7 +262,7 @@ void ContactSolver<Space, Real>::be_patient() {
   // Of each degree: more of them where more is left undone, fewer where less is.
   constexpr struct {
     double more, less;
-  } degrees[] = {{stirring_power, 0},        {done_power, calm_power},   {undone_power, calm_power},
+  } degrees[most_patience + 1] = {{stirring_power, 0},        {done_power, calm_power},   {undone_power, calm_power},
                  {undone_power, done_power}, {undone_power, done_power}, {undone_power, done_power},
                  {HUGE_VAL, done_power}};
   undone_ += std::abs(books_.gap_power);
@@ -272,14 +277,15 @@ void ContactSolver<Space, Real>::be_patient() {
 }
 
 template <class Space, class Real>
-Ledger ContactSolver<Space, Real>::solve(const FlightStage& flight, bool any_is_late, Counters& counters) {
+Ledger ContactSolver<Space, Real>::solve(const FlightStage& flight, bool any_is_late, double share,
+                                         Counters& counters) {
   const ResponseParameters& parameters = flight.parameters;
   const ConstBodyView bodies = read_only(flight.bodies);
   Ledger ledger;
   books_ = {};
   parallel::fill("books.loads", next_loads_, 0u);
   if (counts_.contacts > 0) {
-    find_impulses(parameters, counters);
+    find_impulses(parameters, share, counters);
     ledger = book(bodies, parameters);
   }
   if (parameters.torque.size() > 0) {

@@ -46,8 +46,8 @@ class ContactSolver {
   void find(ConstView<double> margin, double scale, const FlightStage& flight, bool any_is_late);
 
   /// Impulses with e = 0, by sweeps; the bodies get their velocities, and those that were struck late their
-  /// places. Returns what was moved.
-  Ledger solve(const FlightStage& flight, bool any_is_late, Counters& counters);
+  /// places. `share`: of the step that the substep is. Returns what was moved.
+  Ledger solve(const FlightStage& flight, bool any_is_late, double share, Counters& counters);
 
   /// Impacts after the response have changed velocities.
   void take_velocities(const ConstBodyView& bodies);
@@ -80,7 +80,7 @@ class ContactSolver {
   ConstView<Slot> places_of_points() const;
   template <class Record>
   JoinHubs<Record> join_hubs(Array<Record, Space>& bodies);
-  void find_impulses(const ResponseParameters& parameters, Counters& counters);
+  void find_impulses(const ResponseParameters& parameters, double share, Counters& counters);
   bool sweep(const SweepPlan& plan, Counters& counters);
   bool solve_few(const SweepPlan& plan, Counters& counters);
   LoadSpread spread_of_loads();
