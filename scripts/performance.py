@@ -66,8 +66,9 @@ def wide(n, precision="mixed"):
 
 
 def boxes(n, precision="mixed"):
-    settings = lattice(n, 50, 50 / 100, lambda side: 0.1206 * side + 0.061)
-    return Run("settled_boxes", settings, 4, 15 if n < 10**6 else 80, precision, varied={"n": n})
+    """20 layers, too: more come to rest slowly."""
+    settings = lattice(n, 10, 10, lambda side: 0.1206 * side + 0.061)
+    return Run("settled_boxes", settings, 3, 30 if n < 10**6 else 150, precision, varied={"n": n, "layers": 20})
 
 
 def decades(n, precision="mixed"):

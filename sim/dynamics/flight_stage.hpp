@@ -13,12 +13,14 @@
 
 namespace scree {
 
-/// How weary impacts make a body in a flight: each by 1 - e, at least by 1/8. What is caught between others
-/// bounces ever faster, and the contacts of the substep end that: the body bounces no more from the first sum
-/// on (after 64 impacts with e near 1, 9 with e = 0.1), and has no more impacts from the second on.
+/// How weary impacts make a body in a flight. What is caught between others bounces ever faster, and the
+/// contacts of the substep end that: the body bounces no more from the first sum on (when e^k has fallen to
+/// 1/1000, after 4 to 64 impacts), and has no more impacts from the second on.
 inline constexpr double bounces_end = 8;
 inline constexpr double impacts_end = 16;
-SCREE_HD inline double weariness(double restitution) { return fmax(1 - restitution, 0.125); }
+SCREE_HD inline double weariness(double restitution) {
+  return fmax(0.125, fmin(-bounces_end / 3 * log10(fmax(restitution, 0.01)), 2.0));
+}
 
 /// What holds in one flight. It ends with the substep.
 struct FlightTerms {
