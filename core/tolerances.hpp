@@ -43,7 +43,7 @@ inline constexpr double corrected_overlap = 1e-7;
 /// The same of a heap of balls, in which the deepest is one of many, and of the mean of its overlaps: the
 /// rest is for the next substeps. Smaller: a heap at rest takes more sweeps, and overlaps less.
 inline constexpr double heap_overlap = 1e-3;
-inline constexpr double heap_mean_overlap = 1e-5;
+inline constexpr double heap_mean_overlap = 1.5e-5;
 /// Overlap that a substep may leave to be corrected (of the smaller smallest_size): after more, the next step
 /// is taken in twice as many substeps, if their number is free. It falls with the square of the substep's
 /// length. Smaller: impacts of many bodies at once cost more and are more accurate.
@@ -51,7 +51,10 @@ inline constexpr double substep_overlap = 0.06;
 /// Under this much (likewise) the next step is taken in half as many. Must be under a quarter of the other,
 /// or their number flickers.
 inline constexpr double coarser_overlap = 0.012;
-/// Most substeps that a step takes by itself. Larger: bodies wedged for good cost more.
+/// And after so many steps between the two, as well: what is wedged would ask for finer steps for good, which
+/// do not part it. Fewer: the deepest overlaps come back more often.
+inline constexpr int wedged_steps = 32;
+/// Most substeps that a step takes by itself. Larger: fast scenes cost more.
 inline constexpr int most_substeps = 4;
 /// Largest correction of one body in one step (of smallest_size): deep overlaps part gently.
 inline constexpr double correction_cap = 0.2;

@@ -262,9 +262,10 @@ void ContactSolver<Space, Real>::be_patient() {
   // Of each degree: more of them where more is left undone, fewer where less is.
   constexpr struct {
     double more, less;
-  } degrees[most_patience + 1] = {{stirring_power, 0},        {done_power, calm_power},   {undone_power, calm_power},
-                 {undone_power, done_power}, {undone_power, done_power}, {undone_power, done_power},
-                 {HUGE_VAL, done_power}};
+  } degrees[most_patience + 1] = {{stirring_power, 0},        {done_power, calm_power},
+                                  {undone_power, calm_power}, {undone_power, done_power},
+                                  {undone_power, done_power}, {undone_power, done_power},
+                                  {HUGE_VAL, done_power}};
   undone_ += std::abs(books_.gap_power);
   kicked_ += books_.kick_power;
   if (++judged_ < judged_together) return;

@@ -1,5 +1,5 @@
-// From the other slots to contacts of several points: which of them have one, and what the sweeps need to know
-// of it.
+// From the other slots to contacts of several points: which of them have one, and what the sweeps need to
+// know of it.
 #pragma once
 
 #include "narrowphase/far_apart.hpp"
@@ -132,7 +132,8 @@ struct FindPoints {
   }
 
  private:
-  /// A look at a point's normal velocity tells of nearly all that they are not held apart (flight_of_contact).
+  /// A look at a point's normal velocity tells of nearly all that they are not held apart
+  /// (flight_of_contact).
   SCREE_HD bool may_hold_apart(double gap, double closing, double lead) const {
     return gap > 0 && (lead > 0 || closing * stage.step > tolerance::likely_closing * gap);
   }
