@@ -171,10 +171,14 @@ void ContactSolver<Space, Real>::find_impulses(const ResponseParameters& paramet
   SweepPlan plan = plan_sweeps(parameters, counts_.contacts, counts_.points);
   if (std::is_same_v<Real, float>) plan.tolerance = std::max(plan.tolerance, tolerance::mixed_change);
   momentum_ = true;
-  // Of bodies that share several points the measure of slow modes tells mostly of how these share their load.
-  if (is_heap(counts_.points) && !shares_loads(counts_.contacts, counts_.points)) {
+  if (is_heap(counts_.points)) {
+    // Bodies that share several points do not stay at rest with fewer sweeps.
+    const bool shared = shares_loads(counts_.contacts, counts_.points);
+    const int least = shared ? 3 : 0;
+    const int most = shared ? 5 : most_patience;
+    patience_ = std::clamp(patience_, least, most);
     // Substeps share the sweeps of a step: each starts from the impulses of the last.
-    const int patience = std::min(patience_, most_patience - std::ilogb(1 / share));
+    const int patience = std::min(patience_, most - std::ilogb(1 / share));
     plan.least = std::max(plan.least / 3, (plan.least << patience) / 4);
     // Who asks for a tolerance may get many sweeps.
     momentum_ = patience_ > 0 || parameters.tolerance > 0;

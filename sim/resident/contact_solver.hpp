@@ -110,7 +110,7 @@ class ContactSolver {
   ContactCounts counts_;
   Books books_;
   double overlap_ = 0;
-  int patience_ = 2;                // degree: 0, 1, 2... sweep 2, 3, 6, 12... times
+  int patience_ = 2;                // degree: 0, 1, 2... sweep 2, 3, 6, 12... times, boxes twice as often
   bool momentum_ = true;            // sweeps go on by what the last one has changed
   double undone_ = 0, kicked_ = 0;  // sums of gap_power and kick_power, of the substeps judged together
   int judged_ = 0;                  // how many so far
