@@ -44,6 +44,8 @@ inline constexpr double corrected_overlap = 1e-7;
 /// rest is for the next substeps. Smaller: a heap at rest takes more sweeps, and overlaps less.
 inline constexpr double heap_overlap = 1e-3;
 inline constexpr double heap_mean_overlap = 1.5e-5;
+/// The same mean of bodies that share several points, whose overlaps turn them.
+inline constexpr double shared_mean_overlap = 1e-6;
 /// Overlap that a substep may leave to be corrected (of the smaller smallest_size): after more, the next step
 /// is taken in twice as many substeps, if their number is free. It falls with the square of the substep's
 /// length. Smaller: impacts of many bodies at once cost more and are more accurate.

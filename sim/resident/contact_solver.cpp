@@ -381,7 +381,7 @@ template <class Space, class Real>
 PartingPlan ContactSolver<Space, Real>::plan_parting() const {
   using namespace tolerance;
   if (!is_heap(counts_.points)) return {1, 100, corrected_overlap, corrected_overlap};
-  if (shares_loads(counts_.contacts, counts_.points)) return {1, 24, corrected_overlap, corrected_overlap};
+  if (shares_loads(counts_.contacts, counts_.points)) return {1, 24, heap_overlap, shared_mean_overlap};
   return {patience_ > 0 ? 2 : 1, 6, heap_overlap, heap_mean_overlap};
 }
 
