@@ -42,8 +42,8 @@ inline constexpr double correction_share = 0.8;
 inline constexpr double corrected_overlap = 1e-7;
 /// The same of a heap of balls, in which the deepest is one of many, and of the mean of its overlaps: the
 /// rest is for the next substeps. Smaller: a heap at rest takes more sweeps, and overlaps less.
-inline constexpr double heap_overlap = 1e-3;
-inline constexpr double heap_mean_overlap = 1.5e-5;
+inline constexpr double heap_overlap = 2e-3;
+inline constexpr double heap_mean_overlap = 1e-5;
 /// The same mean of bodies that share several points, whose overlaps turn them.
 inline constexpr double shared_mean_overlap = 1e-6;
 /// Overlap that a substep may leave to be corrected (of the smaller smallest_size): after more, the next step
