@@ -9,7 +9,6 @@
 #include "sim/resident/rounds.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <type_traits>
 #include <utility>
 
@@ -18,7 +17,6 @@ namespace scree::resident {
 namespace {
 
 constexpr int tile = parallel::tile;
-constexpr int most_patience = 6;  // a degree
 
 }  // namespace
 
@@ -172,16 +170,9 @@ void ContactSolver<Space, Real>::find_impulses(const ResponseParameters& paramet
   if (std::is_same_v<Real, float>) plan.tolerance = std::max(plan.tolerance, tolerance::mixed_change);
   momentum_ = true;
   if (is_heap(counts_.points)) {
-    // Bodies that share several points do not stay at rest with fewer sweeps.
-    const bool shared = shares_loads(counts_.contacts, counts_.points);
-    const int least = shared ? 3 : 0;
-    const int most = shared ? 5 : most_patience;
-    patience_ = std::clamp(patience_, least, most);
-    // Substeps share the sweeps of a step: each starts from the impulses of the last.
-    const int patience = std::min(patience_, most - std::ilogb(1 / share));
-    plan.least = std::max(plan.least / 3, (plan.least << patience) / 4);
+    plan.least = patience_.sweeps(plan.least, shares_loads(counts_.contacts, counts_.points), share);
     // Who asks for a tolerance may get many sweeps.
-    momentum_ = patience_ > 0 || parameters.tolerance > 0;
+    momentum_ = !patience_.is_calm() || parameters.tolerance > 0;
     if (parameters.iterations > 0) plan.least = std::min(plan.least, plan.most);
     plan.most = std::max(plan.most, plan.least);
   }
@@ -252,33 +243,8 @@ Ledger ContactSolver<Space, Real>::book(const ConstBodyView& bodies, const Respo
   ledger.restitution = books_.restitution;
   ledger.friction = books_.friction;
   ledger.work = books_.work;
-  be_patient();
+  patience_.judge(books_.gap_power, books_.kick_power);
   return ledger;
-}
-
-/// Sweeps of the next substeps, by what those of the last ones have left undone. It is judged over many
-/// substeps at once: the slow modes are oscillations, and a number of sweeps that goes up and down with them
-/// pumps them.
-template <class Space, class Real>
-void ContactSolver<Space, Real>::be_patient() {
-  constexpr int judged_together = 32;
-  using namespace tolerance;
-  // Of each degree: more of them where more is left undone, fewer where less is.
-  constexpr struct {
-    double more, less;
-  } degrees[most_patience + 1] = {{stirring_power, 0},        {done_power, calm_power},
-                                  {undone_power, calm_power}, {undone_power, done_power},
-                                  {undone_power, done_power}, {undone_power, done_power},
-                                  {HUGE_VAL, done_power}};
-  undone_ += std::abs(books_.gap_power);
-  kicked_ += books_.kick_power;
-  if (++judged_ < judged_together) return;
-  if (undone_ > degrees[patience_].more * kicked_) {
-    ++patience_;
-  } else if (undone_ < degrees[patience_].less * kicked_) {
-    --patience_;
-  }
-  undone_ = kicked_ = judged_ = 0;
 }
 
 template <class Space, class Real>
@@ -382,7 +348,7 @@ PartingPlan ContactSolver<Space, Real>::plan_parting() const {
   using namespace tolerance;
   if (!is_heap(counts_.points)) return {1, 100, corrected_overlap, corrected_overlap};
   if (shares_loads(counts_.contacts, counts_.points)) return {1, 24, heap_overlap, shared_mean_overlap};
-  return {patience_ > 0 ? 2 : 1, 6, heap_overlap, heap_mean_overlap};
+  return {patience_.is_calm() ? 1 : 2, 6, heap_overlap, heap_mean_overlap};
 }
 
 template <class Space, class Real>

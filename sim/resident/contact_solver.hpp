@@ -15,6 +15,7 @@
 #include "sim/resident/flights.hpp"
 #include "sim/resident/hubs.hpp"
 #include "sim/resident/inspection.hpp"
+#include "sim/resident/patience.hpp"
 #include "sim/resident/slots.hpp"
 #include "sim/resident/sweeps.hpp"
 
@@ -90,7 +91,6 @@ class ContactSolver {
   template <bool only_balls>
   void run_parting_rounds(const PartingPlan& plan);
   Ledger book(const ConstBodyView& bodies, const ResponseParameters& parameters);
-  void be_patient();
   Ledger shift_late_bodies(const FlightStage& flight);
   void fly_late(const FlightStage& flight);
 
@@ -110,10 +110,8 @@ class ContactSolver {
   ContactCounts counts_;
   Books books_;
   double overlap_ = 0;
-  int patience_ = 2;                // degree: 0, 1, 2... sweep 2, 3, 6, 12... times, boxes twice as often
-  bool momentum_ = true;            // sweeps go on by what the last one has changed
-  double undone_ = 0, kicked_ = 0;  // sums of gap_power and kick_power, of the substeps judged together
-  int judged_ = 0;                  // how many so far
+  Patience patience_;
+  bool momentum_ = true;  // sweeps go on by what the last one has changed
   Array<std::uint32_t, Space> loads_, next_loads_;
 
   Array<Books, Space> books_scratch_, books_totals_;

@@ -1,0 +1,26 @@
+// How often a heap is swept, by what its last substeps have left undone.
+#pragma once
+
+namespace scree::resident {
+
+/// Sweeps see nothing of the slow modes of many layers. The power that normal impulses have on what they
+/// leave undone does, beside that of all impulses on all they change (docs/decisions/0024, 0029).
+class Patience {
+ public:
+  /// Least sweeps of the next substep, which is a share of its step; `usual`: plan_sweeps()'s. `shared`:
+  /// bodies share several points.
+  int sweeps(int usual, bool shared, double share);
+
+  /// After a substep: the powers (W).
+  void judge(double undone, double kicked);
+
+  /// Nothing is left of slow modes.
+  bool is_calm() const { return degree_ == 0; }
+
+ private:
+  int degree_ = 2;  // 0, 1, 2... are 2, 3, 6, 12... sweeps of balls
+  double undone_ = 0, kicked_ = 0;
+  int judged_ = 0;  // substeps since it was last changed
+};
+
+}  // namespace scree::resident

@@ -1,0 +1,69 @@
+#include "sim/resident/patience.hpp"
+
+#include "core/tolerances.hpp"
+
+#include <gtest/gtest.h>
+
+namespace scree::resident {
+namespace {
+
+constexpr int balls = 6, boxes = 12;  // of plan_sweeps()
+
+/// As many substeps as are judged together, `times` times.
+void judge(Patience& patience, int times, double undone) {
+  for (int k = 0; k < 32 * times; ++k) patience.judge(k % 2 == 0 ? undone : -undone, 1.0);
+}
+
+TEST(Patience, AHeapIsSweptAsUsualAtFirst) {
+  Patience of_balls, of_boxes;
+  EXPECT_EQ(of_balls.sweeps(balls, false, 1.0), balls);
+  EXPECT_EQ(of_boxes.sweeps(boxes, true, 1.0), 2 * boxes);
+}
+
+TEST(Patience, WhatIsLeftUndoneAsksForMore) {
+  Patience of_balls, of_boxes;
+  of_boxes.sweeps(boxes, true, 1.0);
+  for (const int expected : {12, 24, 48, 96, 96}) {
+    judge(of_balls, 1, 2 * tolerance::undone_power);
+    EXPECT_EQ(of_balls.sweeps(balls, false, 1.0), expected);
+  }
+  for (const int expected : {48, 96, 96}) {
+    judge(of_boxes, 1, 2 * tolerance::undone_power);
+    EXPECT_EQ(of_boxes.sweeps(boxes, true, 1.0), expected);
+  }
+}
+
+TEST(Patience, LittleAsksForFewer) {
+  Patience of_balls, of_boxes;
+  of_boxes.sweeps(boxes, true, 1.0);
+  for (const int expected : {3, 2}) {
+    EXPECT_FALSE(of_balls.is_calm());
+    judge(of_balls, 1, 0.5 * tolerance::calm_power);
+    EXPECT_EQ(of_balls.sweeps(balls, false, 1.0), expected);
+  }
+  EXPECT_TRUE(of_balls.is_calm());
+  judge(of_boxes, 3, 0.5 * tolerance::calm_power);
+  EXPECT_EQ(of_boxes.sweeps(boxes, true, 1.0), 24);
+}
+
+TEST(Patience, OneSubstepDecidesNothing) {
+  Patience patience;
+  patience.judge(1.0, 1.0);
+  EXPECT_EQ(patience.sweeps(balls, false, 1.0), balls);
+}
+
+TEST(Patience, SubstepsShareTheSweepsOfAStep) {
+  Patience of_balls, of_boxes;
+  judge(of_balls, 6, 1.0);
+  of_boxes.sweeps(boxes, true, 1.0);
+  judge(of_boxes, 6, 1.0);
+  for (const int substeps : {1, 2, 4, 8}) {
+    EXPECT_EQ(substeps * of_balls.sweeps(balls, false, 1.0 / substeps), 96) << substeps;
+    EXPECT_EQ(substeps * of_boxes.sweeps(boxes, true, 1.0 / substeps), 96) << substeps;
+  }
+  EXPECT_EQ(of_balls.sweeps(balls, false, 1e-6), 2);
+  EXPECT_EQ(of_boxes.sweeps(boxes, true, 1e-6), 4);
+}
+
+}  // namespace
+}  // namespace scree::resident
