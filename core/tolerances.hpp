@@ -40,7 +40,7 @@ inline constexpr double likely_closing = 0.75;
 inline constexpr double correction_share = 0.8;
 /// Overlap of the deepest contact (of smallest_size) at which it stops.
 inline constexpr double corrected_overlap = 1e-7;
-/// The same of a heap of balls, in which the deepest is one of many, and of the mean of its overlaps: the
+/// The same of a heap, in which the deepest is one of many, and of the mean of the overlaps of balls: the
 /// rest is for the next substeps. Smaller: a heap at rest takes more sweeps, and overlaps less.
 inline constexpr double heap_overlap = 2e-3;
 inline constexpr double heap_mean_overlap = 1e-5;

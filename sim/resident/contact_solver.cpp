@@ -342,7 +342,7 @@ Ledger ContactSolver<Space, Real>::correct(const FlightStage& flight, bool any_i
   return ledger;
 }
 
-/// Of a heap of balls the deepest contact is one of many, which do not wait for it.
+/// Of a heap the deepest contact is one of many, which do not wait for it.
 template <class Space, class Real>
 PartingPlan ContactSolver<Space, Real>::plan_parting() const {
   using namespace tolerance;
