@@ -4,6 +4,7 @@
 #include "core/timing.hpp"
 #include "core/tolerances.hpp"
 #include "sim/dynamics/prescribed.hpp"
+#include "sim/dynamics/substep_count.hpp"
 #include "sim/measurement.hpp"
 #include "sim/presence.hpp"
 #include "sim/resident_stepper.hpp"
@@ -80,9 +81,8 @@ struct Simulation::Parts {
   std::unique_ptr<Stepper> stepper;
 
   std::int64_t step = 0;
-  int substeps = 1;       // of the next, if the scene leaves it open
-  int shallow_steps = 0;  // since their number was last chosen
-  double last_step = 0;   // its length
+  SubstepCount substeps;
+  double last_step = 0;  // its length
   std::vector<Quat> first_orientation;
   Exchange exchange;  // potential energy about `origin`
   EnergyBaseline baseline;
@@ -117,7 +117,7 @@ struct Simulation::Parts {
 
   void do_step() {
     const double dt = grid.length(step + 1);
-    const int n = scene.time.substeps.value_or(substeps);
+    const int n = scene.time.substeps.value_or(substeps.next());
     const double h = dt / n;
     double overlap = 0;
     stepper->start_step(step);
@@ -132,24 +132,13 @@ struct Simulation::Parts {
       stepper->undo_step();
       throw RunError(fmt::format("step {} (t = {} s): {}", step + 1, grid.time(step), error.what()));
     }
-    choose_substeps(n, overlap);
+    substeps.judge(n, overlap);
     stepper->counters.substeps += n;
     ++step;
     come_and_go();
     contents_before = std::exchange(contents, region_contents());
     last_step = dt;
     observed = overlaps_observed = false;
-  }
-
-  /// Of the next step, after one of n that has found overlaps so deep.
-  void choose_substeps(int n, double overlap) {
-    if (overlap > tolerance::substep_overlap) {
-      substeps = std::min(2 * n, tolerance::most_substeps);
-      shallow_steps = 0;
-    } else if (overlap < tolerance::coarser_overlap || ++shallow_steps >= tolerance::wedged_steps) {
-      substeps = std::max(n / 2, 1);
-      shallow_steps = 0;
-    }
   }
 
   /// Bodies whose time has come or is over.
