@@ -2,6 +2,7 @@
 // permute, snapshot, checkpoint and hash all use that list.
 #pragma once
 
+#include "core/archive.hpp"
 #include "core/array.hpp"
 #include "core/math.hpp"
 
@@ -49,6 +50,7 @@ struct BodyFields {
   Container<std::int32_t> id;        ///< the body's number in the scene; stays when the arrays are permuted
 
   std::int64_t count() const { return static_cast<std::int64_t>(position.size()); }
+  void archive(Archive& archive);
 };
 
 /// Calls f(name, field...) for each field of one or more BodyFields, in a fixed order.
@@ -65,6 +67,11 @@ void for_each_field(F&& f, Fields&... fields) {
   f("mobility", fields.mobility...);
   f("material", fields.material...);
   f("id", fields.id...);
+}
+
+template <template <class> class Container>
+void BodyFields<Container>::archive(Archive& archive) {
+  for_each_field([&archive](const char* name, auto& field) { archive(name, field); }, *this);
 }
 
 /// Bodies on the host, in growable vectors: what scenes build and what is recorded and drawn.

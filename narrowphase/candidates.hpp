@@ -2,6 +2,7 @@
 #pragma once
 
 #include "broadphase/broad_phase.hpp"
+#include "core/archive.hpp"
 #include "core/array.hpp"
 #include "core/bodies.hpp"
 
@@ -18,6 +19,9 @@ class Candidates {
   /// its wall and its caps): each once, ordered by (i, j), whatever the order of the PCS. Pairs with planes
   /// in the PCS are left out: boxes are too coarse for them. The view is valid until the next call.
   ConstView<Pair> list(const ConstBodyView& bodies, ConstView<Pair> pcs, ConstView<double> margin);
+  /// Those last listed.
+  ConstView<Pair> pairs() const { return pairs_.view(); }
+  void archive(Archive& archive) { archive("pairs", pairs_); }
 
  private:
   Array<std::int32_t, Space> planes_;

@@ -18,6 +18,13 @@ void EnergyBaseline::extend(const Energies& energies) {
   scale_ = std::max(scale_, energies.kinetic() + std::abs(energies.potential - first_potential_));
 }
 
+void EnergyBaseline::archive(Archive& archive) {
+  archive("first_total", first_total_);
+  archive("first_potential", first_potential_);
+  archive("last_total", last_total_);
+  archive("scale", scale_);
+}
+
 bool EnergyBaseline::is_finite() const { return std::isfinite(last_total_); }
 
 void measure_totals(const Totals& totals, const EnergyBaseline& baseline, const Vec3& gravity,

@@ -1,6 +1,7 @@
 // From the state to the quantities of an Observation.
 #pragma once
 
+#include "core/archive.hpp"
 #include "core/bodies.hpp"
 #include "narrowphase/contact.hpp"
 #include "sim/dynamics/contact_set.hpp"
@@ -25,6 +26,7 @@ class EnergyBaseline {
   bool is_finite() const;
   double scale() const { return scale_; }
   double first_total() const { return first_total_; }
+  void archive(Archive& archive);
 
  private:
   double first_total_ = 0;

@@ -39,6 +39,7 @@ class PairFinderIn final : public PairFinder<BodySpace> {
   }
 
   const char* space_name() const override { return Space::name; }
+  void archive(Archive& archive) override { archive("bounds", body_bounds_); }
 
   std::vector<BodyBox> boxes() const override {
     std::vector<BodyBox> boxes;
@@ -110,7 +111,7 @@ ConstView<Pair> KeptPairs<Space>::covering(const Bodies<Space>& bodies,
                                            const ResponseParameters& parameters) {
   {
     const timing::Region region("broadphase");
-    if (cover(bodies, contact_margin)) return pairs_;
+    if (cover(bodies, contact_margin)) return pairs();
   }
   return make(bodies, contact_margin, reach, parameters);
 }
@@ -123,10 +124,10 @@ ConstView<Pair> KeptPairs<Space>::make(const Bodies<Space>& bodies,
   boxes_.put_around(bodies, reach, parameters, contact_margin);
   const ConstView<Pair> pcs = finder_->find(bodies, boxes_.margin());
   pcs_size_ = pcs.size();
-  pairs_ = candidates_.list(view_of(bodies), pcs, boxes_.margin().view());
+  candidates_.list(view_of(bodies), pcs, boxes_.margin().view());
   kept_ = true;
   ++times_made_;
-  return pairs_;
+  return pairs();
 }
 
 template <class Space>

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "broadphase/broad_phase.hpp"
+#include "core/archive.hpp"
 #include "core/bodies.hpp"
 #include "core/tolerances.hpp"
 #include "narrowphase/candidates.hpp"
@@ -25,6 +26,8 @@ class PairFinder {
   /// Of the last call of find().
   virtual std::vector<BodyBox> boxes() const = 0;
   virtual GridOccupancy grid_occupancy() const = 0;
+  /// The boxes.
+  virtual void archive(Archive& archive) = 0;
 };
 
 /// `on_device`: the PCS of bodies on Host is made on the GPU too; throws InputError if there is none.
@@ -55,7 +58,7 @@ class KeptPairs {
   ConstView<Pair> make(const Bodies<Space>& bodies, const Array<double, Space>& contact_margin, double reach,
                        const ResponseParameters& parameters);
   /// Those last made.
-  ConstView<Pair> pairs() const { return pairs_; }
+  ConstView<Pair> pairs() const { return candidates_.pairs(); }
   /// Whether they still do, for the bodies where they are now.
   bool cover(const Bodies<Space>& bodies, const Array<double, Space>& contact_margin) const {
     return kept_ && boxes_.hold(bodies, contact_margin);
@@ -80,12 +83,19 @@ class KeptPairs {
   std::int64_t size() const { return pcs_size_; }
   std::int64_t times_made() const { return times_made_; }
   const char* space_name() const { return finder_->space_name(); }
+  void archive(Archive& archive) {
+    archive.part("finder", *finder_);
+    archive.part("boxes", boxes_);
+    archive.part("candidates", candidates_);
+    archive("pcs_size", pcs_size_);
+    archive("kept", kept_);
+    archive("times_made", times_made_);
+  }
 
  private:
   std::unique_ptr<PairFinder<Space>> finder_;
   FatBoxes<Space> boxes_;
   Candidates<Space> candidates_;
-  ConstView<Pair> pairs_;
   std::int64_t pcs_size_ = 0;
   bool kept_ = false;
   std::int64_t times_made_ = 0;

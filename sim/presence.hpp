@@ -1,6 +1,7 @@
 // Bodies that come and go.
 #pragma once
 
+#include "core/archive.hpp"
 #include "core/bodies.hpp"
 #include "sim/observation.hpp"
 #include "sim/scene/scene.hpp"
@@ -21,6 +22,7 @@ class Presence {
   /// First step in whose state the body is there.
   std::int64_t first_step(std::int32_t body) const;
   std::int64_t count() const { return count_; }  ///< bodies that are there
+  void archive(Archive& archive) { archive("count", count_); }
 
   /// To be called at t = 0, if some body is not there: takes out those that come later.
   void begin(Bodies<Host>& bodies) const;

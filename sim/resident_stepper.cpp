@@ -17,6 +17,7 @@
 #include <cmath>
 #include <cstdint>
 #include <map>
+#include <string>
 #include <type_traits>
 #include <utility>
 
@@ -82,6 +83,8 @@ class ResidentStepper final : public Stepper {
     seen_pairs_.forget();
     contacts_.change_bodies();
   }
+
+  void archive(Archive& archive) override;
 
   void copy_state(BodyTable& out) const override { copy_bodies(out, bodies_); }
   SteppedBody body(std::int32_t id) const override;
@@ -198,6 +201,26 @@ void ResidentStepper<Space, Real>::substep(double h, double done) {
   }
   add_impulses_on_driven();
   last_substep_ = h;
+}
+
+template <class Space, class Real>
+void ResidentStepper<Space, Real>::archive(Archive& archive) {
+  archive("step", step_);
+  archive("last_substep", last_substep_);
+  archive("ledger", ledger);
+  archive("counters", counters);
+  archive.part("bodies", bodies_);
+  archive("velocity_before", start_.velocity);
+  for (auto& [body, impulse] : driven_impulse_)
+    archive(("impulse_on_" + std::to_string(body)).c_str(), impulse);
+  archive.part("kept_pairs", kept_pairs_);
+  archive.part("seen_pairs", seen_pairs_);
+  archive("sees_kept", sees_kept_);
+  archive("pairs_taken", pairs_taken_);
+  archive.part("contacts", contacts_, view_of(std::as_const(bodies_)));
+  if (!archive.is_loading()) return;
+  forces_.forget();
+  forces_.act(step_, bodies_, parameters_);
 }
 
 /// Lets the contacts know of candidates that were made anew.

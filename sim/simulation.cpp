@@ -175,6 +175,19 @@ struct Simulation::Parts {
     overlaps_observed = true;
   }
 
+  void archive(Archive& archive) {
+    archive("step", step);
+    archive("last_step", last_step);
+    archive.part("substeps", substeps);
+    archive("exchange", exchange);
+    archive.part("baseline", baseline);
+    archive.part("presence", presence);
+    archive("contents", contents);
+    archive("contents_before", contents_before);
+    archive.part("stepper", *stepper);
+    if (archive.is_loading()) observed = overlaps_observed = false;
+  }
+
   std::string non_finite_body() const {
     if (const std::int32_t body = stepper->non_finite_body(); body >= 0)
       return fmt::format("the state of body {} is no longer finite; try a smaller time.step", body);
@@ -188,6 +201,7 @@ Simulation::~Simulation() = default;
 Simulation::Simulation(Simulation&&) noexcept = default;
 
 void Simulation::step() { parts_->do_step(); }
+void Simulation::archive(Archive& archive) { parts_->archive(archive); }
 bool Simulation::finished() const { return parts_->step >= parts_->grid.last(); }
 double Simulation::time() const { return parts_->grid.time(parts_->step); }
 std::int64_t Simulation::steps() const { return parts_->step; }

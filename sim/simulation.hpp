@@ -1,6 +1,7 @@
 // A running scene: the step in order. Free of Thrust, so that every part of the program can include it.
 #pragma once
 
+#include "core/archive.hpp"
 #include "core/snapshot.hpp"
 #include "sim/inspection.hpp"
 #include "sim/observation.hpp"
@@ -37,6 +38,12 @@ class Simulation {
   std::int64_t steps() const;  ///< steps done
   std::int64_t steps_total() const;
   const char* space_name() const;  ///< where the bodies and their contacts are: "host" or "cuda"
+
+  /// Saves what the next step starts from, or loads it, into a simulation of the same scene that takes its
+  /// steps in the same way and space: it goes on with the same bits as if it had never stopped. The contacts
+  /// of the last step are not among it: contact_forces(), contact_problem() and what measures contacts find
+  /// none before the next. Throws InputError if the state is of another kind.
+  void archive(Archive& archive);
 
   /// The whole state, on the host.
   void snapshot(Snapshot& out) const;

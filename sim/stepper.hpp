@@ -2,6 +2,7 @@
 // Thrust, so that any part of the program can include it.
 #pragma once
 
+#include "core/archive.hpp"
 #include "core/bodies.hpp"
 #include "sim/dynamics/motion.hpp"
 #include "sim/dynamics/region.hpp"
@@ -44,6 +45,10 @@ class Stepper {
   virtual void undo_step() = 0;
   /// Lets bodies come, go, or become others between two steps. It may copy all of them to Host and back.
   virtual void change_bodies(const std::function<void(Bodies<Host>&)>& change) = 0;
+
+  /// What the next step starts from. The contacts of the last substep are not among it: after loading there
+  /// are none until the next.
+  virtual void archive(Archive& archive) = 0;
 
   // The state.
   virtual void copy_state(BodyTable& out) const = 0;

@@ -63,6 +63,21 @@ void Substepper::change_bodies(const std::function<void(Bodies<Host>&)>& change)
   forces_.forget();
 }
 
+void Substepper::archive(Archive& archive) {
+  archive("step", step_);
+  archive("last_substep", last_substep_);
+  archive("ledger", ledger);
+  archive("counters", counters);
+  archive.part("bodies", bodies_);
+  archive("velocity_before", start_.velocity);
+  archive("contact_impulse", contact_impulse_);
+  archive.part("kept_pairs", kept_pairs_);
+  archive.part("memory", memory_);
+  if (!archive.is_loading()) return;
+  forces_.forget();
+  forces_.act(step_, bodies_, parameters_);
+}
+
 // What stops by a blow and not by friction does so no sooner in a shorter part: then cuts do not help, and
 // there are none.
 void Substepper::substep(double h, double done) {

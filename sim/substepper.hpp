@@ -39,6 +39,8 @@ class Substepper final : public Stepper {
   void undo_step() override;
   void change_bodies(const std::function<void(Bodies<Host>&)>& change) override;
 
+  void archive(Archive& archive) override;
+
   void copy_state(BodyTable& out) const override { copy_bodies(out, bodies_); }
   SteppedBody body(std::int32_t id) const override;
   std::int32_t non_finite_body() const override;

@@ -124,6 +124,22 @@ void BallPairs::take(const ConstBodyView& bodies, ConstView<Pair> candidates, co
   }
 }
 
+void BallPairs::archive(Archive& archive) {
+  archive("tested", tested_);
+  archive("first_plane", first_plane_);
+  archive("nobody", nobody_);
+  archive("begin_of_balls", begin_[0]);
+  archive("begin_of_planes", begin_[1]);
+  archive("others", others_);
+  archive("pairs", pairs_);
+  archive("friction", friction_);
+  archive("impulse", impulse_);
+  archive("loaded", loaded_);
+  archive("flying", flying_);
+  archive("carried", carried_);
+  if (archive.is_loading()) looks_.resize(carried_.size());
+}
+
 ConstView<Pair> BallPairs::others(ConstView<Pair> candidates, const LateBodies* late) {
   const auto view = [](const std::vector<Pair>& list) {
     return ConstView<Pair>(list.data(), static_cast<std::int64_t>(list.size()));

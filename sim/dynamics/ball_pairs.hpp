@@ -2,6 +2,7 @@
 // what these carried is remembered by candidate.
 #pragma once
 
+#include "core/archive.hpp"
 #include "core/array.hpp"
 #include "core/bodies.hpp"
 #include "narrowphase/narrow_phase.hpp"
@@ -65,6 +66,8 @@ class BallPairs {
     }
   };
   Index index() const { return {pairs_.data(), loaded_.data(), {begin_[0].view(), begin_[1].view()}}; }
+
+  void archive(Archive& archive);
 
   std::int64_t tested() const { return tested_; }
   void set_flying(std::int32_t candidate, bool flying) { flying_.view()[candidate] = flying ? 1 : 0; }

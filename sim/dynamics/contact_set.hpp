@@ -1,6 +1,7 @@
 // The contacts of one substep, prepared for the response, and the impulses remembered for the next.
 #pragma once
 
+#include "core/archive.hpp"
 #include "core/array.hpp"
 #include "core/bodies.hpp"
 #include "narrowphase/contact.hpp"
@@ -97,6 +98,13 @@ class ImpulseMemory {
   bool recall(const ManifoldHeader& manifold, const ContactPoint* points, Vec3* impulses) const;
   /// Takes the impulses of the rows and of the batches; `bodies` is their number.
   void remember(const Manifolds& manifolds, const ContactSet& set, std::int64_t bodies);
+
+  void archive(Archive& archive) {
+    archive.part("balls", balls);
+    archive("entries", entries_);
+    archive("points", points_);
+    archive("begin", begin_);
+  }
 
   /// A manifold.
   struct Entry {

@@ -1,6 +1,7 @@
 // Free motion: the two half steps of Moreau's midpoint rule.
 #pragma once
 
+#include "core/archive.hpp"
 #include "core/array.hpp"
 #include "core/bodies.hpp"
 #include "sim/dynamics/rotation.hpp"
@@ -36,6 +37,11 @@ class FatBoxes {
   /// Raises the margins (m) by what each body has moved since the boxes were put around it.
   void add_travel(const Bodies<Space>& bodies, Array<double, Space>& contact_margin) const;
   const Array<double, Space>& margin() const { return margin_; }  ///< (m)
+  void archive(Archive& archive) {
+    archive("margin", margin_);
+    archive("position", position_);
+    archive("orientation", orientation_);
+  }
 
  private:
   Array<double, Space> margin_;

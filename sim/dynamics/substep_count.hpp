@@ -1,6 +1,7 @@
 // How many substeps the next step is taken in, where the scene leaves it open.
 #pragma once
 
+#include "core/archive.hpp"
 #include "core/tolerances.hpp"
 
 #include <algorithm>
@@ -21,6 +22,11 @@ class SubstepCount {
       next_ = std::max(taken / 2, 1);
       shallow_steps_ = 0;
     }
+  }
+
+  void archive(Archive& archive) {
+    archive("next", next_);
+    archive("shallow_steps", shallow_steps_);
   }
 
  private:

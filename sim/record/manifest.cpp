@@ -1,11 +1,11 @@
 #include "sim/record/manifest.hpp"
 
+#include "core/hash.hpp"
 #include "core/timing.hpp"
 #include "sim/record/build_info.hpp"
 #include "sim/record/json.hpp"
 
 #include <fmt/format.h>
-#include <xxhash.h>
 
 namespace scree {
 
@@ -118,7 +118,7 @@ std::string manifest_of(const Scene& scene, const RunSummary& run) {
   if (!run.error.empty()) json["error"] = run.error;
   json["scene"] = {{"name", scene.name},
                    {"source", scene.source.string()},
-                   {"hash", hex(XXH3_64bits(scene.resolved.data(), scene.resolved.size()))},
+                   {"hash", hex(hash_of(scene.resolved.data(), scene.resolved.size()))},
                    {"seed", scene.seed}};
   json["program"] = {{"version", build.version},
                      {"commit", build.commit},

@@ -23,20 +23,35 @@ constexpr int tile = parallel::tile;
 template <class Space, class Real>
 void ContactSolver<Space, Real>::take_candidates(ConstView<Pair> candidates, const ConstBodyView& bodies) {
   slots_.build(candidates, bodies);
-  const std::int64_t places = slots_.places().size();
-  const std::int64_t balls = slots_.balls().tiles() * tile;
-  const std::int64_t others = places - balls;
-  store_.resize(balls, others, tile);
-  ball_list_.take(slots_.balls());
-  point_list_.take(slots_.others());
+  make_places();
+  const std::int64_t balls = store_.ball_places();
   for (auto* loads : {&loads_, &next_loads_}) {
     loads->resize((candidates.size() + 3) / 4);
     parallel::fill("contacts.loads", *loads, 0u);
   }
   const BookStage<Real> stage{slots_.places(), bodies, {}, {}, {}, 0, loads_.view()};
   parallel::for_each<Space>("contacts.loads", balls, MarkBallLoads<Real>{stage, slots_.ball_memory()});
-  parallel::for_each<Space>("contacts.loads", others,
+  parallel::for_each<Space>("contacts.loads", store_.point_places(),
                             MarkPointLoads<Real>{stage, balls, slots_.point_memory()});
+}
+
+/// For the contacts that the slots may have.
+template <class Space, class Real>
+void ContactSolver<Space, Real>::make_places() {
+  const std::int64_t balls = slots_.balls().tiles() * tile;
+  store_.resize(balls, slots_.places().size() - balls, tile);
+  ball_list_.take(slots_.balls());
+  point_list_.take(slots_.others());
+}
+
+template <class Space, class Real>
+void ContactSolver<Space, Real>::archive(Archive& archive, const ConstBodyView& bodies) {
+  archive.part("slots", slots_, bodies);
+  archive.part("patience", patience_);
+  archive("loads", loads_);
+  if (!archive.is_loading()) return;
+  make_places();
+  next_loads_.resize(loads_.size());
 }
 
 template <class Space, class Real>

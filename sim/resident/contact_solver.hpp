@@ -1,6 +1,7 @@
 // Contacts and their response with everything in one space: slots, contacts, sweeps, books, correction.
 #pragma once
 
+#include "core/archive.hpp"
 #include "core/array.hpp"
 #include "core/bodies.hpp"
 #include "sim/dynamics/contact_set.hpp"
@@ -40,6 +41,8 @@ class ContactSolver {
 
   /// Others of the bodies are free now; new candidates follow.
   void change_bodies() { slots_.forget_colors(); }
+  /// What the next substep starts from; the contacts of the last are not among it.
+  void archive(Archive& archive, const ConstBodyView& bodies);
 
   /// Contacts that may close by the next midpoint: gaps of at most the sum of the two margins (m). Impulses
   /// start from what they were, `scale` times.
@@ -76,6 +79,7 @@ class ContactSolver {
   Vec3 impulse_on(std::int32_t body);
 
  private:
+  void make_places();
   void load_bodies(const ConstBodyView& bodies, ConstView<double> margin,
                    const ResponseParameters& parameters);
   ConstView<Slot> places_of_points() const;

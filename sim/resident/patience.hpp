@@ -1,6 +1,8 @@
 // How often a heap is swept, by what its last substeps have left undone.
 #pragma once
 
+#include "core/archive.hpp"
+
 namespace scree::resident {
 
 /// Sweeps see nothing of the slow modes of many layers. The power that normal impulses have on what they
@@ -16,6 +18,13 @@ class Patience {
 
   /// Nothing is left of slow modes.
   bool is_calm() const { return degree_ == 0; }
+
+  void archive(Archive& archive) {
+    archive("degree", degree_);
+    archive("undone", undone_);
+    archive("kicked", kicked_);
+    archive("judged", judged_);
+  }
 
  private:
   int degree_ = 2;  // 0, 1, 2... are 2, 3, 6, 12... sweeps of balls

@@ -190,6 +190,14 @@ struct PlaceSlots {
   }
 };
 
+/// Slots whose places are known.
+struct PutSlots {
+  ConstView<Slot> slots;
+  ConstView<std::int64_t> place;
+  View<Slot> places;
+  SCREE_HD void operator()(std::int64_t s) const { places[place[s]] = slots[s]; }
+};
+
 /// What its slot remembered before.
 template <class Real>
 struct Recall {
@@ -339,6 +347,29 @@ void Slots<Space, Real>::recall() {
                    std::as_const(old_place_).view(), ball_places, old_ball_places_,
                    std::as_const(old_ball_memory_).view(), std::as_const(old_point_memory_).view(),
                    ball_memory_.view(), point_memory_.view()});
+}
+
+/// What follows from the candidates and the bodies is made again. If bodies have come or gone since, so may it
+/// be otherwise; but then the slots are built anew before anybody asks for it.
+template <class Space, class Real>
+void Slots<Space, Real>::archive(Archive& archive, const ConstBodyView& bodies) {
+  archive("pairs", pairs_);
+  archive("color", color_);
+  archive("place", place_);
+  archive("ball_memory", ball_memory_);
+  archive("point_memory", point_memory_);
+  archive("keeps_colors", keeps_colors_);
+  archive("colors_at_first", colors_at_first_);
+  archive.part("balls", balls_);
+  archive.part("others", others_);
+  if (!archive.is_loading()) return;
+  list_slots(bodies);
+  solver_bodies_.number(bodies, slots_.view());
+  places_.resize(ball_memory_.size() + point_memory_.size());
+  parallel::fill("slots.place", places_, Slot{});
+  parallel::for_each<Space>(
+      "slots.place", place_.size(),
+      PutSlots{std::as_const(slots_).view(), std::as_const(place_).view(), places_.view()});
 }
 
 #define SCREE_INSTANTIATE(Space)       \

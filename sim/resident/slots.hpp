@@ -2,6 +2,7 @@
 #pragma once
 
 #include "broadphase/broad_phase.hpp"
+#include "core/archive.hpp"
 #include "core/array.hpp"
 #include "core/bodies.hpp"
 #include "sim/resident/layout.hpp"
@@ -32,6 +33,7 @@ SCREE_HD inline std::int64_t find_pair(ConstView<Pair> pairs, std::int32_t i, st
 struct ColorTiles {
   std::vector<std::int64_t> begin;  ///< first tile of each colour; one more than colours
 
+  void archive(Archive& archive) { archive("begin", begin); }
   std::int64_t colors() const { return static_cast<std::int64_t>(begin.size()) - 1; }
   std::int64_t tiles() const { return begin.back() - begin.front(); }
 };
@@ -45,6 +47,8 @@ class Slots {
   void build(ConstView<Pair> candidates, const ConstBodyView& bodies);
   /// Others of the bodies are free now: colours are not to be kept.
   void forget_colors() { keeps_colors_ = false; }
+  /// `bodies`: as they are saved.
+  void archive(Archive& archive, const ConstBodyView& bodies);
 
   ConstView<Slot> places() const { return places_.view(); }
   const ColorTiles& balls() const { return balls_; }

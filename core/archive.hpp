@@ -1,0 +1,136 @@
+// What must be remembered to go on as if one had never stopped. Each part names its fields once, in archive(),
+// for saving and for loading.
+#pragma once
+
+#include "core/array.hpp"
+#include "core/math.hpp"
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+namespace scree {
+
+/// What the bytes of a field are: rows of `columns` numbers, each `width` bytes wide. A record that is no
+/// number is as many bytes.
+struct FieldType {
+  enum class Kind : std::uint8_t { integer, natural, real, bytes };
+
+  Kind kind;
+  int width;
+  int columns;
+
+  int row() const { return width * columns; }  ///< bytes
+  friend bool operator==(const FieldType&, const FieldType&) = default;
+};
+
+template <class T>
+constexpr FieldType field_type_of() {
+  using Kind = FieldType::Kind;
+  constexpr int size = static_cast<int>(sizeof(T));
+  if constexpr (std::is_same_v<T, Vec3> || std::is_same_v<T, Quat>) {
+    return {Kind::real, sizeof(double), size / static_cast<int>(sizeof(double))};
+  } else if constexpr (std::is_enum_v<T>) {
+    return field_type_of<std::underlying_type_t<T>>();
+  } else if constexpr (std::is_floating_point_v<T>) {
+    return {Kind::real, size, 1};
+  } else if constexpr (std::is_integral_v<T>) {
+    return {std::is_signed_v<T> ? Kind::integer : Kind::natural, size, 1};
+  } else {
+    return {Kind::bytes, 1, size};
+  }
+}
+
+/// One of them, on Host.
+struct SavedField {
+  std::string name;  ///< of the parts that it is in, and its own: contacts/slots/color
+  FieldType type;
+  Array<std::byte, Host> bytes;
+
+  std::int64_t rows() const { return bytes.size() / type.row(); }
+};
+
+struct SavedState {
+  std::vector<SavedField> fields;
+
+  /// Null if there is none of that name.
+  const SavedField* find(std::string_view name) const;
+  std::size_t bytes() const;
+};
+
+/// Goes through the fields of one part after the other, and saves them, or loads them. The names in a part
+/// are unique. Throws InputError where a state to be loaded lacks a field, or has it of another type.
+class Archive {
+ public:
+  static Archive saving(SavedState& to) { return {&to, nullptr}; }
+  static Archive loading(const SavedState& from) { return {nullptr, &from}; }
+  bool is_loading() const { return from_ != nullptr; }
+
+  /// A number or record, which is copied as bytes.
+  template <class T>
+  void operator()(const char* name, T& value) {
+    if (is_loading()) {
+      load<Host>(&value, field_of(name, field_type_of<T>(), 1));
+    } else {
+      save<Host>(name, &value, 1);
+    }
+  }
+  template <class T, class Space>
+  void operator()(const char* name, Array<T, Space>& array) {
+    if (is_loading()) {
+      const SavedField& field = field_of(name, field_type_of<T>(), -1);
+      array.resize(field.rows());
+      load<Space>(array.data(), field);
+    } else {
+      save<Space>(name, array.data(), array.size());
+    }
+  }
+  template <class T>
+  void operator()(const char* name, std::vector<T>& list) {
+    if (is_loading()) {
+      const SavedField& field = field_of(name, field_type_of<T>(), -1);
+      list.resize(static_cast<std::size_t>(field.rows()));
+      load<Host>(list.data(), field);
+    } else {
+      save<Host>(name, list.data(), static_cast<std::int64_t>(list.size()));
+    }
+  }
+  void operator()(const char* name, std::string& text);
+
+  /// All that part.archive(*this, more...) names.
+  template <class Part, class... More>
+  void part(const char* name, Part& part, More&&... more) {
+    const std::size_t outside = prefix_.size();
+    prefix_ += name;
+    prefix_ += '/';
+    part.archive(*this, more...);
+    prefix_.resize(outside);
+  }
+
+ private:
+  Archive(SavedState* to, const SavedState* from) : to_(to), from_(from) {}
+
+  template <class Space, class T>
+  void save(const char* name, const T* data, std::int64_t count) {
+    SavedField field{prefix_ + name, field_type_of<T>(), {}};
+    field.bytes.resize(count * static_cast<std::int64_t>(sizeof(T)));
+    copy_bytes<Host, Space>(field.bytes.data(), data, static_cast<std::size_t>(field.bytes.size()));
+    to_->fields.push_back(std::move(field));
+  }
+  template <class Space, class T>
+  static void load(T* data, const SavedField& field) {
+    copy_bytes<Space, Host>(data, field.bytes.data(), static_cast<std::size_t>(field.bytes.size()));
+  }
+  /// `rows`: how many it must have; -1: any number.
+  const SavedField& field_of(const char* name, const FieldType& type, std::int64_t rows) const;
+
+  SavedState* to_;
+  const SavedState* from_;
+  std::string prefix_;
+};
+
+}  // namespace scree

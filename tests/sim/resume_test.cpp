@@ -1,0 +1,147 @@
+// A simulation that is saved and loaded goes on with the same bits as one that never stopped.
+#include "core/error.hpp"
+#include "sim/simulation.hpp"
+#include "tests/sim/dynamics/simulations.hpp"
+
+#include <gtest/gtest.h>
+
+#include <fmt/format.h>
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace scree {
+namespace {
+
+struct Way {
+  const char* name;
+  SimulationOptions options;
+  const char* settings;
+};
+
+class Resume : public testing::TestWithParam<Way> {
+ protected:
+  void SetUp() override {
+    const DeviceInfo device = device_info();
+    if (GetParam().options.space == SpaceChoice::cuda && !device.available)
+      GTEST_SKIP() << "no GPU: " << device.name;
+  }
+  Simulation simulate(const std::string& text) const {
+    return Simulation(scene_of(text + "\n" + GetParam().settings), GetParam().options);
+  }
+};
+
+/// What a row of the metrics could hold, to the bit.
+std::string seen(Simulation& run) {
+  const Observation& o = run.observe();
+  return fmt::format("{:016x} {} {} {} {} {} {} {} {} {} {} {} {}", run.state_hash(), o.step, o.unexplained,
+                     o.energy_scale, o.ledger.friction, o.exchange.energy, o.counters.sweeps,
+                     o.counters.pcs_made, o.pairs, o.contacts, o.penetration.mean, o.bodies,
+                     o.regions.empty() ? 0.0 : o.regions[0].flux);
+}
+
+SavedState saved(Simulation& run) {
+  SavedState state;
+  Archive archive = Archive::saving(state);
+  run.archive(archive);
+  return state;
+}
+
+/// Saves every `every` steps, and goes on from there in a simulation of its own for as many steps and some
+/// more. Looks at every state, as one that wrote rows would.
+template <class Make>
+void expect_same_after_resume(const Make& simulate, int every) {
+  Simulation whole = simulate();
+  std::vector<std::string> expected = {seen(whole)};
+  std::vector<SavedState> states;
+  while (!whole.finished()) {
+    if (whole.steps() % every == 0) states.push_back(saved(whole));
+    whole.step();
+    expected.push_back(seen(whole));
+  }
+  ASSERT_GT(states.size(), 5u);
+  for (const SavedState& state : states) {
+    Simulation resumed = simulate();
+    Archive archive = Archive::loading(state);
+    resumed.archive(archive);
+    for (const std::int64_t first = resumed.steps(); !resumed.finished() && resumed.steps() < first + every + 3;) {
+      resumed.step();
+      ASSERT_EQ(seen(resumed), expected[static_cast<std::size_t>(resumed.steps())])
+          << "saved at step " << first;
+    }
+  }
+}
+
+constexpr const char* common = "gravity: [0, 0, -9.81]\n"
+                               "materials: {stone: {density: 1000, restitution: 0.2, friction: 0.5}}\n";
+
+/// All shapes, a drum that turns, a gate that goes, a ball that comes, a force for a time.
+TEST_P(Resume, EverythingGoesOnWithTheSameBits) {
+  const std::string scene = std::string(common) + R"(
+time: {end: 0.5, step: 0.004}
+regions: {low: {from: [-1, -1, -1], to: [1, 1, -0.3]}}
+forces:
+  - {on: late, force: [3, 0, 0], torque: [0, 0.1, 0], from: 0.15, until: 0.4}
+checks:
+  - {measure: drum.force.z, below: 1.0e+9}
+bodies:
+  - {plane: {normal: [0, 0, 1], offset: -1.5}, material: stone}
+  - {tube: {radius: 1, length: 1}, name: drum, at: [0, 0, 0], rotate: {axis: [1, 0, 0], degrees: 90}, motion: {spin: [0, 1, 0]}, material: stone}
+  - {box: {size: [0.6, 0.6, 0.1]}, at: [0, 0, -0.2], fixed: true, until: 0.2, material: stone}
+  - {sphere: {radius: 0.1}, name: late, at: [0, 0, 0.6], from: 0.1, material: stone}
+  - sphere: {radius: {uniform: [0.05, 0.08]}}
+    at: [-0.3, -0.3, 0]
+    repeat: {count: [3, 3, 3], spacing: [0.2, 0.2, 0.2], jitter: 0.01}
+    material: stone
+  - box: {size: [0.12, 0.1, 0.08]}
+    at: [-0.2, -0.2, -0.6]
+    repeat: {count: [3, 3, 1], spacing: [0.2, 0.2, 0.2]}
+    material: stone)";
+  expect_same_after_resume([&] { return simulate(scene); }, 9);
+}
+
+/// So many balls that sweeps go by what the last substeps have left undone, and substeps by the overlaps.
+TEST_P(Resume, AHeapGoesOnWithTheSameBits) {
+  if (std::string(GetParam().name) == "host_accurate") GTEST_SKIP() << "a heap is not for the accurate mode";
+  const std::string scene = std::string(common) + R"(
+time: {end: 0.3, step: 0.004166666666666667}
+bodies:
+  - {plane: {normal: [0, 0, 1], offset: 0}, material: stone}
+  - {plane: {normal: [1, 0, 0], offset: -0.5}, material: stone}
+  - {plane: {normal: [-1, 0, 0], offset: -0.5}, material: stone}
+  - {plane: {normal: [0, 1, 0], offset: -0.5}, material: stone}
+  - {plane: {normal: [0, -1, 0], offset: -0.5}, material: stone}
+  - {sphere: {radius: 0.3}, at: [0, 0, 1.7], velocity: [0, 0, -6], material: stone}
+  - sphere: {radius: {uniform: [0.03, 0.05]}}
+    at: [-0.44, -0.44, 0.05]
+    repeat: {count: [9, 9, 12], spacing: [0.11, 0.11, 0.11], jitter: 0.004}
+    material: stone)";
+  expect_same_after_resume([&] { return simulate(scene); }, 11);
+}
+
+TEST_P(Resume, AStateOfAnotherKindIsRefused) {
+  const std::string scene = std::string(common) + R"(
+time: {end: 1, step: 0.01}
+bodies:
+  - {sphere: {radius: 0.1}, at: [0, 0, 1], material: stone})";
+  Simulation run = simulate(scene);
+  SavedState state = saved(run);
+  std::erase_if(state.fields, [](const SavedField& field) { return field.name == "stepper/last_substep"; });
+  Archive archive = Archive::loading(state);
+  EXPECT_THROW(run.archive(archive), InputError);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Ways, Resume,
+    testing::Values(
+        Way{"host", {SpaceChoice::host, 1}, "precision: double"},
+        Way{"host_accurate", {SpaceChoice::host, 1}, "response: {mode: accurate}"},
+        Way{"host_resident", {.space = SpaceChoice::host, .threads = 1, .resident = true}, "precision: double"},
+        Way{"host_mixed", {SpaceChoice::host, 1}, "precision: mixed"},
+        Way{"cuda", {SpaceChoice::cuda}, "precision: double"},
+        Way{"cuda_mixed", {SpaceChoice::cuda}, "precision: mixed"}),
+    [](const auto& way) { return std::string(way.param.name); });
+
+}  // namespace
+}  // namespace scree
