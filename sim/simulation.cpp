@@ -91,6 +91,7 @@ struct Simulation::Parts {
   Observation observation;
   bool observed = false;
   bool overlaps_observed = false;
+  bool loaded = false;  // and no step since: what the observation says of contacts is that of the state saved
 
   Parts(const Scene& s, const SimulationOptions& options)
       : scene(s),
@@ -138,7 +139,7 @@ struct Simulation::Parts {
     come_and_go();
     contents_before = std::exchange(contents, region_contents());
     last_step = dt;
-    observed = overlaps_observed = false;
+    observed = overlaps_observed = loaded = false;
   }
 
   /// Bodies whose time has come or is over.
@@ -164,7 +165,7 @@ struct Simulation::Parts {
     measure_totals(totals, baseline, scene.gravity, origin, o);
     o.speed_max = stepper->largest_speed();
     measure_regions(scene.regions, contents, contents_before, last_step, o.regions);
-    stepper->measure_contacts(totals.count, o);
+    if (!loaded) stepper->measure_contacts(totals.count, o);
     o.penetration = Penetration::unknown();
     o.pairs = -1;
     observed = true;
@@ -176,6 +177,10 @@ struct Simulation::Parts {
   }
 
   void archive(Archive& archive) {
+    if (!observed) observe_bodies(grid.time(step));
+    archive("contacts", observation.contacts);
+    archive("gap_mean", observation.gap_mean);
+    archive("coordination_mean", observation.coordination_mean);
     archive("step", step);
     archive("last_step", last_step);
     archive.part("substeps", substeps);
@@ -185,7 +190,9 @@ struct Simulation::Parts {
     archive("contents", contents);
     archive("contents_before", contents_before);
     archive.part("stepper", *stepper);
-    if (archive.is_loading()) observed = overlaps_observed = false;
+    if (!archive.is_loading()) return;
+    loaded = true;
+    observed = overlaps_observed = false;
   }
 
   std::string non_finite_body() const {

@@ -41,8 +41,8 @@ class Simulation {
 
   /// Saves what the next step starts from, or loads it, into a simulation of the same scene that takes its
   /// steps in the same way and space: it goes on with the same bits as if it had never stopped. The contacts
-  /// of the last step are not among it: contact_forces(), contact_problem() and what measures contacts find
-  /// none before the next. Throws InputError if the state is of another kind.
+  /// of the last step are not among it: contact_forces() and contact_problem() find none before the next.
+  /// Throws InputError if the state is of another kind.
   void archive(Archive& archive);
 
   /// The whole state, on the host.

@@ -17,7 +17,8 @@ struct RunArguments {
   std::filesystem::path output;  ///< empty: output/NAME
   std::vector<Override> overrides;
   SimulationOptions simulation;
-  std::optional<double> until;  ///< s
+  std::optional<double> until;      ///< s
+  std::optional<double> max_hours;  ///< of wall time
   bool draw = true;
   bool overwrite = false;
   bool resume = false;

@@ -22,7 +22,8 @@ std::size_t terminal_width() {
 
 }  // namespace
 
-Console::Console(const std::filesystem::path& log) : log_(log), terminal_(isatty(STDOUT_FILENO) == 1) {}
+Console::Console(const std::filesystem::path& log, AtomicFile::Opening opening)
+    : log_(log, opening), terminal_(isatty(STDOUT_FILENO) == 1) {}
 
 void Console::clear_progress() {
   if (!showing_progress_) return;

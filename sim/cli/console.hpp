@@ -13,7 +13,7 @@ namespace scree::cli {
 
 class Console {
  public:
-  explicit Console(const std::filesystem::path& log);
+  Console(const std::filesystem::path& log, AtomicFile::Opening opening);
 
   void say(std::string_view line);
   /// To stderr, and kept for the manifest.

@@ -96,7 +96,7 @@ void Film::draw(std::shared_ptr<Studio>& studio, const Shot& shot) {
 void Film::write(const Picture& picture) {
   const Stopwatch watch(write_seconds_);
   for (std::int64_t k = 0; k < picture.copies; ++k) {
-    render::write_png(folder_.frames() / fmt::format("{:05}.png", frames_.load()), picture.image);
+    render::write_png(folder_.frame(frames_), picture.image);
     ++frames_;
   }
 }
@@ -106,6 +106,22 @@ void Film::say_trouble() {
   if (stopped_ || trouble_.empty()) return;
   console_.warn(trouble_);
   stopped_ = true;
+}
+
+void Film::archive(Archive& archive) {
+  if (!archive.is_loading()) {
+    const timing::Region region("render.wait");
+    drawer_.drain();
+    writer_.drain();
+    say_trouble();
+  }
+  std::int64_t frames = frames_;
+  archive("frames", frames);
+  archive("stopped", stopped_);
+  archive.part("due", frames_due_);
+  if (!archive.is_loading()) return;
+  frames_ = frames;
+  folder_.remove_frames_from(frames);
 }
 
 void Film::finish() {

@@ -29,6 +29,9 @@ class Film {
   /// Makes the movie of the frames, once all are there. Throws like record(), unless that has.
   void finish();
 
+  /// What was due until the state was saved is drawn and written; what was drawn since is removed on loading.
+  void archive(Archive& archive);
+
   std::int64_t frames() const { return frames_; }
   /// File name; empty if there is none.
   const std::string& movie() const { return movie_; }

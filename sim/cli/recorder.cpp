@@ -10,11 +10,12 @@ Probe probe_of(Simulation& simulation) {
       .body = [&simulation](std::int32_t id) { return simulation.body(id); }};
 }
 
-Recorder::Recorder(const Scene& scene, const RunFolder& folder, Console& console, bool draw)
+Recorder::Recorder(const Scene& scene, const RunFolder& folder, Console& console, bool draw,
+                   AtomicFile::Opening opening)
     : checks_(scene, TimeGrid(scene.time)),
       rows_due_(TimeGrid(scene.time), scene.record.metrics_every),
-      metrics_(scene, folder / "metrics.csv"),
-      timing_(folder / "timing.csv") {
+      metrics_(scene, folder / "metrics.csv", opening),
+      timing_(folder / "timing.csv", opening) {
   if (draw) film_.emplace(scene, folder, console);
 }
 
@@ -35,6 +36,16 @@ void Recorder::record(Simulation& simulation) {
 
 void Recorder::record_last(Simulation& simulation) {
   if (last_row_ != simulation.steps()) write_rows(simulation);
+}
+
+void Recorder::archive(Archive& archive) {
+  archive.part("checks", checks_);
+  archive.part("rows_due", rows_due_);
+  archive("last_row", last_row_);
+  archive("worst_penetration", worst_penetration_);
+  archive.part("metrics", metrics_);
+  archive.part("timing", timing_);
+  if (film_) archive.part("film", *film_);
 }
 
 void Recorder::finish() {

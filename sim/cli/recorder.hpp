@@ -20,13 +20,17 @@ Probe probe_of(Simulation& simulation);
 
 class Recorder {
  public:
-  /// Starts the files in the folder. `draw`: whether to make frames.
-  Recorder(const Scene& scene, const RunFolder& folder, Console& console, bool draw);
+  /// Starts the files in the folder, or goes on with those that are there, once archive() has said up to
+  /// where. `draw`: whether to make frames.
+  Recorder(const Scene& scene, const RunFolder& folder, Console& console, bool draw,
+           AtomicFile::Opening opening);
 
   /// What is due at the present state. To be called at t = 0 and after every step.
   void record(Simulation& simulation);
   /// A row for the present state, unless it has one.
   void record_last(Simulation& simulation);
+  /// All that was recorded until the state was saved is on the disk; what came after is gone on loading.
+  void archive(Archive& archive);
   /// Every file gets its final name, and the frames become a movie.
   void finish();
 
@@ -34,6 +38,7 @@ class Recorder {
   const Observation& newest() const { return newest_; }
   double worst_penetration() const { return worst_penetration_; }  ///< of all rows so far (m)
   std::vector<CheckResult> check_results() const { return checks_.results(newest_.energy_scale); }
+  double wall() const { return timing_.wall(); }  ///< of the whole run, whatever stopped it (s)
   const Film* film() const { return film_ ? &*film_ : nullptr; }
 
  private:

@@ -1,10 +1,12 @@
 // scree run: a scene from its file to a run folder.
 #include "core/error.hpp"
 #include "sim/cli/check_table.hpp"
+#include "sim/cli/checkpoints.hpp"
 #include "sim/cli/commands.hpp"
 #include "sim/cli/console.hpp"
 #include "sim/cli/interrupt.hpp"
 #include "sim/cli/recorder.hpp"
+#include "sim/record/build_info.hpp"
 #include "sim/record/final_state.hpp"
 #include "sim/record/manifest.hpp"
 #include "sim/record/outcome.hpp"
@@ -34,10 +36,10 @@ std::string duration_words(double seconds) {
   return fmt::format("{}:{:02} h", whole / 3600, whole / 60 % 60);
 }
 
-std::string progress_line(const Simulation& simulation, const Recorder& recorder, std::int64_t last_step,
-                          double end, double elapsed) {
+std::string progress_line(const Simulation& simulation, const Recorder& recorder, std::int64_t first_step,
+                          std::int64_t last_step, double end, double elapsed) {
   const Observation& seen = recorder.newest();
-  const double rate = static_cast<double>(simulation.steps()) / elapsed;
+  const double rate = static_cast<double>(simulation.steps() - first_step) / elapsed;
   const double left = static_cast<double>(last_step - simulation.steps()) / rate;
   return fmt::format(
       "t {:.4g}/{:.4g} s, {:.3g} steps/s, {} left, {} contacts, penetration {:.2g} m, energy error {:.2g}",
@@ -45,16 +47,21 @@ std::string progress_line(const Simulation& simulation, const Recorder& recorder
       seen.unexplained);
 }
 
-/// Steps until `last_step` or an interrupt.
-void advance(Simulation& simulation, Recorder& recorder, Console& console, std::int64_t last_step,
-             double end) {
+/// Steps until `last_step`, an interrupt, or the end of the wall time.
+void advance(Simulation& simulation, Recorder& recorder, Checkpoints& checkpoints, Console& console,
+             const RunArguments& arguments, std::int64_t last_step, double end) {
   const auto start = Clock::now();
-  recorder.record(simulation);
-  while (simulation.steps() < last_step && !interrupted()) {
+  const std::int64_t first_step = simulation.steps();
+  const auto has_time = [&] {
+    return !arguments.max_hours || seconds_since(start) < *arguments.max_hours * 3600;
+  };
+  if (checkpoints.resumed_at().empty()) recorder.record(simulation);
+  while (simulation.steps() < last_step && !interrupted() && has_time()) {
     simulation.step();
     recorder.record(simulation);
+    checkpoints.take_if_due(simulation, recorder);
     if (console.wants_progress()) {
-      console.progress(progress_line(simulation, recorder, last_step, end, seconds_since(start)));
+      console.progress(progress_line(simulation, recorder, first_step, last_step, end, seconds_since(start)));
     }
   }
 }
@@ -103,33 +110,64 @@ int status_of(const RunSummary& summary) {
   return summary.status == "failed" ? status_run_failed : status_of(summary.checks);
 }
 
+RunFolder::Earlier what_becomes_of_an_earlier_run(const RunArguments& arguments) {
+  if (arguments.resume) return RunFolder::Earlier::continued;
+  return arguments.overwrite ? RunFolder::Earlier::replaced : RunFolder::Earlier::refused;
+}
+
+RunIdentity identity_of(const Scene& scene, const Simulation& simulation, bool draws) {
+  const BuildInfo build = build_info();
+  return {.version = build.version,
+          .commit = build.commit,
+          .space = simulation.space_name(),
+          .scene = scene.resolved,
+          .bodies = hash_of(scene.bodies),
+          .draws = draws};
+}
+
 }  // namespace
 
 int run(const RunArguments& arguments) {
-  if (arguments.resume) {
-    throw InputError("--resume: this version writes no checkpoints; --overwrite starts from the beginning");
-  }
-  const auto start = Clock::now();
   catch_interrupts();
   const Scene scene = read_scene(arguments.scene, arguments.overrides);
   const TimeGrid grid(scene.time);
   const double end = std::min(arguments.until.value_or(scene.time.end), scene.time.end);
+  const std::int64_t last_step = grid.nearest(end);
+  const bool draws = arguments.draw && scene.render.enabled;
   Simulation simulation(scene, arguments.simulation);
 
   // Only now is the input known to be good, and something is written.
   const RunFolder folder(arguments.output.empty() ? "output/" + scene.name : arguments.output.string(),
-                         arguments.overwrite);
-  Console console(folder / "log.txt");
+                         what_becomes_of_an_earlier_run(arguments));
+  if (arguments.resume && steps_done(folder / "manifest.json") >= last_step) {
+    fmt::print("{}: done, there is nothing to resume\n", folder.path().string());
+    return status_done;
+  }
+  Checkpoints checkpoints(folder, scene.record.checkpoint_every, identity_of(scene, simulation, draws));
+  std::vector<std::string> warnings;
+  const bool resumes = arguments.resume && checkpoints.find(warnings);
+  if (arguments.resume && !resumes) folder.clear();
+  const auto opening = resumes ? AtomicFile::Opening::again : AtomicFile::Opening::anew;
+  Console console(folder / "log.txt", opening);
+  for (const std::string& warning : warnings) console.warn(warning);
   write_file(folder / "scene.yaml", scene.resolved);
-  Recorder recorder(scene, folder, console, arguments.draw && scene.render.enabled);
+  Recorder recorder(scene, folder, console, draws, opening);
+  if (resumes) {
+    checkpoints.resume(simulation, recorder);
+    folder.remove_results();
+    console.say(fmt::format("resumed at t = {:.6g} s, step {}", simulation.time(), simulation.steps()));
+  } else if (arguments.resume) {
+    console.say("no checkpoint: from the beginning");
+  }
 
   RunSummary summary{.space = simulation.space_name(),
                      .model = plan_model(scene).features(),
                      .steps_total = simulation.steps_total()};
-  attempt(summary, console, [&] { advance(simulation, recorder, console, grid.nearest(end), end); });
-  if (summary.status.empty()) {
-    summary.status = simulation.steps() < grid.nearest(end) ? "interrupted" : "done";
-  }
+  attempt(summary, console,
+          [&] { advance(simulation, recorder, checkpoints, console, arguments, last_step, end); });
+  if (summary.status.empty()) summary.status = simulation.steps() < last_step ? "interrupted" : "done";
+  const bool is_complete = summary.status == "done" && simulation.finished();
+  if (!is_complete) attempt(summary, console, [&] { checkpoints.take_last(simulation, recorder); });
   attempt(summary, console, [&] { recorder.record_last(simulation); });
   attempt(summary, console, [&] { recorder.finish(); });
   if (summary.status == "done") {
@@ -145,11 +183,13 @@ int run(const RunArguments& arguments) {
     summary.frames = film->frames();
     summary.movie = film->movie();
   }
-  summary.wall = seconds_since(start);
+  summary.wall = recorder.wall();
+  summary.resumed_at = checkpoints.resumed_at();
   summary.warnings = console.warnings();
   say_summary(scene, summary, folder, console);
   console.close();
   write_file(folder / "manifest.json", manifest_of(scene, summary));
+  if (is_complete && summary.status == "done") checkpoints.drop();
   return status_of(summary);
 }
 

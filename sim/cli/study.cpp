@@ -176,7 +176,7 @@ int study(const StudyArguments& arguments) {
     name = scene.name;
   }
   const RunFolder folder(arguments.output.empty() ? "output/" + name + "-study" : arguments.output.string(),
-                         arguments.overwrite);
+                         arguments.overwrite ? RunFolder::Earlier::replaced : RunFolder::Earlier::refused);
   const int threads = std::max(arguments.simulation.threads, 1);
   const int at_once = std::max(static_cast<int>(machine_info().cores) / threads, 1);
   const Study result = carry_out(arguments, at_once);

@@ -36,6 +36,13 @@ class Worker {
     changed_.notify_all();
   }
 
+  /// Waits until everything is done. Throws what the work has thrown.
+  void drain() {
+    std::unique_lock lock(mutex_);
+    changed_.wait(lock, [this] { return (items_.empty() && !busy_) || failure_; });
+    if (failure_) std::rethrow_exception(failure_);
+  }
+
   /// Waits until everything is done; no more items can come. Throws what the work has thrown.
   void finish() {
     stop(false);
@@ -50,10 +57,14 @@ class Worker {
       if (items_.empty()) return;
       Item item = std::move(items_.front());
       items_.pop_front();
+      busy_ = true;
       changed_.notify_all();
       lock.unlock();
       try {
         work(item);
+        lock.lock();
+        busy_ = false;
+        changed_.notify_all();
       } catch (...) {
         lock.lock();
         failure_ = std::current_exception();
@@ -79,6 +90,7 @@ class Worker {
   std::condition_variable changed_;
   std::deque<Item> items_;
   bool stopping_ = false;
+  bool busy_ = false;  // with an item that no longer waits
   std::exception_ptr failure_;
   std::thread thread_;  // last: it uses all the others
 };

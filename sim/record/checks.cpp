@@ -1,5 +1,7 @@
 #include "sim/record/checks.hpp"
 
+#include "core/error.hpp"
+
 #include <boost/math/distributions/students_t.hpp>
 #include <fmt/format.h>
 
@@ -156,6 +158,14 @@ void Checks::record(std::int64_t step, const Probe& probe) {
       watch.series.add(grid_.time(step), probe.value(watch.measure));
     }
   }
+}
+
+void Checks::archive(Archive& archive) {
+  std::vector<Series> series;
+  for (const Watch& watch : watches_) series.push_back(watch.series);
+  archive("series", series);
+  if (series.size() != watches_.size()) throw InputError("the saved state has other checks");
+  for (std::size_t k = 0; k < series.size(); ++k) watches_[k].series = series[k];
 }
 
 std::vector<CheckResult> Checks::results(double energy_scale) const {

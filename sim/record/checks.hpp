@@ -1,6 +1,7 @@
 // The scene's own acceptance test, evaluated as the run goes on.
 #pragma once
 
+#include "core/archive.hpp"
 #include "sim/scene/measure.hpp"
 #include "sim/scene/scene.hpp"
 #include "sim/scene/time_grid.hpp"
@@ -47,6 +48,7 @@ struct CheckResult {
 /// The values of one measure, reduced as they come.
 class Series {
  public:
+  Series() = default;
   Series(Reduce reduce, double level) : reduce_(reduce), level_(level) {}
 
   void add(double time, double value);
@@ -57,8 +59,8 @@ class Series {
   std::optional<double> bad_time() const { return bad_time_; }
 
  private:
-  Reduce reduce_;
-  double level_;
+  Reduce reduce_ = Reduce::none;
+  double level_ = 0;
   std::int64_t count_ = 0;
   double first_ = 0, latest_ = 0, min_ = 0, max_ = 0, sum_ = 0;
   int side_ = 0;  ///< of the level on which the last value that was off it lay
@@ -78,6 +80,7 @@ class Checks {
   /// not all finite, has not been evaluated, which is not a pass. `energy_scale` is that of the whole run
   /// (J).
   std::vector<CheckResult> results(double energy_scale) const;
+  void archive(Archive& archive);
 
  private:
   struct Watch {

@@ -34,9 +34,16 @@ fs::path part_of(const fs::path& file) { return fs::path(file) += ".part"; }
 
 }  // namespace
 
-AtomicFile::AtomicFile(fs::path file) : file_(std::move(file)) {
-  descriptor_ = ::open(part_of(file_).c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
-  if (descriptor_ < 0) fail("create", part_of(file_));
+AtomicFile::AtomicFile(fs::path file, Opening opening) : file_(std::move(file)) {
+  const fs::path part = part_of(file_);
+  if (opening == Opening::anew) {
+    descriptor_ = ::open(part.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+    if (descriptor_ < 0) fail("create", part);
+    return;
+  }
+  if (!fs::exists(part) && ::rename(file_.c_str(), part.c_str()) != 0) fail("go on with", file_);
+  descriptor_ = ::open(part.c_str(), O_WRONLY | O_APPEND | O_CLOEXEC);
+  if (descriptor_ < 0) fail("go on with", part);
 }
 
 AtomicFile::~AtomicFile() {
@@ -57,6 +64,22 @@ void AtomicFile::commit() {
   if (::close(std::exchange(descriptor_, -1)) != 0) fail("write", part_of(file_));
   if (::rename(part_of(file_).c_str(), file_.c_str()) != 0) fail("rename to", file_);
   sync_folder(file_.has_parent_path() ? file_.parent_path() : ".");
+}
+
+void AtomicFile::archive(Archive& archive) {
+  std::int64_t length = ::lseek(descriptor_, 0, SEEK_END);
+  if (length < 0) fail("find the end of", part_of(file_));
+  if (!archive.is_loading()) {
+    if (::fsync(descriptor_) != 0) fail("bring to the disk", part_of(file_));
+    archive("length", length);
+    return;
+  }
+  const std::int64_t found = length;
+  archive("length", length);
+  if (found < length)
+    throw RunError(fmt::format("{}: {} bytes of {} are left; --overwrite starts from the beginning",
+                               part_of(file_).string(), found, length));
+  if (::ftruncate(descriptor_, length) != 0) fail("shorten", part_of(file_));
 }
 
 void write_file(const fs::path& file, std::string_view text) try {

@@ -2,6 +2,8 @@
 // renamed. A reader, or a run that died half way, never leaves or sees half a file under a final name.
 #pragma once
 
+#include "core/archive.hpp"
+
 #include <filesystem>
 #include <string_view>
 
@@ -11,7 +13,11 @@ namespace scree {
 /// reason (disk full, no permission...).
 class AtomicFile {
  public:
-  explicit AtomicFile(std::filesystem::path file);
+  enum class Opening {
+    anew,
+    again  ///< to go on with what is there, complete or not; archive() says up to where
+  };
+  explicit AtomicFile(std::filesystem::path file, Opening opening = Opening::anew);
   /// Without commit() the part stays: it may be all that is left of a run that died.
   ~AtomicFile();
   AtomicFile(const AtomicFile&) = delete;
@@ -20,6 +26,8 @@ class AtomicFile {
   /// Unbuffered, so that a run can be watched as it goes.
   void write(std::string_view text);
   void commit();
+  /// What was written until the state was saved is on the disk; what was written since is gone after loading.
+  void archive(Archive& archive);
 
  private:
   std::filesystem::path file_;

@@ -7,6 +7,8 @@
 
 #include <fmt/format.h>
 
+#include <fstream>
+
 namespace scree {
 
 namespace {
@@ -110,6 +112,13 @@ Json times(const std::vector<timing::Entry>& entries) {
 
 }  // namespace
 
+std::optional<std::int64_t> steps_done(const std::filesystem::path& manifest) {
+  const Json json = Json::parse(std::ifstream(manifest), nullptr, false);
+  const bool is_done = json.is_object() && json.value("status", "") == "done" && json.contains("steps") &&
+                       json["steps"].is_number_integer();
+  return is_done ? std::optional(json["steps"].get<std::int64_t>()) : std::nullopt;
+}
+
 std::string hex(std::uint64_t hash) { return fmt::format("{:016x}", hash); }
 
 std::string manifest_of(const Scene& scene, const RunSummary& run) {
@@ -139,6 +148,7 @@ std::string manifest_of(const Scene& scene, const RunSummary& run) {
   if (!run.movie.empty()) json["movie"] = run.movie;
   json["warnings"] = run.warnings;
   json["wall_s"] = run.wall;
+  if (!run.resumed_at.empty()) json["resumed_at"] = run.resumed_at;
   json["counters"] = json_of(run.last.counters);
   json["stages"] = times(timing::entries());
   if (!timing::calls().empty()) json["calls"] = times(timing::calls());

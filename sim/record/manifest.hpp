@@ -5,6 +5,8 @@
 #include "sim/record/checks.hpp"
 
 #include <cstdint>
+#include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -20,7 +22,8 @@ struct RunSummary {
   double time = 0;        ///< s
   Observation last = {};  ///< the newest; of the last state, unless that could not be observed
   std::uint64_t state_hash = 0;
-  double wall = 0;  ///< of the whole run, drawing and writing included (s)
+  double wall = 0;  ///< of the whole run, drawing and writing included, but not the time it was stopped (s)
+  std::vector<std::int64_t> resumed_at = {};  ///< steps
   std::int64_t frames = 0;
   std::string movie = {};  ///< file name; empty if there is none
   std::vector<CheckResult> checks = {};
@@ -29,6 +32,9 @@ struct RunSummary {
 
 /// The text of manifest.json; the wall times by stage are those of core/timing.hpp.
 std::string manifest_of(const Scene& scene, const RunSummary& run);
+
+/// The steps of the run that a manifest tells of, if that is done; nothing if it is not, or the file is none.
+std::optional<std::int64_t> steps_done(const std::filesystem::path& manifest);
 
 /// As manifests and summaries write hashes: 16 hexadecimal digits.
 std::string hex(std::uint64_t hash);

@@ -46,14 +46,15 @@ std::vector<std::string> metric_names(const Scene& scene) {
   return names;
 }
 
-MetricsFile::MetricsFile(const Scene& scene, const std::filesystem::path& file) : file_(file) {
+MetricsFile::MetricsFile(const Scene& scene, const std::filesystem::path& file, AtomicFile::Opening opening)
+    : file_(file, opening) {
   std::string header = "time,step";
   for (std::string name : metric_names(scene)) {
     measures_.push_back(parse_measure(name, scene));
     std::ranges::replace(name, '.', '_');
     header += ',' + name;
   }
-  file_.write(header + '\n');
+  if (opening == AtomicFile::Opening::anew) file_.write(header + '\n');
 }
 
 void MetricsFile::write_row(const Probe& probe) {
@@ -64,12 +65,24 @@ void MetricsFile::write_row(const Probe& probe) {
   file_.write(row + '\n');
 }
 
-TimingFile::TimingFile(const std::filesystem::path& file) : file_(file) {
-  file_.write("time,wall,stage,seconds,calls\n");
+TimingFile::TimingFile(const std::filesystem::path& file, AtomicFile::Opening opening)
+    : file_(file, opening) {
+  if (opening == AtomicFile::Opening::anew) file_.write("time,wall,stage,seconds,calls\n");
+}
+
+double TimingFile::wall() const {
+  return wall_before_ + std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+}
+
+void TimingFile::archive(Archive& archive) {
+  file_.archive(archive);
+  double so_far = wall();
+  archive("wall", so_far);
+  if (archive.is_loading()) wall_before_ = so_far;
 }
 
 void TimingFile::write_rows(double time) {
-  const double wall = std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+  const double wall = this->wall();
   const std::vector<timing::Entry>& entries = timing::entries();
   written_.resize(entries.size());  // accounts are only ever added, at the end
   std::string rows;

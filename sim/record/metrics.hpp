@@ -23,9 +23,10 @@ std::vector<std::string> metric_names(const Scene& scene);
 /// that read back to the same double; nan for a body that is not there.
 class MetricsFile {
  public:
-  MetricsFile(const Scene& scene, const std::filesystem::path& file);
+  MetricsFile(const Scene& scene, const std::filesystem::path& file, AtomicFile::Opening opening);
   void write_row(const Probe& probe);
   void commit() { file_.commit(); }
+  void archive(Archive& archive) { file_.archive(archive); }
 
  private:
   AtomicFile file_;
@@ -36,13 +37,17 @@ class MetricsFile {
 /// row, because a stage can run for the first time late in a run.
 class TimingFile {
  public:
-  explicit TimingFile(const std::filesystem::path& file);
+  TimingFile(const std::filesystem::path& file, AtomicFile::Opening opening);
   void write_rows(double time);
   void commit() { file_.commit(); }
+  void archive(Archive& archive);
+  /// Since the run began, but for the time in which it was stopped (s).
+  double wall() const;
 
  private:
   AtomicFile file_;
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+  double wall_before_ = 0;  // of what the run was continued from (s)
   std::vector<timing::Entry> written_;
 };
 

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
+#include <cstdlib>
 #include <cstring>
 #include <fcntl.h>
 #include <string_view>
@@ -33,17 +34,21 @@ bool is_plot(std::string_view name) {
          (name.ends_with(".gp") || name.ends_with(".svg") || name.ends_with(".png"));
 }
 
+bool is_folder_of_a_run(std::string_view name) { return name == "frames" || name == "checkpoint"; }
+
 /// Whether a run or a study wrote this entry of its folder: a final name, or the part of one that did not get
 /// that far.
 bool is_written_by_a_run(const fs::path& entry) {
   std::string name = entry.filename().string();
   if (name.ends_with(".part")) name.resize(name.size() - std::strlen(".part"));
-  return std::ranges::find(file_names, name) != file_names.end() || name == "frames" || is_plot(name);
+  return std::ranges::find(file_names, name) != file_names.end() || is_folder_of_a_run(name) || is_plot(name);
 }
 
-bool is_frame(const fs::path& entry) {
+/// A picture or a saved state, complete or not.
+bool is_numbered(const fs::path& entry) {
   const std::string name = entry.filename().string();
-  return name.ends_with(".png") || name.ends_with(".png.part");
+  return name.ends_with(".png") || name.ends_with(".png.part") || name.ends_with(".h5") ||
+         name.ends_with(".h5.part");
 }
 
 std::vector<fs::path> entries_of(const fs::path& folder) {
@@ -56,19 +61,19 @@ std::vector<fs::path> entries_of(const fs::path& folder) {
 
 void remove_earlier_run(const std::vector<fs::path>& entries) {
   for (const fs::path& entry : entries) {
-    if (entry.filename() != "frames") {
+    if (!is_folder_of_a_run(entry.filename().string())) {
       fs::remove(entry);
       continue;
     }
-    for (const fs::path& frame : entries_of(entry)) {
-      if (is_frame(frame)) fs::remove(frame);
+    for (const fs::path& file : entries_of(entry)) {
+      if (is_numbered(file)) fs::remove(file);
     }
   }
 }
 
 }  // namespace
 
-RunFolder::RunFolder(fs::path folder, bool overwrite) : folder_(std::move(folder)) {
+RunFolder::RunFolder(fs::path folder, Earlier earlier) : folder_(std::move(folder)) {
   try {
     if (fs::exists(folder_) && !fs::is_directory(folder_)) {
       throw InputError(fmt::format("{}: is not a folder; give another one with -o", folder_.string()));
@@ -79,13 +84,14 @@ RunFolder::RunFolder(fs::path folder, bool overwrite) : folder_(std::move(folder
       throw InputError(fmt::format("{}: holds {}, which no run has written; give another folder with -o",
                                    folder_.string(), foreign->filename().string()));
     }
-    if (!found.empty() && !overwrite) {
-      throw InputError(fmt::format("{}: holds an earlier run; --overwrite replaces it, -o DIR keeps it",
-                                   folder_.string()));
+    if (!found.empty() && earlier == Earlier::refused) {
+      throw InputError(fmt::format(
+          "{}: holds an earlier run; --resume continues it, --overwrite replaces it, -o DIR keeps it",
+          folder_.string()));
     }
     fs::create_directories(folder_);
     lock();
-    remove_earlier_run(found);
+    if (earlier == Earlier::replaced) remove_earlier_run(found);
   } catch (const fs::filesystem_error& error) {
     throw RunError(
         fmt::format("cannot make the run folder {}: {}", folder_.string(), error.code().message()));
@@ -98,6 +104,36 @@ fs::path RunFolder::frames() const {
   fs::create_directory(frames, error);
   if (error) throw RunError(fmt::format("cannot make {}: {}", frames.string(), error.message()));
   return frames;
+}
+
+void RunFolder::clear() const {
+  try {
+    remove_earlier_run(entries_of(folder_));
+  } catch (const fs::filesystem_error& error) {
+    throw RunError(fmt::format("cannot clear {}: {}", folder_.string(), error.code().message()));
+  }
+}
+
+void RunFolder::remove_results() const {
+  for (const char* name : {"manifest.json", "final.csv", "movie.mp4"}) {
+    std::error_code error;
+    fs::remove(folder_ / name, error);
+    if (error)
+      throw RunError(fmt::format("cannot remove {}: {}", (folder_ / name).string(), error.message()));
+  }
+}
+
+fs::path RunFolder::frame(std::int64_t number) const { return frames() / fmt::format("{:05}.png", number); }
+
+void RunFolder::remove_frames_from(std::int64_t number) const {
+  for (const fs::path& entry : entries_of(frames())) {
+    const std::string name = entry.filename().string();
+    if (is_numbered(entry) && (name.ends_with(".part") || std::atoll(name.c_str()) >= number)) {
+      std::error_code error;
+      fs::remove(entry, error);
+      if (error) throw RunError(fmt::format("cannot remove {}: {}", entry.string(), error.message()));
+    }
+  }
 }
 
 void RunFolder::lock() {

@@ -92,7 +92,8 @@ Codec<RecordEntry> record_section() {
                  "simulated time between rows of metrics.csv"),
           key<T>("trajectory", &T::trajectory, word<Trajectory>({{"false", Trajectory::none}}, {"true"}),
                  optionally, "the motion of every body"),
-          future<T>("checkpoint_every", "time between saved states"),
+          key<T>("checkpoint_every", &T::checkpoint_every, number(above_zero, "s"), optionally,
+                 "wall time between saved states that `--resume` can go on from"),
       });
 }
 

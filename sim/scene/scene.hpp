@@ -140,7 +140,8 @@ struct RenderSettings {
 };
 
 struct RecordSettings {
-  double metrics_every = 0.01;  ///< s
+  double metrics_every = 0.01;   ///< s
+  double checkpoint_every = 60;  ///< of wall time (s)
 };
 
 /// Where in the scene file something stands, for messages; counted from 1.

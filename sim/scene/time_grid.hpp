@@ -1,6 +1,7 @@
 // The instants of a run: which step is nearest to a time, and which steps lie in an interval.
 #pragma once
 
+#include "core/archive.hpp"
 #include "sim/scene/scene.hpp"
 
 #include <cstdint>
@@ -48,6 +49,7 @@ class Cadence {
 
   /// How many are due at a step, each counted once. Steps must come in ascending order.
   std::int64_t due(std::int64_t step);
+  void archive(Archive& archive) { archive("next", next_); }
 
  private:
   TimeGrid grid_;

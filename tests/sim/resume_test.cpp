@@ -3,9 +3,8 @@
 #include "sim/simulation.hpp"
 #include "tests/sim/dynamics/simulations.hpp"
 
-#include <gtest/gtest.h>
-
 #include <fmt/format.h>
+#include <gtest/gtest.h>
 
 #include <cstdint>
 #include <string>
@@ -65,7 +64,9 @@ void expect_same_after_resume(const Make& simulate, int every) {
     Simulation resumed = simulate();
     Archive archive = Archive::loading(state);
     resumed.archive(archive);
-    for (const std::int64_t first = resumed.steps(); !resumed.finished() && resumed.steps() < first + every + 3;) {
+    EXPECT_EQ(seen(resumed), expected[static_cast<std::size_t>(resumed.steps())]);
+    for (const std::int64_t first = resumed.steps();
+         !resumed.finished() && resumed.steps() < first + every + 3;) {
       resumed.step();
       ASSERT_EQ(seen(resumed), expected[static_cast<std::size_t>(resumed.steps())])
           << "saved at step " << first;
@@ -73,8 +74,9 @@ void expect_same_after_resume(const Make& simulate, int every) {
   }
 }
 
-constexpr const char* common = "gravity: [0, 0, -9.81]\n"
-                               "materials: {stone: {density: 1000, restitution: 0.2, friction: 0.5}}\n";
+constexpr const char* common =
+    "gravity: [0, 0, -9.81]\n"
+    "materials: {stone: {density: 1000, restitution: 0.2, friction: 0.5}}\n";
 
 /// All shapes, a drum that turns, a gate that goes, a ball that comes, a force for a time.
 TEST_P(Resume, EverythingGoesOnWithTheSameBits) {
@@ -134,13 +136,14 @@ bodies:
 
 INSTANTIATE_TEST_SUITE_P(
     Ways, Resume,
-    testing::Values(
-        Way{"host", {SpaceChoice::host, 1}, "precision: double"},
-        Way{"host_accurate", {SpaceChoice::host, 1}, "response: {mode: accurate}"},
-        Way{"host_resident", {.space = SpaceChoice::host, .threads = 1, .resident = true}, "precision: double"},
-        Way{"host_mixed", {SpaceChoice::host, 1}, "precision: mixed"},
-        Way{"cuda", {SpaceChoice::cuda}, "precision: double"},
-        Way{"cuda_mixed", {SpaceChoice::cuda}, "precision: mixed"}),
+    testing::Values(Way{"host", {SpaceChoice::host, 1}, "precision: double"},
+                    Way{"host_accurate", {SpaceChoice::host, 1}, "response: {mode: accurate}"},
+                    Way{"host_resident",
+                        {.space = SpaceChoice::host, .threads = 1, .resident = true},
+                        "precision: double"},
+                    Way{"host_mixed", {SpaceChoice::host, 1}, "precision: mixed"},
+                    Way{"cuda", {SpaceChoice::cuda}, "precision: double"},
+                    Way{"cuda_mixed", {SpaceChoice::cuda}, "precision: mixed"}),
     [](const auto& way) { return std::string(way.param.name); });
 
 }  // namespace

@@ -9,10 +9,11 @@ namespace scree {
 namespace {
 
 namespace fs = std::filesystem;
+using Earlier = RunFolder::Earlier;
 
 TEST(RunFolder, IsMadeWithItsParents) {
   const TemporaryFolder folder;
-  const RunFolder run(folder / "a/b", false);
+  const RunFolder run(folder / "a/b", Earlier::refused);
   EXPECT_TRUE(fs::is_directory(folder / "a/b"));
   EXPECT_TRUE(fs::is_directory(run.frames()));
 }
@@ -24,10 +25,10 @@ TEST(RunFolder, RefusesAnEarlierRunUnlessToldToOverwrite) {
   for (const char* name : {"manifest.json", "metrics.csv.part", "frames/00000.png", "frames/note.txt"}) {
     write_text(path / name, "old");
   }
-  EXPECT_THROW(RunFolder(path, false), InputError);
+  EXPECT_THROW(RunFolder(path, Earlier::refused), InputError);
   EXPECT_EQ(text_of(path / "manifest.json"), "old");
 
-  const RunFolder run(path, true);
+  const RunFolder run(path, Earlier::replaced);
   EXPECT_FALSE(fs::exists(path / "manifest.json"));
   EXPECT_FALSE(fs::exists(path / "metrics.csv.part"));
   EXPECT_FALSE(fs::exists(path / "frames/00000.png"));
@@ -38,26 +39,26 @@ TEST(RunFolder, NeverTouchesAFolderThatHoldsAnythingElse) {
   const TemporaryFolder folder;
   write_text(folder / "metrics.csv", "mine");
   write_text(folder / "thesis.tex", "mine");
-  EXPECT_THROW(RunFolder(folder.path(), true), InputError);
+  EXPECT_THROW(RunFolder(folder.path(), Earlier::replaced), InputError);
   EXPECT_EQ(text_of(folder / "metrics.csv"), "mine");
   write_text(folder / "file", "");
-  EXPECT_THROW(RunFolder(folder / "file", true), InputError);
+  EXPECT_THROW(RunFolder(folder / "file", Earlier::replaced), InputError);
 }
 
 TEST(RunFolder, IsLockedWhileItLives) {
   const TemporaryFolder folder;
   {
-    const RunFolder run(folder / "run", false);
-    EXPECT_THROW(RunFolder(folder / "run", true), InputError);
+    const RunFolder run(folder / "run", Earlier::refused);
+    EXPECT_THROW(RunFolder(folder / "run", Earlier::replaced), InputError);
   }
-  EXPECT_NO_THROW(RunFolder(folder / "run", false))
+  EXPECT_NO_THROW(RunFolder(folder / "run", Earlier::refused))
       << "the lock is gone, and an empty folder is no earlier run";
 }
 
 TEST(RunFolder, CannotBeMadeBelowAFile) {
   const TemporaryFolder folder;
   write_text(folder / "file", "");
-  EXPECT_THROW(RunFolder(folder / "file/run", false), RunError);
+  EXPECT_THROW(RunFolder(folder / "file/run", Earlier::refused), RunError);
 }
 
 }  // namespace

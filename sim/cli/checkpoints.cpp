@@ -1,0 +1,119 @@
+#include "sim/cli/checkpoints.hpp"
+
+#include "core/error.hpp"
+#include "core/timing.hpp"
+
+#include <fmt/format.h>
+
+#include <sstream>
+#include <string_view>
+#include <utility>
+
+namespace scree::cli {
+
+namespace {
+
+/// The first line in which two texts differ, of each.
+std::pair<std::string, std::string> first_difference(const std::string& a, const std::string& b) {
+  std::istringstream lines_a(a), lines_b(b);
+  std::string line_a, line_b;
+  do {
+    line_a.clear();
+    line_b.clear();
+    std::getline(lines_a, line_a);
+    std::getline(lines_b, line_b);
+  } while (line_a == line_b && lines_a && lines_b);
+  return {line_a, line_b};
+}
+
+[[noreturn]] void refuse(std::string_view why) {
+  throw InputError(fmt::format("--resume: {}; --overwrite starts from the beginning", why));
+}
+
+}  // namespace
+
+void RunIdentity::archive(Archive& archive) {
+  archive("version", version);
+  archive("commit", commit);
+  archive("space", space);
+  archive("scene", scene);
+  archive("bodies", bodies);
+  archive("draws", draws);
+}
+
+void expect_same_run(const RunIdentity& saved, const RunIdentity& present) {
+  if (saved.version != present.version)
+    refuse(fmt::format("the checkpoint is of version {}, and this is {}", saved.version, present.version));
+  if (saved.scene != present.scene) {
+    const auto [was, is] = first_difference(saved.scene, present.scene);
+    refuse(fmt::format("the checkpoint is of another scene: there `{}`, here `{}`", was, is));
+  }
+  if (saved.bodies != present.bodies)
+    refuse("the scene's bodies are others, so a file of theirs has changed");
+  if (saved.space != present.space)
+    refuse(fmt::format("the checkpoint is of a run on {0}, and this is one on {1} (--device {0})",
+                       saved.space, present.space));
+  if (saved.draws != present.draws)
+    refuse(fmt::format("the checkpoint is of a run {} --no-render", saved.draws ? "without" : "with"));
+}
+
+Checkpoints::Checkpoints(const RunFolder& folder, double every, RunIdentity identity)
+    : folder_(folder / "checkpoint"),
+      every_(every),
+      identity_(std::move(identity)),
+      writer_(1, [this](Saved& saved) { folder_.add(saved.step, saved.state); }) {}
+
+bool Checkpoints::find(std::vector<std::string>& warnings) {
+  found_ = folder_.newest(warnings);
+  for (std::string& damaged : warnings) damaged += "; the one before it is taken";
+  if (!found_) return false;
+  RunIdentity saved;
+  Archive::loading(*found_).part("run", saved);
+  expect_same_run(saved, identity_);
+  if (saved.commit != identity_.commit)
+    warnings.push_back(
+        fmt::format("the checkpoint is of commit {}, and this is {}: bits may differ from here on",
+                    saved.commit, identity_.commit));
+  return true;
+}
+
+void Checkpoints::resume(Simulation& simulation, Recorder& recorder) {
+  Archive archive = Archive::loading(*found_);
+  this->archive(archive, simulation, recorder);
+  found_.reset();
+  resumed_at_.push_back(simulation.steps());
+  last_step_ = simulation.steps();
+}
+
+void Checkpoints::archive(Archive& archive, Simulation& simulation, Recorder& recorder) {
+  archive("resumed_at", resumed_at_);
+  archive.part("simulation", simulation);
+  archive.part("recorder", recorder);
+}
+
+void Checkpoints::take(Simulation& simulation, Recorder& recorder) {
+  const timing::Region region("checkpoint");
+  Saved saved{simulation.steps(), {}};
+  Archive archive = Archive::saving(saved.state);
+  archive.part("run", identity_);
+  this->archive(archive, simulation, recorder);
+  writer_.push(std::move(saved));
+  last_step_ = simulation.steps();
+  last_time_ = Clock::now();
+}
+
+void Checkpoints::take_if_due(Simulation& simulation, Recorder& recorder) {
+  if (Clock::now() - last_time_ >= every_) take(simulation, recorder);
+}
+
+void Checkpoints::take_last(Simulation& simulation, Recorder& recorder) {
+  if (last_step_ != simulation.steps()) take(simulation, recorder);
+  writer_.drain();
+}
+
+void Checkpoints::drop() {
+  writer_.drain();
+  folder_.clear();
+}
+
+}  // namespace scree::cli
