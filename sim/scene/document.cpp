@@ -16,6 +16,8 @@ namespace {
 
 constexpr int max_depth = 32;
 constexpr std::int64_t max_aliased_nodes = 100'000;
+constexpr std::int64_t max_aliased_bytes = 10'000'000;
+constexpr std::size_t max_key = 200;  // bytes; yaml-cpp finds no `:` beyond 1024, escapes included
 
 SourceMark to_mark(const YAML::Mark& mark) {
   return {std::max(mark.line, 0) + 1, std::max(mark.column, 0) + 1};
@@ -69,14 +71,16 @@ void check_characters(std::string_view text) {
 
 struct Extent {
   std::int64_t nodes = 1;
+  std::int64_t bytes = 0;  ///< of text
   int depth = 1;
 };
 
 Extent extent_of(const Node& node) {
-  Extent extent;
+  Extent extent{.bytes = std::ssize(node.text) + std::ssize(node.key)};
   for (const Node& item : node.items) {
     const Extent part = extent_of(item);
     extent.nodes += part.nodes;
+    extent.bytes += part.bytes;
     extent.depth = std::max(extent.depth, 1 + part.depth);
   }
   return extent;
@@ -109,9 +113,12 @@ class TreeBuilder final : public YAML::EventHandler {
     const auto found = anchored_.find(anchor);
     if (found == anchored_.end()) throw SyntaxError{to_mark(mark), "an alias inside its own anchor"};
     const auto& [node, extent] = found->second;
-    aliased_ += extent.nodes;
-    if (aliased_ > max_aliased_nodes)
+    aliased_nodes_ += extent.nodes;
+    if (aliased_nodes_ > max_aliased_nodes)
       throw SyntaxError{to_mark(mark), fmt::format("aliases add more than {} nodes", max_aliased_nodes)};
+    aliased_bytes_ += extent.bytes;
+    if (aliased_bytes_ > max_aliased_bytes)
+      throw SyntaxError{to_mark(mark), fmt::format("aliases add more than {} bytes", max_aliased_bytes)};
     check_depth(to_mark(mark), extent.depth);
     add(node, 0);
   }
@@ -179,6 +186,8 @@ class TreeBuilder final : public YAML::EventHandler {
     if (parent.node.kind == Node::Kind::map) {
       if (!parent.key) {
         if (node.kind != Node::Kind::scalar) throw SyntaxError{node.mark, "a key must be a name"};
+        if (node.text.size() > max_key)
+          throw SyntaxError{node.mark, fmt::format("a key longer than {} bytes", max_key)};
         parent.key = std::move(node);
         return;
       }
@@ -191,47 +200,9 @@ class TreeBuilder final : public YAML::EventHandler {
 
   std::vector<Open> open_;
   std::map<YAML::anchor_t, std::pair<Node, Extent>> anchored_;
-  std::int64_t aliased_ = 0;
+  std::int64_t aliased_nodes_ = 0;
+  std::int64_t aliased_bytes_ = 0;
 };
-
-void append_quoted(std::string& out, std::string_view text) {
-  out += '"';
-  for (const char c : text) {
-    if (c == '\n' || c == '\r' || c == '\t') {
-      out += c == '\n' ? "\\n" : c == '\r' ? "\\r" : "\\t";
-      continue;
-    }
-    if (c == '"' || c == '\\') out += '\\';
-    out += c;
-  }
-  out += '"';
-}
-
-void append_flow(std::string& out, const Node& node) {
-  if (node.kind == Node::Kind::null) {
-    out += "null";
-  } else if (node.kind == Node::Kind::scalar) {
-    if (node.quoted) {
-      append_quoted(out, node.text);
-    } else {
-      out += node.text;
-    }
-  } else {
-    const bool map = node.kind == Node::Kind::map;
-    out += map ? '{' : '[';
-    for (const Node& item : node.items) {
-      if (&item != node.items.data()) out += ", ";
-      if (map) (out += item.key) += ": ";
-      append_flow(out, item);
-    }
-    out += map ? '}' : ']';
-  }
-}
-
-bool holds_maps(const Node& node) {
-  return std::any_of(node.items.begin(), node.items.end(),
-                     [](const Node& item) { return item.kind == Node::Kind::map; });
-}
 
 }  // namespace
 
@@ -285,32 +256,6 @@ Node parse_document(const std::string& text) {
     throw SyntaxError{to_mark(error.mark), "broken YAML: " + error.msg};
   }
   return std::move(builder.root);
-}
-
-std::string to_flow_yaml(const Node& node) {
-  std::string out;
-  append_flow(out, node);
-  return out;
-}
-
-std::string to_yaml(const Node& node) {
-  std::string out;
-  for (const Node& section : node.items) {
-    out += section.key + ":";
-    if (!holds_maps(section)) {
-      out += ' ';
-      append_flow(out, section);
-      out += '\n';
-      continue;
-    }
-    out += '\n';
-    for (const Node& item : section.items) {
-      out += section.kind == Node::Kind::map ? "  " + item.key + ": " : "  - ";
-      append_flow(out, item);
-      out += '\n';
-    }
-  }
-  return out;
 }
 
 }  // namespace scree
