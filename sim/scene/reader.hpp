@@ -25,6 +25,9 @@ struct PathPart {
 
 std::string to_text(const std::vector<PathPart>& path);
 
+/// The text on one line that terminals take as text: control characters are written out.
+std::string printable(std::string_view text);
+
 class Reader {
  public:
   Reader(std::string file, std::vector<Override> overrides)
