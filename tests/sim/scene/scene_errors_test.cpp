@@ -8,6 +8,7 @@
 #include <fstream>
 #include <set>
 #include <string>
+#include <tuple>
 
 namespace scree {
 namespace {
@@ -157,6 +158,11 @@ constexpr BadScene bad_scenes[] = {
     {"force_beyond_end", 9, 40, "forces[0].from: must be before the end, 1 s, not 2 s"},
     {"force_reversed", 9, 52, "forces[0].until: must be at least a step after from, 0.5 s, not 0.2 s"},
     {"force_scalar", 9, 23, "forces[0].force: must be a list of 3 numbers (N), not 3"},
+    {"lattice_infinite", 6, 5, "bodies[0]: its place, orientation or motion is beyond what numbers can hold"},
+    {"angle_infinite", 6, 5, "bodies[0]: its place, orientation or motion is beyond what numbers can hold"},
+    {"motion_infinite", 6, 5, "bodies[0]: its place, orientation or motion is beyond what numbers can hold"},
+    {"scatter_infinite", 6, 73, "bodies[0].scatter.to: is so far from `from` that numbers cannot hold the distance"},
+    {"key_long", 3, 1, "a key longer than 200 bytes"},
     {"about_without_spin", 6, 43, "bodies[0].motion.about: needs a spin that is not zero"},
 };
 // clang-format on
@@ -254,6 +260,25 @@ TEST(BadScenes, MoreBodiesThanMemoryAreRefusedBeforeAllocation) {
       begins_with(message, "test.yaml:5:52: bodies[0].repeat: a run of the scene's 2000000000 bodies needs "))
       << message;
   EXPECT_NE(message.find("iB of memory, but this machine has "), std::string::npos) << message;
+}
+
+TEST(BadScenes, MoreBodiesThanTheMemoryGivenAreRefused) {
+  const std::string text =
+      "format: 1\ntime: {end: 1, step: 1}\nmaterials: {glass: {}}\nbodies:\n"
+      "  - {sphere: {radius: 1}, material: glass, repeat: {count: [9, 9, 9], spacing: [2, 2, 2]}}\n";
+  EXPECT_EQ(parse_scene(text, "test.yaml", {}, 2e8).bodies.count(), 729);
+  EXPECT_THROW(parse_scene(text, "test.yaml", {}, 1e8), InputError);
+}
+
+// A scene may hold any character in quotes, and its messages are read in terminals.
+TEST(BadScenes, MessagesHoldNoControlCharacters) {
+  const std::tuple<std::string, std::vector<Override>, std::string> cases[] = {
+      {"\"\\e[2J\": 1\n", {}, "test.yaml:1:1: \\x1B[2J: unknown key (known"},
+      {"format: \"1\\n\"\n", {}, "test.yaml:1:9: format: must be 1, not \"1\\x0A\"\n"},
+      {"format: 1\n", {{"time.step", "[\x1b"}}, "--set time.step=[\\x1B: "},
+  };
+  for (const auto& [text, overrides, start] : cases)
+    EXPECT_TRUE(begins_with(message_of(text, overrides), start)) << message_of(text, overrides);
 }
 
 // No prefix of a scene, and no scene with one byte changed, may do anything but load or be refused.
