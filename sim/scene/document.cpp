@@ -15,8 +15,8 @@ namespace scree {
 namespace {
 
 constexpr int max_depth = 32;
-constexpr std::int64_t max_aliased_nodes = 100'000;
-constexpr std::int64_t max_aliased_bytes = 10'000'000;
+constexpr std::int64_t max_copied_nodes = 100'000;
+constexpr std::int64_t max_copied_bytes = 10'000'000;
 constexpr std::size_t max_key = 200;  // bytes; yaml-cpp finds no `:` beyond 1024, escapes included
 
 SourceMark to_mark(const YAML::Mark& mark) {
@@ -58,8 +58,9 @@ void check_characters(std::string_view text) {
       const std::size_t next = text.find_first_not_of(" \t\r", at);
       if (next != std::string_view::npos && text[next] != '\n' && text[next] != '#')
         throw SyntaxError{mark, "a tab in the indentation; YAML is indented with spaces"};
+      indentation = false;  // nothing but blanks and comments follows
     }
-    if (c != ' ' && c != '\t') indentation = false;
+    if (c != ' ') indentation = false;
     at += length;
     ++mark.column;
     if (c == '\n') {
@@ -100,8 +101,8 @@ void refuse_duplicates(const Node& map) {
                                                     twice[0]->key, first.line, first.column)};
 }
 
-/// Builds the tree from the parser's events. Copies of aliases are bounded, so no file can make the tree
-/// much larger than itself.
+/// Builds the tree from the parser's events. Copies, those that anchors hold and those that aliases add, are
+/// bounded, so no file can make the tree much larger than itself.
 class TreeBuilder final : public YAML::EventHandler {
  public:
   Node root;
@@ -113,12 +114,7 @@ class TreeBuilder final : public YAML::EventHandler {
     const auto found = anchored_.find(anchor);
     if (found == anchored_.end()) throw SyntaxError{to_mark(mark), "an alias inside its own anchor"};
     const auto& [node, extent] = found->second;
-    aliased_nodes_ += extent.nodes;
-    if (aliased_nodes_ > max_aliased_nodes)
-      throw SyntaxError{to_mark(mark), fmt::format("aliases add more than {} nodes", max_aliased_nodes)};
-    aliased_bytes_ += extent.bytes;
-    if (aliased_bytes_ > max_aliased_bytes)
-      throw SyntaxError{to_mark(mark), fmt::format("aliases add more than {} bytes", max_aliased_bytes)};
+    count_copy(aliased_, extent, to_mark(mark), "aliases add");
     check_depth(to_mark(mark), extent.depth);
     add(node, 0);
   }
@@ -150,6 +146,14 @@ class TreeBuilder final : public YAML::EventHandler {
     std::optional<Node> key;  ///< of the map item whose value comes next
   };
 
+  static void count_copy(Extent& copies, const Extent& extent, const SourceMark& mark, const char* what) {
+    copies.nodes += extent.nodes;
+    copies.bytes += extent.bytes;
+    if (copies.nodes > max_copied_nodes)
+      throw SyntaxError{mark, fmt::format("{} more than {} nodes", what, max_copied_nodes)};
+    if (copies.bytes > max_copied_bytes)
+      throw SyntaxError{mark, fmt::format("{} more than {} bytes", what, max_copied_bytes)};
+  }
   static Node leaf(const YAML::Mark& mark) {
     Node node;
     node.mark = to_mark(mark);
@@ -177,7 +181,11 @@ class TreeBuilder final : public YAML::EventHandler {
     add(std::move(done.node), done.anchor);
   }
   void add(Node node, YAML::anchor_t anchor) {
-    if (anchor != 0) anchored_[anchor] = {node, extent_of(node)};
+    if (anchor != 0) {
+      const Extent extent = extent_of(node);
+      count_copy(held_, extent, node.mark, "anchors hold");
+      anchored_[anchor] = {node, extent};
+    }
     if (open_.empty()) {
       root = std::move(node);
       return;
@@ -200,8 +208,8 @@ class TreeBuilder final : public YAML::EventHandler {
 
   std::vector<Open> open_;
   std::map<YAML::anchor_t, std::pair<Node, Extent>> anchored_;
-  std::int64_t aliased_nodes_ = 0;
-  std::int64_t aliased_bytes_ = 0;
+  Extent held_{.nodes = 0};     // by anchors, those within others again
+  Extent aliased_{.nodes = 0};  // added by aliases
 };
 
 }  // namespace

@@ -39,8 +39,8 @@ struct SyntaxError {
 
 /// Parses one YAML document. Throws SyntaxError for broken YAML, and for what YAML allows but a scene does
 /// not: bytes that are not UTF-8, control characters, tabs in indentation, duplicate keys, keys that are not
-/// names or longer than 200 bytes, tags, a second document, depth beyond 32, aliases that add more than
-/// 100,000 nodes or 10 MB of text.
+/// names or longer than 200 bytes, tags, a second document, depth beyond 32, anchors that hold, or
+/// aliases that add, more than 100,000 nodes or 10 MB of text.
 Node parse_document(const std::string& text);
 
 /// The tree, a map, as YAML that parses to the same tree, but for quotes around plain text of more than

@@ -93,7 +93,8 @@ void Reader::note(const InputError& error) {
 void Reader::finish() const {
   if (errors_ == 0) return;
   std::string text = fmt::format("{}", fmt::join(told_, "\n"));
-  if (errors_ > told_.size()) text += fmt::format("\nand {} more errors", errors_ - told_.size());
+  if (errors_ > told_.size())
+    text += fmt::format("\nand {}{} more errors", gives_up() ? "at least " : "", errors_ - told_.size());
   throw InputError(text);
 }
 

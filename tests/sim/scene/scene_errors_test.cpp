@@ -226,6 +226,27 @@ TEST(BadScenes, ManyErrorsAreCounted) {
   EXPECT_NE(message_of(text).find("and 92 more errors"), std::string::npos) << message_of(text);
 }
 
+// A body takes a thousand bytes, and a comma one.
+TEST(BadScenes, AThousandErrorsAreEnough) {
+  const std::string text = "format: 1\nbodies: [" + std::string(1'000'000, ',') + "]\n";
+  EXPECT_NE(message_of(text).find("and at least 99"), std::string::npos) << message_of(text);
+}
+
+TEST(BadScenes, CopiesThatAnchorsHoldAreBounded) {
+  std::string text = "x";
+  for (int i = 0; i < 4000; ++i) text += ", x";
+  for (int i = 0; i < 30; ++i) text = "&a" + std::to_string(i) + " [" + text + "]";
+  EXPECT_NE(message_of("a: " + text + "\n").find("anchors hold more than 100000 nodes"), std::string::npos);
+  std::string aliases = "a: &a " + std::string(1'000'000, 'x') + "\nb: [*a";
+  for (int i = 0; i < 10; ++i) aliases += ", *a";
+  EXPECT_NE(message_of(aliases + "]\n").find("aliases add more than 10000000 bytes"), std::string::npos);
+}
+
+// Each byte is looked at a few times at most: as the square of the length this would take minutes.
+TEST(BadScenes, BlankLinesMayBeLong) {
+  EXPECT_EQ(message_of(std::string(3'000'000, '\t') + "\n"), message_of(""));
+}
+
 TEST(BadScenes, MoreMaterialsThanTheirPairsAllow) {
   std::string text = "format: 1\ntime: {end: 1, step: 1}\nmaterials:\n";
   for (int i = 0; i < 1001; ++i) text += "  m" + std::to_string(i) + ": {}\n";
