@@ -42,6 +42,15 @@ std::size_t utf8_length(std::string_view text, std::size_t at) {
   return 0;
 }
 
+bool is_utf8(std::string_view text) {
+  for (std::size_t at = 0; at < text.size();) {
+    const std::size_t length = utf8_length(text, at);
+    if (length == 0) return false;
+    at += length;
+  }
+  return true;
+}
+
 /// yaml-cpp replaces bad bytes, stops at a control-D and is lax about tabs, all without a word.
 void check_characters(std::string_view text) {
   SourceMark mark{1, 1};
@@ -122,6 +131,8 @@ class TreeBuilder final : public YAML::EventHandler {
                 const std::string& value) override {
     const bool quoted = tag == "!";  // yaml-cpp's way to tell quoted scalars from plain ones, "?"
     if (!quoted) refuse_tag(mark, tag);
+    // The text of the file is UTF-8, but these two yaml-cpp turns into single bytes.
+    if (!is_utf8(value)) throw SyntaxError{to_mark(mark), "the escape \\N or \\_; write \\x85 or \\xA0"};
     Node node = leaf(mark);
     node.kind = Node::Kind::scalar;
     node.quoted = quoted;

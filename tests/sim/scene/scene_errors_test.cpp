@@ -226,6 +226,12 @@ TEST(BadScenes, ManyErrorsAreCounted) {
   EXPECT_NE(message_of(text).find("and 92 more errors"), std::string::npos) << message_of(text);
 }
 
+TEST(BadScenes, EscapesThatAreReadAsHalfCharacters) {
+  for (const char* escape : {"\\N", "\\_"})
+    EXPECT_EQ(message_of(std::string("format: 1\nname: \"a") + escape + "\"\n"),
+              "test.yaml:2:7: the escape \\N or \\_; write \\x85 or \\xA0");
+}
+
 // A body takes a thousand bytes, and a comma one.
 TEST(BadScenes, AThousandErrorsAreEnough) {
   const std::string text = "format: 1\nbodies: [" + std::string(1'000'000, ',') + "]\n";
