@@ -43,8 +43,14 @@ if(SCREE_SANITIZE)
   # with sanitizers g++ gives it for initialised variables too, as its manual says.
   target_compile_options(scree_options INTERFACE
     $<$<COMPILE_LANGUAGE:CXX>:-fsanitize=address,undefined -fno-sanitize=null -fno-sanitize-recover=all
-      -fno-omit-frame-pointer -Wno-maybe-uninitialized>)
+      -fno-omit-frame-pointer $<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized>>)
   target_link_options(scree_options INTERFACE -fsanitize=address,undefined)
+endif()
+if(SCREE_FUZZ)
+  # What is run is to be seen by the fuzzer; and hostile numbers are cast, which `undefined` does not look at.
+  target_compile_options(scree_options INTERFACE
+    $<$<COMPILE_LANGUAGE:CXX>:-fsanitize=fuzzer-no-link,float-cast-overflow>)
+  target_link_options(scree_options INTERFACE -fsanitize=float-cast-overflow)
 endif()
 
 # What a library or program needs to reach Thrust: its sources are compiled as CUDA where the build has nvcc and

@@ -1,7 +1,6 @@
 #include "sim/scene/body_slots.hpp"
 
 #include "sim/scene/measure.hpp"
-#include "sim/scene/memory.hpp"
 #include "sim/scene/rules.hpp"
 
 #include <fmt/format.h>
@@ -31,18 +30,18 @@ void add_load(const BodyEntry& body, double count, MemoryLoad& load) {
   load.name_bytes += count * static_cast<double>(body.name.size());
 }
 
-void require_room(const BodyEntry& body, const MemoryLoad& load, Reader& reader) {
+void require_room(const BodyEntry& body, const MemoryLoad& load, double memory, Reader& reader) {
   const char* cause = body.repeat ? "repeat" : body.scatter ? "scatter" : body.file.empty() ? "name" : "file";
   constexpr auto most = std::numeric_limits<std::int32_t>::max();
   if (load.bodies > most)
     reader.fail_at(cause, *body.node,
                    fmt::format("the scene would have {} bodies; at most {} are possible", load.bodies, most));
   const double need = memory_need(load).total();
-  if (need > machine_memory())
+  if (need > memory)
     reader.fail_at(
         cause, *body.node,
         fmt::format("a run of the scene's {:.0f} bodies needs {} of memory, but this machine has {}",
-                    load.bodies, bytes_words(need), bytes_words(machine_memory())));
+                    load.bodies, bytes_words(need), bytes_words(memory)));
 }
 
 /// The entry keeps where the file is found, for the resolved scene, which may be run from anywhere.
@@ -80,11 +79,11 @@ std::int32_t find_material(const BodyEntry& body, const MaterialNames& materials
 }  // namespace
 
 std::vector<BodySlot> body_slots(std::vector<BodyEntry>& entries, const std::filesystem::path& scene,
-                                 bool pictures, const TimeGrid& grid, const MaterialNames& materials,
-                                 Reader& reader) {
+                                 const MemoryBudget& memory, const TimeGrid& grid,
+                                 const MaterialNames& materials, Reader& reader) {
   const Reader::Step step(reader, "bodies");
   std::unordered_map<std::string_view, SourceMark> names;
-  MemoryLoad load{.pictures = pictures};
+  MemoryLoad load{.pictures = memory.pictures};
   std::vector<BodySlot> slots;
   slots.reserve(entries.size());
   for (std::size_t i = 0; i < entries.size(); ++i) {
@@ -94,7 +93,7 @@ std::vector<BodySlot> body_slots(std::vector<BodyEntry>& entries, const std::fil
     const double count = count_of(body, file.get());
     const double first = load.bodies;
     add_load(body, count, load);
-    require_room(body, load, reader);
+    require_room(body, load, memory.bytes, reader);
     claim_name(body, names, reader);
     const std::int32_t material = find_material(body, materials, reader);
     const TimeSpan span = time_span(body.from.value_or(0), body.until, grid, *body.node, reader);

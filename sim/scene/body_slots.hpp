@@ -4,6 +4,7 @@
 #include "sim/scene/body_file.hpp"
 #include "sim/scene/keys.hpp"
 #include "sim/scene/materials.hpp"
+#include "sim/scene/memory.hpp"
 #include "sim/scene/time_grid.hpp"
 
 #include <cstddef>
@@ -23,10 +24,10 @@ struct BodySlot {
 };
 
 /// One slot for each entry, in order. Writes where a file was found into its entry. Throws InputError if the
-/// bodies are too many, or need more memory for the whole run than this machine has, and where a file, a
-/// material, a name or a lifetime is wrong. `pictures`: whether the run draws.
+/// bodies are too many, or need more memory for the whole run than it may take, and where a file, a material,
+/// a name or a lifetime is wrong.
 std::vector<BodySlot> body_slots(std::vector<BodyEntry>& entries, const std::filesystem::path& scene,
-                                 bool pictures, const TimeGrid& grid, const MaterialNames& materials,
-                                 Reader& reader);
+                                 const MemoryBudget& memory, const TimeGrid& grid,
+                                 const MaterialNames& materials, Reader& reader);
 
 }  // namespace scree

@@ -17,16 +17,18 @@ namespace scree {
 namespace {
 
 constexpr const char* beyond_numbers = "its mass and inertia are beyond what numbers can hold";
+constexpr const char* beyond_places = "its place, orientation or motion is beyond what numbers can hold";
 
 class Builder {
  public:
-  Builder(SceneEntry& entry, Reader& reader)
-      : entry_(entry), reader_(reader), grid_(entry.time), materials_(entry.materials) {}
+  Builder(SceneEntry& entry, double memory, Reader& reader)
+      : entry_(entry), memory_(memory), reader_(reader), grid_(entry.time), materials_(entry.materials) {}
 
   void build(Scene& scene) {
     scene.materials.assign(entry_.materials.begin(), entry_.materials.end());
     scene.laws = contact_laws(entry_.materials, materials_, entry_.contacts, reader_);
-    slots_ = body_slots(entry_.bodies, scene.source, scene.render.enabled, grid_, materials_, reader_);
+    slots_ =
+        body_slots(entry_.bodies, scene.source, {memory_, scene.render.enabled}, grid_, materials_, reader_);
     make_room(scene);
     for (const BodySlot& slot : slots_) {
       slot.file ? read_bodies(slot, scene) : make_bodies(slot, scene);
@@ -36,6 +38,7 @@ class Builder {
       if (slot.entry->scatter) scatter_bodies(slot, scene);
     find_lifetimes(scene);
     find_motions(scene);
+    require_numbers(scene);
     find_forces(scene);
     find_checks(scene);
   }
@@ -135,6 +138,21 @@ class Builder {
     }
   }
 
+  /// Sums and products of finite numbers may be infinite.
+  void require_numbers(const Scene& scene) {
+    const Reader::Step step(reader_, "bodies");
+    const BodyTable& bodies = scene.bodies;
+    for (const BodySlot& slot : slots_) {
+      const Reader::Step item(reader_, slot.index);
+      for (std::int32_t k = 0; k < slot.bodies.count; ++k) {
+        const auto b = static_cast<std::size_t>(slot.bodies.first + k);
+        if (!bodies.position[b].allFinite() || !bodies.orientation[b].coeffs().allFinite() ||
+            !bodies.velocity[b].allFinite())
+          reader_.fail(slot.entry->node->mark, beyond_places);
+      }
+    }
+  }
+
   void find_forces(Scene& scene) {
     const Reader::Step step(reader_, "forces");
     for (std::size_t i = 0; i < entry_.forces.size(); ++i) {
@@ -215,6 +233,7 @@ class Builder {
   }
 
   SceneEntry& entry_;
+  double memory_;
   Reader& reader_;
   TimeGrid grid_;
   MaterialNames materials_;
@@ -236,7 +255,7 @@ void fill_defaults(BodyEntry& body) {
 
 }  // namespace
 
-Scene build_scene(SceneEntry entry, const std::filesystem::path& source, Reader& reader) {
+Scene build_scene(SceneEntry entry, const std::filesystem::path& source, double memory, Reader& reader) {
   if (entry.name.empty()) entry.name = source.stem().string();
   if (!is_file_name(entry.name))
     reader.fail({1, 1},
@@ -257,7 +276,7 @@ Scene build_scene(SceneEntry entry, const std::filesystem::path& source, Reader&
   scene.model = entry.model;
   scene.render = entry.render;
   scene.record = entry.record;
-  Builder(entry, reader).build(scene);
+  Builder(entry, memory, reader).build(scene);
   for (BodyEntry& body : entry.bodies) fill_defaults(body);
   scene.resolved = to_yaml(*scene_codec().write(entry));
   return scene;

@@ -8,7 +8,7 @@
 namespace scree {
 
 /// Draws and places the bodies, and checks what spans sections: materials, body names, measures, counts.
-/// Throws InputError.
-Scene build_scene(SceneEntry entry, const std::filesystem::path& source, Reader& reader);
+/// `memory`: what a run may take (bytes). Throws InputError.
+Scene build_scene(SceneEntry entry, const std::filesystem::path& source, double memory, Reader& reader);
 
 }  // namespace scree

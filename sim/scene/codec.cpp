@@ -52,8 +52,7 @@ Codec<std::string> text_like(std::string pattern, std::string words, bool (*allo
           },
           [](const std::string& value) -> std::optional<Node> {
             if (value.empty()) return {};
-            const bool null_like = value == "null" || value == "Null" || value == "NULL";
-            return Node::scalar(value, null_like || !is_identifier(value));
+            return Node::scalar(value, !is_identifier(value));
           }};
 }
 

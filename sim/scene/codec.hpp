@@ -68,11 +68,10 @@ Codec<T> word(std::vector<std::pair<std::string, T>> words, std::vector<std::str
 template <class T>
 void read_items(std::vector<T>& values, const Node& node, Reader& reader, const Codec<T>& item) {
   values.clear();
-  values.resize(node.items.size());
-  for (std::size_t i = 0; i < node.items.size(); ++i) {
+  for (std::size_t i = 0; i < node.items.size() && !reader.gives_up(); ++i) {
     const Reader::Step step(reader, i);
     try {
-      item.read(values[i], node.items[i], reader);
+      item.read(values.emplace_back(), node.items[i], reader);
     } catch (const InputError& error) {
       reader.note(error);
     }
@@ -217,6 +216,7 @@ Codec<T> section(std::string name, std::string help, std::vector<Key<T>> list,
             if constexpr (requires { object.node = &node; }) object.node = &node;
             if constexpr (requires { object.mark = node.mark; }) object.mark = node.mark;
             for (const Node& member : node.items) {
+              if (reader.gives_up()) return;
               const Reader::Step step(reader, member.key);
               try {
                 (*keys)[find_key(member, *type.section, reader)].read(object, member, reader);

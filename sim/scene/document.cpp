@@ -15,7 +15,9 @@ namespace scree {
 namespace {
 
 constexpr int max_depth = 32;
-constexpr std::int64_t max_aliased_nodes = 100'000;
+constexpr std::int64_t max_copied_nodes = 100'000;
+constexpr std::int64_t max_copied_bytes = 10'000'000;
+constexpr std::size_t max_key = 200;  // bytes; yaml-cpp finds no `:` beyond 1024, escapes included
 
 SourceMark to_mark(const YAML::Mark& mark) {
   return {std::max(mark.line, 0) + 1, std::max(mark.column, 0) + 1};
@@ -40,6 +42,15 @@ std::size_t utf8_length(std::string_view text, std::size_t at) {
   return 0;
 }
 
+bool is_utf8(std::string_view text) {
+  for (std::size_t at = 0; at < text.size();) {
+    const std::size_t length = utf8_length(text, at);
+    if (length == 0) return false;
+    at += length;
+  }
+  return true;
+}
+
 /// yaml-cpp replaces bad bytes, stops at a control-D and is lax about tabs, all without a word.
 void check_characters(std::string_view text) {
   SourceMark mark{1, 1};
@@ -56,8 +67,9 @@ void check_characters(std::string_view text) {
       const std::size_t next = text.find_first_not_of(" \t\r", at);
       if (next != std::string_view::npos && text[next] != '\n' && text[next] != '#')
         throw SyntaxError{mark, "a tab in the indentation; YAML is indented with spaces"};
+      indentation = false;  // nothing but blanks and comments follows
     }
-    if (c != ' ' && c != '\t') indentation = false;
+    if (c != ' ') indentation = false;
     at += length;
     ++mark.column;
     if (c == '\n') {
@@ -69,14 +81,16 @@ void check_characters(std::string_view text) {
 
 struct Extent {
   std::int64_t nodes = 1;
+  std::int64_t bytes = 0;  ///< of text
   int depth = 1;
 };
 
 Extent extent_of(const Node& node) {
-  Extent extent;
+  Extent extent{.bytes = std::ssize(node.text) + std::ssize(node.key)};
   for (const Node& item : node.items) {
     const Extent part = extent_of(item);
     extent.nodes += part.nodes;
+    extent.bytes += part.bytes;
     extent.depth = std::max(extent.depth, 1 + part.depth);
   }
   return extent;
@@ -96,8 +110,8 @@ void refuse_duplicates(const Node& map) {
                                                     twice[0]->key, first.line, first.column)};
 }
 
-/// Builds the tree from the parser's events. Copies of aliases are bounded, so no file can make the tree
-/// much larger than itself.
+/// Builds the tree from the parser's events. Copies, those that anchors hold and those that aliases add, are
+/// bounded, so no file can make the tree much larger than itself.
 class TreeBuilder final : public YAML::EventHandler {
  public:
   Node root;
@@ -109,9 +123,7 @@ class TreeBuilder final : public YAML::EventHandler {
     const auto found = anchored_.find(anchor);
     if (found == anchored_.end()) throw SyntaxError{to_mark(mark), "an alias inside its own anchor"};
     const auto& [node, extent] = found->second;
-    aliased_ += extent.nodes;
-    if (aliased_ > max_aliased_nodes)
-      throw SyntaxError{to_mark(mark), fmt::format("aliases add more than {} nodes", max_aliased_nodes)};
+    count_copy(aliased_, extent, to_mark(mark), "aliases add");
     check_depth(to_mark(mark), extent.depth);
     add(node, 0);
   }
@@ -119,6 +131,8 @@ class TreeBuilder final : public YAML::EventHandler {
                 const std::string& value) override {
     const bool quoted = tag == "!";  // yaml-cpp's way to tell quoted scalars from plain ones, "?"
     if (!quoted) refuse_tag(mark, tag);
+    // The text of the file is UTF-8, but these two yaml-cpp turns into single bytes.
+    if (!is_utf8(value)) throw SyntaxError{to_mark(mark), "the escape \\N or \\_; write \\x85 or \\xA0"};
     Node node = leaf(mark);
     node.kind = Node::Kind::scalar;
     node.quoted = quoted;
@@ -143,6 +157,14 @@ class TreeBuilder final : public YAML::EventHandler {
     std::optional<Node> key;  ///< of the map item whose value comes next
   };
 
+  static void count_copy(Extent& copies, const Extent& extent, const SourceMark& mark, const char* what) {
+    copies.nodes += extent.nodes;
+    copies.bytes += extent.bytes;
+    if (copies.nodes > max_copied_nodes)
+      throw SyntaxError{mark, fmt::format("{} more than {} nodes", what, max_copied_nodes)};
+    if (copies.bytes > max_copied_bytes)
+      throw SyntaxError{mark, fmt::format("{} more than {} bytes", what, max_copied_bytes)};
+  }
   static Node leaf(const YAML::Mark& mark) {
     Node node;
     node.mark = to_mark(mark);
@@ -170,7 +192,11 @@ class TreeBuilder final : public YAML::EventHandler {
     add(std::move(done.node), done.anchor);
   }
   void add(Node node, YAML::anchor_t anchor) {
-    if (anchor != 0) anchored_[anchor] = {node, extent_of(node)};
+    if (anchor != 0) {
+      const Extent extent = extent_of(node);
+      count_copy(held_, extent, node.mark, "anchors hold");
+      anchored_[anchor] = {node, extent};
+    }
     if (open_.empty()) {
       root = std::move(node);
       return;
@@ -179,6 +205,8 @@ class TreeBuilder final : public YAML::EventHandler {
     if (parent.node.kind == Node::Kind::map) {
       if (!parent.key) {
         if (node.kind != Node::Kind::scalar) throw SyntaxError{node.mark, "a key must be a name"};
+        if (node.text.size() > max_key)
+          throw SyntaxError{node.mark, fmt::format("a key longer than {} bytes", max_key)};
         parent.key = std::move(node);
         return;
       }
@@ -191,47 +219,9 @@ class TreeBuilder final : public YAML::EventHandler {
 
   std::vector<Open> open_;
   std::map<YAML::anchor_t, std::pair<Node, Extent>> anchored_;
-  std::int64_t aliased_ = 0;
+  Extent held_{.nodes = 0};     // by anchors, those within others again
+  Extent aliased_{.nodes = 0};  // added by aliases
 };
-
-void append_quoted(std::string& out, std::string_view text) {
-  out += '"';
-  for (const char c : text) {
-    if (c == '\n' || c == '\r' || c == '\t') {
-      out += c == '\n' ? "\\n" : c == '\r' ? "\\r" : "\\t";
-      continue;
-    }
-    if (c == '"' || c == '\\') out += '\\';
-    out += c;
-  }
-  out += '"';
-}
-
-void append_flow(std::string& out, const Node& node) {
-  if (node.kind == Node::Kind::null) {
-    out += "null";
-  } else if (node.kind == Node::Kind::scalar) {
-    if (node.quoted) {
-      append_quoted(out, node.text);
-    } else {
-      out += node.text;
-    }
-  } else {
-    const bool map = node.kind == Node::Kind::map;
-    out += map ? '{' : '[';
-    for (const Node& item : node.items) {
-      if (&item != node.items.data()) out += ", ";
-      if (map) (out += item.key) += ": ";
-      append_flow(out, item);
-    }
-    out += map ? '}' : ']';
-  }
-}
-
-bool holds_maps(const Node& node) {
-  return std::any_of(node.items.begin(), node.items.end(),
-                     [](const Node& item) { return item.kind == Node::Kind::map; });
-}
 
 }  // namespace
 
@@ -285,32 +275,6 @@ Node parse_document(const std::string& text) {
     throw SyntaxError{to_mark(error.mark), "broken YAML: " + error.msg};
   }
   return std::move(builder.root);
-}
-
-std::string to_flow_yaml(const Node& node) {
-  std::string out;
-  append_flow(out, node);
-  return out;
-}
-
-std::string to_yaml(const Node& node) {
-  std::string out;
-  for (const Node& section : node.items) {
-    out += section.key + ":";
-    if (!holds_maps(section)) {
-      out += ' ';
-      append_flow(out, section);
-      out += '\n';
-      continue;
-    }
-    out += '\n';
-    for (const Node& item : section.items) {
-      out += section.kind == Node::Kind::map ? "  " + item.key + ": " : "  - ";
-      append_flow(out, item);
-      out += '\n';
-    }
-  }
-  return out;
 }
 
 }  // namespace scree

@@ -39,10 +39,12 @@ struct SyntaxError {
 
 /// Parses one YAML document. Throws SyntaxError for broken YAML, and for what YAML allows but a scene does
 /// not: bytes that are not UTF-8, control characters, tabs in indentation, duplicate keys, keys that are not
-/// names, tags, a second document, depth beyond 32, aliases that add more than 100,000 nodes.
+/// names or longer than 200 bytes, tags, a second document, depth beyond 32, anchors that hold, or
+/// aliases that add, more than 100,000 nodes or 10 MB of text.
 Node parse_document(const std::string& text);
 
-/// The tree as YAML that parses to the same tree: long lists and maps one item per line, the rest in braces.
+/// The tree, a map, as YAML that parses to the same tree, but for quotes around plain text of more than
+/// letters, digits, _ . + and -. Long lists and maps have one item per line, the rest is in braces.
 std::string to_yaml(const Node& node);
 
 /// The same on one line.

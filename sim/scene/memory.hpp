@@ -23,6 +23,12 @@ struct MemoryNeed {
 };
 MemoryNeed memory_need(const MemoryLoad& load);
 
+/// What a run may take.
+struct MemoryBudget {
+  double bytes = 0;
+  bool pictures = true;  ///< whether it draws
+};
+
 /// What this machine has, or what this process may take of it if that is less (bytes).
 double machine_memory();
 

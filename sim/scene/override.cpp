@@ -12,7 +12,7 @@ namespace scree {
 namespace {
 
 [[noreturn]] void fail(const Override& set, std::string_view what) {
-  throw InputError(fmt::format("--set {}={}: {}", set.path, set.value, what));
+  throw InputError(printable(fmt::format("--set {}={}: {}", set.path, set.value, what)));
 }
 
 /// bodies[2].velocity[0] as parts; the views are into set.path.

@@ -63,9 +63,21 @@ std::string to_text(const std::vector<PathPart>& path) {
   return text;
 }
 
+std::string printable(std::string_view text) {
+  std::string line;
+  for (const char c : text) {
+    if ((c >= 0 && c < ' ') || c == 0x7F) {
+      line += fmt::format("\\x{:02X}", static_cast<int>(c));
+    } else {
+      line += c;
+    }
+  }
+  return line;
+}
+
 void Reader::fail(const SourceMark& mark, std::string_view what) const {
   const std::string path = to_text(path_);
-  throw InputError(fmt::format("{}: {}{}{}", place(mark), path, path.empty() ? "" : ": ", what));
+  throw InputError(printable(fmt::format("{}: {}{}{}", place(mark), path, path.empty() ? "" : ": ", what)));
 }
 
 void Reader::fail_at(std::string_view key, const Node& map, std::string_view what) {
@@ -81,7 +93,8 @@ void Reader::note(const InputError& error) {
 void Reader::finish() const {
   if (errors_ == 0) return;
   std::string text = fmt::format("{}", fmt::join(told_, "\n"));
-  if (errors_ > told_.size()) text += fmt::format("\nand {} more errors", errors_ - told_.size());
+  if (errors_ > told_.size())
+    text += fmt::format("\nand {}{} more errors", gives_up() ? "at least " : "", errors_ - told_.size());
   throw InputError(text);
 }
 

@@ -25,6 +25,9 @@ struct PathPart {
 
 std::string to_text(const std::vector<PathPart>& path);
 
+/// The text on one line that terminals take as text: control characters are written out.
+std::string printable(std::string_view text);
+
 class Reader {
  public:
   Reader(std::string file, std::vector<Override> overrides)
@@ -54,6 +57,8 @@ class Reader {
   /// Keeps an error, so that more can be found.
   void note(const InputError& error);
   std::size_t errors() const { return errors_; }
+  /// Whether so many are kept that reading on is of no use.
+  bool gives_up() const { return errors_ >= most_errors; }
   /// Throws InputError with the first few errors noted, if there are any.
   void finish() const;
 
@@ -64,6 +69,8 @@ class Reader {
   static void mark_override(Node& node, std::size_t index);
 
  private:
+  static constexpr std::size_t most_errors = 1000;
+
   friend class Step;
   std::string file_;
   std::vector<Override> overrides_;

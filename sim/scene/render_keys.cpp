@@ -33,6 +33,16 @@ Codec<CameraKeySettings> keyframe_section() {
                     check_keyframe);
 }
 
+/// Left out of the resolved scene beside keyframes, where it is refused: each has its own.
+Key<CameraSettings> camera_field_of_view() {
+  using T = CameraSettings;
+  Key<T> fov = key<T>("fov", &T::fov, field_of_view(), optionally, "vertical field of view");
+  fov.write = [write = fov.write](const T& camera) {
+    return camera.keyframes.empty() ? write(camera) : std::nullopt;
+  };
+  return fov;
+}
+
 Codec<CameraSettings> camera_section() {
   using T = CameraSettings;
   return section<T>(
@@ -41,7 +51,7 @@ Codec<CameraSettings> camera_section() {
           key<T>("from", &T::from, optional(vector("m")), optionally,
                  "place of the camera; without it and `to`, chosen to see every body"),
           key<T>("to", &T::to, optional(vector("m")), optionally, "the point in the middle of the picture"),
-          key<T>("fov", &T::fov, field_of_view(), optionally, "vertical field of view"),
+          camera_field_of_view(),
           key<T>("orbit", &T::orbit, optional(orbit_section()), optionally, "the camera goes round"),
           key<T>("keyframes", &T::keyframes, list_of(keyframe_section()), optionally,
                  "instead of the other keys: places at ascending times, with a smooth way between them"),

@@ -93,6 +93,8 @@ void check_scatter(const ScatterEntry& scatter, const Node& node, Reader& reader
       reader.fail_at("to", node,
                      fmt::format("must be at least `from` in each component, but {} < {}", scatter.to[k],
                                  scatter.from[k]));
+  if (!(scatter.to - scatter.from).allFinite())
+    reader.fail_at("to", node, "is so far from `from` that numbers cannot hold the distance");
 }
 
 void check_body(const BodyEntry& body, const Node& node, Reader& reader) {

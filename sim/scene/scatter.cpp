@@ -22,7 +22,7 @@ double radius_of(const BodyTable& bodies, std::size_t b) {
 /// place are found.
 class CellGrid {
  public:
-  CellGrid(const Vec3& low, const Vec3& high, std::int64_t count) : low_(low) {
+  CellGrid(const Vec3& low, const Vec3& high, std::int64_t count) : low_(low), bodies_(count) {
     const Vec3 extent = high - low;
     // Bodies per cell stay few for any shape of the region; flat ones have one layer.
     double edge =
@@ -37,8 +37,15 @@ class CellGrid {
     heads_.assign(static_cast<std::size_t>(cells_[0] * cells_[1] * cells_[2]), -1);
   }
 
-  void insert(std::int32_t body, const Vec3& low, const Vec3& high) {
-    visit(low, high, [&](std::int32_t& head) {
+  /// False, and nothing done, for bodies that are in the way in a good part of the cells: to look at them
+  /// always is as fast. Nor may many that overlap fill the memory, or the 32 bits that tell links apart.
+  bool insert(std::int32_t body, const Vec3& low, const Vec3& high) {
+    std::int64_t touched = 1;
+    for (int k = 0; k < 3; ++k) touched *= cell(high[k], k) - cell(low[k], k) + 1;
+    const std::int64_t most_links = std::min(links_per_body * (bodies_ + 1), std::int64_t{INT32_MAX});
+    if (8 * touched > std::ssize(heads_) || std::ssize(links_) + touched > most_links) return false;
+    ++bodies_;
+    return visit(low, high, [&](std::int32_t& head) {
       links_.push_back({body, head});
       head = static_cast<std::int32_t>(links_.size()) - 1;
       return true;
@@ -56,14 +63,17 @@ class CellGrid {
   }
 
  private:
+  static constexpr std::int64_t links_per_body = 64;  // equal spheres, close together, take 8
+
   struct Link {
     std::int32_t body;
     std::int32_t next;
   };
 
+  /// What is too far or too flat for numbers is in the first cell: fmax() takes 0 instead of what is none.
   std::int64_t cell(double x, int k) const {
     const double at = std::floor((x - low_[k]) * inverse_edge_[k]);
-    return static_cast<std::int64_t>(std::clamp(at, 0.0, static_cast<double>(cells_[k] - 1)));
+    return static_cast<std::int64_t>(std::fmin(std::fmax(at, 0.0), static_cast<double>(cells_[k] - 1)));
   }
 
   template <class F>
@@ -82,6 +92,7 @@ class CellGrid {
   }
 
   Vec3 low_;
+  std::int64_t bodies_;  // that the grid is for, and that it holds
   std::array<std::int64_t, 3> cells_{};
   std::array<double, 3> inverse_edge_{};
   std::vector<std::int32_t> heads_;
@@ -128,7 +139,7 @@ std::int64_t scatter(BodyTable& bodies, std::int64_t first, std::int64_t count, 
   std::vector<std::int32_t> walls;
   const auto insert = [&](std::int32_t b) {
     const Vec3& at = bodies.position[static_cast<std::size_t>(b)];
-    grid.insert(b, at.array() - radius(b), at.array() + radius(b));
+    if (!grid.insert(b, at.array() - radius(b), at.array() + radius(b))) walls.push_back(b);
   };
   const double reach = radius(order.front());
   for (const std::int32_t b : obstacles) {

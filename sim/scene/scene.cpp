@@ -3,6 +3,7 @@
 
 #include "core/error.hpp"
 #include "sim/scene/build.hpp"
+#include "sim/scene/memory.hpp"
 #include "sim/scene/override.hpp"
 
 #include <fmt/format.h>
@@ -30,7 +31,7 @@ std::string read_text(const std::filesystem::path& file) {
 }  // namespace
 
 Scene parse_scene(const std::string& text, const std::filesystem::path& name,
-                  const std::vector<Override>& overrides) {
+                  const std::vector<Override>& overrides, std::optional<double> memory) {
   Reader reader(name.string(), overrides);
   Node root;
   try {
@@ -49,7 +50,7 @@ Scene parse_scene(const std::string& text, const std::filesystem::path& name,
     reader.note(error);
   }
   reader.finish();
-  return build_scene(std::move(entry), name, reader);
+  return build_scene(std::move(entry), name, memory.value_or(machine_memory()), reader);
 }
 
 Scene read_scene(const std::filesystem::path& file, const std::vector<Override>& overrides) {

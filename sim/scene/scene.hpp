@@ -210,9 +210,10 @@ struct Override {
 /// nearest known key where one is close. Nothing is written.
 Scene read_scene(const std::filesystem::path& file, const std::vector<Override>& overrides = {});
 
-/// The same from text; `name` stands for the file in messages.
+/// The same from text; `name` stands for the file in messages. `memory`: what a run of the scene may take
+/// (bytes); absent: what this machine has.
 Scene parse_scene(const std::string& text, const std::filesystem::path& name,
-                  const std::vector<Override>& overrides = {});
+                  const std::vector<Override>& overrides = {}, std::optional<double> memory = {});
 
 /// The JSON Schema (draft 2020-12) of the scene language, as text.
 std::string scene_schema();

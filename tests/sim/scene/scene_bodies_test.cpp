@@ -246,6 +246,26 @@ TEST(SceneBodies, ScatterTakesFlatAndThinRegions) {
   }
 }
 
+// Cells of such regions are too small for their inverses, and such obstacles too far away for differences.
+TEST(SceneBodies, ScatterTakesRegionsAndObstaclesAtTheEndsOfNumbers) {
+  const Scene scene = scene_of(
+      "  - {sphere: {radius: 1e308}, at: [1.7e308, 0, 0], fixed: true, material: glass}\n"
+      "  - {sphere: {radius: 1}, scatter: {count: 1, from: [-1e308, 0, 0], to: [-1e308, 5e-324, 0]}, "
+      "material: glass}\n");
+  EXPECT_EQ(scene.bodies.position[1].x(), -1e308);
+}
+
+// Bounds that reach over all cells, a thousand times: a list of them for each cell would be 600,000 long.
+TEST(SceneBodies, ScatterKeepsClearOfAThousandObstaclesInOnePlace) {
+  const Scene scene = scene_of(
+      "  - {box: {size: 100}, fixed: true, repeat: {count: [1000, 1, 1], spacing: [0, 0, 0]}, material: "
+      "glass}\n"
+      "  - {sphere: {radius: 0.5}, scatter: {count: 300, from: [40, -20, -20], to: [80, 20, 20]}, "
+      "material: glass}\n");
+  for (std::size_t b = 1000; b < 1300; ++b)
+    EXPECT_GE(distance_to(scene.bodies, 0, scene.bodies.position[b]), 0.5);
+}
+
 TEST(SceneBodies, RandomOrientationsAreUniform) {
   const Scene scene = scene_of(
       "  - {sphere: {radius: 0.001}, material: glass, scatter: {count: 20000, from: [0, 0, 0], to: [9, 9, "

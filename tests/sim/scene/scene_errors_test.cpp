@@ -8,6 +8,7 @@
 #include <fstream>
 #include <set>
 #include <string>
+#include <tuple>
 
 namespace scree {
 namespace {
@@ -157,6 +158,11 @@ constexpr BadScene bad_scenes[] = {
     {"force_beyond_end", 9, 40, "forces[0].from: must be before the end, 1 s, not 2 s"},
     {"force_reversed", 9, 52, "forces[0].until: must be at least a step after from, 0.5 s, not 0.2 s"},
     {"force_scalar", 9, 23, "forces[0].force: must be a list of 3 numbers (N), not 3"},
+    {"lattice_infinite", 6, 5, "bodies[0]: its place, orientation or motion is beyond what numbers can hold"},
+    {"angle_infinite", 6, 5, "bodies[0]: its place, orientation or motion is beyond what numbers can hold"},
+    {"motion_infinite", 6, 5, "bodies[0]: its place, orientation or motion is beyond what numbers can hold"},
+    {"scatter_infinite", 6, 73, "bodies[0].scatter.to: is so far from `from` that numbers cannot hold the distance"},
+    {"key_long", 3, 1, "a key longer than 200 bytes"},
     {"about_without_spin", 6, 43, "bodies[0].motion.about: needs a spin that is not zero"},
 };
 // clang-format on
@@ -220,6 +226,33 @@ TEST(BadScenes, ManyErrorsAreCounted) {
   EXPECT_NE(message_of(text).find("and 92 more errors"), std::string::npos) << message_of(text);
 }
 
+TEST(BadScenes, EscapesThatAreReadAsHalfCharacters) {
+  for (const char* escape : {"\\N", "\\_"})
+    EXPECT_EQ(message_of(std::string("format: 1\nname: \"a") + escape + "\"\n"),
+              "test.yaml:2:7: the escape \\N or \\_; write \\x85 or \\xA0");
+}
+
+// A body takes a thousand bytes, and a comma one.
+TEST(BadScenes, AThousandErrorsAreEnough) {
+  const std::string text = "format: 1\nbodies: [" + std::string(1'000'000, ',') + "]\n";
+  EXPECT_NE(message_of(text).find("and at least 99"), std::string::npos) << message_of(text);
+}
+
+TEST(BadScenes, CopiesThatAnchorsHoldAreBounded) {
+  std::string text = "x";
+  for (int i = 0; i < 4000; ++i) text += ", x";
+  for (int i = 0; i < 30; ++i) text = "&a" + std::to_string(i) + " [" + text + "]";
+  EXPECT_NE(message_of("a: " + text + "\n").find("anchors hold more than 100000 nodes"), std::string::npos);
+  std::string aliases = "a: &a " + std::string(1'000'000, 'x') + "\nb: [*a";
+  for (int i = 0; i < 10; ++i) aliases += ", *a";
+  EXPECT_NE(message_of(aliases + "]\n").find("aliases add more than 10000000 bytes"), std::string::npos);
+}
+
+// Each byte is looked at a few times at most: as the square of the length this would take minutes.
+TEST(BadScenes, BlankLinesMayBeLong) {
+  EXPECT_EQ(message_of(std::string(3'000'000, '\t') + "\n"), message_of(""));
+}
+
 TEST(BadScenes, MoreMaterialsThanTheirPairsAllow) {
   std::string text = "format: 1\ntime: {end: 1, step: 1}\nmaterials:\n";
   for (int i = 0; i < 1001; ++i) text += "  m" + std::to_string(i) + ": {}\n";
@@ -254,6 +287,25 @@ TEST(BadScenes, MoreBodiesThanMemoryAreRefusedBeforeAllocation) {
       begins_with(message, "test.yaml:5:52: bodies[0].repeat: a run of the scene's 2000000000 bodies needs "))
       << message;
   EXPECT_NE(message.find("iB of memory, but this machine has "), std::string::npos) << message;
+}
+
+TEST(BadScenes, MoreBodiesThanTheMemoryGivenAreRefused) {
+  const std::string text =
+      "format: 1\ntime: {end: 1, step: 1}\nmaterials: {glass: {}}\nbodies:\n"
+      "  - {sphere: {radius: 1}, material: glass, repeat: {count: [9, 9, 9], spacing: [2, 2, 2]}}\n";
+  EXPECT_EQ(parse_scene(text, "test.yaml", {}, 2e8).bodies.count(), 729);
+  EXPECT_THROW(parse_scene(text, "test.yaml", {}, 1e8), InputError);
+}
+
+// A scene may hold any character in quotes, and its messages are read in terminals.
+TEST(BadScenes, MessagesHoldNoControlCharacters) {
+  const std::tuple<std::string, std::vector<Override>, std::string> cases[] = {
+      {"\"\\e[2J\": 1\n", {}, "test.yaml:1:1: \\x1B[2J: unknown key (known"},
+      {"format: \"1\\n\"\n", {}, "test.yaml:1:9: format: must be 1, not \"1\\x0A\"\n"},
+      {"format: 1\n", {{"time.step", "[\x1b"}}, "--set time.step=[\\x1B: "},
+  };
+  for (const auto& [text, overrides, start] : cases)
+    EXPECT_TRUE(begins_with(message_of(text, overrides), start)) << message_of(text, overrides);
 }
 
 // No prefix of a scene, and no scene with one byte changed, may do anything but load or be refused.

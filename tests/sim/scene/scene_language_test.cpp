@@ -182,6 +182,19 @@ TEST(ResolvedScene, WritesDefaultsOut) {
   EXPECT_EQ(parse(resolved).resolved, resolved);
 }
 
+TEST(ResolvedScene, IsASceneWhateverIsNamedAndHowever) {
+  const auto resolved = [](const std::string& material, const std::string& rest) {
+    return parse("format: 1\ntime: {end: 1, step: 0.1}\nmaterials: {" + material +
+                 ": {}}\nbodies: [{sphere: {radius: 1}, material: " + material + "}]\n" + rest)
+        .resolved;
+  };
+  for (const std::string& text :
+       {resolved("\"null\"", ""), resolved("true", ""), resolved(std::string(200, 'm'), ""),
+        resolved("glass", "name: \"\\x7F, \\\"#\\\": \\u2028\\u0085\"\n"),
+        resolved("glass", "render: {camera: {keyframes: [{at: 0, from: [1, 0, 0], to: [0, 0, 0]}]}}\n")})
+    EXPECT_EQ(parse(text).resolved, text);
+}
+
 /// Calls f(path, key) for every key of the table.
 void visit_keys(const Type& type, const std::function<void(const SectionType&, const KeyType&)>& f) {
   if (type.section)

@@ -1,0 +1,31 @@
+// Every input that was kept does what hostile input may, in this build too.
+#include "tests/fuzz/hostile_input.hpp"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <string>
+
+namespace scree {
+namespace {
+
+void read_all(const std::string& folder, void (*read)(std::string_view)) {
+  int files = 0;
+  for (const auto& entry :
+       std::filesystem::directory_iterator(SCREE_SOURCE_DIR "/tests/fuzz/corpus/" + folder)) {
+    std::ifstream stream(entry.path(), std::ios::binary);
+    const std::string bytes{std::istreambuf_iterator<char>(stream), {}};
+    EXPECT_NO_THROW(read(bytes)) << entry.path();
+    ++files;
+  }
+  EXPECT_GT(files, 10);
+}
+
+TEST(HostileInput, ScenesLoadOrAreRefused) { read_all("scene", read_hostile_scene); }
+
+TEST(HostileInput, BodyFilesLoadOrAreRefused) { read_all("body_file", read_hostile_body_file); }
+
+}  // namespace
+}  // namespace scree

@@ -1,0 +1,172 @@
+#include "tests/fuzz/hostile_input.hpp"
+
+#include "core/error.hpp"
+#include "sim/scene/body_file.hpp"
+#include "sim/scene/codec.hpp"
+#include "sim/scene/document.hpp"
+#include "sim/scene/scene.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <string>
+#include <sys/mman.h>
+#include <unistd.h>
+#include <vector>
+
+namespace scree {
+namespace {
+
+/// Room for pictures and for some ten thousand bodies: what asks for more is refused soon, whatever the
+/// machine.
+constexpr double memory = 2.6e8;
+
+[[noreturn]] void breach(const std::string& what) { throw std::logic_error(what); }
+
+/// Words and numbers are written as they were, without quotes.
+bool is_word_or_number(std::string_view text) {
+  const auto is_alphanumeric = [](char c) {
+    return (c >= '0' && c <= '9') || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z');
+  };
+  return std::any_of(text.begin(), text.end(), is_alphanumeric) &&
+         std::all_of(text.begin(), text.end(), [&](char c) {
+           return is_alphanumeric(c) || c == '_' || c == '.' || c == '+' || c == '-';
+         });
+}
+
+bool is_same(const Node& a, const Node& b) {
+  const bool keeps_form = a.quoted == b.quoted || (b.quoted && !is_word_or_number(a.text));
+  return a.kind == b.kind && a.key == b.key && a.text == b.text && keeps_form &&
+         std::equal(a.items.begin(), a.items.end(), b.items.begin(), b.items.end(), is_same);
+}
+
+void require_round_trip(const std::string& text) {
+  Node tree;
+  try {
+    tree = parse_document(text);
+  } catch (const SyntaxError&) {
+    return;
+  }
+  if (tree.kind != Node::Kind::map) return;
+  const std::string written = to_yaml(tree);
+  try {
+    if (!is_same(tree, parse_document(written))) breach("to_yaml() wrote another tree:\n" + written);
+  } catch (const SyntaxError& error) {
+    breach(fmt::format("to_yaml() wrote what cannot be read, {}:{}: {}\n{}", error.mark.line,
+                       error.mark.column, error.what, written));
+  }
+}
+
+/// file:line:column: what, or --set path=value: what; one line for each error, fit for a terminal.
+void require_message(std::string_view message) {
+  if (message.find(": ") == std::string_view::npos) breach(fmt::format("no place: {}", message));
+  for (const char c : message)
+    if ((c >= 0 && c < ' ' && c != '\n') || c == 0x7F) breach(fmt::format("control character: {}", message));
+}
+
+void require_state(const BodyTable& bodies) {
+  for (std::size_t b = 0; b < bodies.position.size(); ++b) {
+    const bool finite = bodies.position[b].allFinite() && bodies.velocity[b].allFinite() &&
+                        bodies.spin[b].allFinite() && bodies.size[b].allFinite() &&
+                        bodies.inverse_inertia[b].allFinite() && std::isfinite(bodies.inverse_mass[b]);
+    if (!finite) breach(fmt::format("body {} is not finite", b));
+    if (!(std::abs(bodies.orientation[b].norm() - 1) < 1e-6))
+      breach(fmt::format("body {} has no orientation", b));
+    if (bodies.shape[b] != Shape::plane && !(bodies.size[b].maxCoeff() > 0))
+      breach(fmt::format("body {} has no size", b));
+  }
+}
+
+void require_scene(const Scene& scene) {
+  require_state(scene.bodies);
+  std::string again;
+  try {
+    again = parse_scene(scene.resolved, "resolved.yaml", {}, memory).resolved;
+  } catch (const InputError& error) {
+    breach(fmt::format("the resolved scene is refused: {}\n{}", error.what(), scene.resolved));
+  }
+  if (again != scene.resolved)
+    breach(fmt::format("resolved again, the scene differs:\n{}\nwas\n{}", again, scene.resolved));
+}
+
+struct ScenePart {
+  std::string text;
+  std::vector<Override> overrides;
+};
+
+ScenePart split(std::string_view bytes) {
+  constexpr std::string_view set = "--set ";
+  ScenePart part;
+  for (std::size_t at = 0; at < bytes.size();) {
+    const std::size_t end = std::min(bytes.find('\n', at), bytes.size() - 1) + 1;
+    std::string_view line = bytes.substr(at, end - at);
+    at = end;
+    const std::size_t equals = line.find('=');
+    if (!line.starts_with(set) || equals == std::string_view::npos) {
+      part.text += line;
+      continue;
+    }
+    if (line.ends_with('\n')) line.remove_suffix(1);
+    part.overrides.push_back(
+        {std::string(line.substr(set.size(), equals - set.size())), std::string(line.substr(equals + 1))});
+  }
+  return part;
+}
+
+void require_scene_or_refusal(const std::string& text, const std::vector<Override>& overrides = {}) {
+  // In a folder that there is not, so that no `file` of a scene is found beside it.
+  static const std::filesystem::path name = "/nowhere/scene.yaml";
+  try {
+    require_scene(parse_scene(text, name, overrides, memory));
+  } catch (const InputError& error) {
+    require_message(error.what());
+  }
+}
+
+/// A file in memory, rewritten for each input.
+const std::string& file_of(std::string_view bytes) {
+  static const int file = memfd_create("body_file", 0);
+  static const std::string path = fmt::format("/proc/self/fd/{}", file);
+  if (ftruncate(file, 0) != 0 ||
+      pwrite(file, bytes.data(), bytes.size(), 0) != static_cast<ssize_t>(bytes.size()))
+    throw std::runtime_error("no room for the body file");
+  return path;
+}
+
+void require_row(const BodyRow& row) {
+  const bool finite = row.position.allFinite() && row.velocity.allFinite() && row.spin.allFinite() &&
+                      row.size.allFinite() && std::isfinite(row.mass.value_or(1));
+  if (!finite) breach("a row is not finite");
+  if (!(row.size.x() > 0 && row.mass.value_or(1) > 0)) breach("a row without size or mass");
+  if (!(std::abs(row.orientation.norm() - 1) < 1e-6)) breach("a row without orientation");
+}
+
+}  // namespace
+
+void read_hostile_scene(std::string_view bytes) {
+  const ScenePart part = split(bytes);
+  require_round_trip(part.text);
+  require_scene_or_refusal(part.text, part.overrides);
+}
+
+void read_hostile_body_file(std::string_view bytes) {
+  const std::string& path = file_of(bytes);
+  try {
+    BodyFile file(path);
+    std::int64_t rows = 0;
+    file.read([&](const BodyRow& row) {
+      require_row(row);
+      ++rows;
+    });
+    if (rows != file.count() || rows == 0) breach(fmt::format("{} rows, not {}", rows, file.count()));
+  } catch (const InputError& error) {
+    require_message(error.what());
+  }
+  const std::string scene = "format: 1\ntime: {end: 1, step: 1}\nmaterials: {glass: {}}\nbodies:\n";
+  require_scene_or_refusal(fmt::format("{}  - {{file: {}, name: b}}\n", scene, path));
+  require_scene_or_refusal(fmt::format("{}  - {{file: {}, material: glass, fixed: true}}\n", scene, path));
+}
+
+}  // namespace scree
