@@ -63,9 +63,8 @@ CLI::App* add_run(CLI::App& app, RunArguments& arguments) {
   command->add_flag_callback(
       "--profile", [] { timing::time_calls(true); }, "Time every parallel call too, into the manifest");
   command->add_flag("--overwrite", arguments.overwrite, "Replace an earlier run in the folder");
-  command->add_flag(
-      "--resume", arguments.resume,
-      "Continue the run in the folder from its newest checkpoint; from the start if there is none");
+  command->add_flag("--resume", arguments.resume,
+                    "Continue from the newest checkpoint in the folder; from the start if there is none");
   command
       ->add_option("--max-hours", arguments.max_hours,
                    "Stop after so long, with a checkpoint to resume from (exit status 130)")

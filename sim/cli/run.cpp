@@ -99,7 +99,7 @@ void attempt(RunSummary& summary, Console& console, const std::function<void()>&
   try {
     part();
   } catch (const RunError& error) {
-    console.error(error.what());
+    if (summary.error != error.what()) console.error(error.what());
     summary.status = "failed";
     if (summary.error.empty()) summary.error = error.what();
   }
@@ -167,7 +167,8 @@ int run(const RunArguments& arguments) {
           [&] { advance(simulation, recorder, checkpoints, console, arguments, last_step, end); });
   if (summary.status.empty()) summary.status = simulation.steps() < last_step ? "interrupted" : "done";
   const bool is_complete = summary.status == "done" && simulation.finished();
-  if (!is_complete) attempt(summary, console, [&] { checkpoints.take_last(simulation, recorder); });
+  if (!is_complete && simulation.steps() > 0)
+    attempt(summary, console, [&] { checkpoints.take_last(simulation, recorder); });
   attempt(summary, console, [&] { recorder.record_last(simulation); });
   attempt(summary, console, [&] { recorder.finish(); });
   if (summary.status == "done") {

@@ -94,7 +94,6 @@ std::string file_of(const SavedState& state) {
   constexpr std::size_t most_overhead = 1 << 20;
   const Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose, "make settings");
   check(H5Pset_fapl_core(access, state.bytes() + most_overhead, false), "work in memory");
-  check(H5Pset_libver_bounds(access, H5F_LIBVER_V110, H5F_LIBVER_V110), "set its version");
   const Handle links(H5Pcreate(H5P_LINK_CREATE), H5Pclose, "make settings");
   check(H5Pset_create_intermediate_group(links, 1), "make groups");
   const Handle file(H5Fcreate("checkpoint", H5F_ACC_TRUNC, H5P_DEFAULT, access), H5Fclose, "make a file");

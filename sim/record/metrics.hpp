@@ -23,7 +23,8 @@ std::vector<std::string> metric_names(const Scene& scene);
 /// that read back to the same double; nan for a body that is not there.
 class MetricsFile {
  public:
-  MetricsFile(const Scene& scene, const std::filesystem::path& file, AtomicFile::Opening opening);
+  MetricsFile(const Scene& scene, const std::filesystem::path& file,
+              AtomicFile::Opening opening = AtomicFile::Opening::anew);
   void write_row(const Probe& probe);
   void commit() { file_.commit(); }
   void archive(Archive& archive) { file_.archive(archive); }
@@ -37,7 +38,8 @@ class MetricsFile {
 /// row, because a stage can run for the first time late in a run.
 class TimingFile {
  public:
-  TimingFile(const std::filesystem::path& file, AtomicFile::Opening opening);
+  explicit TimingFile(const std::filesystem::path& file,
+                      AtomicFile::Opening opening = AtomicFile::Opening::anew);
   void write_rows(double time);
   void commit() { file_.commit(); }
   void archive(Archive& archive);
