@@ -1,5 +1,5 @@
-// What must be remembered to go on as if one had never stopped. Each part names its fields once, in archive(),
-// for saving and for loading.
+// What must be remembered to go on as if one had never stopped. Each part names its fields once, in
+// archive(), for saving and for loading.
 #pragma once
 
 #include "core/array.hpp"

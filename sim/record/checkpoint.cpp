@@ -113,10 +113,12 @@ std::string head_of(std::string_view rest) {
 }
 
 std::string bytes_of(const fs::path& file) {
-  std::ifstream stream(file, std::ios::binary);
-  std::string bytes{std::istreambuf_iterator<char>(stream), {}};
-  if (!stream.is_open() || stream.bad())
-    throw RunError("cannot be read: " + std::string(std::strerror(errno)));
+  std::ifstream stream(file, std::ios::binary | std::ios::ate);
+  std::string bytes;
+  if (stream) bytes.resize(static_cast<std::size_t>(stream.tellg()));
+  stream.seekg(0);
+  stream.read(bytes.data(), std::ssize(bytes));
+  if (!stream) throw RunError("cannot be read: " + std::string(std::strerror(errno)));
   return bytes;
 }
 

@@ -349,8 +349,8 @@ void Slots<Space, Real>::recall() {
                    ball_memory_.view(), point_memory_.view()});
 }
 
-/// What follows from the candidates and the bodies is made again. If bodies have come or gone since, so may it
-/// be otherwise; but then the slots are built anew before anybody asks for it.
+/// What follows from the candidates and the bodies is made again. If bodies have come or gone since, so may
+/// it be otherwise; but then the slots are built anew before anybody asks for it.
 template <class Space, class Real>
 void Slots<Space, Real>::archive(Archive& archive, const ConstBodyView& bodies) {
   archive("pairs", pairs_);
