@@ -22,8 +22,18 @@ struct RunArguments {
   bool draw = true;
   bool overwrite = false;
   bool resume = false;
+  std::filesystem::path reproduce;  ///< a manifest; empty: a run of its own
 };
 int run(const RunArguments& arguments);
+
+/// The part of run() that runs what a manifest tells of again, writes nothing, and compares the states.
+int reproduce(const RunArguments& arguments);
+
+struct CompareArguments {
+  std::filesystem::path first, second;  ///< run folders
+  double tolerance = 0;                 ///< relative to the largest magnitude in a column
+};
+int compare(const CompareArguments& arguments);
 
 struct VerifyArguments {
   std::vector<std::filesystem::path> paths;

@@ -51,7 +51,16 @@ void add_simulation(CLI::App& command, SimulationOptions& options, const char* t
 
 CLI::App* add_run(CLI::App& app, RunArguments& arguments) {
   CLI::App* command = app.add_subcommand("run", "Run a scene; writes output/NAME/");
-  command->add_option("scene", arguments.scene, "Scene file")->required()->type_name("SCENE");
+  CLI::Option* scene = command->add_option("scene", arguments.scene, "Scene file")->type_name("SCENE");
+  CLI::Option* reproduce =
+      command
+          ->add_option("--reproduce", arguments.reproduce,
+                       "Run again what this manifest.json tells of, write nothing, compare the states")
+          ->excludes(scene)
+          ->type_name("MANIFEST");
+  command->final_callback([=] {
+    if (scene->count() + reproduce->count() != 1) throw CLI::RequiredError("SCENE");
+  });
   command->add_option("-o,--output", arguments.output, "Run folder instead of output/NAME")->type_name("DIR");
   add_overrides(*command, arguments.overrides);
   add_simulation(*command, arguments.simulation,
@@ -87,6 +96,19 @@ CLI::App* add_plan(CLI::App& app, PlanArguments& arguments, bool& schema, bool& 
       throw CLI::RequiredError("one of SCENE, --schema, --reference");
     }
   });
+  return command;
+}
+
+CLI::App* add_compare(CLI::App& app, CompareArguments& arguments) {
+  CLI::App* command =
+      app.add_subcommand("compare", "Say how far the numbers of two runs differ, column by column");
+  command->add_option("first", arguments.first, "Run folder")->required()->type_name("DIR_A");
+  command->add_option("second", arguments.second, "Run folder")->required()->type_name("DIR_B");
+  command
+      ->add_option("--tolerance", arguments.tolerance,
+                   "Relative to the largest magnitude in a column (default: 0)")
+      ->check(CLI::Validator(CLI::NonNegativeNumber).description(""))
+      ->type_name("T");
   return command;
 }
 
@@ -158,11 +180,13 @@ int main(int argc, char** argv) {
   PlanArguments plan_arguments;
   VerifyArguments verify_arguments;
   StudyArguments study_arguments;
+  CompareArguments compare_arguments;
   bool schema = false, reference = false;
   const CLI::App* run_command = add_run(app, run_arguments);
   const CLI::App* plan_command = add_plan(app, plan_arguments, schema, reference);
   const CLI::App* verify_command = add_verify(app, verify_arguments);
   const CLI::App* study_command = add_study(app, study_arguments);
+  const CLI::App* compare_command = add_compare(app, compare_arguments);
   const CLI::App* bench_command = add_bench(app);
   app.add_subcommand("info", "Say what this program is and what it finds on this machine");
 
@@ -171,6 +195,7 @@ int main(int argc, char** argv) {
     if (run_command->parsed()) return run(run_arguments);
     if (verify_command->parsed()) return verify(verify_arguments);
     if (study_command->parsed()) return study(study_arguments);
+    if (compare_command->parsed()) return compare(compare_arguments);
     if (bench_command->parsed()) return bench(bench_command->remaining());
     if (plan_command->parsed())
       return schema ? print_schema() : reference ? print_reference() : plan(plan_arguments);

@@ -4,6 +4,11 @@
 
 namespace scree::cli {
 
+namespace {
+/// Few enough to cost nothing where the state has to come from a GPU.
+constexpr int states_of_a_run = 16;
+}  // namespace
+
 Probe probe_of(Simulation& simulation) {
   return {
       .observe = [&simulation](bool overlaps) -> const Observation& { return simulation.observe(overlaps); },
@@ -14,6 +19,7 @@ Recorder::Recorder(const Scene& scene, const RunFolder& folder, Console& console
                    AtomicFile::Opening opening)
     : checks_(scene, TimeGrid(scene.time)),
       rows_due_(TimeGrid(scene.time), scene.record.metrics_every),
+      states_due_(TimeGrid(scene.time), scene.time.end / states_of_a_run),
       metrics_(scene, folder / "metrics.csv", opening),
       timing_(folder / "timing.csv", opening) {
   if (draw) film_.emplace(scene, folder, console);
@@ -31,6 +37,8 @@ void Recorder::write_rows(Simulation& simulation) {
 void Recorder::record(Simulation& simulation) {
   checks_.record(simulation.steps(), probe_of(simulation));
   if (rows_due_.due(simulation.steps()) > 0) write_rows(simulation);
+  if (states_due_.due(simulation.steps()) > 0)
+    states_.push_back({simulation.steps(), simulation.state_hash()});
   if (film_) film_->record(simulation);
 }
 
@@ -41,6 +49,8 @@ void Recorder::record_last(Simulation& simulation) {
 void Recorder::archive(Archive& archive) {
   archive.part("checks", checks_);
   archive.part("rows_due", rows_due_);
+  archive.part("states_due", states_due_);
+  archive("states", states_);
   archive("last_row", last_row_);
   archive("worst_penetration", worst_penetration_);
   archive.part("metrics", metrics_);

@@ -4,6 +4,7 @@
 #include "sim/cli/console.hpp"
 #include "sim/cli/film.hpp"
 #include "sim/record/checks.hpp"
+#include "sim/record/manifest.hpp"
 #include "sim/record/metrics.hpp"
 #include "sim/record/run_folder.hpp"
 #include "sim/scene/time_grid.hpp"
@@ -38,6 +39,7 @@ class Recorder {
   const Observation& newest() const { return newest_; }
   double worst_penetration() const { return worst_penetration_; }  ///< of all rows so far (m)
   std::vector<CheckResult> check_results() const { return checks_.results(newest_.energy_scale); }
+  const std::vector<StateMark>& states() const { return states_; }  ///< some, all over the run
   double wall() const { return timing_.wall(); }  ///< of the whole run, whatever stopped it (s)
   const Film* film() const { return film_ ? &*film_ : nullptr; }
 
@@ -45,13 +47,14 @@ class Recorder {
   void write_rows(Simulation& simulation);
 
   Checks checks_;
-  Cadence rows_due_;
+  Cadence rows_due_, states_due_;
   MetricsFile metrics_;
   TimingFile timing_;
   std::optional<Film> film_;
   Observation newest_;
   std::int64_t last_row_ = -1;  ///< its step
   double worst_penetration_ = 0;
+  std::vector<StateMark> states_;
 };
 
 }  // namespace scree::cli

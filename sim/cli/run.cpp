@@ -128,6 +128,7 @@ RunIdentity identity_of(const Scene& scene, const Simulation& simulation, bool d
 }  // namespace
 
 int run(const RunArguments& arguments) {
+  if (!arguments.reproduce.empty()) return reproduce(arguments);
   catch_interrupts();
   const Scene scene = read_scene(arguments.scene, arguments.overrides);
   const TimeGrid grid(scene.time);
@@ -180,6 +181,7 @@ int run(const RunArguments& arguments) {
   summary.last = recorder.newest();
   summary.checks = recorder.check_results();
   summary.state_hash = simulation.state_hash();
+  summary.states = recorder.states();
   if (const Film* film = recorder.film()) {
     summary.frames = film->frames();
     summary.movie = film->movie();

@@ -1,5 +1,6 @@
 #include "sim/record/manifest.hpp"
 
+#include "core/error.hpp"
 #include "core/hash.hpp"
 #include "core/timing.hpp"
 #include "sim/record/build_info.hpp"
@@ -7,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include <exception>
 #include <fstream>
 
 namespace scree {
@@ -112,6 +114,26 @@ Json times(const std::vector<timing::Entry>& entries) {
 
 }  // namespace
 
+RecordedRun read_manifest(const std::filesystem::path& file) try {
+  const Json json = Json::parse(std::ifstream(file));
+  RecordedRun run{.scene_hash = json.at("scene").at("hash"),
+                  .commit = json.at("program").at("commit"),
+                  .space = json.at("space"),
+                  .states = {}};
+  const auto add = [&run](const Json& step, const std::string& hash) {
+    run.states.push_back({step.get<std::int64_t>(), std::stoull(hash, nullptr, 16)});
+  };
+  for (const Json& state : json.at("states")) add(state.at("step"), state.at("hash"));
+  add(json.at("steps"), json.at("state_hash"));
+  return run;
+} catch (const std::exception& error) {
+  throw InputError(fmt::format("{}: is no manifest of a run: {}", file.string(), error.what()));
+}
+
+std::string scene_hash_of(const Scene& scene) {
+  return hex(hash_of(scene.resolved.data(), scene.resolved.size()));
+}
+
 std::optional<std::int64_t> steps_done(const std::filesystem::path& manifest) {
   const Json json = Json::parse(std::ifstream(manifest), nullptr, false);
   const bool is_done = json.is_object() && json.value("status", "") == "done" && json.contains("steps") &&
@@ -127,7 +149,7 @@ std::string manifest_of(const Scene& scene, const RunSummary& run) {
   if (!run.error.empty()) json["error"] = run.error;
   json["scene"] = {{"name", scene.name},
                    {"source", scene.source.string()},
-                   {"hash", hex(hash_of(scene.resolved.data(), scene.resolved.size()))},
+                   {"hash", scene_hash_of(scene)},
                    {"seed", scene.seed}};
   json["program"] = {{"version", build.version},
                      {"commit", build.commit},
@@ -141,6 +163,9 @@ std::string manifest_of(const Scene& scene, const RunSummary& run) {
   json["steps_total"] = run.steps_total;
   json["time"] = run.time;
   json["state_hash"] = hex(run.state_hash);
+  json["states"] = Json::array();
+  for (const StateMark& state : run.states)
+    json["states"].push_back({{"step", state.step}, {"hash", hex(state.hash)}});
   json["checks"] = Json::array();
   for (const CheckResult& check : run.checks) json["checks"].push_back(scree::json_of(check));
   json["observation"] = json_of(run.last);

@@ -12,6 +12,12 @@
 
 namespace scree {
 
+/// The state after a step.
+struct StateMark {
+  std::int64_t step;
+  std::uint64_t hash;
+};
+
 struct RunSummary {
   std::string status = {};  ///< done, failed, interrupted
   std::string error = {};   ///< why it failed
@@ -22,6 +28,7 @@ struct RunSummary {
   double time = 0;        ///< s
   Observation last = {};  ///< the newest; of the last state, unless that could not be observed
   std::uint64_t state_hash = 0;
+  std::vector<StateMark> states = {};  ///< on the way
   double wall = 0;  ///< of the whole run, drawing and writing included, but not the time it was stopped (s)
   std::vector<std::int64_t> resumed_at = {};  ///< steps
   std::int64_t frames = 0;
@@ -32,6 +39,16 @@ struct RunSummary {
 
 /// The text of manifest.json; the wall times by stage are those of core/timing.hpp.
 std::string manifest_of(const Scene& scene, const RunSummary& run);
+
+/// What a manifest tells for a run to be repeated.
+struct RecordedRun {
+  std::string scene_hash, commit, space;
+  std::vector<StateMark> states;  ///< with the last
+};
+/// Throws InputError if the file is no manifest.
+RecordedRun read_manifest(const std::filesystem::path& file);
+/// As the manifest of a run of this scene has it.
+std::string scene_hash_of(const Scene& scene);
 
 /// The steps of the run that a manifest tells of, if that is done; nothing if it is not, or the file is none.
 std::optional<std::int64_t> steps_done(const std::filesystem::path& manifest);

@@ -254,13 +254,46 @@ TEST_F(ProgramTest, AnInterruptExitsWith130AndSavesWhatItHas) {
                                       "timing.csv"}));
 }
 
+TEST_F(ProgramTest, ReproduceRunsAgainAndComparesTheStates) {
+  ASSERT_EQ(run_scene(falling_ball(no_pictures)).status, 0);
+  const fs::path manifest = folder_ / "output/fall/manifest.json";
+  const Finished same = scree_in(folder_, {"run", "--reproduce", manifest.string()});
+  EXPECT_EQ(same.status, 0) << same.error;
+  EXPECT_TRUE(contains(same.out, "12 states, 0 different")) << same.out;
+  Json changed = manifest_in(folder_ / "output/fall");
+  changed["states"][3]["hash"] = "0123456789abcdef";
+  write_text(manifest, changed.dump());
+  const Finished other = scree_in(folder_, {"run", "--reproduce", manifest.string()});
+  EXPECT_EQ(other.status, 1);
+  EXPECT_TRUE(contains(other.out, "DIFFERENT")) << other.out;
+  EXPECT_TRUE(contains(other.out, "12 states, 1 different")) << other.out;
+  write_text(folder_ / "output/fall/scene.yaml", falling_ball(no_pictures + "seed: 3\n"));
+  EXPECT_EQ(scree_in(folder_, {"run", "--reproduce", manifest.string()}).status, 2);
+  write_text(manifest, "{}");
+  EXPECT_EQ(scree_in(folder_, {"run", "--reproduce", manifest.string()}).status, 2);
+}
+
+TEST_F(ProgramTest, CompareSaysHowFarTwoRunsDiffer) {
+  const std::string scene = falling_ball(no_pictures);
+  ASSERT_EQ(run_scene(scene, {"-o", "one"}).status, 0);
+  ASSERT_EQ(run_scene(scene, {"-o", "two"}).status, 0);
+  ASSERT_EQ(run_scene(scene, {"-o", "three", "--set", "gravity=[0, 0, -10.001]"}).status, 0);
+  EXPECT_EQ(scree_in(folder_, {"compare", "one", "two"}).status, 0);
+  const Finished apart = scree_in(folder_, {"compare", "one", "three"});
+  EXPECT_EQ(apart.status, 1);
+  EXPECT_TRUE(contains(apart.out, "final.csv vz")) << apart.out;
+  EXPECT_EQ(scree_in(folder_, {"compare", "one", "three", "--tolerance", "1e-3"}).status, 0);
+  EXPECT_EQ(scree_in(folder_, {"compare", "one", "nowhere"}).status, 2);
+}
+
 class ResumeTest : public ProgramTest {
  protected:
   /// What must be the same whether a run was stopped or not.
   void expect_same(const std::string& a, const std::string& b) const {
     for (const char* file : {"metrics.csv", "final.csv", "frames/00000.png", "frames/00005.png"})
       EXPECT_EQ(text_of(folder_ / a / file), text_of(folder_ / b / file)) << file;
-    for (const char* key : {"status", "state_hash", "steps", "checks", "observation", "counters", "frames"})
+    for (const char* key :
+         {"status", "state_hash", "states", "steps", "checks", "observation", "counters", "frames"})
       EXPECT_EQ(manifest_in(folder_ / a)[key], manifest_in(folder_ / b)[key]) << key;
     EXPECT_EQ(files_below(folder_ / a), files_below(folder_ / b));
   }

@@ -1,0 +1,153 @@
+#include "sim/record/comparison.hpp"
+
+#include "core/error.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <fstream>
+#include <limits>
+#include <optional>
+#include <string_view>
+
+namespace scree {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr double infinite = std::numeric_limits<double>::infinity();
+
+std::vector<std::string_view> cells_of(std::string_view line) {
+  std::vector<std::string_view> cells;
+  for (std::size_t begin = 0;;) {
+    const std::size_t end = line.find(',', begin);
+    cells.push_back(line.substr(begin, end - begin));
+    if (end == std::string_view::npos) return cells;
+    begin = end + 1;
+  }
+}
+
+std::optional<double> number_in(std::string_view cell) {
+  double value = 0;
+  const auto [end, error] = std::from_chars(cell.data(), cell.data() + cell.size(), value);
+  return error == std::errc() && end == cell.data() + cell.size() ? std::optional(value) : std::nullopt;
+}
+
+/// Lines of comma-separated cells, one at a time: a table may be larger than memory.
+class Table {
+ public:
+  explicit Table(const fs::path& file) : file_(file), stream_(file) {
+    if (!stream_.is_open()) throw InputError(fmt::format("{}: cannot be read", file.string()));
+    next();
+    for (const std::string_view name : cells_) columns_.emplace_back(name);
+  }
+
+  const std::vector<std::string>& columns() const { return columns_; }
+  /// False at the end.
+  bool next() {
+    if (!std::getline(stream_, line_)) return false;
+    ++number_;
+    cells_ = cells_of(line_);
+    if (!columns_.empty() && cells_.size() != columns_.size())
+      throw InputError(fmt::format("{}:{}: {} cells, where the first line has {}", file_.string(), number_,
+                                   cells_.size(), columns_.size()));
+    return true;
+  }
+  std::string_view cell(std::size_t column) const { return cells_[column]; }
+
+ private:
+  fs::path file_;
+  std::ifstream stream_;
+  std::string line_;
+  std::vector<std::string_view> cells_;
+  std::vector<std::string> columns_;
+  std::int64_t number_ = 0;
+};
+
+/// A column that both have.
+struct Common {
+  std::size_t in_a, in_b;
+  double scale = 0;
+  ColumnDifference difference;
+
+  void compare(std::string_view a, std::string_view b, std::int64_t row, std::string_view key) {
+    const std::optional<double> number_a = number_in(a), number_b = number_in(b);
+    double distance = 0;
+    if (number_a && number_b && std::isfinite(*number_a) && std::isfinite(*number_b)) {
+      distance = std::abs(*number_a - *number_b);
+      scale = std::max({scale, std::abs(*number_a), std::abs(*number_b)});
+    } else {
+      const bool are_nan = number_a && number_b && std::isnan(*number_a) && std::isnan(*number_b);
+      distance = a == b || are_nan ? 0 : infinite;
+    }
+    if (!(distance > difference.largest)) return;
+    difference.largest = distance;
+    difference.row = row;
+    difference.key = key;
+  }
+};
+
+/// The columns that both have; those that one has alone are unlike.
+std::vector<Common> common_columns(const Table& a, const Table& b, const std::string& name, Comparison& out) {
+  std::vector<Common> common;
+  const auto find = [](const Table& table, const std::string& column) {
+    return static_cast<std::size_t>(std::ranges::find(table.columns(), column) - table.columns().begin());
+  };
+  for (std::size_t k = 0; k < a.columns().size(); ++k) {
+    const std::string& column = a.columns()[k];
+    if (const std::size_t other = find(b, column); other < b.columns().size())
+      common.push_back({k, other, 0, {.column = name + ' ' + column}});
+    else
+      out.unlike.push_back(fmt::format("{} {}: in the first alone", name, column));
+  }
+  for (const std::string& column : b.columns()) {
+    if (find(a, column) == a.columns().size())
+      out.unlike.push_back(fmt::format("{} {}: in the second alone", name, column));
+  }
+  return common;
+}
+
+void compare_tables(const fs::path& file_a, const fs::path& file_b, Comparison& out) {
+  Table a(file_a), b(file_b);
+  const std::string name = file_a.filename().string();
+  std::vector<Common> common = common_columns(a, b, name, out);
+  std::int64_t row = 0;
+  bool more_a = a.next(), more_b = b.next();
+  for (; more_a && more_b; more_a = a.next(), more_b = b.next()) {
+    ++row;
+    for (Common& column : common) column.compare(a.cell(column.in_a), b.cell(column.in_b), row, a.cell(0));
+  }
+  if (more_a != more_b)
+    out.unlike.push_back(
+        fmt::format("{}: the {} has more rows than {}", name, more_a ? "first" : "second", row));
+  out.rows += row;
+  out.columns += std::ssize(common);
+  for (Common& column : common) {
+    if (column.difference.largest == 0) continue;
+    column.difference.relative = column.scale > 0 ? column.difference.largest / column.scale : infinite;
+    out.differences.push_back(std::move(column.difference));
+  }
+}
+
+}  // namespace
+
+bool Comparison::is_within(double tolerance) const {
+  return unlike.empty() && std::ranges::all_of(differences, [tolerance](const ColumnDifference& difference) {
+           return difference.relative <= tolerance;
+         });
+}
+
+Comparison compare_runs(const fs::path& a, const fs::path& b) {
+  Comparison comparison;
+  compare_tables(a / "metrics.csv", b / "metrics.csv", comparison);
+  const bool final_a = fs::exists(a / "final.csv"), final_b = fs::exists(b / "final.csv");
+  if (final_a && final_b) compare_tables(a / "final.csv", b / "final.csv", comparison);
+  if (final_a != final_b)
+    comparison.unlike.push_back(fmt::format("final.csv: in the {} alone", final_a ? "first" : "second"));
+  return comparison;
+}
+
+}  // namespace scree
