@@ -32,6 +32,7 @@ int reproduce(const RunArguments& arguments);
 struct CompareArguments {
   std::filesystem::path first, second;  ///< run folders
   double tolerance = 0;                 ///< relative to the largest magnitude in a column
+  double absolute = 0;                  ///< in each column's unit: what is no more is no difference
 };
 int compare(const CompareArguments& arguments);
 

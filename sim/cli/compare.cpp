@@ -18,10 +18,10 @@ int compare(const CompareArguments& arguments) {
     fmt::print("{:>12}  {:>12}  {:>8}  {:<20}  column\n", "largest", "relative", "row", "beside");
   for (const ColumnDifference& d : found.differences)
     fmt::print("{:>12.4g}  {:>12.4g}  {:>8}  {:<20}  {}\n", d.largest, d.relative, d.row, d.key, d.column);
-  const bool within = found.is_within(arguments.tolerance);
-  fmt::print(
-      "{} columns, {} rows: {} columns differ{}\n", found.columns, found.rows, found.differences.size(),
-      within && !found.differences.empty() ? fmt::format(", all within {:g}", arguments.tolerance) : "");
+  const bool within = found.is_within(arguments.tolerance, arguments.absolute);
+  fmt::print("{} columns, {} rows: {} columns differ{}\n", found.columns, found.rows,
+             found.differences.size(),
+             within && !found.differences.empty() ? ", all within what was allowed" : "");
   return within ? status_done : status_check_failed;
 }
 

@@ -109,6 +109,11 @@ CLI::App* add_compare(CLI::App& app, CompareArguments& arguments) {
                    "Relative to the largest magnitude in a column (default: 0)")
       ->check(CLI::Validator(CLI::NonNegativeNumber).description(""))
       ->type_name("T");
+  command
+      ->add_option("--absolute", arguments.absolute,
+                   "No more than this, in a column's unit, is within any tolerance (default: 0)")
+      ->check(CLI::Validator(CLI::NonNegativeNumber).description(""))
+      ->type_name("A");
   return command;
 }
 

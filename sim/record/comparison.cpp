@@ -134,9 +134,9 @@ void compare_tables(const fs::path& file_a, const fs::path& file_b, Comparison& 
 
 }  // namespace
 
-bool Comparison::is_within(double tolerance) const {
-  return unlike.empty() && std::ranges::all_of(differences, [tolerance](const ColumnDifference& difference) {
-           return difference.relative <= tolerance;
+bool Comparison::is_within(double relative, double absolute) const {
+  return unlike.empty() && std::ranges::all_of(differences, [=](const ColumnDifference& difference) {
+           return difference.relative <= relative || difference.largest <= absolute;
          });
 }
 

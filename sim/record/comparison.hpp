@@ -23,7 +23,9 @@ struct Comparison {
   std::vector<ColumnDifference> differences;  ///< of the columns that differ at all
   std::vector<std::string> unlike;            ///< what cannot be compared: columns and rows that one lacks
 
-  bool is_within(double tolerance) const;  ///< relative
+  /// Whether every difference is no more than one of the two: `absolute` in the unit of each column, for what
+  /// is nothing but rounding.
+  bool is_within(double relative, double absolute = 0) const;
 };
 
 /// Compares metrics.csv and final.csv of two run folders, column by column. Text has to be the same; NaN is

@@ -282,7 +282,10 @@ TEST_F(ProgramTest, CompareSaysHowFarTwoRunsDiffer) {
   const Finished apart = scree_in(folder_, {"compare", "one", "three"});
   EXPECT_EQ(apart.status, 1);
   EXPECT_TRUE(contains(apart.out, "final.csv vz")) << apart.out;
-  EXPECT_EQ(scree_in(folder_, {"compare", "one", "three", "--tolerance", "1e-3"}).status, 0);
+  EXPECT_EQ(scree_in(folder_, {"compare", "one", "three", "--tolerance", "1e-3"}).status, 1)
+      << "what is rounding differs by all of itself";
+  EXPECT_EQ(
+      scree_in(folder_, {"compare", "one", "three", "--tolerance", "1e-3", "--absolute", "1e-12"}).status, 0);
   EXPECT_EQ(scree_in(folder_, {"compare", "one", "nowhere"}).status, 2);
 }
 
