@@ -77,7 +77,7 @@ def main():
         found, resumed = contents(killed)
         differing = sorted(name for name in expected.keys() | found.keys() if expected.get(name) != found.get(name))
         print(f"{kills} x {arguments.signal.name} in {time.monotonic() - start:.0f} s (undisturbed: {wall:.0f} s, {manifest['steps']} steps, "
-              f"{manifest['frames']} frames, state {manifest['state_hash']}); resumed at {len(resumed.get('resumed_at', []))} steps of the last line")
+              f"{manifest['frames']} frames, state {manifest['state_hash']}); resumed {len(resumed.get('resumed_at', []))} times")
         print(f"compared: {len(expected)} contents, {sum(len(bytes) for name, bytes in expected.items() if name != 'files')} bytes; "
               + (f"DIFFERENT: {', '.join(differing)}" if differing else "all the same"))
         if kills < arguments.kills:
