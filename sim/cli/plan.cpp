@@ -183,8 +183,11 @@ OutputPlan plan_output(const Scene& scene, const TimeGrid& grid) {
   const double row =
       bytes_per_number * static_cast<double>(metric_names(scene).size()) + bytes_per_timing_row;
   constexpr double bytes_per_final_row = 300;
+  constexpr double bytes_per_saved_body = 600;  // of settled spheres, docs/reliability.md
+  constexpr int checkpoints = 3;                // the two that are kept, and the one that is written
   plan.bytes =
-      row * static_cast<double>(plan.rows) + bytes_per_final_row * static_cast<double>(scene.bodies.count());
+      row * static_cast<double>(plan.rows) +
+      (bytes_per_final_row + checkpoints * bytes_per_saved_body) * static_cast<double>(scene.bodies.count());
   if (!scene.render.enabled) return plan;
   plan.frames = Cadence(grid, 1 / scene.render.fps).due(grid.last());
   plan.bytes += bytes_per_pixel * scene.render.width * scene.render.height * static_cast<double>(plan.frames);

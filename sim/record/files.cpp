@@ -41,8 +41,9 @@ AtomicFile::AtomicFile(fs::path file, Opening opening) : file_(std::move(file)) 
     if (descriptor_ < 0) fail("create", part);
     return;
   }
-  if (!fs::exists(part) && ::rename(file_.c_str(), part.c_str()) != 0) fail("go on with", file_);
-  descriptor_ = ::open(part.c_str(), O_WRONLY | O_APPEND | O_CLOEXEC);
+  if (!fs::exists(part) && ::rename(file_.c_str(), part.c_str()) != 0 && errno != ENOENT)
+    fail("go on with", file_);
+  descriptor_ = ::open(part.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0666);
   if (descriptor_ < 0) fail("go on with", part);
 }
 

@@ -15,7 +15,7 @@ class AtomicFile {
  public:
   enum class Opening {
     anew,
-    again  ///< to go on with what is there, complete or not; archive() says up to where
+    again  ///< to go on with what is there, complete or not, if anything; archive() says up to where
   };
   explicit AtomicFile(std::filesystem::path file, Opening opening = Opening::anew);
   /// Without commit() the part stays: it may be all that is left of a run that died.

@@ -367,6 +367,15 @@ TEST_F(ResumeTest, ADamagedCheckpointIsPassedOver) {
   expect_same("whole", "parts");
 }
 
+TEST_F(ResumeTest, WithoutTheRowsThatWereWrittenIsAnErrorWithTheNumbers) {
+  ASSERT_EQ(run_scene(scene_, {"--until", "0.05"}).status, 1);
+  fs::remove(folder_ / "output/fall/log.txt");
+  fs::remove(folder_ / "output/fall/metrics.csv");
+  const Finished run = run_scene(scene_, {"--resume"});
+  EXPECT_EQ(run.status, 3);
+  EXPECT_TRUE(contains(run.error, "metrics.csv.part: 0 bytes of ")) << run.error;
+}
+
 TEST_F(ResumeTest, MaxHoursStopsWithACheckpoint) {
   const Finished run = run_scene(falling_ball(no_pictures), {"--max-hours", "0.00003", "--set",
                                                              "time.end=1e6", "--set", "time.step=1e-4"});
