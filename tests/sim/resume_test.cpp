@@ -48,9 +48,9 @@ SavedState saved(Simulation& run) {
 }
 
 /// Saves every `every` steps, and goes on from there in a simulation of its own for as many steps and some
-/// more. Looks at every state, as one that wrote rows would.
+/// more. Looks at every state, as one that wrote rows would. Sets the most contacts that there were.
 template <class Make>
-void expect_same_after_resume(const Make& simulate, int every) {
+void expect_same_after_resume(const Make& simulate, int every, std::int64_t& contacts) {
   Simulation whole = simulate();
   std::vector<std::string> expected = {seen(whole)};
   std::vector<SavedState> states;
@@ -58,6 +58,7 @@ void expect_same_after_resume(const Make& simulate, int every) {
     if (whole.steps() % every == 0) states.push_back(saved(whole));
     whole.step();
     expected.push_back(seen(whole));
+    contacts = std::max(contacts, whole.observe().contacts);
   }
   ASSERT_GT(states.size(), 5u);
   for (const SavedState& state : states) {
@@ -100,26 +101,30 @@ bodies:
     at: [-0.2, -0.2, -0.6]
     repeat: {count: [3, 3, 1], spacing: [0.2, 0.2, 0.2]}
     material: stone)";
-  expect_same_after_resume([&] { return simulate(scene); }, 9);
+  std::int64_t contacts = 0;
+  expect_same_after_resume([&] { return simulate(scene); }, 9, contacts);
+  EXPECT_GT(contacts, 20);
 }
 
 /// So many balls that sweeps go by what the last substeps have left undone, and substeps by the overlaps.
 TEST_P(Resume, AHeapGoesOnWithTheSameBits) {
   if (std::string(GetParam().name) == "host_accurate") GTEST_SKIP() << "a heap is not for the accurate mode";
   const std::string scene = std::string(common) + R"(
-time: {end: 0.3, step: 0.004166666666666667}
+time: {end: 0.2, step: 0.004166666666666667}
 bodies:
   - {plane: {normal: [0, 0, 1], offset: 0}, material: stone}
   - {plane: {normal: [1, 0, 0], offset: -0.5}, material: stone}
   - {plane: {normal: [-1, 0, 0], offset: -0.5}, material: stone}
   - {plane: {normal: [0, 1, 0], offset: -0.5}, material: stone}
   - {plane: {normal: [0, -1, 0], offset: -0.5}, material: stone}
-  - {sphere: {radius: 0.3}, at: [0, 0, 1.7], velocity: [0, 0, -6], material: stone}
-  - sphere: {radius: {uniform: [0.03, 0.05]}}
-    at: [-0.44, -0.44, 0.05]
-    repeat: {count: [9, 9, 12], spacing: [0.11, 0.11, 0.11], jitter: 0.004}
+  - {sphere: {radius: 0.3}, at: [0, 0, 1.55], velocity: [0, 0, -6], material: stone}
+  - sphere: {radius: 0.05}
+    at: [-0.45, -0.45, 0.05]
+    repeat: {count: [10, 10, 10], spacing: [0.1, 0.1, 0.1]}
     material: stone)";
-  expect_same_after_resume([&] { return simulate(scene); }, 11);
+  std::int64_t contacts = 0;
+  expect_same_after_resume([&] { return simulate(scene); }, 9, contacts);
+  EXPECT_GT(contacts, 2500) << "a heap, in is_heap()'s words";
 }
 
 TEST_P(Resume, AStateOfAnotherKindIsRefused) {
