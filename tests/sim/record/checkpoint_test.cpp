@@ -125,7 +125,7 @@ TEST(Checkpoint, AFolderKeepsTheTwoNewestAndPassesOverWhatIsDamaged) {
   EXPECT_FALSE(fs::exists(folder / "checkpoint"));
 }
 
-TEST(Checkpoint, AFullDiskIsToldInTheSystemsWords) {
+TEST(Checkpoint, WhereItCannotBeWrittenTheErrorNamesTheFile) {
   try {
     write_checkpoint("/dev/full/a.h5", state_of({}));
     FAIL();
