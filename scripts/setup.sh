@@ -26,13 +26,14 @@ missing_packages() {
   comm -23 <(package_names | sort -u) <(sort -u <<<"$installed")
 }
 
-# Installs what cmake/packages.txt names and the machine lacks. The copy left in build/ says that this list has
-# been seen to, so that later calls cost nothing.
+# ensure_packages [LIST]: installs what cmake/packages.txt, or the list, names and the machine lacks. The copy left in
+# build/ says that this list has been seen to, so that later calls cost nothing.
 ensure_packages() {
-  local seen="$root/build/packages.txt" missing as_root=()
+  packages=${1:-$packages}
+  local seen="$root/build/${packages##*/}" missing as_root=()
   if cmp -s "$packages" "$seen"; then return; fi
   if ! command -v dpkg-query >/dev/null; then
-    echo "Not a Debian system: going on with what is installed (cmake/packages.txt names what is needed)." >&2
+    echo "Not a Debian system: going on with what is installed (${packages#"$root/"} names what is needed)." >&2
     return
   fi
   mapfile -t missing < <(missing_packages)
