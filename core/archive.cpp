@@ -26,9 +26,12 @@ void Archive::operator()(const char* name, std::string& text) {
 const SavedField& Archive::field_of(const char* name, const FieldType& type, std::int64_t rows) const {
   const SavedField* field = from_->find(prefix_ + name);
   if (field == nullptr) throw InputError("the saved state has no " + prefix_ + name);
-  if (field->type != type || (rows >= 0 && field->rows() != rows))
-    throw InputError("the saved state has another " + prefix_ + name);
+  expect(field->type == type && (rows < 0 || field->rows() == rows), name);
   return *field;
+}
+
+void Archive::expect(bool holds, const char* name) const {
+  if (!holds) throw InputError("the saved state has another " + prefix_ + name);
 }
 
 }  // namespace scree

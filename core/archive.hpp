@@ -74,7 +74,9 @@ class Archive {
   template <class T>
   void operator()(const char* name, T& value) {
     if (is_loading()) {
-      load<Host>(&value, field_of(name, field_type_of<T>(), 1));
+      const SavedField& field = field_of(name, field_type_of<T>(), 1);
+      if constexpr (std::is_same_v<T, bool>) expect(*field.bytes.data() <= std::byte{1}, name);
+      load<Host>(&value, field);
     } else {
       save<Host>(name, &value, 1);
     }
@@ -100,6 +102,9 @@ class Archive {
     }
   }
   void operator()(const char* name, std::string& text);
+
+  /// Throws InputError, with the name of a field that was loaded, unless what it holds can be.
+  void expect(bool holds, const char* name) const;
 
   /// All that part.archive(*this, more...) names.
   template <class Part, class... More>

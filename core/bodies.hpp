@@ -50,7 +50,7 @@ struct BodyFields {
   Container<std::int32_t> id;        ///< the body's number in the scene; stays when the arrays are permuted
 
   std::int64_t count() const { return static_cast<std::int64_t>(position.size()); }
-  void archive(Archive& archive);
+  void archive(Archive& archive);  ///< of as many as there are
 };
 
 /// Calls f(name, field...) for each field of one or more BodyFields, in a fixed order.
@@ -71,7 +71,13 @@ void for_each_field(F&& f, Fields&... fields) {
 
 template <template <class> class Container>
 void BodyFields<Container>::archive(Archive& archive) {
-  for_each_field([&archive](const char* name, auto& field) { archive(name, field); }, *this);
+  const std::int64_t bodies = count();
+  for_each_field(
+      [&](const char* name, auto& field) {
+        archive(name, field);
+        archive.expect(static_cast<std::int64_t>(field.size()) == bodies, name);
+      },
+      *this);
 }
 
 /// Bodies on the host, in growable vectors: what scenes build and what is recorded and drawn.

@@ -115,7 +115,12 @@ void* Device::allocate(std::size_t bytes) {
   if (bytes == 0) return nullptr;
   keep_pool();
   void* memory = nullptr;
-  check(cudaMallocAsync(&memory, bytes, cudaStream_t{}), "out of device memory", bytes);
+  const cudaError_t status = cudaMallocAsync(&memory, bytes, cudaStream_t{});
+  if (status == cudaErrorMemoryAllocation) {
+    cudaGetLastError();  // forgets it
+    throw std::bad_alloc();
+  }
+  check(status, "cannot take memory", bytes);
   return memory;
 }
 
@@ -158,13 +163,33 @@ void copy_bytes<Device, Device>(void* to, const void* from, std::size_t bytes) {
   copy(to, from, bytes, cudaMemcpyDeviceToDevice);
 }
 
+namespace {
+
+/// "12.4", of a number as the runtime gives it.
+std::string version_words(int version) {
+  return std::to_string(version / 1000) + '.' + std::to_string(version % 1000 / 10);
+}
+
+std::string why_no_device(cudaError_t status) {
+  if (status == cudaSuccess) return "no CUDA device";
+  int driver = 0, runtime = 0;
+  const bool known =
+      cudaDriverGetVersion(&driver) == cudaSuccess && cudaRuntimeGetVersion(&runtime) == cudaSuccess;
+  if (status != cudaErrorInsufficientDriver || !known) return cudaGetErrorString(status);
+  if (driver == 0) return "no NVIDIA driver";
+  return "the NVIDIA driver is for CUDA " + version_words(driver) + ", and this program needs one for " +
+         version_words(runtime);
+}
+
+}  // namespace
+
 DeviceInfo device_info() {
   DeviceInfo info;
   info.built = true;
   int count = 0;
   const cudaError_t status = cudaGetDeviceCount(&count);
   if (status != cudaSuccess || count == 0) {
-    info.name = status != cudaSuccess ? cudaGetErrorString(status) : "no CUDA device";
+    info.name = why_no_device(status);
     return info;
   }
   cudaDeviceProp properties{};

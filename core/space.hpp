@@ -37,7 +37,7 @@ struct Host {
 /// One NVIDIA GPU, driven by Thrust's CUDA system on the default stream.
 struct Device {
   static constexpr const char* name = "cuda";
-  /// Uninitialised storage from the driver's stream-ordered pool. Throws RunError with the bytes asked for.
+  /// Uninitialised storage from the driver's stream-ordered pool. Throws std::bad_alloc.
   static void* allocate(std::size_t bytes);
   static void deallocate(void* memory) noexcept;
   /// Waits for everything launched so far; throws RunError if any of it failed.

@@ -58,6 +58,13 @@ inline constexpr double coarser_overlap = 0.012;
 inline constexpr int wedged_steps = 32;
 /// Most substeps that a step takes by itself. Larger: fast scenes cost more.
 inline constexpr int most_substeps = 4;
+/// Substeps for each one of a step that failed, when it is taken again.
+inline constexpr int redo_substeps = 4;
+/// Energy that may come or go in a step without the ledger explaining it (of the energy scale); a step with
+/// more has failed. Far above what rounding does: 1e-14, and 1e-10 a kilometre from the origin.
+inline constexpr double unexplained_energy = 1e-6;
+/// The same where impulses are in float: 1e-5 was seen as a heavy ball went through a wall of boxes.
+inline constexpr double unexplained_energy_mixed = 1e-3;
 /// Largest correction of one body in one step (of smallest_size): deep overlaps part gently.
 inline constexpr double correction_cap = 0.2;
 

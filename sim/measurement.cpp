@@ -10,22 +10,26 @@ void EnergyBaseline::start(const Energies& energies, double least_scale) {
   first_potential_ = energies.potential;
   first_total_ = energies.kinetic() + energies.potential;
   scale_ = least_scale;
-  extend(energies);
+  extend(energies, 0);
 }
 
-void EnergyBaseline::extend(const Energies& energies) {
-  last_total_ = energies.kinetic() + energies.potential;
+void EnergyBaseline::extend(const Energies& energies, double explained) {
+  unexplained_before_ = unexplained_;
+  unexplained_ = energies.kinetic() + energies.potential - first_total_ - explained;
   scale_ = std::max(scale_, energies.kinetic() + std::abs(energies.potential - first_potential_));
 }
 
 void EnergyBaseline::archive(Archive& archive) {
   archive("first_total", first_total_);
   archive("first_potential", first_potential_);
-  archive("last_total", last_total_);
+  archive("unexplained", unexplained_);
   archive("scale", scale_);
 }
 
-bool EnergyBaseline::is_finite() const { return std::isfinite(last_total_); }
+double explained_energy(const Ledger& ledger, const Exchange& exchange) {
+  return exchange.energy + ledger.work + ledger.integration - ledger.restitution - ledger.friction -
+         ledger.correction;
+}
 
 void measure_totals(const Totals& totals, const EnergyBaseline& baseline, const Vec3& gravity,
                     const Vec3& reference, Observation& out) {
@@ -39,10 +43,8 @@ void measure_totals(const Totals& totals, const EnergyBaseline& baseline, const 
   out.speed_rms = totals.count > 0 ? std::sqrt(totals.speed_squared / count) : 0.0;
   out.speed_kurtosis = count * totals.speed_fourth / (totals.speed_squared * totals.speed_squared);
   out.energy_scale = baseline.scale();
-  const Ledger& l = out.ledger;
   const double change = totals.kinetic() + totals.potential - baseline.first_total();
-  const double explained =
-      out.exchange.energy + l.work + l.integration - l.restitution - l.friction - l.correction;
+  const double explained = explained_energy(out.ledger, out.exchange);
   out.unexplained = out.energy_scale > 0 ? std::abs(change - explained) / out.energy_scale : 0.0;
   out.exchange.energy -= out.exchange.mass * gravity.dot(reference);
 }

@@ -9,6 +9,7 @@
 #include "sim/dynamics/region.hpp"
 #include "sim/observation.hpp"
 
+#include <cmath>
 #include <vector>
 
 namespace scree {
@@ -20,10 +21,14 @@ namespace scree {
 class EnergyBaseline {
  public:
   void start(const Energies& energies, double least_scale);
-  void extend(const Energies& energies);
+  /// A step was taken, or bodies have come or gone. `explained`: by ledger and exchange since t = 0 (J).
+  void extend(const Energies& energies, double explained);
   /// Bodies came or went whose potential energy when they appeared was so much in sum (J).
   void exchange(double first_potential) { first_potential_ += first_potential; }
-  bool is_finite() const;
+  /// What came or went unexplained between the last two states, by the scale; NaN if it is no number.
+  double unexplained_change() const {
+    return std::abs(unexplained_ - unexplained_before_) / (scale_ > 0 ? scale_ : 1);
+  }
   double scale() const { return scale_; }
   double first_total() const { return first_total_; }
   void archive(Archive& archive);
@@ -31,9 +36,12 @@ class EnergyBaseline {
  private:
   double first_total_ = 0;
   double first_potential_ = 0;
-  double last_total_ = 0;
+  double unexplained_ = 0, unexplained_before_ = 0;  // since t = 0
   double scale_ = 0;
 };
+
+/// What the total energy should have changed by since t = 0 (J).
+double explained_energy(const Ledger& ledger, const Exchange& exchange);
 
 /// Energies, momenta, speeds, and what ledger and exchange (already in `out`) do not explain. `totals` and
 /// the exchange are about `reference`; the potential energy and the exchange reported are about the origin.

@@ -58,6 +58,7 @@ struct Penetration {
 /// What the loops of the run did, since t = 0; those that hit their bound are counted, never silent.
 struct Counters {
   std::int64_t substeps = 0;
+  std::int64_t redone = 0;         ///< steps that failed and were taken again, in smaller substeps
   std::int64_t cuts = 0;           ///< of substeps, where a contact that slid came to stick
   std::int64_t sweeps = 0;         ///< over the contacts
   std::int64_t direct = 0;         ///< islands solved by Newton's method
@@ -100,6 +101,7 @@ struct Observation {
   std::int64_t contacts = 0;  ///< contact points that carried an impulse in the last step
   std::int64_t pairs = 0;     ///< size of the PCS
   std::int64_t bodies = 0;    ///< that are there
+  std::int64_t left = 0;      ///< that have left the world and were taken out
   double speed_max = 0;       ///< of the free bodies (m/s)
   double speed_rms = 0;
   double speed_kurtosis = 0;         ///< mean v^4 / (mean v^2)^2; NaN at rest

@@ -68,8 +68,7 @@ class PairFinderIn final : public PairFinder<BodySpace> {
       return std::tuple(c.level, c.low.z(), c.low.y(), c.low.x());
     };
     std::ranges::sort(grid.cells, {}, key);
-    const auto repeated = std::ranges::unique(grid.cells);
-    grid.cells.erase(repeated.begin(), repeated.end());
+    grid.cells.erase(std::unique(grid.cells.begin(), grid.cells.end()), grid.cells.end());
     return grid;
   }
 

@@ -1,5 +1,6 @@
 #include "sim/presence.hpp"
 
+#include "sim/dynamics/leaving.hpp"
 #include "sim/dynamics/motion.hpp"
 
 #include <algorithm>
@@ -9,27 +10,11 @@ namespace scree {
 
 namespace {
 
-void set_absent(std::int64_t k, Bodies<Host>& bodies) {
-  const BodyView views = view_of(bodies);
-  views.mobility[k] = Mobility::absent;
-  views.inverse_mass[k] = 0;
-  views.inverse_inertia[k] = Vec3::Zero();
-}
-
-void set_present(std::int64_t k, const BodyTable& start, Bodies<Host>& bodies) {
-  const BodyView views = view_of(bodies);
+void set_present(std::int64_t k, const BodyTable& start, const BodyView& views) {
   const auto from = static_cast<std::size_t>(k);
   views.mobility[k] = start.mobility[from];
   views.inverse_mass[k] = start.inverse_mass[from];
   views.inverse_inertia[k] = start.inverse_inertia[from];
-}
-
-/// Adds what a body has, or takes it away.
-void book(const Totals& body, double sign, Exchange& exchange) {
-  exchange.mass += sign * body.mass;
-  exchange.energy += sign * (body.kinetic_linear + body.kinetic_angular + body.potential);
-  exchange.momentum += sign * body.momentum;
-  exchange.angular_momentum += sign * body.angular_momentum;
 }
 
 }  // namespace
@@ -62,7 +47,8 @@ std::int64_t Presence::first_step(std::int32_t body) const {
 void Presence::begin(Bodies<Host>& bodies) const {
   for (const Window& window : windows_) {
     if (window.steps.holds(0)) continue;
-    for (std::int32_t k = 0; k < window.bodies.count; ++k) set_absent(window.bodies.first + k, bodies);
+    for (std::int32_t k = 0; k < window.bodies.count; ++k)
+      set_absent(window.bodies.first + k, view_of(bodies));
   }
 }
 
@@ -71,23 +57,42 @@ bool Presence::changes(std::int64_t step) const {
                      [step](const Window& window) { return window.changes_at(step); });
 }
 
+/// Adds what a body has, or takes it away.
+void Presence::book(const ConstBodyView& bodies, std::int64_t k, double sign, const Scene& scene,
+                    const Vec3& reference, Change& change) {
+  const Totals body = totals_of_body(bodies, k, scene.gravity, reference);
+  change.exchange.mass += sign * body.mass;
+  change.exchange.energy += sign * (body.kinetic() + body.potential);
+  change.exchange.momentum += sign * body.momentum;
+  change.exchange.angular_momentum += sign * body.angular_momentum;
+  const Vec3 start = scene.bodies.position[static_cast<std::size_t>(bodies.id[k])] - reference;
+  change.first_potential -= sign * body.mass * scene.gravity.dot(start);
+  count_ += sign > 0 ? 1 : -1;
+}
+
 Presence::Change Presence::update(std::int64_t step, const Scene& scene, const Vec3& reference,
                                   Bodies<Host>& bodies) {
   Change change;
+  const BodyView views = view_of(bodies);
   for (const Window& window : windows_) {
     if (!window.changes_at(step)) continue;
     const bool comes = window.steps.first == step;
-    const double sign = comes ? 1 : -1;
-    count_ += comes ? window.bodies.count : -window.bodies.count;
     for (std::int64_t k = window.bodies.first; k < window.bodies.first + window.bodies.count; ++k) {
-      if (comes) set_present(k, scene.bodies, bodies);
-      const Totals now = totals_of_body(view_of(std::as_const(bodies)), k, scene.gravity, reference);
-      book(now, sign, change.exchange);
-      const Vec3 start = scene.bodies.position[static_cast<std::size_t>(k)] - reference;
-      change.first_potential -= sign * now.mass * scene.gravity.dot(start);
-      if (!comes) set_absent(k, bodies);
+      if (comes) set_present(k, scene.bodies, views);
+      if (views.mobility[k] == Mobility::absent) continue;  // it has left before its time
+      book(view_of(std::as_const(bodies)), k, comes ? 1 : -1, scene, reference, change);
+      if (!comes) set_absent(k, views);
     }
   }
+  return change;
+}
+
+Presence::Change Presence::take_leave_of(const BodyTable& gone, const Scene& scene, const Vec3& reference) {
+  Change change;
+  Bodies<Host> bodies;
+  copy_bodies(bodies, gone);
+  for (std::int64_t k = 0; k < bodies.count(); ++k)
+    book(view_of(std::as_const(bodies)), k, -1, scene, reference, change);
   return change;
 }
 

@@ -36,6 +36,8 @@ class Presence {
   /// The state of a step has been reached: takes out the bodies whose time is over, and brings in those whose
   /// time has come. Potential energies are about `reference`.
   Change update(std::int64_t step, const Scene& scene, const Vec3& reference, Bodies<Host>& bodies);
+  /// These were taken out for another reason, as they are.
+  Change take_leave_of(const BodyTable& gone, const Scene& scene, const Vec3& reference);
 
  private:
   struct Window {
@@ -44,6 +46,8 @@ class Presence {
     bool changes_at(std::int64_t step) const { return steps.first == step || steps.end == step; }
   };
   const Window* window_of(std::int32_t body) const;
+  void book(const ConstBodyView& bodies, std::int64_t k, double sign, const Scene& scene,
+            const Vec3& reference, Change& change);
 
   std::vector<Window> windows_;  // by ascending body
   std::int64_t count_;

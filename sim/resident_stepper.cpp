@@ -5,6 +5,7 @@
 #include "core/tolerances.hpp"
 #include "sim/applied_forces.hpp"
 #include "sim/dynamics/impact_rounds.hpp"
+#include "sim/dynamics/leaving.hpp"
 #include "sim/dynamics/motion.hpp"
 #include "sim/moving_state.hpp"
 #include "sim/pair_finder.hpp"
@@ -71,6 +72,8 @@ class ResidentStepper final : public Stepper {
   void undo_step() override {
     start_.restore(bodies_);
     ledger = start_ledger_;
+    forget_pairs();
+    contacts_ = {};
   }
 
   void change_bodies(const std::function<void(Bodies<Host>&)>& change) override {
@@ -78,17 +81,18 @@ class ResidentStepper final : public Stepper {
     copy_bodies(on_host, bodies_);
     change(on_host);
     copy_bodies(bodies_, on_host);
-    forces_.forget();
-    kept_pairs_.forget();
-    seen_pairs_.forget();
-    contacts_.change_bodies();
+    forget_pairs();
+  }
+  BodyTable take_out(const std::vector<std::int32_t>& ids) override {
+    BodyTable gone = scree::take_out<Space>(ids, bodies_);
+    forget_pairs();
+    return gone;
   }
 
   void archive(Archive& archive) override;
 
   void copy_state(BodyTable& out) const override { copy_bodies(out, bodies_); }
   SteppedBody body(std::int32_t id) const override;
-  std::int32_t non_finite_body() const override { return first_non_finite<Space>(bodies_); }
   Energies energies(const Vec3& reference) const override {
     return energies_of<Space>(bodies_, parameters_.gravity, reference);
   }
@@ -98,6 +102,9 @@ class ResidentStepper final : public Stepper {
   double largest_speed() const override { return scree::largest_speed<Space>(bodies_); }
   RegionContents contents_of(const Region& region) const override {
     return scree::contents_of<Space>(region, bodies_);
+  }
+  std::vector<std::int32_t> bodies_beyond(const World& world) const override {
+    return scree::bodies_beyond<Space>(world, bodies_);
   }
 
   std::vector<BodyPair> pairs() override;
@@ -122,6 +129,13 @@ class ResidentStepper final : public Stepper {
   static constexpr bool is_device = !std::is_same_v<Space, Host>;
 
   BodyView views() { return view_of(bodies_); }
+  /// Others of the bodies are there now, or somewhere else.
+  void forget_pairs() {
+    forces_.forget();
+    kept_pairs_.forget();
+    seen_pairs_.forget();
+    contacts_.change_bodies();
+  }
   FlightTerms terms(double h, double from) const {
     return {.laws = {bodies_.shape.view(), bodies_.size.view(), bodies_.mobility.view(),
                      bodies_.material.view(), laws_.view(), materials_},
@@ -211,6 +225,7 @@ void ResidentStepper<Space, Real>::archive(Archive& archive) {
   archive("counters", counters);
   archive.part("bodies", bodies_);
   archive("velocity_before", start_.velocity);
+  archive.expect(start_.velocity.size() == bodies_.count(), "velocity_before");
   for (auto& [body, impulse] : driven_impulse_)
     archive(("impulse_on_" + std::to_string(body)).c_str(), impulse);
   archive.part("kept_pairs", kept_pairs_);

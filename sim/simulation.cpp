@@ -1,14 +1,13 @@
 #include "sim/simulation.hpp"
 
-#include "core/error.hpp"
 #include "core/timing.hpp"
-#include "core/tolerances.hpp"
 #include "sim/dynamics/prescribed.hpp"
-#include "sim/dynamics/substep_count.hpp"
+#include "sim/guarded_steps.hpp"
 #include "sim/measurement.hpp"
 #include "sim/presence.hpp"
 #include "sim/resident_stepper.hpp"
 #include "sim/scene/time_grid.hpp"
+#include "sim/step_failure.hpp"
 #include "sim/stepper.hpp"
 #include "sim/substepper.hpp"
 
@@ -17,6 +16,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 namespace scree {
@@ -81,11 +81,11 @@ struct Simulation::Parts {
   std::unique_ptr<Stepper> stepper;
 
   std::int64_t step = 0;
-  SubstepCount substeps;
+  GuardedSteps steps;
   double last_step = 0;  // its length
   std::vector<Quat> first_orientation;
-  Exchange exchange;  // potential energy about `origin`
-  EnergyBaseline baseline;
+  Exchange exchange;                            // potential energy about `origin`
+  std::int64_t left = 0;                        // bodies that have left the world and were taken out
   std::vector<RegionContents> contents;         // of each region
   std::vector<RegionContents> contents_before;  // and one step earlier
   Observation observation;
@@ -102,11 +102,12 @@ struct Simulation::Parts {
                     ? static_cast<std::size_t>(options.threads)
                     : tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism)),
         origin(middle_of(s.bodies)),
-        stepper(make_stepper(s, grid, presence, options, origin)) {
+        stepper(make_stepper(s, grid, presence, options, origin)),
+        steps(scene, origin) {
     if (presence.count() < scene.bodies.count())
       stepper->change_bodies([this](Bodies<Host>& bodies) { presence.begin(bodies); });
     first_orientation = scene.bodies.orientation;
-    baseline.start(stepper->energies(origin), lifting_energy(scene));
+    steps.start(*stepper, lifting_energy(scene));
     contents = contents_before = region_contents();
   }
 
@@ -118,23 +119,12 @@ struct Simulation::Parts {
 
   void do_step() {
     const double dt = grid.length(step + 1);
-    const int n = scene.time.substeps.value_or(substeps.next());
-    const double h = dt / n;
-    double overlap = 0;
-    stepper->start_step(step);
     try {
-      for (int s = 0; s < n; ++s) {
-        stepper->substep(h, s * h);
-        overlap = std::max(overlap, stepper->overlap());
-      }
-      baseline.extend(stepper->energies(origin));
-      if (!baseline.is_finite()) throw RunError(non_finite_body());
-    } catch (const RunError& error) {
-      stepper->undo_step();
-      throw RunError(fmt::format("step {} (t = {} s): {}", step + 1, grid.time(step), error.what()));
+      steps.take(step, grid.time(step), dt, exchange, *stepper);
+    } catch (const StepFailure&) {
+      if (!observed) forget_contacts();
+      throw;
     }
-    substeps.judge(n, overlap);
-    stepper->counters.substeps += n;
     ++step;
     come_and_go();
     contents_before = std::exchange(contents, region_contents());
@@ -142,15 +132,31 @@ struct Simulation::Parts {
     observed = overlaps_observed = loaded = false;
   }
 
-  /// Bodies whose time has come or is over.
+  /// They are those of a step that was undone.
+  void forget_contacts() {
+    constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+    observation.contacts = -1;
+    observation.gap_mean = observation.coordination_mean = nan;
+    loaded = true;
+  }
+
+  /// Bodies that have left the world, and those whose time has come or is over.
   void come_and_go() {
+    if (scene.world && scene.world->leaving == Leaving::remove) {
+      const std::vector<std::int32_t> out = stepper->bodies_beyond(*scene.world);
+      left += static_cast<std::int64_t>(out.size());
+      if (!out.empty()) book(presence.take_leave_of(stepper->take_out(out), scene, origin));
+    }
     if (!presence.changes(step)) return;
     Presence::Change change;
     stepper->change_bodies(
         [&](Bodies<Host>& bodies) { change = presence.update(step, scene, origin, bodies); });
+    book(change);
+  }
+
+  void book(const Presence::Change& change) {
     exchange = exchange + change.exchange;
-    baseline.exchange(change.first_potential);
-    baseline.extend(stepper->energies(origin));
+    steps.change_bodies(change.first_potential, exchange, *stepper);
   }
 
   void observe_bodies(double time) {
@@ -160,9 +166,10 @@ struct Simulation::Parts {
     o.ledger = stepper->ledger;
     o.exchange = exchange;
     o.bodies = presence.count();
+    o.left = left;
     o.counters = stepper->counters;
     const Totals totals = stepper->totals(origin);
-    measure_totals(totals, baseline, scene.gravity, origin, o);
+    measure_totals(totals, steps.baseline(), scene.gravity, origin, o);
     o.speed_max = stepper->largest_speed();
     measure_regions(scene.regions, contents, contents_before, last_step, o.regions);
     if (!loaded) stepper->measure_contacts(totals.count, o);
@@ -183,22 +190,18 @@ struct Simulation::Parts {
     archive("coordination_mean", observation.coordination_mean);
     archive("step", step);
     archive("last_step", last_step);
-    archive.part("substeps", substeps);
+    archive.part("steps", steps);
     archive("exchange", exchange);
-    archive.part("baseline", baseline);
+    archive("left", left);
     archive.part("presence", presence);
     archive("contents", contents);
     archive("contents_before", contents_before);
+    archive.expect(contents.size() == scene.regions.size() && contents_before.size() == contents.size(),
+                   "contents");
     archive.part("stepper", *stepper);
     if (!archive.is_loading()) return;
     loaded = true;
     observed = overlaps_observed = false;
-  }
-
-  std::string non_finite_body() const {
-    if (const std::int32_t body = stepper->non_finite_body(); body >= 0)
-      return fmt::format("the state of body {} is no longer finite; try a smaller time.step", body);
-    return "the total energy is no longer finite; try a smaller time.step";
   }
 };
 

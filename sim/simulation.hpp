@@ -29,8 +29,10 @@ class Simulation {
   ~Simulation();
   Simulation(Simulation&&) noexcept;
 
-  /// One step of the scene's length; the last one ends at time.end exactly. Throws RunError, with the state
-  /// as it was before the step, if a body's state stops being finite.
+  /// One step of the scene's length; the last one ends at time.end exactly. A step that fails is taken again
+  /// in smaller substeps; if it fails again, throws StepFailure, with the state as it was before the step: if
+  /// a body's state stops being finite, if energy comes or goes that the ledger does not explain, if a body
+  /// leaves the world and the scene says to stop, or if memory or the device give out.
   void step();
   bool finished() const;
 

@@ -41,10 +41,13 @@ class Stepper {
   virtual void substep(double h, double done) = 0;
   /// Deepest overlap that the last substep found (of the smaller body's smallest_size).
   virtual double overlap() const = 0;
-  /// Back to the state at the start of the step, ledger included.
+  /// Back to the state at the start of the step, ledger included. What the steps before have left of pairs,
+  /// contacts and impulses is forgotten: the step that failed may have spoilt it.
   virtual void undo_step() = 0;
   /// Lets bodies come, go, or become others between two steps. It may copy all of them to Host and back.
   virtual void change_bodies(const std::function<void(Bodies<Host>&)>& change) = 0;
+  /// The same for bodies that go, which are few: they are returned as they were.
+  virtual BodyTable take_out(const std::vector<std::int32_t>& ids) = 0;
 
   /// What the next step starts from. The contacts of the last substep are not among it: after loading there
   /// are none until the next.
@@ -53,12 +56,12 @@ class Stepper {
   // The state.
   virtual void copy_state(BodyTable& out) const = 0;
   virtual SteppedBody body(std::int32_t id) const = 0;
-  /// The first body whose state is no longer finite; -1 if there is none.
-  virtual std::int32_t non_finite_body() const = 0;
   virtual Energies energies(const Vec3& reference) const = 0;
   virtual Totals totals(const Vec3& reference) const = 0;
   virtual double largest_speed() const = 0;
   virtual RegionContents contents_of(const Region& region) const = 0;
+  /// The free bodies whose centre is outside of the world, in order.
+  virtual std::vector<std::int32_t> bodies_beyond(const World& world) const = 0;
 
   // The pairs that may touch, for the state as it is; and the boxes in which the last broad phase looked for
   // them, by body.

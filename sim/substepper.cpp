@@ -55,10 +55,23 @@ void Substepper::start_step(std::int64_t step) {
 void Substepper::undo_step() {
   start_.restore(bodies_);
   ledger = start_ledger_;
+  forget_pairs();
+  memory_ = {};
 }
 
 void Substepper::change_bodies(const std::function<void(Bodies<Host>&)>& change) {
   change(bodies_);
+  forget_pairs();
+}
+
+BodyTable Substepper::take_out(const std::vector<std::int32_t>& ids) {
+  BodyTable gone = scree::take_out<Host>(ids, bodies_);
+  forget_pairs();
+  return gone;
+}
+
+/// Others of the bodies are there now, or somewhere else.
+void Substepper::forget_pairs() {
   kept_pairs_.forget();
   forces_.forget();
 }
@@ -70,7 +83,9 @@ void Substepper::archive(Archive& archive) {
   archive("counters", counters);
   archive.part("bodies", bodies_);
   archive("velocity_before", start_.velocity);
+  archive.expect(start_.velocity.size() == bodies_.count(), "velocity_before");
   archive("contact_impulse", contact_impulse_);
+  archive.expect(std::ssize(contact_impulse_) == bodies_.count(), "contact_impulse");
   archive.part("kept_pairs", kept_pairs_);
   archive.part("memory", memory_);
   if (!archive.is_loading()) return;
@@ -249,8 +264,6 @@ SteppedBody Substepper::body(std::int32_t id) const {
           .acceleration = parameters_.acceleration_of(id),
           .contact_impulse = contact_impulse_[static_cast<std::size_t>(id)]};
 }
-
-std::int32_t Substepper::non_finite_body() const { return first_non_finite<Host>(bodies_); }
 
 Energies Substepper::energies(const Vec3& reference) const {
   return energies_of<Host>(bodies_, parameters_.gravity, reference);

@@ -8,6 +8,7 @@
 #include "sim/dynamics/contact_set.hpp"
 #include "sim/dynamics/correction.hpp"
 #include "sim/dynamics/impact_solver.hpp"
+#include "sim/dynamics/leaving.hpp"
 #include "sim/dynamics/motion.hpp"
 #include "sim/dynamics/prescribed.hpp"
 #include "sim/dynamics/response.hpp"
@@ -38,17 +39,20 @@ class Substepper final : public Stepper {
   double overlap() const override { return corrector_.overlap(); }
   void undo_step() override;
   void change_bodies(const std::function<void(Bodies<Host>&)>& change) override;
+  BodyTable take_out(const std::vector<std::int32_t>& ids) override;
 
   void archive(Archive& archive) override;
 
   void copy_state(BodyTable& out) const override { copy_bodies(out, bodies_); }
   SteppedBody body(std::int32_t id) const override;
-  std::int32_t non_finite_body() const override;
   Energies energies(const Vec3& reference) const override;
   Totals totals(const Vec3& reference) const override;
   double largest_speed() const override { return scree::largest_speed<Host>(bodies_); }
   RegionContents contents_of(const Region& region) const override {
     return scree::contents_of<Host>(region, bodies_);
+  }
+  std::vector<std::int32_t> bodies_beyond(const World& world) const override {
+    return scree::bodies_beyond<Host>(world, bodies_);
   }
 
   std::vector<BodyPair> pairs() override;
@@ -74,6 +78,7 @@ class Substepper final : public Stepper {
     void restore(Substepper& now) const;
   };
 
+  void forget_pairs();
   ContactLaws contact_laws() const;
   ImpactProblem impact_problem(ConstView<Pair> pairs, double h, double from) const;
   double reach_from(double h, double done) const;

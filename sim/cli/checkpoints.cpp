@@ -61,7 +61,7 @@ Checkpoints::Checkpoints(const RunFolder& folder, double every, RunIdentity iden
     : folder_(folder / "checkpoint"),
       every_(every),
       identity_(std::move(identity)),
-      writer_(1, [this](Saved& saved) { folder_.add(saved.step, saved.state); }) {}
+      writer_(1, [this](Saved& saved) { write(saved); }) {}
 
 bool Checkpoints::find(std::vector<std::string>& warnings) {
   found_ = folder_.newest(warnings);
@@ -102,13 +102,33 @@ void Checkpoints::take(Simulation& simulation, Recorder& recorder) {
   last_time_ = Clock::now();
 }
 
+void Checkpoints::write(const Saved& saved) {
+  std::exception_ptr failure;
+  try {
+    folder_.add(saved.step, saved.state);
+  } catch (...) {
+    failure = std::current_exception();
+  }
+  const std::lock_guard lock(failure_mutex_);
+  failure_ = failure;
+}
+
+void Checkpoints::throw_failure() {
+  const std::lock_guard lock(failure_mutex_);
+  if (!failure_) return;
+  last_step_ = -1;
+  std::rethrow_exception(std::exchange(failure_, nullptr));
+}
+
 void Checkpoints::take_if_due(Simulation& simulation, Recorder& recorder) {
+  throw_failure();
   if (Clock::now() - last_time_ >= every_) take(simulation, recorder);
 }
 
 void Checkpoints::take_last(Simulation& simulation, Recorder& recorder) {
   if (last_step_ != simulation.steps()) take(simulation, recorder);
   writer_.drain();
+  throw_failure();
 }
 
 void Checkpoints::drop() {

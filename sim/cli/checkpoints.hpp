@@ -8,6 +8,8 @@
 
 #include <chrono>
 #include <cstdint>
+#include <exception>
+#include <mutex>
 #include <optional>
 #include <string>
 #include <vector>
@@ -41,11 +43,11 @@ class Checkpoints {
   /// The steps at which the run was resumed.
   const std::vector<std::int64_t>& resumed_at() const { return resumed_at_; }
 
-  /// Takes one if it is time. Throws RunError if an earlier one could not be written.
+  /// Takes one if it is time. Throws once, RunError as a rule, if an earlier one could not be written.
   void take_if_due(Simulation& simulation, Recorder& recorder);
-  /// Takes one of the present state, unless it has been; complete on return.
+  /// Takes one of the present state, unless it has been; complete on return. Throws if it cannot be written.
   void take_last(Simulation& simulation, Recorder& recorder);
-  /// Nobody will go on from here: removes all.
+  /// Nobody will go on from here: removes all, and forgets what could not be written.
   void drop();
 
  private:
@@ -56,6 +58,8 @@ class Checkpoints {
   using Clock = std::chrono::steady_clock;
   void archive(Archive& archive, Simulation& simulation, Recorder& recorder);
   void take(Simulation& simulation, Recorder& recorder);
+  void write(const Saved& saved);
+  void throw_failure();
 
   CheckpointFolder folder_;
   std::chrono::duration<double> every_;
@@ -64,6 +68,8 @@ class Checkpoints {
   std::vector<std::int64_t> resumed_at_;
   Clock::time_point last_time_ = Clock::now();
   std::int64_t last_step_ = -1;
+  std::mutex failure_mutex_;
+  std::exception_ptr failure_;  // of the last one written; another may fare better
   Worker<Saved> writer_;
 };
 

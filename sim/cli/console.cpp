@@ -1,10 +1,15 @@
 #include "sim/cli/console.hpp"
 
+#include "core/error.hpp"
+
 #include <fmt/format.h>
 
+#include <cerrno>
 #include <cstdio>
+#include <cstring>
 #include <sys/ioctl.h>
 #include <unistd.h>
+#include <utility>
 
 namespace scree::cli {
 
@@ -25,24 +30,37 @@ std::size_t terminal_width() {
 Console::Console(const std::filesystem::path& log, AtomicFile::Opening opening)
     : log_(log, opening), terminal_(isatty(STDOUT_FILENO) == 1) {}
 
+void Console::print(std::string_view text) {
+  if (!is_heard_) return;
+  is_heard_ = std::fwrite(text.data(), 1, text.size(), stdout) == text.size() && std::fflush(stdout) == 0;
+  if (!is_heard_) warn(fmt::format("standard output is lost ({}); the run goes on", std::strerror(errno)));
+}
+
 void Console::clear_progress() {
-  if (!showing_progress_) return;
-  fmt::print("\r\x1b[K");  // to the start of the line; erase it
-  showing_progress_ = false;
+  if (!std::exchange(showing_progress_, false)) return;
+  print("\r\x1b[K");  // to the start of the line; erase it
+}
+
+void Console::log(const std::function<void()>& act) {
+  if (!is_logged_) return;
+  try {
+    act();
+  } catch (const RunError& error) {
+    is_logged_ = false;
+    warn(fmt::format("the log is not complete: {}", error.what()));
+  }
 }
 
 void Console::say(std::string_view line) {
   clear_progress();
-  fmt::print("{}\n", line);
-  std::fflush(stdout);
-  log_.write(fmt::format("{}\n", line));
+  print(fmt::format("{}\n", line));
+  log([&] { log_.write(fmt::format("{}\n", line)); });
 }
 
 void Console::complain(std::string_view line) {
   clear_progress();
-  std::fflush(stdout);
   print_error(line);
-  log_.write(fmt::format("{}\n", line));
+  log([&] { log_.write(fmt::format("{}\n", line)); });
 }
 
 void Console::warn(std::string_view line) {
@@ -61,16 +79,17 @@ void Console::progress(std::string_view line) {
   last_progress_ = Clock::now();
   if (!terminal_) return say(line);
   clear_progress();
-  fmt::print("{}", line.substr(0, terminal_width()));
-  std::fflush(stdout);
-  showing_progress_ = true;
+  print(line.substr(0, terminal_width()));
+  showing_progress_ = is_heard_;
 }
 
 void Console::close() {
   clear_progress();
-  log_.commit();
+  log([&] { log_.commit(); });
 }
 
-void print_error(std::string_view message) { fmt::print(stderr, "scree: {}\n", message); }
+void print_error(std::string_view message) {
+  std::fprintf(stderr, "scree: %.*s\n", static_cast<int>(message.size()), message.data());
+}
 
 }  // namespace scree::cli

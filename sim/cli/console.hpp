@@ -1,10 +1,12 @@
-// What a run says: to the terminal, and as plain lines to log.txt.
+// What a run says: to the terminal, and as plain lines to log.txt. Words are not worth a run: where nobody
+// reads them, or they cannot be written, it goes on without them.
 #pragma once
 
 #include "sim/record/files.hpp"
 
 #include <chrono>
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -27,22 +29,26 @@ class Console {
   /// A line that the next one replaces on a terminal; elsewhere a line like any other.
   void progress(std::string_view line);
 
-  /// The log is complete.
+  /// The log is complete, unless it could not be written: then a warning has said so.
   void close();
 
  private:
   using Clock = std::chrono::steady_clock;
+  void print(std::string_view text);
   void clear_progress();
+  void log(const std::function<void()>& act);
   void complain(std::string_view line);
 
   AtomicFile log_;
   bool terminal_;
+  bool is_heard_ = true;   ///< standard output takes what is said
+  bool is_logged_ = true;  ///< and so does the log
   bool showing_progress_ = false;
   Clock::time_point last_progress_ = Clock::now();
   std::vector<std::string> warnings_;
 };
 
-/// An error that ends the program, to stderr.
+/// An error that ends the program, to stderr. Takes no memory and throws nothing.
 void print_error(std::string_view message);
 
 }  // namespace scree::cli

@@ -1,6 +1,7 @@
 #include "sim/cli/interrupt.hpp"
 
 #include <csignal>
+#include <initializer_list>
 
 namespace scree::cli {
 
@@ -12,8 +13,13 @@ void catch_interrupts() {
   struct sigaction action = {};
   action.sa_handler = [](int) { caught = 1; };
   action.sa_flags = SA_RESETHAND | SA_RESTART;
-  sigaction(SIGINT, &action, nullptr);
-  sigaction(SIGTERM, &action, nullptr);
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
+    struct sigaction before = {};
+    sigaction(signal, nullptr, &before);
+    // What nohup, or a shell's background, has set to be ignored stays so.
+    if (before.sa_handler != SIG_IGN) sigaction(signal, &action, nullptr);
+  }
+  std::signal(SIGPIPE, SIG_IGN);
 }
 
 bool interrupted() { return caught != 0; }

@@ -8,10 +8,16 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
 #include <exception>
+#include <fcntl.h>
 #include <functional>
 #include <map>
 #include <new>
+#include <tuple>
+#include <unistd.h>
 
 namespace {
 
@@ -172,9 +178,22 @@ CLI::App* add_bench(CLI::App& app) {
   return command;
 }
 
+/// Where one of the three is closed a file of the run would get its number, and what is said would go there.
+void open_standard_streams() {
+  for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO})
+    if (::fcntl(stream, F_GETFD) < 0) std::ignore = ::open("/dev/null", O_RDWR);
+}
+
+/// What a command prints is its result, so it fails if that did not get out. A run has its folder.
+int after_printing(int status) {
+  if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return status;
+  throw RunError(fmt::format("cannot write to standard output: {}", std::strerror(errno)));
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
+  open_standard_streams();
   CLI::App app(
       "scree simulates rigid particles, spheres and boxes, from a YAML scene to pictures and numbers.",
       "scree");
@@ -198,13 +217,13 @@ int main(int argc, char** argv) {
   try {
     app.parse(argc, argv);
     if (run_command->parsed()) return run(run_arguments);
-    if (verify_command->parsed()) return verify(verify_arguments);
-    if (study_command->parsed()) return study(study_arguments);
-    if (compare_command->parsed()) return compare(compare_arguments);
+    if (verify_command->parsed()) return after_printing(verify(verify_arguments));
+    if (study_command->parsed()) return after_printing(study(study_arguments));
+    if (compare_command->parsed()) return after_printing(compare(compare_arguments));
     if (bench_command->parsed()) return bench(bench_command->remaining());
     if (plan_command->parsed())
-      return schema ? print_schema() : reference ? print_reference() : plan(plan_arguments);
-    return info();
+      return after_printing(schema ? print_schema() : reference ? print_reference() : plan(plan_arguments));
+    return after_printing(info());
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() == 0) return app.exit(error);  // --help
     print_error(fmt::format("{}; see scree --help", error.what()));

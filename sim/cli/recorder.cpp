@@ -40,10 +40,13 @@ void Recorder::record(Simulation& simulation) {
   if (states_due_.due(simulation.steps()) > 0)
     states_.push_back({simulation.steps(), simulation.state_hash()});
   if (film_) film_->record(simulation);
+  recorded_ = simulation.steps();
 }
 
 void Recorder::record_last(Simulation& simulation) {
-  if (last_row_ != simulation.steps()) write_rows(simulation);
+  if (last_row_ != simulation.steps()) return write_rows(simulation);
+  // The row may be one of before the run was resumed.
+  newest_ = simulation.observe(true);
 }
 
 void Recorder::archive(Archive& archive) {

@@ -28,7 +28,9 @@ class Recorder {
 
   /// What is due at the present state. To be called at t = 0 and after every step.
   void record(Simulation& simulation);
-  /// A row for the present state, unless it has one.
+  /// The last step of which all that was due is recorded.
+  std::int64_t recorded() const { return recorded_; }
+  /// A row for the present state, unless it has one; the newest observation is of it.
   void record_last(Simulation& simulation);
   /// All that was recorded until the state was saved is on the disk; what came after is gone on loading.
   void archive(Archive& archive);
@@ -52,6 +54,7 @@ class Recorder {
   TimingFile timing_;
   std::optional<Film> film_;
   Observation newest_;
+  std::int64_t recorded_ = -1;
   std::int64_t last_row_ = -1;  ///< its step
   double worst_penetration_ = 0;
   std::vector<StateMark> states_;

@@ -4,19 +4,24 @@
 #include "sim/cli/checkpoints.hpp"
 #include "sim/cli/commands.hpp"
 #include "sim/cli/console.hpp"
+#include "sim/cli/failure_picture.hpp"
 #include "sim/cli/interrupt.hpp"
 #include "sim/cli/recorder.hpp"
 #include "sim/record/build_info.hpp"
 #include "sim/record/final_state.hpp"
+#include "sim/record/guards.hpp"
 #include "sim/record/manifest.hpp"
 #include "sim/record/outcome.hpp"
 #include "sim/record/run_folder.hpp"
+#include "sim/step_failure.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <chrono>
 #include <functional>
+#include <new>
+#include <optional>
 #include <utility>
 
 namespace scree::cli {
@@ -93,16 +98,56 @@ BodyTable state_of(const Simulation& simulation) {
   return std::move(snapshot.bodies);
 }
 
+constexpr const char* out_of_memory =
+    "out of memory; --resume goes on from the last checkpoint where there is more, `scree plan` says how "
+    "much";
+
 /// Does a part of the run. If it fails the run has failed, but what there is by then is still written; the
 /// first error is the one that counts.
 void attempt(RunSummary& summary, Console& console, const std::function<void()>& part) {
+  const auto fail = [&](const char* why) {
+    if (summary.error != why) console.error(why);
+    summary.status = "failed";
+    if (summary.error.empty()) summary.error = why;
+  };
   try {
     part();
   } catch (const RunError& error) {
-    if (summary.error != error.what()) console.error(error.what());
-    summary.status = "failed";
-    if (summary.error.empty()) summary.error = error.what();
+    fail(error.what());
+  } catch (const std::bad_alloc&) {
+    fail(out_of_memory);
   }
+}
+
+/// The step that failed as the manifest has it, and a picture of the place.
+void say_failure(const StepFailure& failure, const Scene& scene, Simulation& simulation,
+                 const RunFolder& folder, RunSummary& summary, Console& console) {
+  if (failure.bodies().empty()) return;
+  for (const std::int32_t id : failure.bodies()) {
+    const BodyState body = simulation.body(id);
+    summary.failed.push_back({words_for({id}, scene), body.position, body.velocity, body.spin});
+  }
+  const std::filesystem::path file = folder / "failure.png";
+  try {
+    draw_failure(scene, simulation, failure.bodies(), file);
+    console.say(fmt::format("the place, as it was before: {}", file.string()));
+  } catch (const RunError& error) {
+    console.warn(fmt::format("no picture of the place: {}", error.what()));
+  }
+}
+
+/// What guards and bounds have counted, where that is anything.
+void say_guards(const Observation& last, Console& console) {
+  for (const GuardCount& guard : guards_of(last))
+    if (guard.count > 0)
+      console.say(fmt::format("guard: {} {}; fewer by {}", guard.count, guard.what, guard.setting));
+}
+
+/// Whether the present state is one to go on from: no row or frame of it is missing, and it is that of the
+/// end of a step, as after every failure of a step but that of memory.
+bool is_whole(const RunSummary& summary, const Simulation& simulation, const Recorder& recorder) {
+  if (summary.error.empty()) return true;
+  return summary.error != out_of_memory && recorder.recorded() == simulation.steps();
 }
 
 int status_of(const RunSummary& summary) {
@@ -164,11 +209,18 @@ int run(const RunArguments& arguments) {
   RunSummary summary{.space = simulation.space_name(),
                      .model = plan_model(scene).features(),
                      .steps_total = simulation.steps_total()};
-  attempt(summary, console,
-          [&] { advance(simulation, recorder, checkpoints, console, arguments, last_step, end); });
+  std::optional<StepFailure> failure;
+  attempt(summary, console, [&] {
+    try {
+      advance(simulation, recorder, checkpoints, console, arguments, last_step, end);
+    } catch (const StepFailure& caught) {
+      failure = caught;
+      throw;
+    }
+  });
   if (summary.status.empty()) summary.status = simulation.steps() < last_step ? "interrupted" : "done";
   const bool is_complete = summary.status == "done" && simulation.finished();
-  if (!is_complete && simulation.steps() > 0)
+  if (!is_complete && simulation.steps() > 0 && is_whole(summary, simulation, recorder))
     attempt(summary, console, [&] { checkpoints.take_last(simulation, recorder); });
   attempt(summary, console, [&] { recorder.record_last(simulation); });
   attempt(summary, console, [&] { recorder.finish(); });
@@ -180,7 +232,9 @@ int run(const RunArguments& arguments) {
   summary.time = simulation.time();
   summary.last = recorder.newest();
   summary.checks = recorder.check_results();
-  summary.state_hash = simulation.state_hash();
+  attempt(summary, console, [&] { summary.state_hash = simulation.state_hash(); });
+  if (failure)
+    attempt(summary, console, [&] { say_failure(*failure, scene, simulation, folder, summary, console); });
   summary.states = recorder.states();
   if (const Film* film = recorder.film()) {
     summary.frames = film->frames();
@@ -188,9 +242,10 @@ int run(const RunArguments& arguments) {
   }
   summary.wall = recorder.wall();
   summary.resumed_at = checkpoints.resumed_at();
-  summary.warnings = console.warnings();
   say_summary(scene, summary, folder, console);
+  say_guards(summary.last, console);
   console.close();
+  summary.warnings = console.warnings();
   write_file(folder / "manifest.json", manifest_of(scene, summary));
   if (is_complete && summary.status == "done") checkpoints.drop();
   return status_of(summary);

@@ -8,7 +8,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <type_traits>
 #include <utility>
 
@@ -260,21 +259,6 @@ struct Speed {
   }
 };
 
-SCREE_HD bool is_finite(const Vec3& v) {
-  return fabs(v.x()) < HUGE_VAL && fabs(v.y()) < HUGE_VAL && fabs(v.z()) < HUGE_VAL;
-}
-
-/// The id of a body whose state is no longer finite; `none` for the others.
-struct NonFinite {
-  static constexpr std::int32_t none = std::numeric_limits<std::int32_t>::max();
-  ConstBodyView bodies;
-  SCREE_HD std::int32_t operator()(std::int64_t k) const {
-    const bool finite =
-        is_finite(bodies.position[k]) && is_finite(bodies.velocity[k]) && is_finite(bodies.spin[k]);
-    return finite ? none : bodies.id[k];
-  }
-};
-
 }  // namespace
 
 template <class Space>
@@ -383,13 +367,6 @@ double largest_speed(const Bodies<Space>& bodies) {
   return parallel::max<double, Space>("motion.speed", bodies.count(), Speed{view_of(bodies)}, 0.0);
 }
 
-template <class Space>
-std::int32_t first_non_finite(const Bodies<Space>& bodies) {
-  const std::int32_t first = parallel::min<std::int32_t, Space>("motion.finite", bodies.count(),
-                                                                NonFinite{view_of(bodies)}, NonFinite::none);
-  return first == NonFinite::none ? -1 : first;
-}
-
 #define SCREE_INSTANTIATE(Space)                                                                    \
   template double advance<Space>(Bodies<Space>&, double, const ResponseParameters&);                \
   template void contact_margins(const Bodies<Space>&, double, double, const ResponseParameters&,    \
@@ -399,8 +376,7 @@ std::int32_t first_non_finite(const Bodies<Space>& bodies) {
   template void load_solver_bodies(const Bodies<Space>&, Array<SolverBody, Space>&);                \
   template Energies energies_of<Space>(const Bodies<Space>&, const Vec3&, const Vec3&);             \
   template Totals totals_of<Space>(const Bodies<Space>&, const Vec3&, const Vec3&);                 \
-  template double largest_speed<Space>(const Bodies<Space>&);                                       \
-  template std::int32_t first_non_finite<Space>(const Bodies<Space>&);
+  template double largest_speed<Space>(const Bodies<Space>&);
 SCREE_FOR_EACH_SPACE(SCREE_INSTANTIATE)
 #undef SCREE_INSTANTIATE
 

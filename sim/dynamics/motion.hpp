@@ -63,11 +63,13 @@ struct Energies {
   double kinetic_linear = 0;
   double kinetic_angular = 0;
   double potential = 0;  ///< about the reference point
+  /// Bodies with a number in their state that is not finite.
+  std::int64_t not_finite = 0;
 
   double kinetic() const { return kinetic_linear + kinetic_angular; }
   SCREE_HD friend Energies operator+(const Energies& a, const Energies& b) {
     return {a.kinetic_linear + b.kinetic_linear, a.kinetic_angular + b.kinetic_angular,
-            a.potential + b.potential};
+            a.potential + b.potential, a.not_finite + b.not_finite};
   }
 };
 /// and what an observation does.
@@ -92,6 +94,14 @@ struct Totals : Energies {
   }
 };
 
+/// Whether position, orientation, velocity and spin are finite.
+SCREE_HD inline bool is_finite(const ConstBodyView& bodies, std::int64_t k) {
+  // Zero times what is not finite is not zero.
+  const double zero = (0 * bodies.position[k]).sum() + (0 * bodies.orientation[k].coeffs()).sum() +
+                      (0 * bodies.velocity[k]).sum() + (0 * bodies.spin[k]).sum();
+  return zero == 0;
+}
+
 /// One body's share; nothing unless it is free. Potential energy is -m g.(x - reference).
 SCREE_HD inline Energies energies_of_body(const ConstBodyView& bodies, std::int64_t k, const Vec3& gravity,
                                           const Vec3& reference) {
@@ -99,7 +109,7 @@ SCREE_HD inline Energies energies_of_body(const ConstBodyView& bodies, std::int6
   const double mass = 1.0 / bodies.inverse_mass[k];
   return {0.5 * mass * bodies.velocity[k].squaredNorm(),
           rotational_energy(bodies.orientation[k], bodies.spin[k], bodies.inverse_inertia[k]),
-          -mass * gravity.dot(bodies.position[k] - reference)};
+          -mass * gravity.dot(bodies.position[k] - reference), is_finite(bodies, k) ? 0 : 1};
 }
 SCREE_HD inline Totals totals_of_body(const ConstBodyView& bodies, std::int64_t k, const Vec3& gravity,
                                       const Vec3& reference) {
@@ -125,8 +135,5 @@ template <class Space>
 Totals totals_of(const Bodies<Space>& bodies, const Vec3& gravity, const Vec3& reference);
 template <class Space>
 double largest_speed(const Bodies<Space>& bodies);
-/// The smallest id of a body whose state is no longer finite; -1 if there is none.
-template <class Space>
-std::int32_t first_non_finite(const Bodies<Space>& bodies);
 
 }  // namespace scree

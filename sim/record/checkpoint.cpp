@@ -1,18 +1,23 @@
-// HDF5 is included here alone.
+// HDF5 is included here and in the test alone.
 #include "sim/record/checkpoint.hpp"
 
 #include "core/error.hpp"
 #include "core/hash.hpp"
+#include "core/space.hpp"
 #include "sim/record/files.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
+#include <bit>
+#include <charconv>
 #include <cstring>
 #include <fstream>
 #include <functional>
 #include <hdf5.h>
+#include <iterator>
+#include <span>
 #include <string_view>
 #include <utility>
 
@@ -22,9 +27,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Bytes before the HDF5 file: one of the places where its readers look for its beginning.
-constexpr std::size_t head_bytes = 512;
-constexpr std::string_view head_words = "scree checkpoint 1, xxh3 of the rest: ";
+constexpr std::string_view head_words = "scree checkpoint 2, xxh3 of what follows: ";
+constexpr std::size_t first_line_bytes = head_words.size() + 17;
+
+/// In the order of FieldType::Kind.
+constexpr std::array<std::string_view, 4> kind_words = {"integer", "natural", "real", "bytes"};
 
 /// An object of the library, which is released with it.
 class Handle {
@@ -71,7 +78,8 @@ std::uint64_t checksum_of(const SavedField& field) {
   return hash_of(field.bytes.data(), static_cast<std::size_t>(field.bytes.size()));
 }
 
-void write_field(hid_t file, hid_t links, const SavedField& field) {
+/// Returns the place of its bytes in the file; that of no bytes is 0.
+haddr_t write_field(hid_t file, hid_t links, const SavedField& field) {
   const std::array<hsize_t, 2> extent = {static_cast<hsize_t>(field.rows()),
                                          static_cast<hsize_t>(field.type.columns)};
   const Handle type = type_of(field.type);
@@ -86,33 +94,57 @@ void write_field(hid_t file, hid_t links, const SavedField& field) {
   const Handle note(H5Acreate2(data, "xxh3", H5T_STD_U64LE, scalar, H5P_DEFAULT, H5P_DEFAULT), H5Aclose,
                     "make an attribute");
   check(H5Awrite(note, H5T_NATIVE_UINT64, &sum), "write an attribute");
+  return field.bytes.size() > 0 ? H5Dget_offset(data) : 0;
 }
 
-/// The whole file in memory, after room for the head: so a disk that is full is told by the system's words,
-/// and never by the library half way.
-std::string file_of(const SavedState& state) {
-  constexpr std::size_t most_overhead = 1 << 20;
-  const Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose, "make settings");
-  check(H5Pset_fapl_core(access, state.bytes() + most_overhead, false), "work in memory");
-  const Handle links(H5Pcreate(H5P_LINK_CREATE), H5Pclose, "make settings");
-  check(H5Pset_create_intermediate_group(links, 1), "make groups");
-  const Handle file(H5Fcreate("checkpoint", H5F_ACC_TRUNC, H5P_DEFAULT, access), H5Fclose, "make a file");
-  for (const SavedField& field : state.fields) write_field(file, links, field);
-  check(H5Fflush(file, H5F_SCOPE_GLOBAL), "finish the file");
-  const ssize_t size = H5Fget_file_image(file, nullptr, 0);
-  check(size < 0 ? -1 : 0, "finish the file");
-  std::string bytes(head_bytes + static_cast<std::size_t>(size), ' ');
-  check(H5Fget_file_image(file, bytes.data() + head_bytes, static_cast<std::size_t>(size)) < 0 ? -1 : 0,
-        "finish the file");
-  return bytes;
-}
-
-/// What the head says of the rest, in its own length.
-std::string head_of(std::string_view rest) {
+std::string first_line_of(std::string_view rest) {
   return fmt::format("{}{:016x}\n", head_words, hash_of(rest.data(), rest.size()));
 }
 
+/// A line for each field. Their lengths do not depend on `head`, the bytes before the HDF5 file.
+std::string directory_of(const SavedState& state, const std::vector<haddr_t>& places, std::size_t head) {
+  std::string lines;
+  for (std::size_t k = 0; k < places.size(); ++k) {
+    const auto& [name, type, bytes] = state.fields[k];
+    fmt::format_to(std::back_inserter(lines), "{} {} {} {} {:015} {}\n",
+                   kind_words[static_cast<std::size_t>(type.kind)], type.width, type.columns,
+                   state.fields[k].rows(), places[k] + head, name);
+  }
+  return lines + '\n';
+}
+
+/// The whole file in memory: so a disk that is full is told by the system's words, and never by the library
+/// half way.
+std::string file_of(const SavedState& state) {
+  constexpr std::size_t most_overhead = 1 << 20;
+  constexpr std::size_t least_head = 512;  // HDF5's readers look there, and wherever it is twice as far
+  const std::size_t most = state.bytes() + most_overhead;
+  // The library does not always look whether it was given memory, so what it and the copy take is asked for
+  // before.
+  Host::deallocate(Host::allocate(2 * most));
+  const Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose, "make settings");
+  check(H5Pset_fapl_core(access, most, false), "work in memory");
+  const Handle links(H5Pcreate(H5P_LINK_CREATE), H5Pclose, "make settings");
+  check(H5Pset_create_intermediate_group(links, 1), "make groups");
+  const Handle file(H5Fcreate("checkpoint", H5F_ACC_TRUNC, H5P_DEFAULT, access), H5Fclose, "make a file");
+  std::vector<haddr_t> places;
+  for (const SavedField& field : state.fields) places.push_back(write_field(file, links, field));
+  check(H5Fflush(file, H5F_SCOPE_GLOBAL), "finish the file");
+  const ssize_t size = H5Fget_file_image(file, nullptr, 0);
+  check(size < 0 ? -1 : 0, "finish the file");
+  const std::size_t head =
+      std::bit_ceil(std::max(first_line_bytes + directory_of(state, places, 0).size(), least_head));
+  std::string bytes(head + static_cast<std::size_t>(size), ' ');
+  std::ranges::copy(directory_of(state, places, head), bytes.begin() + first_line_bytes);
+  check(H5Fget_file_image(file, bytes.data() + head, static_cast<std::size_t>(size)) < 0 ? -1 : 0,
+        "finish the file");
+  std::ranges::copy(first_line_of(std::string_view(bytes).substr(first_line_bytes)), bytes.begin());
+  return bytes;
+}
+
 std::string bytes_of(const fs::path& file) {
+  std::error_code none;
+  if (!fs::is_regular_file(file, none)) throw RunError("is no file");
   std::ifstream stream(file, std::ios::binary | std::ios::ate);
   std::string bytes;
   if (stream) bytes.resize(static_cast<std::size_t>(stream.tellg()));
@@ -122,71 +154,83 @@ std::string bytes_of(const fs::path& file) {
   return bytes;
 }
 
-FieldType read_type(hid_t data, hid_t type, int columns) {
-  using Kind = FieldType::Kind;
-  const int size = static_cast<int>(H5Tget_size(type));
-  switch (H5Tget_class(type)) {
-    case H5T_OPAQUE:
-      return {Kind::bytes, 1, size};
-    case H5T_FLOAT:
-      return {Kind::real, size, columns};
-    case H5T_INTEGER:
-      return {H5Tget_sign(type) == H5T_SGN_2 ? Kind::integer : Kind::natural, size, columns};
-    default:
-      throw RunError(fmt::format("dataset {} is of a type that no state has", data));
-  }
+/// Takes the next word, up to a space or the end of the line.
+std::string_view take_word(std::string_view& line) {
+  const std::string_view word = line.substr(0, line.find(' '));
+  line.remove_prefix(std::min(word.size() + 1, line.size()));
+  return word;
 }
 
-SavedField read_field(hid_t file, const char* name) {
-  const Handle data(H5Dopen2(file, name, H5P_DEFAULT), H5Dclose, "open a dataset");
-  const Handle type(H5Dget_type(data), H5Tclose, "tell a type");
-  const Handle space(H5Dget_space(data), H5Sclose, "tell a shape");
-  std::array<hsize_t, 2> extent = {0, 1};
-  const int rank = H5Sget_simple_extent_ndims(space);
-  if (rank < 1 || rank > 2) throw RunError(fmt::format("{} is no table", name));
-  H5Sget_simple_extent_dims(space, extent.data(), nullptr);
-  SavedField field{name, read_type(data, type, rank == 2 ? static_cast<int>(extent[1]) : 1), {}};
-  field.bytes.resize(static_cast<std::int64_t>(extent[0]) * field.type.row());
-  if (field.bytes.size() > 0)
-    check(H5Dread(data, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, field.bytes.data()), "read a dataset");
-  std::uint64_t sum = 0;
-  const Handle note(H5Aopen(data, "xxh3", H5P_DEFAULT), H5Aclose, "find a checksum");
-  check(H5Aread(note, H5T_NATIVE_UINT64, &sum), "read a checksum");
-  if (sum != checksum_of(field)) throw RunError(fmt::format("{} is damaged", name));
+/// Takes the next number. Throws RunError unless it is one from `least` to `most`.
+std::int64_t take_number(std::string_view& line, std::int64_t least, std::int64_t most) {
+  const std::string_view word = take_word(line);
+  std::int64_t number = 0;
+  const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), number);
+  if (error != std::errc() || end != word.data() + word.size() || number < least || number > most)
+    throw RunError(fmt::format("is none: {:?} is no number from {} to {}", word, least, most));
+  return number;
+}
+
+/// Throws RunError unless some state has it.
+void require_type(const FieldType& type) {
+  using Kind = FieldType::Kind;
+  const int least = type.kind == Kind::real ? 4 : 1;
+  const int most = type.kind == Kind::bytes ? 1 : 8;
+  if (type.width < least || type.width > most || !std::has_single_bit(static_cast<unsigned>(type.width)))
+    throw RunError(fmt::format("is none: a number is {} bytes wide", type.width));
+}
+
+/// A field by its line of the directory, its bytes from the file's.
+SavedField field_of(std::string_view line, std::string_view file) {
+  constexpr std::int64_t most_columns = 1 << 16;
+  const auto size = std::ssize(file);
+  const auto kind =
+      static_cast<std::size_t>(std::ranges::find(kind_words, take_word(line)) - kind_words.begin());
+  if (kind == kind_words.size()) throw RunError("is none: a field is of no kind");
+  const auto width = static_cast<int>(take_number(line, 1, sizeof(double)));
+  const auto columns = static_cast<int>(take_number(line, 1, most_columns));
+  SavedField field{{}, {static_cast<FieldType::Kind>(kind), width, columns}, {}};
+  require_type(field.type);
+  const std::int64_t bytes = take_number(line, 0, size / field.type.row()) * field.type.row();
+  const std::int64_t place = take_number(line, 0, size - bytes);
+  field.name = line;
+  field.bytes.resize(bytes);
+  std::ranges::copy(
+      std::as_bytes(std::span(file.substr(static_cast<std::size_t>(place), static_cast<std::size_t>(bytes)))),
+      field.bytes.data());
   return field;
 }
 
-herr_t note_dataset(hid_t, const char* name, const H5O_info_t* info, void* names) {
-  if (info->type == H5O_TYPE_DATASET) static_cast<std::vector<std::string>*>(names)->emplace_back(name);
-  return 0;
+/// The fields by the directory. HDF5 does not look at what may be hostile.
+SavedState state_of(std::string_view file) {
+  SavedState state;
+  std::int64_t left = std::ssize(file);  // bytes are of one field, or of none
+  for (std::size_t at = first_line_bytes;;) {
+    const std::size_t end = file.find('\n', at);
+    if (end == std::string_view::npos) throw RunError("is none: its directory has no end");
+    if (end == at) return state;
+    state.fields.push_back(field_of(file.substr(at, end - at), file));
+    at = end + 1;
+    left -= state.fields.back().bytes.size();
+    if (left < 0) throw RunError("is none: its fields have more bytes than the file");
+  }
 }
 
 }  // namespace
 
 void write_checkpoint(const fs::path& file, const SavedState& state) {
   silence();
-  std::string bytes = file_of(state);
-  const std::string head = head_of(std::string_view(bytes).substr(head_bytes));
-  std::ranges::copy(head, bytes.begin());
-  write_file(file, bytes);
+  write_file(file, file_of(state));
 }
 
 SavedState read_checkpoint(const fs::path& file) try {
-  silence();
-  {
-    const std::string bytes = bytes_of(file);
-    const std::string_view all = bytes;
-    if (all.size() < head_bytes || !all.starts_with(head_words))
-      throw RunError("is no checkpoint of this version");
-    if (!all.starts_with(head_of(all.substr(head_bytes))))
-      throw RunError("is damaged: its checksum is another");
-  }
-  const Handle in(H5Fopen(file.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose, "open the file");
-  std::vector<std::string> names;
-  check(H5Ovisit2(in, H5_INDEX_NAME, H5_ITER_NATIVE, note_dataset, &names, H5O_INFO_BASIC), "list datasets");
-  SavedState state;
-  for (const std::string& name : names) state.fields.push_back(read_field(in, name.c_str()));
-  return state;
+  const std::string bytes = bytes_of(file);
+  const std::string_view all = bytes;
+  if (all.size() < first_line_bytes || !all.starts_with(head_words))
+    throw RunError("is no checkpoint of this version");
+  if (!all.starts_with(first_line_of(all.substr(first_line_bytes))))
+    throw RunError("is damaged: its checksum is another");
+  return state_of(all);
 } catch (const RunError& error) {
   throw RunError(fmt::format("{}: {}", file.string(), error.what()));
 }

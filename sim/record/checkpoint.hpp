@@ -12,12 +12,13 @@
 namespace scree {
 
 /// Writes the state as HDF5: a dataset for each field, of its numbers or of records as opaque bytes, each
-/// with the attribute xxh3, the checksum of its bytes. Before that stands a line with the checksum of all
-/// that follows, so that nothing damaged reaches the library; other readers of HDF5 skip it. Throws RunError
-/// if the file cannot be written.
+/// with the attribute xxh3, the checksum of its bytes. Before that stands what HDF5's readers skip: a line
+/// with the checksum of all that follows, and a directory, a line for each field: kind, width, columns, rows,
+/// place of its bytes in the file, name. Throws RunError if the file cannot be written.
 void write_checkpoint(const std::filesystem::path& file, const SavedState& state);
 
-/// Throws RunError if the file cannot be read, or is not whole: it says what is wrong.
+/// Reads it by the directory. Throws RunError if the file cannot be read, is not whole, or is none: it says
+/// what is wrong. Takes twice the memory of the file.
 SavedState read_checkpoint(const std::filesystem::path& file);
 
 /// The folder with the two newest, by their steps.

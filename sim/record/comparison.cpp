@@ -1,6 +1,7 @@
 #include "sim/record/comparison.hpp"
 
 #include "core/error.hpp"
+#include "sim/scene/reader.hpp"
 
 #include <fmt/format.h>
 
@@ -11,6 +12,7 @@
 #include <limits>
 #include <optional>
 #include <string_view>
+#include <unordered_map>
 
 namespace scree {
 
@@ -41,11 +43,20 @@ class Table {
  public:
   explicit Table(const fs::path& file) : file_(file), stream_(file) {
     if (!stream_.is_open()) throw InputError(fmt::format("{}: cannot be read", file.string()));
-    next();
-    for (const std::string_view name : cells_) columns_.emplace_back(name);
+    if (!next()) throw InputError(fmt::format("{}: is empty", file.string()));
+    for (const std::string_view name : cells_) {
+      if (!place_.emplace(name, columns_.size()).second)
+        throw InputError(printable(fmt::format("{}: two columns are called {}", file.string(), name)));
+      columns_.emplace_back(name);
+    }
   }
 
   const std::vector<std::string>& columns() const { return columns_; }
+  /// Of a column, if there is one of that name.
+  std::optional<std::size_t> find(const std::string& name) const {
+    const auto found = place_.find(name);
+    return found == place_.end() ? std::nullopt : std::optional(found->second);
+  }
   /// False at the end.
   bool next() {
     if (!std::getline(stream_, line_)) return false;
@@ -64,6 +75,7 @@ class Table {
   std::string line_;
   std::vector<std::string_view> cells_;
   std::vector<std::string> columns_;
+  std::unordered_map<std::string, std::size_t> place_;
   std::int64_t number_ = 0;
 };
 
@@ -93,19 +105,15 @@ struct Common {
 /// The columns that both have; those that one has alone are unlike.
 std::vector<Common> common_columns(const Table& a, const Table& b, const std::string& name, Comparison& out) {
   std::vector<Common> common;
-  const auto find = [](const Table& table, const std::string& column) {
-    return static_cast<std::size_t>(std::ranges::find(table.columns(), column) - table.columns().begin());
-  };
   for (std::size_t k = 0; k < a.columns().size(); ++k) {
     const std::string& column = a.columns()[k];
-    if (const std::size_t other = find(b, column); other < b.columns().size())
-      common.push_back({k, other, 0, {.column = name + ' ' + column}});
+    if (const std::optional<std::size_t> other = b.find(column))
+      common.push_back({k, *other, 0, {.column = name + ' ' + column}});
     else
       out.unlike.push_back(fmt::format("{} {}: in the first alone", name, column));
   }
   for (const std::string& column : b.columns()) {
-    if (find(a, column) == a.columns().size())
-      out.unlike.push_back(fmt::format("{} {}: in the second alone", name, column));
+    if (!a.find(column)) out.unlike.push_back(fmt::format("{} {}: in the second alone", name, column));
   }
   return common;
 }

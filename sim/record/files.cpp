@@ -7,6 +7,7 @@
 #include <cerrno>
 #include <cstring>
 #include <fcntl.h>
+#include <tuple>
 #include <unistd.h>
 #include <utility>
 
@@ -37,7 +38,7 @@ fs::path part_of(const fs::path& file) { return fs::path(file) += ".part"; }
 AtomicFile::AtomicFile(fs::path file, Opening opening) : file_(std::move(file)) {
   const fs::path part = part_of(file_);
   if (opening == Opening::anew) {
-    descriptor_ = ::open(part.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+    descriptor_ = ::open(part.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_APPEND | O_CLOEXEC, 0666);
     if (descriptor_ < 0) fail("create", part);
     return;
   }
@@ -52,12 +53,24 @@ AtomicFile::~AtomicFile() {
 }
 
 void AtomicFile::write(std::string_view text) {
-  while (!text.empty()) {
-    const ssize_t written = ::write(descriptor_, text.data(), text.size());
+  std::size_t done = 0;
+  while (done < text.size()) {
+    const ssize_t written = ::write(descriptor_, text.data() + done, text.size() - done);
     if (written < 0 && errno == EINTR) continue;
-    if (written < 0) fail("write", part_of(file_));
-    text.remove_prefix(static_cast<std::size_t>(written));
+    if (written < 0) {
+      const int reason = errno;
+      take_back(done);
+      errno = reason;
+      fail("write", part_of(file_));
+    }
+    done += static_cast<std::size_t>(written);
   }
+}
+
+void AtomicFile::take_back(std::size_t bytes) const {
+  const off_t length = ::lseek(descriptor_, 0, SEEK_END);
+  // Where even that fails nothing is left to try: the caller fails anyway.
+  if (length >= 0) std::ignore = ::ftruncate(descriptor_, length - static_cast<off_t>(bytes));
 }
 
 void AtomicFile::commit() {

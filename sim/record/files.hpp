@@ -4,6 +4,7 @@
 
 #include "core/archive.hpp"
 
+#include <cstddef>
 #include <filesystem>
 #include <string_view>
 
@@ -23,13 +24,16 @@ class AtomicFile {
   AtomicFile(const AtomicFile&) = delete;
   AtomicFile& operator=(const AtomicFile&) = delete;
 
-  /// Unbuffered, so that a run can be watched as it goes.
+  /// Unbuffered, so that a run can be watched as it goes. All of it or, where that fails, nothing: no half
+  /// row is left.
   void write(std::string_view text);
   void commit();
   /// What was written until the state was saved is on the disk; what was written since is gone after loading.
   void archive(Archive& archive);
 
  private:
+  void take_back(std::size_t bytes) const;
+
   std::filesystem::path file_;
   int descriptor_ = -1;
 };

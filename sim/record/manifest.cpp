@@ -4,12 +4,16 @@
 #include "core/hash.hpp"
 #include "core/timing.hpp"
 #include "sim/record/build_info.hpp"
+#include "sim/record/guards.hpp"
 #include "sim/record/json.hpp"
+#include "sim/scene/reader.hpp"
 
 #include <fmt/format.h>
 
+#include <charconv>
 #include <exception>
 #include <fstream>
+#include <stdexcept>
 
 namespace scree {
 
@@ -71,6 +75,7 @@ Json json_of(const CrosscheckStats& c) {
 
 Json json_of(const Counters& c) {
   return {{"substeps", c.substeps},
+          {"redone", c.redone},
           {"cuts", c.cuts},
           {"sweeps", c.sweeps},
           {"direct", c.direct},
@@ -90,11 +95,26 @@ Json json_of(const Counters& c) {
           {"crosscheck", json_of(c.narrowphase.crosscheck)}};
 }
 
+Json json_of(const std::vector<GuardCount>& guards) {
+  Json json = Json::object();
+  for (const GuardCount& guard : guards)
+    json[std::string(guard.name)] = {
+        {"count", guard.count}, {"what", guard.what}, {"setting", guard.setting}};
+  return json;
+}
+
+Json json_of(const FailedBody& body) {
+  return {{"name", body.name},
+          {"position", json_of(body.position)},
+          {"velocity", json_of(body.velocity)},
+          {"spin", json_of(body.spin)}};
+}
+
 Json machine() {
   const MachineInfo info = machine_info();
   Json json = {{"cpu", info.cpu}, {"cores", info.cores}};
   const DeviceInfo gpu = device_info();
-  if (gpu.available) json["gpu"] = gpu.name;
+  if (gpu.built) json["gpu"] = (gpu.available ? "" : "none: ") + gpu.name;
   return json;
 }
 
@@ -112,6 +132,22 @@ Json times(const std::vector<timing::Entry>& entries) {
   return json;
 }
 
+/// Throws an exception unless it is one.
+std::int64_t step_in(const Json& json) {
+  const std::int64_t step = json.is_number_integer() ? json.get<std::int64_t>() : -1;
+  if (step < 0) throw std::range_error("a step is no number of one");
+  return step;
+}
+
+/// What hex() has written. Throws an exception unless it is that.
+std::uint64_t hash_in(const Json& json) {
+  const auto& text = json.get_ref<const std::string&>();
+  std::uint64_t hash = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), hash, 16);
+  if (error != std::errc() || hex(hash) != text) throw std::range_error("a hash is no 16 digits");
+  return hash;
+}
+
 }  // namespace
 
 RecordedRun read_manifest(const std::filesystem::path& file) try {
@@ -120,25 +156,25 @@ RecordedRun read_manifest(const std::filesystem::path& file) try {
                   .commit = json.at("program").at("commit"),
                   .space = json.at("space"),
                   .states = {}};
-  const auto add = [&run](const Json& step, const std::string& hash) {
-    run.states.push_back({step.get<std::int64_t>(), std::stoull(hash, nullptr, 16)});
+  const auto add = [&run](const Json& step, const Json& hash) {
+    run.states.push_back({step_in(step), hash_in(hash)});
   };
   for (const Json& state : json.at("states")) add(state.at("step"), state.at("hash"));
   add(json.at("steps"), json.at("state_hash"));
   return run;
 } catch (const std::exception& error) {
-  throw InputError(fmt::format("{}: is no manifest of a run: {}", file.string(), error.what()));
+  throw InputError(printable(fmt::format("{}: is no manifest of a run: {}", file.string(), error.what())));
 }
 
 std::string scene_hash_of(const Scene& scene) {
   return hex(hash_of(scene.resolved.data(), scene.resolved.size()));
 }
 
-std::optional<std::int64_t> steps_done(const std::filesystem::path& manifest) {
-  const Json json = Json::parse(std::ifstream(manifest), nullptr, false);
-  const bool is_done = json.is_object() && json.value("status", "") == "done" && json.contains("steps") &&
-                       json["steps"].is_number_integer();
-  return is_done ? std::optional(json["steps"].get<std::int64_t>()) : std::nullopt;
+std::optional<std::int64_t> steps_done(const std::filesystem::path& manifest) try {
+  const Json json = Json::parse(std::ifstream(manifest));
+  return json.at("status") == "done" ? std::optional(step_in(json.at("steps"))) : std::nullopt;
+} catch (const std::exception&) {
+  return std::nullopt;
 }
 
 std::string hex(std::uint64_t hash) { return fmt::format("{:016x}", hash); }
@@ -147,6 +183,7 @@ std::string manifest_of(const Scene& scene, const RunSummary& run) {
   const BuildInfo build = build_info();
   Json json = {{"status", run.status}};
   if (!run.error.empty()) json["error"] = run.error;
+  for (const FailedBody& body : run.failed) json["failed_bodies"].push_back(json_of(body));
   json["scene"] = {{"name", scene.name},
                    {"source", scene.source.string()},
                    {"hash", scene_hash_of(scene)},
@@ -174,6 +211,7 @@ std::string manifest_of(const Scene& scene, const RunSummary& run) {
   json["warnings"] = run.warnings;
   json["wall_s"] = run.wall;
   if (!run.resumed_at.empty()) json["resumed_at"] = run.resumed_at;
+  json["guards"] = json_of(guards_of(run.last));
   json["counters"] = json_of(run.last.counters);
   json["stages"] = times(timing::entries());
   if (!timing::calls().empty()) json["calls"] = times(timing::calls());

@@ -18,10 +18,19 @@ struct StateMark {
   std::uint64_t hash;
 };
 
+/// A body of a step that failed, in the state before it.
+struct FailedBody {
+  std::string name;  ///< as the error has it
+  Vec3 position;     ///< m
+  Vec3 velocity;     ///< m/s
+  Vec3 spin;         ///< rad/s
+};
+
 struct RunSummary {
   std::string status = {};  ///< done, failed, interrupted
   std::string error = {};   ///< why it failed
-  std::string space = {};   ///< where the broad phase ran
+  std::vector<FailedBody> failed = {};
+  std::string space = {};  ///< where the broad phase ran
   std::vector<Feature> model = {};
   std::int64_t steps = 0;
   std::int64_t steps_total = 0;

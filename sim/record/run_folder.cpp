@@ -24,9 +24,9 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::string_view lock_name = ".lock";
-constexpr std::array<std::string_view, 9> file_names = {"manifest.json", "scene.yaml", "metrics.csv",
-                                                        "timing.csv",    "final.csv",  "movie.mp4",
-                                                        "log.txt",       "study.csv",  "study.json"};
+constexpr std::array<std::string_view, 10> file_names = {
+    "manifest.json", "scene.yaml", "metrics.csv", "timing.csv", "final.csv",
+    "movie.mp4",     "log.txt",    "failure.png", "study.csv",  "study.json"};
 
 /// Of a study: error_1.gp, error_1.svg, error_1.png, ...
 bool is_plot(std::string_view name) {
@@ -90,16 +90,16 @@ RunFolder::RunFolder(fs::path folder, Earlier earlier) : folder_(std::move(folde
           folder_.string()));
     }
     fs::create_directories(folder_);
-    lock();
-    if (earlier == Earlier::replaced) remove_earlier_run(found);
   } catch (const fs::filesystem_error& error) {
-    throw RunError(
-        fmt::format("cannot make the run folder {}: {}", folder_.string(), error.code().message()));
+    throw InputError(fmt::format("cannot make the run folder {}: {}; give another one with -o",
+                                 folder_.string(), error.code().message()));
   }
+  lock();
+  if (earlier == Earlier::replaced) clear();
 }
 
 fs::path RunFolder::frames() const {
-  const fs::path frames = folder_ / "frames";
+  fs::path frames = folder_ / "frames";
   std::error_code error;
   fs::create_directory(frames, error);
   if (error) throw RunError(fmt::format("cannot make {}: {}", frames.string(), error.message()));
@@ -115,7 +115,7 @@ void RunFolder::clear() const {
 }
 
 void RunFolder::remove_results() const {
-  for (const char* name : {"manifest.json", "final.csv", "movie.mp4"}) {
+  for (const char* name : {"manifest.json", "final.csv", "movie.mp4", "failure.png"}) {
     std::error_code error;
     fs::remove(folder_ / name, error);
     if (error)
@@ -140,13 +140,15 @@ void RunFolder::lock() {
   const fs::path file = folder_ / lock_name;
   // Close-on-exec: ffmpeg, started by a run, must not keep the lock of a run that died.
   lock_ = ::open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
-  if (lock_ < 0) throw RunError(fmt::format("cannot create {}: {}", file.string(), std::strerror(errno)));
+  if (lock_ < 0)
+    throw InputError(fmt::format("cannot create {}: {}; give another folder with -o", file.string(),
+                                 std::strerror(errno)));
   if (::flock(lock_, LOCK_EX | LOCK_NB) == 0) return;
   const int reason = errno;
   ::close(lock_);
   if (reason == EWOULDBLOCK)
     throw InputError(fmt::format("{}: another run is writing here", folder_.string()));
-  throw RunError(fmt::format("cannot lock {}: {}", file.string(), std::strerror(reason)));
+  throw InputError(fmt::format("cannot lock {}: {}", file.string(), std::strerror(reason)));
 }
 
 RunFolder::~RunFolder() { ::close(lock_); }

@@ -13,8 +13,8 @@ class RunFolder {
   enum class Earlier { refused, replaced, continued };
 
   /// Makes the folder and locks it until this object or its process dies. Throws InputError if the folder
-  /// holds an earlier run that is refused, if it holds anything else, or if another run is at work in it;
-  /// RunError if it cannot be made.
+  /// holds an earlier run that is refused, if it holds anything else, if another run is at work in it, or if
+  /// it cannot be made or written; RunError if an earlier run cannot be removed.
   RunFolder(std::filesystem::path folder, Earlier earlier);
   ~RunFolder();
   RunFolder(const RunFolder&) = delete;

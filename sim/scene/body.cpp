@@ -14,8 +14,8 @@ Vec3 place_of(const BodyEntry& entry, std::int64_t k, Random& random) {
   if (!entry.repeat) return at;
   const RepeatEntry& repeat = *entry.repeat;
   const auto& n = repeat.count;
-  const Vec3 cell(static_cast<double>(k % n[0]), static_cast<double>(k / n[0] % n[1]),
-                  static_cast<double>(k / n[0] / n[1]));
+  const std::int64_t row = k / n[0], layer = row / n[1];
+  const Vec3 cell(static_cast<double>(k % n[0]), static_cast<double>(row % n[1]), static_cast<double>(layer));
   at += cell.cwiseProduct(repeat.spacing);
   for (int c = 0; c < 3; ++c) at[c] += random.uniform(-repeat.jitter, repeat.jitter);
   return at;

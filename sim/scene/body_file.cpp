@@ -61,7 +61,7 @@ class Lines {
 
   /// False at the end of the file.
   bool next(std::string_view& line) {
-    while (stream_.getline(buffer_.data(), buffer_.size()) || stream_.gcount() > 0) {
+    while (stream_.getline(buffer_.data(), std::ssize(buffer_)) || stream_.gcount() > 0) {
       ++number_;
       if (stream_.fail())
         reader_.fail({number_, 1}, fmt::format("is longer than {} bytes", buffer_.size() - 1));

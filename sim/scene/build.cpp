@@ -268,6 +268,7 @@ Scene build_scene(SceneEntry entry, const std::filesystem::path& source, double 
   scene.seeds = entry.seeds;
   scene.gravity = entry.gravity;
   scene.time = entry.time;
+  scene.world = entry.world;
   scene.regions = entry.regions;
   scene.response = entry.response;
   scene.broadphase = entry.broadphase;

@@ -83,6 +83,26 @@ Codec<Region> region_section() {
       check_region);
 }
 
+Codec<World> world_section() {
+  using T = World;
+  return section<T>(
+      "world",
+      "A box, its faces along the world's axes, in which the bodies are expected to stay. A body that leaves "
+      "it is a guard's business, as a number that is not finite is.",
+      {
+          key<T>("from", &T::from, vector("m"), required, "lower corner"),
+          key<T>("to", &T::to, vector("m"), required, "upper corner"),
+          key<T>(
+              "leaving", &T::leaving,
+              word<Leaving>(
+                  {{"stop", Leaving::stop}, {"remove", Leaving::remove}, {"ignore", Leaving::ignore}}),
+              optionally,
+              "what a free body whose centre leaves it does: it stops the run with the state before, or is "
+              "taken out and counted (bodies.left), or nothing at all"),
+      },
+      check_world);
+}
+
 Codec<RecordEntry> record_section() {
   using T = RecordEntry;
   return section<T>(
@@ -173,6 +193,8 @@ const Codec<SceneEntry>& scene_codec() {
                  "laws of pairs of materials"),
           key<T>("bodies", &T::bodies, list_of(body_section(), 1), required, "the bodies"),
           key<T>("forces", &T::forces, list_of(force_section()), optionally, "forces besides gravity"),
+          key<T>("world", &T::world, optional(world_section()), optionally,
+                 "where bodies are expected to stay; without end if not given"),
           key<T>("regions", &T::regions, named(region_section(), most_names), optionally,
                  "a map of names to boxes to measure in"),
           key<T>("response", &T::response, response_section(), optionally, "how contacts answer"),

@@ -122,6 +122,7 @@ struct SceneEntry {
   std::vector<ContactEntry> contacts;
   std::vector<BodyEntry> bodies;
   std::vector<ForceEntry> forces;
+  std::optional<World> world;
   std::vector<Region> regions;
   ResponseSettings response;
   BroadPhaseSettings broadphase;

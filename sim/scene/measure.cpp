@@ -168,6 +168,18 @@ const std::vector<MeasureInfo>& measure_table() {
        "impacts that bounced, or met inside a step, since the start"},
       {K::coordination_mean, "coordination.mean", S::run, false, "",
        "loaded contacts per free body, counted for each of its two"},
+      {K::guards_redone, "guards.redone", S::run, false, "",
+       "steps that failed and were taken again in smaller substeps, since the start"},
+      {K::guards_left, "guards.left", S::run, false, "",
+       "bodies that left the world and were taken out, since the start"},
+      {K::guards_sweeps, "guards.sweeps", S::run, false, "",
+       "substeps that used all their sweeps over the contacts, since the start"},
+      {K::guards_impacts, "guards.impacts", S::run, false, "",
+       "substeps whose chains of impacts hit their bound, since the start"},
+      {K::guards_newton, "guards.newton", S::run, false, "",
+       "groups of contacts that neither Newton's method nor all sweeps have solved, since the start"},
+      {K::guards_gjk, "guards.gjk", S::run, false, "",
+       "calls of libccd that hit their bound, and were answered in another way, since the start"},
       {K::region_count, "count", S::region, false, "", "free bodies whose centre lies in the closed box"},
       {K::region_fraction, "fraction", S::region, false, "", "volume of these bodies / volume of the box"},
       {K::region_flux, "flux", S::region, false, "kg/s",
@@ -269,6 +281,18 @@ double evaluate(const Measure& measure, const Observation& observation,
       return static_cast<double>(o.counters.impacts);
     case MeasureKind::coordination_mean:
       return o.coordination_mean;
+    case MeasureKind::guards_redone:
+      return static_cast<double>(o.counters.redone);
+    case MeasureKind::guards_left:
+      return static_cast<double>(o.left);
+    case MeasureKind::guards_sweeps:
+      return static_cast<double>(o.counters.unconverged);
+    case MeasureKind::guards_impacts:
+      return static_cast<double>(o.counters.unfinished_impacts);
+    case MeasureKind::guards_newton:
+      return static_cast<double>(o.counters.patient_failed);
+    case MeasureKind::guards_gjk:
+      return static_cast<double>(o.counters.narrowphase.ccd_stopped);
     case MeasureKind::region_count:
       return static_cast<double>(region().count);
     case MeasureKind::region_fraction:

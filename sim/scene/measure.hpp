@@ -49,6 +49,12 @@ enum class MeasureKind {
   speed_kurtosis,
   impacts_count,
   coordination_mean,
+  guards_redone,
+  guards_left,
+  guards_sweeps,
+  guards_impacts,
+  guards_newton,
+  guards_gjk,
   // Of a region; see RegionState.
   region_count,
   region_fraction,

@@ -63,6 +63,15 @@ void check_tube_body(const BodyEntry& body, const Node& node, Reader& reader) {
     reader.fail_at("tube", node, "never moves freely: give `fixed: true` or `motion`");
 }
 
+/// Of the box with the keys `from` and `to`.
+void check_corners(const Vec3& from, const Vec3& to, const Node& node, Reader& reader) {
+  for (int k = 0; k < 3; ++k)
+    if (!(from[k] < to[k]))
+      reader.fail_at(
+          "to", node,
+          fmt::format("must be greater than `from` in each component, but {} <= {}", to[k], from[k]));
+}
+
 }  // namespace
 
 void check_time(const TimeSettings& time, const Node& node, Reader& reader) {
@@ -125,11 +134,11 @@ void check_force(const ForceEntry&, const Node& node, Reader& reader) {
 }
 
 void check_region(const Region& region, const Node& node, Reader& reader) {
-  for (int k = 0; k < 3; ++k)
-    if (!(region.from[k] < region.to[k]))
-      reader.fail_at("to", node,
-                     fmt::format("must be greater than `from` in each component, but {} <= {}", region.to[k],
-                                 region.from[k]));
+  check_corners(region.from, region.to, node, reader);
+}
+
+void check_world(const World& world, const Node& node, Reader& reader) {
+  check_corners(world.from, world.to, node, reader);
 }
 
 void check_orbit(const OrbitSettings&, const Node& node, Reader& reader) {

@@ -16,6 +16,7 @@ void check_scatter(const ScatterEntry& scatter, const Node& node, Reader& reader
 void check_body(const BodyEntry& body, const Node& node, Reader& reader);
 void check_force(const ForceEntry& force, const Node& node, Reader& reader);
 void check_region(const Region& region, const Node& node, Reader& reader);
+void check_world(const World& world, const Node& node, Reader& reader);
 void check_orbit(const OrbitSettings& orbit, const Node& node, Reader& reader);
 void check_keyframe(const CameraKeySettings& key, const Node& node, Reader& reader);
 void check_precision(const SceneEntry& scene, const Node& node, Reader& reader);

@@ -82,6 +82,16 @@ struct Region {
   Vec3 to = Vec3::Zero();    ///< m; greater in each component
 };
 
+/// What becomes of a free body whose centre leaves the world.
+enum class Leaving { stop, remove, ignore };
+
+/// Where the scene expects its bodies to stay; closed, its faces along the world's axes.
+struct World {
+  Vec3 from = Vec3::Zero();  ///< m
+  Vec3 to = Vec3::Zero();    ///< m; greater in each component
+  Leaving leaving = Leaving::stop;
+};
+
 enum class ResponseMode { standard, accurate };  ///< standard: `default` in the scene language
 
 struct ResponseSettings {
@@ -183,6 +193,7 @@ struct Scene {
   std::vector<Lifetime> lifetimes;  ///< of those that are not there all the time, by ascending body
   std::map<std::string, std::int32_t> body_names;  ///< named bodies, name[k] of a repeat included
   std::vector<Motion> motions;                     ///< of the prescribed bodies, by ascending body
+  std::optional<World> world;                      ///< absent: without end
   std::vector<Region> regions;
   std::vector<AppliedForce> forces;  ///< besides gravity
   ResponseSettings response;

@@ -1,65 +1,13 @@
 // End to end, through the program: exit statuses, and what is and is not written.
-#include "tests/sim/cli/program.hpp"
+#include "tests/sim/cli/falling_ball.hpp"
 
 #include <fmt/format.h>
-#include <gtest/gtest.h>
-#include <nlohmann/json.hpp>
 
-#include <algorithm>
 #include <chrono>
 #include <thread>
 
 namespace scree {
 namespace {
-
-namespace fs = std::filesystem;
-using Json = nlohmann::json;
-using ::testing::Test;
-
-/// A ball in free fall from 10 m for 0.1 s; `tail` may add keys.
-std::string falling_ball(const std::string& tail = "") {
-  return R"(format: 1
-gravity: [0, 0, -10]
-time: {end: 0.1, step: 0.01}
-materials:
-  stone: {density: 1000}
-bodies:
-  - {sphere: {radius: 0.1}, name: ball, at: [0, 0, 10], material: stone}
-record: {metrics_every: 0.02}
-)" + tail;
-}
-const std::string no_pictures = "render: false\n";
-// Free flight is exact: z = 10 - 5 t^2.
-const std::string good_check = "checks: [{measure: ball.position.z, expect: 9.95, tolerance: 1.0e-12}]\n";
-const std::string bad_check = "checks: [{measure: ball.position.z, expect: 9, tolerance: 0.1}]\n";
-
-/// Every file below a folder, but for the run's lock.
-std::vector<std::string> files_below(const fs::path& folder) {
-  std::vector<std::string> files;
-  for (const auto& entry : fs::recursive_directory_iterator(folder)) {
-    if (entry.is_regular_file() && entry.path().filename() != ".lock") {
-      files.push_back(fs::relative(entry.path(), folder).string());
-    }
-  }
-  std::ranges::sort(files);
-  return files;
-}
-
-Json manifest_in(const fs::path& run) { return Json::parse(text_of(run / "manifest.json")); }
-
-bool contains(const std::string& text, const std::string& part) {
-  return text.find(part) != std::string::npos;
-}
-
-class ProgramTest : public Test {
- protected:
-  Finished run_scene(const std::string& text, std::vector<std::string> more = {}) {
-    write_text(folder_ / "fall.yaml", text);
-    more.insert(more.begin(), {"run", "fall.yaml"});
-    return scree_in(folder_, more);
-  }
-  TemporaryFolder folder_;
-};
 
 TEST_F(ProgramTest, RunWritesTheRunFolder) {
   const Finished run = run_scene(falling_ball(no_pictures + good_check));
@@ -208,7 +156,8 @@ TEST_F(ProgramTest, ARunThatCannotGoOnExitsWith3AndSavesWhatItHas) {
   const Finished run =
       run_scene(falling_ball(no_pictures + good_check), {"--set", "bodies[0].velocity=[1e150, 0, 0]"});
   EXPECT_EQ(run.status, 3);
-  EXPECT_TRUE(run.error.starts_with("scree: step 1 (t = 0 s): ")) << run.error;
+  EXPECT_TRUE(run.error.starts_with("scree: step 1 (t = 0 s) failed, and again in 4 substeps: "))
+      << run.error;
   const Json manifest = manifest_in(folder_ / "output/fall");
   EXPECT_EQ(manifest["status"], "failed");
   EXPECT_EQ("scree: " + manifest["error"].get<std::string>() + "\n", run.error);
@@ -216,6 +165,24 @@ TEST_F(ProgramTest, ARunThatCannotGoOnExitsWith3AndSavesWhatItHas) {
   EXPECT_EQ(manifest["checks"][0]["verdict"], "not evaluated");
   const std::string metrics = text_of(folder_ / "output/fall/metrics.csv");
   EXPECT_EQ(std::ranges::count(metrics, '\n'), 2) << "the row of the last good state";
+  ASSERT_EQ(manifest["failed_bodies"].size(), 1u);
+  EXPECT_EQ(manifest["failed_bodies"][0]["name"], "ball (body 0)");
+  EXPECT_EQ(manifest["failed_bodies"][0]["velocity"][0], 1e150) << "as it was before the step";
+}
+
+TEST_F(ProgramTest, ABodyThatLeavesTheWorldIsShownWhereItWas) {
+  const std::string world = "world: {from: [-1, -1, 9.97], to: [1, 1, 11]}\n";
+  const Finished stopped = run_scene(falling_ball(no_pictures + world));
+  EXPECT_EQ(stopped.status, 3);
+  EXPECT_TRUE(contains(stopped.error, "ball (body 0): outside of the world")) << stopped.error;
+  EXPECT_GT(fs::file_size(folder_ / "output/fall/failure.png"), 500u);
+  EXPECT_FALSE(fs::is_empty(folder_ / "output/fall/checkpoint"));
+  const Finished counted =
+      run_scene(falling_ball(no_pictures + world), {"--overwrite", "--set", "world.leaving=remove"});
+  EXPECT_EQ(counted.status, 0);
+  EXPECT_TRUE(contains(counted.out, "guard: 1 bodies that left the world")) << counted.out;
+  EXPECT_FALSE(fs::exists(folder_ / "output/fall/failure.png"));
+  EXPECT_EQ(manifest_in(folder_ / "output/fall")["guards"]["left"]["count"], 1);
 }
 
 TEST_F(ProgramTest, ARunWhoseStartCannotBeObservedStillLeavesAManifest) {
@@ -228,14 +195,26 @@ TEST_F(ProgramTest, ARunWhoseStartCannotBeObservedStillLeavesAManifest) {
       (std::vector<std::string>{"log.txt", "manifest.json", "metrics.csv", "scene.yaml", "timing.csv"}));
 }
 
-TEST_F(ProgramTest, AnInterruptExitsWith130AndSavesWhatItHas) {
-  write_text(folder_ / "long.yaml", falling_ball(no_pictures));
-  const Program run(folder_,
-                    {"run", "long.yaml", "-o", "run", "--set", "time.end=1e6", "--set", "time.step=1e-4"});
+/// A run of a million seconds, which has begun to write.
+Program long_run(const TemporaryFolder& folder) {
+  write_text(folder / "long.yaml", falling_ball(no_pictures));
+  Program run(folder, {"run", "long.yaml", "-o", "run", "--set", "time.end=1e6", "--set", "time.step=1e-4"});
   const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(60);
-  while (!fs::exists(folder_ / "run/metrics.csv.part") && std::chrono::steady_clock::now() < deadline) {
+  while (!fs::exists(folder / "run/metrics.csv.part") && std::chrono::steady_clock::now() < deadline) {
     std::this_thread::sleep_for(std::chrono::milliseconds(5));
   }
+  return run;
+}
+
+TEST_F(ProgramTest, AClosedTerminalStopsARunAsAnInterruptDoes) {
+  const Program run = long_run(folder_);
+  run.send(SIGHUP);
+  EXPECT_EQ(run.wait().status, 130);
+  EXPECT_EQ(manifest_in(folder_ / "run")["status"], "interrupted");
+}
+
+TEST_F(ProgramTest, AnInterruptExitsWith130AndSavesWhatItHas) {
+  const Program run = long_run(folder_);
   {
     const TemporaryFolder elsewhere;
     write_text(elsewhere / "long.yaml", falling_ball(no_pictures));
@@ -287,101 +266,6 @@ TEST_F(ProgramTest, CompareSaysHowFarTwoRunsDiffer) {
   EXPECT_EQ(
       scree_in(folder_, {"compare", "one", "three", "--tolerance", "1e-3", "--absolute", "1e-12"}).status, 0);
   EXPECT_EQ(scree_in(folder_, {"compare", "one", "nowhere"}).status, 2);
-}
-
-class ResumeTest : public ProgramTest {
- protected:
-  /// What must be the same whether a run was stopped or not.
-  void expect_same(const std::string& a, const std::string& b) const {
-    for (const char* file : {"metrics.csv", "final.csv", "frames/00000.png", "frames/00005.png"})
-      EXPECT_EQ(text_of(folder_ / a / file), text_of(folder_ / b / file)) << file;
-    for (const char* key :
-         {"status", "state_hash", "states", "steps", "checks", "observation", "counters", "frames"})
-      EXPECT_EQ(manifest_in(folder_ / a)[key], manifest_in(folder_ / b)[key]) << key;
-    EXPECT_EQ(files_below(folder_ / a), files_below(folder_ / b));
-  }
-  const std::string scene_ = falling_ball("render: {size: [64, 48], fps: 50}\n" + good_check);
-};
-
-TEST_F(ResumeTest, GoesOnAsIfTheRunHadNeverStopped) {
-  ASSERT_EQ(run_scene(scene_, {"-o", "whole"}).status, 0);
-  // The check is of the end.
-  ASSERT_EQ(run_scene(scene_, {"-o", "parts", "--until", "0.03"}).status, 1);
-  ASSERT_EQ(run_scene(scene_, {"-o", "parts", "--until", "0.05", "--resume"}).status, 1);
-  EXPECT_EQ(run_scene(scene_, {"-o", "parts"}).status, 2) << "an earlier run is there";
-  const Finished last = run_scene(scene_, {"-o", "parts", "--resume"});
-  EXPECT_EQ(last.status, 0) << last.error;
-  EXPECT_TRUE(contains(last.out, "resumed at t = 0.05 s, step 5")) << last.out;
-  expect_same("whole", "parts");
-  EXPECT_EQ(manifest_in(folder_ / "parts")["resumed_at"], Json({3, 5}));
-  EXPECT_FALSE(fs::exists(folder_ / "parts/checkpoint")) << "nobody will go on from there";
-  EXPECT_TRUE(contains(text_of(folder_ / "parts/log.txt"), "resumed at t = 0.03 s"));
-}
-
-TEST_F(ResumeTest, OfAFinishedRunSaysSo) {
-  ASSERT_EQ(run_scene(scene_).status, 0);
-  const std::string manifest = text_of(folder_ / "output/fall/manifest.json");
-  const Finished again = run_scene(scene_, {"--resume"});
-  EXPECT_EQ(again.status, 0);
-  EXPECT_EQ(again.out, "output/fall: done, there is nothing to resume\n");
-  EXPECT_EQ(text_of(folder_ / "output/fall/manifest.json"), manifest);
-}
-
-TEST_F(ResumeTest, WithoutACheckpointStartsFromTheBeginning) {
-  ASSERT_EQ(run_scene(scene_, {"-o", "whole"}).status, 0);
-  const Finished fresh = run_scene(scene_, {"-o", "fresh", "--resume"});
-  EXPECT_EQ(fresh.status, 0) << fresh.error;
-  EXPECT_TRUE(contains(fresh.out, "no checkpoint: from the beginning")) << fresh.out;
-  expect_same("whole", "fresh");
-}
-
-TEST_F(ResumeTest, OfAnotherRunIsRefusedByName) {
-  ASSERT_EQ(run_scene(scene_, {"--until", "0.05"}).status, 1);
-  const std::string manifest = text_of(folder_ / "output/fall/manifest.json");
-  const auto expect_refused = [&](const std::vector<std::string>& more, const std::string& words) {
-    std::vector<std::string> arguments = {"--resume"};
-    arguments.insert(arguments.end(), more.begin(), more.end());
-    const Finished run = run_scene(scene_, arguments);
-    EXPECT_EQ(run.status, 2);
-    EXPECT_TRUE(run.error.starts_with("scree: --resume: the checkpoint is of ")) << run.error;
-    EXPECT_TRUE(contains(run.error, words)) << run.error;
-    EXPECT_EQ(text_of(folder_ / "output/fall/manifest.json"), manifest) << "nothing was written";
-  };
-  expect_refused({"--set", "gravity=[0, 0, -1.62]"}, "here `gravity: [0, 0, -1.62]`");
-  expect_refused({"--set", "precision=mixed"}, "there `precision: double`, here `precision: mixed`");
-  expect_refused({"--no-render"}, "without --no-render");
-}
-
-TEST_F(ResumeTest, ADamagedCheckpointIsPassedOver) {
-  ASSERT_EQ(run_scene(scene_, {"-o", "whole"}).status, 0);
-  ASSERT_EQ(run_scene(scene_, {"-o", "parts", "--until", "0.03"}).status, 1);
-  ASSERT_EQ(run_scene(scene_, {"-o", "parts", "--until", "0.07", "--resume"}).status, 1);
-  const fs::path newest = folder_ / "parts/checkpoint/000000000007.h5";
-  std::string bytes = text_of(newest);
-  bytes[bytes.size() / 2] ^= 1;
-  write_text(newest, bytes);
-  const Finished run = run_scene(scene_, {"-o", "parts", "--resume"});
-  EXPECT_EQ(run.status, 0);
-  EXPECT_TRUE(contains(run.error, "000000000007.h5: is damaged")) << run.error;
-  EXPECT_TRUE(contains(run.out, "resumed at t = 0.03 s, step 3")) << run.out;
-  expect_same("whole", "parts");
-}
-
-TEST_F(ResumeTest, WithoutTheRowsThatWereWrittenIsAnErrorWithTheNumbers) {
-  ASSERT_EQ(run_scene(scene_, {"--until", "0.05"}).status, 1);
-  fs::remove(folder_ / "output/fall/log.txt");
-  fs::remove(folder_ / "output/fall/metrics.csv");
-  const Finished run = run_scene(scene_, {"--resume"});
-  EXPECT_EQ(run.status, 3);
-  EXPECT_TRUE(contains(run.error, "metrics.csv.part: 0 bytes of ")) << run.error;
-}
-
-TEST_F(ResumeTest, MaxHoursStopsWithACheckpoint) {
-  const Finished run = run_scene(falling_ball(no_pictures), {"--max-hours", "0.00003", "--set",
-                                                             "time.end=1e6", "--set", "time.step=1e-4"});
-  EXPECT_EQ(run.status, 130);
-  EXPECT_EQ(manifest_in(folder_ / "output/fall")["status"], "interrupted");
-  EXPECT_TRUE(fs::exists(folder_ / "output/fall/checkpoint"));
 }
 
 class VerifyTest : public ProgramTest {

@@ -6,6 +6,7 @@
 #include "sim/dynamics/prescribed.hpp"
 #include "sim/dynamics/region.hpp"
 #include "tests/core/spaces.hpp"
+#include "tests/sim/dynamics/crowd.hpp"
 
 #include <gtest/gtest.h>
 
@@ -21,46 +22,6 @@ namespace {
 template <class Space>
 class MotionTest : public test::InSpace<Space> {};
 TYPED_TEST_SUITE(MotionTest, test::Spaces, test::SpaceName);
-
-constexpr std::size_t count = 1000;  // more than a leaf of the sums
-
-Vec3 vector_in(Random& random, double reach) {
-  const double x = random.uniform(-reach, reach);
-  const double y = random.uniform(-reach, reach);
-  return {x, y, random.uniform(-reach, reach)};
-}
-
-/// Balls and cubes of all mobilities.
-BodyTable crowd() {
-  BodyTable table;
-  for (std::size_t k = 0; k < count; ++k) {
-    Random random(7, k);
-    const Mobility mobility = k % 5 == 1   ? Mobility::fixed
-                              : k % 7 == 2 ? Mobility::absent
-                              : k % 9 == 3 ? Mobility::prescribed
-                                           : Mobility::free;
-    const bool free = mobility == Mobility::free;
-    table.position.push_back(vector_in(random, 5));
-    table.orientation.push_back(rotation_of(vector_in(random, 2)));
-    table.velocity.push_back(vector_in(random, 3));
-    table.spin.push_back(vector_in(random, 4));
-    table.size.push_back(Vec3::Constant(random.uniform(0.1, 0.3)));
-    table.inverse_mass.push_back(free ? random.uniform(0.5, 2) : 0);
-    table.inverse_inertia.push_back(free ? Vec3(Vec3::Constant(random.uniform(1, 3))) : Vec3::Zero());
-    table.shape.push_back(k % 2 == 0 ? Shape::sphere : Shape::box);
-    table.mobility.push_back(mobility);
-    table.material.push_back(0);
-    table.id.push_back(static_cast<std::int32_t>(k));
-  }
-  return table;
-}
-
-template <class Space>
-Bodies<Space> in_space(const BodyTable& table) {
-  Bodies<Space> bodies;
-  copy_bodies(bodies, table);
-  return bodies;
-}
 
 TYPED_TEST(MotionTest, FreeBodiesFlyOnAndTurn) {
   const BodyTable before = crowd();
@@ -118,15 +79,21 @@ TYPED_TEST(MotionTest, SumsAndExtremesAreThoseOfALoop) {
   EXPECT_NEAR(contents.mass, static_cast<double>(inside), 1e-11);
 }
 
-TYPED_TEST(MotionTest, TheFirstNonFiniteBodyIsNamed) {
+TYPED_TEST(MotionTest, BodiesWithANumberThatIsNotFiniteAreCounted) {
+  const auto count_of = [](const BodyTable& table) {
+    return energies_of<TypeParam>(in_space<TypeParam>(table), Vec3::Zero(), Vec3::Zero()).not_finite;
+  };
   BodyTable table = crowd();
-  EXPECT_EQ(first_non_finite<TypeParam>(in_space<TypeParam>(table)), -1);
+  ASSERT_EQ(table.mobility[900], Mobility::free);
+  EXPECT_EQ(count_of(table), 0);
   table.spin[900].y() = std::numeric_limits<double>::infinity();
-  EXPECT_EQ(first_non_finite<TypeParam>(in_space<TypeParam>(table)), 900);
+  EXPECT_EQ(count_of(table), 1);
   table.position[400].z() = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_EQ(first_non_finite<TypeParam>(in_space<TypeParam>(table)), 400);
-  table.velocity[30].x() = -std::numeric_limits<double>::infinity();
-  EXPECT_EQ(first_non_finite<TypeParam>(in_space<TypeParam>(table)), 30);
+  table.velocity[34].x() = -std::numeric_limits<double>::infinity();
+  table.orientation[32].w() = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_EQ(count_of(table), 4);
+  table.velocity[34].x() = 1e308;  // too fast for its energy, but a number
+  EXPECT_EQ(count_of(table), 3);
 }
 
 TYPED_TEST(MotionTest, BoxesHoldUntilABodyLeavesIts) {

@@ -15,6 +15,12 @@ inline constexpr SimulationOptions one_thread{SpaceChoice::host, 1};
 
 inline Simulation simulation_of(const std::string& text) { return Simulation(scene_of(text), one_thread); }
 
+/// Empty where the machine has what the options ask for.
+inline std::string why_not(const SimulationOptions& options) {
+  const DeviceInfo device = device_info();
+  return options.space == SpaceChoice::cuda && !device.available ? "no GPU: " + device.name : "";
+}
+
 inline void run_to_end(Simulation& simulation) {
   while (!simulation.finished()) simulation.step();
 }

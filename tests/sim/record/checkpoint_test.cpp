@@ -1,13 +1,17 @@
 #include "sim/record/checkpoint.hpp"
 
 #include "core/error.hpp"
+#include "core/hash.hpp"
 #include "core/rng.hpp"
 #include "tests/sim/record/temporary_folder.hpp"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cstring>
+#include <hdf5.h>
 #include <limits>
 
 namespace scree {
@@ -82,13 +86,10 @@ TEST(Checkpoint, WhateverBitIsFlippedOrByteIsMissingItIsRefused) {
   const fs::path file = folder / "a.h5";
   write_checkpoint(file, state_of({}));
   const std::string whole = text_of(file);
-  const std::size_t said = whole.find('\n');
   Random random(3, 0);
   for (int k = 0; k < 400; ++k) {
     std::string damaged = whole;
-    // What follows the first line, up to the library's own part, is nobody's.
     const auto at = static_cast<std::size_t>(random.uniform(0.0, 1.0) * static_cast<double>(whole.size()));
-    if (at > said && at < 512) continue;
     damaged[at] = static_cast<char>(damaged[at] ^ (1 << k % 8));
     write_text(file, damaged);
     EXPECT_THROW(read_checkpoint(file), RunError) << at;
@@ -96,6 +97,55 @@ TEST(Checkpoint, WhateverBitIsFlippedOrByteIsMissingItIsRefused) {
     EXPECT_THROW(read_checkpoint(file), RunError) << at;
   }
   EXPECT_THROW(read_checkpoint(folder / "none.h5"), RunError);
+}
+
+/// The file with other bytes after its first line, and the checksum of those.
+void forge(const fs::path& file, const std::string& rest) {
+  write_text(file, fmt::format("scree checkpoint 2, xxh3 of what follows: {:016x}\n{}",
+                               hash_of(rest.data(), rest.size()), rest));
+}
+
+TEST(Checkpoint, AForgedOneIsRefusedWithTheReason) {
+  const TemporaryFolder folder;
+  const fs::path file = folder / "a.h5";
+  forge(file, "real 8 1 1 59 a\n\n        ");
+  EXPECT_EQ(read_checkpoint(file).find("a")->rows(), 1);
+  for (const char* line :
+       {"real 8 0 5 59 a", "real 8 1 1152921504606846976 59 a", "real 8 1 1 99999 a", "real 8 1 -1 59 a",
+        "complex 8 1 1 59 a", "real 8", "real 2 1 1 59 a", "bytes 8 1 1 59 a", "integer 3 1 1 59 a",
+        "bytes 1 2147483647 1 59 a", "real 8 \x1b[31m 1 59 a", "natural 1 1 60 0 a\nnatural 1 1 60 0 b"}) {
+    forge(file, std::string(line) + "\n\n        ");
+    try {
+      read_checkpoint(file);
+      FAIL() << line;
+    } catch (const RunError& error) {
+      EXPECT_TRUE(std::string(error.what()).starts_with(file.string() + ": is none: ")) << error.what();
+      EXPECT_EQ(std::string(error.what()).find('\x1b'), std::string::npos);
+    }
+  }
+  forge(file, "real 8 1 1 59 a");
+  EXPECT_THROW(read_checkpoint(file), RunError);
+  EXPECT_THROW(read_checkpoint(folder.path()), RunError);
+}
+
+TEST(Checkpoint, OtherReadersOfHdf5FindTheFields) {
+  const TemporaryFolder folder;
+  const SavedState state = state_of({});
+  write_checkpoint(folder / "a.h5", state);
+  const hid_t file = H5Fopen((folder / "a.h5").c_str(), H5F_ACC_RDONLY, H5P_DEFAULT);
+  const hid_t data = H5Dopen2(file, "outer/inner/vectors", H5P_DEFAULT);
+  std::array<double, 6> numbers{};
+  EXPECT_GE(H5Dread(data, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, numbers.data()), 0);
+  EXPECT_EQ(numbers[2], 3);
+  EXPECT_EQ(numbers[4], 1e308);
+  const hid_t note = H5Aopen(data, "xxh3", H5P_DEFAULT);
+  std::uint64_t sum = 0;
+  EXPECT_GE(H5Aread(note, H5T_NATIVE_UINT64, &sum), 0);
+  const SavedField* field = state.find("outer/inner/vectors");
+  EXPECT_EQ(sum, hash_of(field->bytes.data(), static_cast<std::size_t>(field->bytes.size())));
+  H5Aclose(note);
+  H5Dclose(data);
+  H5Fclose(file);
 }
 
 TEST(Checkpoint, AFolderKeepsTheTwoNewestAndPassesOverWhatIsDamaged) {

@@ -40,6 +40,13 @@ TEST_F(CompareRuns, FindsTheLargestDifferenceOfEachColumnAndWhere) {
   EXPECT_FALSE(found.is_within(0.11));
 }
 
+TEST_F(CompareRuns, WhatIsNoTableIsRefused) {
+  EXPECT_THROW(compare("", ""), InputError);
+  EXPECT_THROW(compare("time,x,x\n0,1,2\n", "time,x,x\n0,1,3\n"), InputError)
+      << "which of the two would be compared?";
+  EXPECT_THROW(compare("time,x\n0\n", "time,x\n0\n"), InputError);
+}
+
 TEST_F(CompareRuns, WhatOneLacksIsNeverWithinATolerance) {
   EXPECT_FALSE(compare("time,x\n0,1\n", "time\n0\n").is_within(1e9));
   EXPECT_FALSE(compare("time\n0\n", "time,x\n0,1\n").is_within(1e9));

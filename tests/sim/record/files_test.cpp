@@ -5,6 +5,9 @@
 
 #include <gtest/gtest.h>
 
+#include <csignal>
+#include <sys/resource.h>
+
 namespace scree {
 namespace {
 
@@ -63,6 +66,26 @@ TEST(AtomicFile, AFullDiskIsAnError) {
   const std::string message = run_error_of([&] { write_file(folder / "a", "text"); });
   EXPECT_NE(message.find("No space left on device"), std::string::npos) << message;
   EXPECT_FALSE(fs::exists(folder / "a"));
+}
+
+TEST(AtomicFile, WhatDoesNotFitIsTakenBack) {
+  const TemporaryFolder folder;
+  AtomicFile file(folder / "a.csv");
+  file.write("1,2,3\n");
+  // Files of this process may have ten bytes: of the next row four are written, and then no more.
+  rlimit all = {};
+  ASSERT_EQ(getrlimit(RLIMIT_FSIZE, &all), 0);
+  const rlimit ten = {10, all.rlim_max};
+  const auto otherwise = std::signal(SIGXFSZ, SIG_IGN);
+  ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &ten), 0);
+  const std::string message = run_error_of([&] { file.write("4,5,6\n"); });
+  setrlimit(RLIMIT_FSIZE, &all);
+  std::signal(SIGXFSZ, otherwise);
+  EXPECT_NE(message.find("File too large"), std::string::npos) << message;
+  EXPECT_EQ(text_of(folder / "a.csv.part"), "1,2,3\n");
+  file.write("4,5,6\n");
+  file.commit();
+  EXPECT_EQ(text_of(folder / "a.csv"), "1,2,3\n4,5,6\n");
 }
 
 }  // namespace

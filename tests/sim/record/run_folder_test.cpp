@@ -58,7 +58,7 @@ TEST(RunFolder, IsLockedWhileItLives) {
 TEST(RunFolder, CannotBeMadeBelowAFile) {
   const TemporaryFolder folder;
   write_text(folder / "file", "");
-  EXPECT_THROW(RunFolder(folder / "file/run", Earlier::refused), RunError);
+  EXPECT_THROW(RunFolder(folder / "file/run", Earlier::refused), InputError);
 }
 
 }  // namespace

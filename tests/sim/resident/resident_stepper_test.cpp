@@ -20,9 +20,7 @@ struct Way {
 class ResidentStep : public testing::TestWithParam<Way> {
  protected:
   void SetUp() override {
-    const DeviceInfo device = device_info();
-    if (GetParam().options.space == SpaceChoice::cuda && !device.available)
-      GTEST_SKIP() << "no GPU: " << device.name;
+    if (const std::string why = why_not(GetParam().options); !why.empty()) GTEST_SKIP() << why;
   }
   bool is_mixed() const { return std::string(GetParam().precision) == "mixed"; }
   Simulation simulate(const std::string& text, SimulationOptions options) const {

@@ -39,6 +39,12 @@ Observation numbered() {
   o.speed_rms = 522;
   o.speed_kurtosis = 530;
   o.counters.impacts = 531;
+  o.counters.redone = 540;
+  o.left = 541;
+  o.counters.unconverged = 542;
+  o.counters.unfinished_impacts = 543;
+  o.counters.patient_failed = 544;
+  o.counters.narrowphase.ccd_stopped = 545;
   o.centre = {2, 3, 6};
   o.coordination_mean = 523;
   o.regions = {{524, 525, 526}, {527, 528, 529}};
@@ -92,6 +98,12 @@ TEST(Measure, EachNameHasItsValue) {
       {"speed.rms", 522},
       {"speed.kurtosis", 530},
       {"impacts.count", 531},
+      {"guards.redone", 540},
+      {"guards.left", 541},
+      {"guards.sweeps", 542},
+      {"guards.impacts", 543},
+      {"guards.newton", 544},
+      {"guards.gjk", 545},
       {"centre.y", 3},
       {"centre.norm", 7},
       {"coordination.mean", 523},

@@ -56,6 +56,8 @@ constexpr BadScene bad_scenes[] = {
     {"measure_component", 8, 15, "ball.velocity is no measure: velocity needs .x, .y, .z or .norm"},
     {"measure_region", 10, 15, "region.exti.flux is no measure: there is no region called exti (did you mean exit?)"},
     {"measure_of_region", 10, 15, "region.exit.mass is no measure: mass is unknown"},
+    {"world_flat", 7, 33, "world.to: must be greater than `from` in each component, but -9 <= -9"},
+    {"world_word", 7, 53, "world.leaving: must be one of stop, remove, ignore, not removed (did you mean remove?)"},
     {"region_flat", 8, 39, "regions.exit.to: must be greater than `from` in each component, but 0 <= 0"},
     {"region_open", 8, 17, "regions.exit.to: is missing; it must be a list of 3 numbers (m)"},
     {"region_name", 8, 11, "regions.the exit: must be a name: a letter or _"},
