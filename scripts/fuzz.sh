@@ -1,23 +1,26 @@
 #!/usr/bin/env bash
-# scripts/fuzz.sh [SECONDS]: gives hostile input to the readers of scenes and of body files, each for so long (60), and
-# prints how many inputs it tried, how many edges of the program they took, and where those lie that broke it. Starts
-# from tests/fuzz/corpus, and from the scenes of configs and tests/data; what it finds worth keeping stays in
-# build/fuzz, and the next call goes on from there. Exit status 1 if an input broke something.
+# scripts/fuzz.sh [SECONDS]: gives hostile input to the readers of scenes, body files, checkpoints, tables (of `scree
+# compare`) and manifests, each for so long (60), and prints how many inputs it tried, how many edges of the program
+# they took, and where those lie that broke it. Starts from tests/fuzz/corpus, and from the scenes of configs and
+# tests/data; what it finds worth keeping stays in build/fuzz, and the next call goes on from there. Exit status 1 if
+# an input broke something.
 #
 # scripts/fuzz.sh --keep: copies from build/fuzz to tests/fuzz/corpus the few files that take most of the edges that the
 # corpus does not; they are named by a hash, those that were made by hand after what is wrong with them.
 # test_hostile_input reads the corpus in every build.
 #
-# Needs clang 14 and its libFuzzer: apt-get install clang-14 libclang-rt-14-dev.
+# Needs clang 14 and its libFuzzer, and installs them.
 set -euo pipefail
 # shellcheck source=scripts/setup.sh
 source "$(dirname "${BASH_SOURCE[0]}")/setup.sh"
 
+inputs=(scene body_file checkpoint tables manifest)
 programs="$root/build/host-fuzz/tests/fuzz"
 found="$root/build/fuzz"
 corpus="$root/tests/fuzz/corpus"
 # Seconds and megabytes that no input is worth: it has a few thousand bytes, and its bodies may take 260 MB.
 limits=(-timeout=10 -malloc_limit_mb=256 -rss_limit_mb=2048)
+export TMPDIR=/dev/shm # what is written and read again needs no disk
 most=100 # files that one --keep adds for each input
 
 fuzz() {
@@ -47,11 +50,12 @@ keep() {
   done | sed "${most}q" | xargs -r cp -vt "$corpus/$input"
 }
 
-mkdir -p "$found"/{scene,body_file,broken}
-stage "build (host-fuzz)" build host-fuzz fuzz_scene fuzz_body_file fuzz_dictionary
+ensure_packages "$root/cmake/packages-analysis.txt"
+mkdir -p "$found/broken" "${inputs[@]/#/$found/}"
+stage "build (host-fuzz)" build host-fuzz fuzz_dictionary "${inputs[@]/#/fuzz_}"
 "$programs/fuzz_dictionary" >"$found/words.dict"
 failed=0
-for input in scene body_file; do
+for input in "${inputs[@]}"; do
   if [[ ${1:-} == --keep ]]; then
     keep "$input"
   else

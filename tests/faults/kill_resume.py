@@ -7,7 +7,6 @@ All other arguments go to `scree run` (--device cuda, --set time.end=4...). The 
 frames, the checks. Prints what happened, exit status 1 if anything differs, or if the run came to its end before it was killed so often.
 """
 import argparse
-import json
 import random
 import signal
 import subprocess
@@ -16,16 +15,12 @@ import tempfile
 import time
 from pathlib import Path
 
-SCENE = Path(__file__).resolve().parent / "everything.yaml"
-
-
-def command(arguments, folder, *more):
-    return [arguments.scree, "run", str(SCENE), "-o", str(folder), *more, *arguments.more]
+from runs import command, contents, differing
 
 
 def run_whole(arguments, folder):
     start = time.monotonic()
-    done = subprocess.run(command(arguments, folder), capture_output=True, text=True)
+    done = subprocess.run(command(arguments.scree, folder, *arguments.more), capture_output=True, text=True)
     if done.returncode != 0:
         sys.exit(f"the undisturbed run ended with {done.returncode}:\n{done.stdout}{done.stderr}")
     return time.monotonic() - start
@@ -36,7 +31,7 @@ def run_killed(arguments, folder):
     times = random.Random(arguments.seed)
     kills = 0
     while True:
-        process = subprocess.Popen(command(arguments, folder, "--resume"), stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+        process = subprocess.Popen(command(arguments.scree, folder, "--resume", *arguments.more), stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
         try:
             process.wait(times.uniform(0, arguments.longest) if kills < arguments.kills else None)
         except subprocess.TimeoutExpired:
@@ -48,16 +43,6 @@ def run_killed(arguments, folder):
         expected = {-arguments.signal, 130} if arguments.signal == signal.SIGTERM else {-arguments.signal}
         if process.returncode not in expected:
             sys.exit(f"kill {kills}: the run ended with {process.returncode}:\n{said}")
-
-
-def contents(folder):
-    """By name, of what must be the same to the byte."""
-    manifest = json.loads((folder / "manifest.json").read_text())
-    found = {f"manifest: {key}": json.dumps(manifest[key]) for key in ("status", "state_hash", "states", "steps", "checks", "observation", "counters", "frames")}
-    for file in [folder / "metrics.csv", folder / "final.csv", folder / "scene.yaml", *sorted(folder.glob("frames/*"))]:
-        found[str(file.relative_to(folder))] = file.read_bytes()
-    found["files"] = sorted(str(path.relative_to(folder)) for path in folder.rglob("*"))
-    return found, manifest
 
 
 def main():
@@ -75,14 +60,14 @@ def main():
         kills = run_killed(arguments, killed)
         expected, manifest = contents(whole)
         found, resumed = contents(killed)
-        differing = sorted(name for name in expected.keys() | found.keys() if expected.get(name) != found.get(name))
+        different = differing(expected, found)
         print(f"{kills} x {arguments.signal.name} in {time.monotonic() - start:.0f} s (undisturbed: {wall:.0f} s, {manifest['steps']} steps, "
               f"{manifest['frames']} frames, state {manifest['state_hash']}); resumed {len(resumed.get('resumed_at', []))} times")
         print(f"compared: {len(expected)} contents, {sum(len(bytes) for name, bytes in expected.items() if name != 'files')} bytes; "
-              + (f"DIFFERENT: {', '.join(differing)}" if differing else "all the same"))
+              + (f"DIFFERENT: {', '.join(different)}" if different else "all the same"))
         if kills < arguments.kills:
             print(f"only {kills} kills of {arguments.kills}: the run was too short")
-        sys.exit(bool(differing) or kills < arguments.kills)
+        sys.exit(bool(different) or kills < arguments.kills)
 
 
 if __name__ == "__main__":

@@ -27,5 +27,11 @@ TEST(HostileInput, ScenesLoadOrAreRefused) { read_all("scene", read_hostile_scen
 
 TEST(HostileInput, BodyFilesLoadOrAreRefused) { read_all("body_file", read_hostile_body_file); }
 
+TEST(HostileInput, CheckpointsAreReadOrRefused) { read_all("checkpoint", read_hostile_checkpoint); }
+
+TEST(HostileInput, TablesAreComparedOrRefused) { read_all("tables", read_hostile_tables); }
+
+TEST(HostileInput, ManifestsAreReadOrRefused) { read_all("manifest", read_hostile_manifest); }
+
 }  // namespace
 }  // namespace scree

@@ -5,15 +5,13 @@
 #include "sim/scene/codec.hpp"
 #include "sim/scene/document.hpp"
 #include "sim/scene/scene.hpp"
+#include "tests/fuzz/breach.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
-#include <stdexcept>
 #include <string>
-#include <sys/mman.h>
-#include <unistd.h>
 #include <vector>
 
 namespace scree {
@@ -22,8 +20,6 @@ namespace {
 /// Room for pictures and for some ten thousand bodies: what asks for more is refused soon, whatever the
 /// machine.
 constexpr double memory = 2.6e8;
-
-[[noreturn]] void breach(const std::string& what) { throw std::logic_error(what); }
 
 /// Words and numbers are written as they were, without quotes.
 bool is_word_or_number(std::string_view text) {
@@ -57,13 +53,6 @@ void require_round_trip(const std::string& text) {
     breach(fmt::format("to_yaml() wrote what cannot be read, {}:{}: {}\n{}", error.mark.line,
                        error.mark.column, error.what, written));
   }
-}
-
-/// file:line:column: what, or --set path=value: what; one line for each error, fit for a terminal.
-void require_message(std::string_view message) {
-  if (message.find(": ") == std::string_view::npos) breach(fmt::format("no place: {}", message));
-  for (const char c : message)
-    if ((c >= 0 && c < ' ' && c != '\n') || c == 0x7F) breach(fmt::format("control character: {}", message));
 }
 
 void require_state(const BodyTable& bodies) {
@@ -123,16 +112,6 @@ void require_scene_or_refusal(const std::string& text, const std::vector<Overrid
   } catch (const InputError& error) {
     require_message(error.what());
   }
-}
-
-/// A file in memory, rewritten for each input.
-const std::string& file_of(std::string_view bytes) {
-  static const int file = memfd_create("body_file", 0);
-  static const std::string path = fmt::format("/proc/self/fd/{}", file);
-  if (ftruncate(file, 0) != 0 ||
-      pwrite(file, bytes.data(), bytes.size(), 0) != static_cast<ssize_t>(bytes.size()))
-    throw std::runtime_error("no room for the body file");
-  return path;
 }
 
 void require_row(const BodyRow& row) {

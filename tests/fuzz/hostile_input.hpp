@@ -1,5 +1,5 @@
-// Input of any bytes, and what may come of it: what it says, or an InputError. Shared by the fuzzers, which
-// make such bytes, and by the test that reads those which were kept.
+// Input of any bytes, and what may come of it: what it says, or an error of its own. Shared by the fuzzers,
+// which make such bytes, and by the test that reads those which were kept.
 #pragma once
 
 #include <string_view>
@@ -13,5 +13,19 @@ void read_hostile_scene(std::string_view bytes);
 
 /// Reads the bytes as a body file, by itself and for a scene. Throws std::logic_error likewise.
 void read_hostile_body_file(std::string_view bytes);
+
+/// Reads the bytes as what follows the first line of a checkpoint, which is given the right checksum: so that
+/// it stops nobody. Throws std::logic_error if what came is neither a RunError nor a state of no more bytes
+/// than the file, which is the same when it is written and read again.
+void read_hostile_checkpoint(std::string_view bytes);
+
+/// Reads the bytes as two tables, parted by a line of `====`, and compares them. Throws std::logic_error if
+/// what came is neither an InputError nor a comparison that is fair: the same from either side, and nothing
+/// where a table is beside itself.
+void read_hostile_tables(std::string_view bytes);
+
+/// Reads the bytes as a manifest, for the run to be repeated, and for its number of steps. Throws
+/// std::logic_error if what came is neither an InputError nor steps that there can be.
+void read_hostile_manifest(std::string_view bytes);
 
 }  // namespace scree

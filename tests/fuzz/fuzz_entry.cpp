@@ -1,10 +1,10 @@
-// libFuzzer's entry; scripts/fuzz.sh runs it.
+// libFuzzer's entry, for the reader SCREE_READ; scripts/fuzz.sh runs it.
 #include "tests/fuzz/hostile_input.hpp"
 
 #include <cstddef>
 #include <cstdint>
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  scree::read_hostile_body_file({reinterpret_cast<const char*>(data), size});
+  scree::SCREE_READ({reinterpret_cast<const char*>(data), size});
   return 0;
 }
