@@ -62,7 +62,7 @@ FOLDERS = ["core", "broadphase", "narrowphase", "sim", "render", "bench", "tests
 LIBRARIES = {
     "yaml-cpp": r"yaml-cpp/", "libccd": r"ccd/", "OpenGL and OSMesa": r"(GL|EGL)/", "libpng": r"png\.h",
     "FreeType": r"ft2build\.h", "HDF5": r"hdf5\.h",
-    "CLI11": r"CLI/", "Boost": r"boost/", "nlohmann-json": r"nlohmann/", "xxHash": r"xxhash\.h",
+    "CLI11": r"CLI/", "Boost": r"boost/", "nlohmann-json": r"nlohmann/", "xxHash": r"xxhash\.h", "zlib": r"zlib\.h",
 }
 THRUST_HEADERS = ["core/parallel.hpp", "core/space_matches.hpp", "core/space_matches_device.hpp", "core/space_matches_host.hpp",
                   "core/space_policy.hpp", "core/space_warp.hpp", "core/space_rounds.hpp", "core/space_tiles.hpp"]

@@ -1,6 +1,7 @@
 // The commands of the program: plain arguments in, exit status out. They throw InputError and RunError.
 #pragma once
 
+#include "sim/record/exports.hpp"
 #include "sim/scene/scene.hpp"
 #include "sim/scene/variations.hpp"
 #include "sim/simulation.hpp"
@@ -35,6 +36,21 @@ struct CompareArguments {
   double absolute = 0;                  ///< in each column's unit: what is no more is no difference
 };
 int compare(const CompareArguments& arguments);
+
+struct ExportArguments {
+  std::filesystem::path run;  ///< run folder
+  ExportFormat format = ExportFormat::vtp;
+  std::filesystem::path output;  ///< empty: the run folder's name and the format's
+};
+int export_trajectory(const ExportArguments& arguments);
+
+struct RenderArguments {
+  std::filesystem::path run;     ///< run folder
+  std::filesystem::path output;  ///< empty: the run folder's name and -render
+  std::vector<Override> overrides;
+  bool overwrite = false;
+};
+int render_again(const RenderArguments& arguments);
 
 struct VerifyArguments {
   std::vector<std::filesystem::path> paths;

@@ -4,10 +4,10 @@
 #include "core/timing.hpp"
 #include "render/movie.hpp"
 #include "render/png.hpp"
+#include "sim/cli/stopwatch.hpp"
 
 #include <fmt/format.h>
 
-#include <chrono>
 #include <utility>
 
 namespace scree::cli {
@@ -15,20 +15,6 @@ namespace scree::cli {
 namespace {
 
 constexpr std::size_t most_waiting = 2;
-
-/// Adds its own lifetime to an account of this thread.
-class Stopwatch {
- public:
-  explicit Stopwatch(double& seconds) : seconds_(seconds) {}
-  ~Stopwatch() { seconds_ += std::chrono::duration<double>(Clock::now() - start_).count(); }
-  Stopwatch(const Stopwatch&) = delete;
-  Stopwatch& operator=(const Stopwatch&) = delete;
-
- private:
-  using Clock = std::chrono::steady_clock;
-  double& seconds_;
-  Clock::time_point start_ = Clock::now();
-};
 
 }  // namespace
 
@@ -63,11 +49,15 @@ Film::Film(const Scene& scene, const RunFolder& folder, Console& console)
               [this, studio = std::shared_ptr<Studio>()](Shot& shot) mutable { draw(studio, shot); }) {}
 
 void Film::record(Simulation& simulation) {
-  const std::int64_t due = frames_due_.due(simulation.steps());
+  record(simulation.steps(), [&] { return frame_of(scene_, look_, simulation); });
+}
+
+void Film::record(std::int64_t step, const std::function<render::Frame()>& frame_at) {
+  const std::int64_t due = frames_due_.due(step);
   if (due > 0) say_trouble();
   if (due == 0 || stopped_ || failed_) return;
   // Where frames come faster than steps one picture stands for several, so that the movie keeps its pace.
-  Shot shot{frame_of(scene_, look_, simulation), due};
+  Shot shot{frame_at(), due};
   const timing::Region region("render.wait");
   try {
     drawer_.push(std::move(shot));

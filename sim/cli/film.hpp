@@ -12,6 +12,7 @@
 
 #include <atomic>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <mutex>
 #include <string>
@@ -26,6 +27,9 @@ class Film {
   /// two others have not been begun: none is left out. Throws RunError if an earlier one could not be
   /// written.
   void record(Simulation& simulation);
+  /// The same, of a state that need not be present: frame_at() makes it, if one is due at the step.
+  void record(std::int64_t step, const std::function<render::Frame()>& frame_at);
+  const FilmLook& look() const { return look_; }
   /// Makes the movie of the frames, once all are there. Throws like record(), unless that has.
   void finish();
 

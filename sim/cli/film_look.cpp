@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace scree::cli {
 
@@ -186,13 +187,24 @@ FilmLook look_of(const Scene& scene) {
   return look;
 }
 
-render::Frame frame_of(const Scene& scene, const FilmLook& look, Simulation& simulation) {
-  const RenderSettings& render = scene.render;
+bool needs_contacts_or_grid(const RenderSettings& render) {
+  return !render.overlay.empty() || render.color == ColorBy::level || render.color == ColorBy::force;
+}
+
+render::Frame frame_of(const Scene& scene, Snapshot snapshot) {
   render::Frame frame;
-  simulation.snapshot(frame.snapshot);
-  if (render.color == ColorBy::material) {
+  frame.snapshot = std::move(snapshot);
+  if (scene.render.color == ColorBy::material) {
     for (const Material& material : scene.materials) frame.kinds.push_back(material.name);
   }
+  return frame;
+}
+
+render::Frame frame_of(const Scene& scene, const FilmLook& look, Simulation& simulation) {
+  const RenderSettings& render = scene.render;
+  Snapshot snapshot;
+  simulation.snapshot(snapshot);
+  render::Frame frame = frame_of(scene, std::move(snapshot));
   if (render.color == ColorBy::level || has(render, Overlay::grid)) {
     GridOccupancy grid = simulation.grid_occupancy();
     if (has(render, Overlay::grid)) append_cells(grid, frame);

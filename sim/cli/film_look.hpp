@@ -25,6 +25,11 @@ struct FilmLook {
 /// of bodies.
 FilmLook look_of(const Scene& scene);
 
+/// Whether pictures show what a state alone does not tell.
+bool needs_contacts_or_grid(const RenderSettings& render);
+
+/// A state as the scene wants it drawn, where that needs no more.
+render::Frame frame_of(const Scene& scene, Snapshot snapshot);
 /// The present state as the scene wants it drawn.
 render::Frame frame_of(const Scene& scene, const FilmLook& look, Simulation& simulation);
 

@@ -105,6 +105,32 @@ CLI::App* add_plan(CLI::App& app, PlanArguments& arguments, bool& schema, bool& 
   return command;
 }
 
+CLI::App* add_export(CLI::App& app, ExportArguments& arguments) {
+  static const std::map<std::string, ExportFormat> formats = {{"vtp", ExportFormat::vtp},
+                                                              {"xyz", ExportFormat::xyz},
+                                                              {"lammps", ExportFormat::lammps},
+                                                              {"csv", ExportFormat::csv}};
+  CLI::App* command =
+      app.add_subcommand("export", "Write the trajectory of a run in the format of other programs");
+  command->add_option("run", arguments.run, "Run folder with a trajectory")->required()->type_name("DIR");
+  command->add_option("--to", arguments.format, "vtp (ParaView), xyz or lammps (OVITO), or csv")
+      ->required()
+      ->transform(CLI::Transformer(formats).description(""))
+      ->type_name("FORMAT");
+  command->add_option("-o,--output", arguments.output, "Folder instead of DIR-FORMAT")->type_name("DIR");
+  return command;
+}
+
+CLI::App* add_render(CLI::App& app, RenderArguments& arguments) {
+  CLI::App* command =
+      app.add_subcommand("render", "Draw the trajectory of a run again, with another camera, colour or size");
+  command->add_option("run", arguments.run, "Run folder with a trajectory")->required()->type_name("DIR");
+  add_overrides(*command, arguments.overrides);
+  command->add_option("-o,--output", arguments.output, "Folder instead of DIR-render")->type_name("DIR");
+  command->add_flag("--overwrite", arguments.overwrite, "Replace earlier pictures in the folder");
+  return command;
+}
+
 CLI::App* add_compare(CLI::App& app, CompareArguments& arguments) {
   CLI::App* command =
       app.add_subcommand("compare", "Say how far the numbers of two runs differ, column by column");
@@ -204,12 +230,16 @@ int main(int argc, char** argv) {
   PlanArguments plan_arguments;
   VerifyArguments verify_arguments;
   StudyArguments study_arguments;
+  ExportArguments export_arguments;
+  RenderArguments render_arguments;
   CompareArguments compare_arguments;
   bool schema = false, reference = false;
   const CLI::App* run_command = add_run(app, run_arguments);
   const CLI::App* plan_command = add_plan(app, plan_arguments, schema, reference);
   const CLI::App* verify_command = add_verify(app, verify_arguments);
   const CLI::App* study_command = add_study(app, study_arguments);
+  const CLI::App* export_command = add_export(app, export_arguments);
+  const CLI::App* render_command = add_render(app, render_arguments);
   const CLI::App* compare_command = add_compare(app, compare_arguments);
   const CLI::App* bench_command = add_bench(app);
   app.add_subcommand("info", "Say what this program is and what it finds on this machine");
@@ -219,6 +249,8 @@ int main(int argc, char** argv) {
     if (run_command->parsed()) return run(run_arguments);
     if (verify_command->parsed()) return after_printing(verify(verify_arguments));
     if (study_command->parsed()) return after_printing(study(study_arguments));
+    if (export_command->parsed()) return after_printing(export_trajectory(export_arguments));
+    if (render_command->parsed()) return after_printing(render_again(render_arguments));
     if (compare_command->parsed()) return after_printing(compare(compare_arguments));
     if (bench_command->parsed()) return bench(bench_command->remaining());
     if (plan_command->parsed())

@@ -5,6 +5,7 @@
 #include "sim/model.hpp"
 #include "sim/record/metrics.hpp"
 #include "sim/record/outcome.hpp"
+#include "sim/record/trajectory_columns.hpp"
 #include "sim/scene/memory.hpp"
 #include "sim/scene/time_grid.hpp"
 
@@ -172,8 +173,17 @@ std::string response_words(const ResponseSettings& settings) {
 struct OutputPlan {
   std::int64_t rows = 0;
   std::int64_t frames = 0;
+  std::int64_t trajectory_frames = 0;
   double bytes = 0;
 };
+
+/// Of a frame of the trajectory, before it is made smaller: by little while everything moves.
+double trajectory_frame_bytes(const Scene& scene) {
+  double row = 0;
+  for (const BodyColumnSource& source : body_columns_of(*scene.record.trajectory))
+    row += source.is_constant ? 0 : source.column.type.row();
+  return row * static_cast<double>(scene.bodies.count());
+}
 
 OutputPlan plan_output(const Scene& scene, const TimeGrid& grid) {
   constexpr double bytes_per_number = 20;
@@ -188,6 +198,11 @@ OutputPlan plan_output(const Scene& scene, const TimeGrid& grid) {
   plan.bytes =
       row * static_cast<double>(plan.rows) +
       (bytes_per_final_row + checkpoints * bytes_per_saved_body) * static_cast<double>(scene.bodies.count());
+  if (scene.record.trajectory) {
+    constexpr int copies = 2;  // the journal goes when the file is there
+    plan.trajectory_frames = Cadence(grid, trajectory_period(scene)).due(grid.last());
+    plan.bytes += copies * trajectory_frame_bytes(scene) * static_cast<double>(plan.trajectory_frames);
+  }
   if (!scene.render.enabled) return plan;
   plan.frames = Cadence(grid, 1 / scene.render.fps).due(grid.last());
   plan.bytes += bytes_per_pixel * scene.render.width * scene.render.height * static_cast<double>(plan.frames);
@@ -196,6 +211,8 @@ OutputPlan plan_output(const Scene& scene, const TimeGrid& grid) {
 
 std::string output_words(const Scene& scene, const OutputPlan& plan) {
   std::string words = fmt::format("{} rows of metrics", plan.rows);
+  if (plan.trajectory_frames > 0)
+    words += fmt::format(", {} frames of the trajectory", plan.trajectory_frames);
   if (plan.frames == 0) return words + ", no pictures";
   return words + fmt::format(", {} frames of {} x {}", plan.frames, scene.render.width, scene.render.height);
 }

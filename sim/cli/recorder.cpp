@@ -15,7 +15,7 @@ Probe probe_of(Simulation& simulation) {
       .body = [&simulation](std::int32_t id) { return simulation.body(id); }};
 }
 
-Recorder::Recorder(const Scene& scene, const RunFolder& folder, Console& console, bool draw,
+Recorder::Recorder(const Scene& scene, const RunFolder& folder, Console& console, bool draw, int threads,
                    AtomicFile::Opening opening)
     : checks_(scene, TimeGrid(scene.time)),
       rows_due_(TimeGrid(scene.time), scene.record.metrics_every),
@@ -23,6 +23,7 @@ Recorder::Recorder(const Scene& scene, const RunFolder& folder, Console& console
       metrics_(scene, folder / "metrics.csv", opening),
       timing_(folder / "timing.csv", opening) {
   if (draw) film_.emplace(scene, folder, console);
+  if (scene.record.trajectory) motion_.emplace(scene, folder, opening, threads);
 }
 
 void Recorder::write_rows(Simulation& simulation) {
@@ -40,6 +41,7 @@ void Recorder::record(Simulation& simulation) {
   if (states_due_.due(simulation.steps()) > 0)
     states_.push_back({simulation.steps(), simulation.state_hash()});
   if (film_) film_->record(simulation);
+  if (motion_) motion_->record(simulation);
   recorded_ = simulation.steps();
 }
 
@@ -59,12 +61,18 @@ void Recorder::archive(Archive& archive) {
   archive.part("metrics", metrics_);
   archive.part("timing", timing_);
   if (film_) archive.part("film", *film_);
+  if (motion_) archive.part("trajectory", *motion_);
 }
 
 void Recorder::finish() {
   metrics_.commit();
   timing_.commit();
   if (film_) film_->finish();
+  if (motion_) motion_->finish();
+}
+
+void Recorder::drop() {
+  if (motion_) motion_->drop();
 }
 
 }  // namespace scree::cli

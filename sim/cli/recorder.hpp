@@ -3,6 +3,7 @@
 
 #include "sim/cli/console.hpp"
 #include "sim/cli/film.hpp"
+#include "sim/cli/motion_recorder.hpp"
 #include "sim/record/checks.hpp"
 #include "sim/record/manifest.hpp"
 #include "sim/record/metrics.hpp"
@@ -22,8 +23,8 @@ Probe probe_of(Simulation& simulation);
 class Recorder {
  public:
   /// Starts the files in the folder, or goes on with those that are there, once archive() has said up to
-  /// where. `draw`: whether to make frames.
-  Recorder(const Scene& scene, const RunFolder& folder, Console& console, bool draw,
+  /// where. `draw`: whether to make frames. `threads` may help.
+  Recorder(const Scene& scene, const RunFolder& folder, Console& console, bool draw, int threads,
            AtomicFile::Opening opening);
 
   /// What is due at the present state. To be called at t = 0 and after every step.
@@ -36,6 +37,8 @@ class Recorder {
   void archive(Archive& archive);
   /// Every file gets its final name, and the frames become a movie.
   void finish();
+  /// Nobody will go on with the run.
+  void drop();
 
   /// The newest observation made: at most one row of the metrics old.
   const Observation& newest() const { return newest_; }
@@ -43,6 +46,8 @@ class Recorder {
   std::vector<CheckResult> check_results() const { return checks_.results(newest_.energy_scale); }
   const std::vector<StateMark>& states() const { return states_; }  ///< some, all over the run
   double wall() const { return timing_.wall(); }  ///< of the whole run, whatever stopped it (s)
+  /// Of the trajectory, once it is finished.
+  std::int64_t trajectory_frames() const { return motion_ ? motion_->frames() : 0; }
   const Film* film() const { return film_ ? &*film_ : nullptr; }
 
  private:
@@ -53,6 +58,7 @@ class Recorder {
   MetricsFile metrics_;
   TimingFile timing_;
   std::optional<Film> film_;
+  std::optional<MotionRecorder> motion_;
   Observation newest_;
   std::int64_t recorded_ = -1;
   std::int64_t last_row_ = -1;  ///< its step

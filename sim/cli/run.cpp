@@ -13,6 +13,7 @@
 #include "sim/record/manifest.hpp"
 #include "sim/record/outcome.hpp"
 #include "sim/record/run_folder.hpp"
+#include "sim/record/trajectory_reader.hpp"
 #include "sim/step_failure.hpp"
 
 #include <fmt/format.h>
@@ -22,6 +23,8 @@
 #include <functional>
 #include <new>
 #include <optional>
+#include <string_view>
+#include <thread>
 #include <utility>
 
 namespace scree::cli {
@@ -89,6 +92,9 @@ void say_summary(const Scene& scene, const RunSummary& summary, const RunFolder&
     console.say(fmt::format("pictures: {} frames in {}{}", summary.frames, folder.frames().string(),
                             summary.movie.empty() ? "" : ", " + (folder / summary.movie.c_str()).string()));
   }
+  if (summary.trajectory_frames > 0)
+    console.say(fmt::format("motion:   {} frames in {}", summary.trajectory_frames,
+                            (folder / trajectory_name).string()));
   console.say(fmt::format("numbers:  {}", (folder / "metrics.csv").string()));
 }
 
@@ -170,6 +176,14 @@ RunIdentity identity_of(const Scene& scene, const Simulation& simulation, bool d
           .draws = draws};
 }
 
+/// Threads that may help the run: where it is on a GPU the processor has nothing else to do.
+int helpers_of(const Simulation& simulation, const RunArguments& arguments) {
+  const auto cores = static_cast<int>(std::thread::hardware_concurrency());
+  return simulation.space_name() == std::string_view("cuda") && arguments.simulation.threads == 0
+             ? std::max(cores, 1)
+             : 1;
+}
+
 }  // namespace
 
 int run(const RunArguments& arguments) {
@@ -197,7 +211,7 @@ int run(const RunArguments& arguments) {
   Console console(folder / "log.txt", opening);
   for (const std::string& warning : warnings) console.warn(warning);
   write_file(folder / "scene.yaml", scene.resolved);
-  Recorder recorder(scene, folder, console, draws, opening);
+  Recorder recorder(scene, folder, console, draws, helpers_of(simulation, arguments), opening);
   if (resumes) {
     checkpoints.resume(simulation, recorder);
     folder.remove_results();
@@ -240,6 +254,7 @@ int run(const RunArguments& arguments) {
     summary.frames = film->frames();
     summary.movie = film->movie();
   }
+  summary.trajectory_frames = recorder.trajectory_frames();
   summary.wall = recorder.wall();
   summary.resumed_at = checkpoints.resumed_at();
   say_summary(scene, summary, folder, console);
@@ -247,7 +262,10 @@ int run(const RunArguments& arguments) {
   console.close();
   summary.warnings = console.warnings();
   write_file(folder / "manifest.json", manifest_of(scene, summary));
-  if (is_complete && summary.status == "done") checkpoints.drop();
+  if (is_complete && summary.status == "done") {
+    checkpoints.drop();
+    recorder.drop();
+  }
   return status_of(summary);
 }
 

@@ -1,21 +1,20 @@
-// HDF5 is included here and in the test alone.
 #include "sim/record/checkpoint.hpp"
 
 #include "core/error.hpp"
 #include "core/hash.hpp"
 #include "core/space.hpp"
 #include "sim/record/files.hpp"
+#include "sim/record/hdf5.hpp"
+#include "sim/record/plain_words.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
 #include <bit>
-#include <charconv>
 #include <cstring>
 #include <fstream>
 #include <functional>
-#include <hdf5.h>
 #include <iterator>
 #include <span>
 #include <string_view>
@@ -30,47 +29,8 @@ namespace fs = std::filesystem;
 constexpr std::string_view head_words = "scree checkpoint 2, xxh3 of what follows: ";
 constexpr std::size_t first_line_bytes = head_words.size() + 17;
 
-/// In the order of FieldType::Kind.
-constexpr std::array<std::string_view, 4> kind_words = {"integer", "natural", "real", "bytes"};
-
-/// An object of the library, which is released with it.
-class Handle {
- public:
-  using Close = herr_t (*)(hid_t);
-  /// Throws RunError if the library gave none.
-  Handle(hid_t id, Close close, const char* what) : id_(id), close_(close) {
-    if (id < 0) throw RunError(fmt::format("HDF5 cannot {}", what));
-  }
-  ~Handle() { close_(id_); }
-  Handle(const Handle&) = delete;
-  Handle& operator=(const Handle&) = delete;
-  operator hid_t() const { return id_; }  // NOLINT: the library's functions take it so
-
- private:
-  hid_t id_;
-  Close close_;
-};
-
-void check(herr_t status, const char* what) {
-  if (status < 0) throw RunError(fmt::format("HDF5 cannot {}", what));
-}
-
-/// Its own messages would go to stderr.
-void silence() { H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr); }
-
-/// Of one number, little-endian; of a record, its bytes.
-Handle type_of(const FieldType& type) {
-  hid_t id = -1;
-  if (type.kind == FieldType::Kind::bytes) {
-    id = H5Tcreate(H5T_OPAQUE, static_cast<std::size_t>(type.columns));
-  } else if (type.kind == FieldType::Kind::real) {
-    id = H5Tcopy(type.width == 4 ? H5T_IEEE_F32LE : H5T_IEEE_F64LE);
-  } else {
-    id = H5Tcopy(type.kind == FieldType::Kind::integer ? H5T_STD_I8LE : H5T_STD_U8LE);
-    if (id >= 0) H5Tset_size(id, static_cast<std::size_t>(type.width));
-  }
-  return {id, H5Tclose, "make a type"};
-}
+using hdf5::check;
+using hdf5::Handle;
 
 bool has_columns(const FieldType& type) { return type.kind != FieldType::Kind::bytes && type.columns > 1; }
 
@@ -82,7 +42,7 @@ std::uint64_t checksum_of(const SavedField& field) {
 haddr_t write_field(hid_t file, hid_t links, const SavedField& field) {
   const std::array<hsize_t, 2> extent = {static_cast<hsize_t>(field.rows()),
                                          static_cast<hsize_t>(field.type.columns)};
-  const Handle type = type_of(field.type);
+  const Handle type = hdf5::type_of(field.type);
   const Handle space(H5Screate_simple(has_columns(field.type) ? 2 : 1, extent.data(), nullptr), H5Sclose,
                      "make a shape");
   const Handle data(H5Dcreate2(file, field.name.c_str(), type, space, links, H5P_DEFAULT, H5P_DEFAULT),
@@ -106,9 +66,8 @@ std::string directory_of(const SavedState& state, const std::vector<haddr_t>& pl
   std::string lines;
   for (std::size_t k = 0; k < places.size(); ++k) {
     const auto& [name, type, bytes] = state.fields[k];
-    fmt::format_to(std::back_inserter(lines), "{} {} {} {} {:015} {}\n",
-                   kind_words[static_cast<std::size_t>(type.kind)], type.width, type.columns,
-                   state.fields[k].rows(), places[k] + head, name);
+    fmt::format_to(std::back_inserter(lines), "{} {} {:015} {}\n", words_of(type), state.fields[k].rows(),
+                   places[k] + head, name);
   }
   return lines + '\n';
 }
@@ -154,43 +113,10 @@ std::string bytes_of(const fs::path& file) {
   return bytes;
 }
 
-/// Takes the next word, up to a space or the end of the line.
-std::string_view take_word(std::string_view& line) {
-  const std::string_view word = line.substr(0, line.find(' '));
-  line.remove_prefix(std::min(word.size() + 1, line.size()));
-  return word;
-}
-
-/// Takes the next number. Throws RunError unless it is one from `least` to `most`.
-std::int64_t take_number(std::string_view& line, std::int64_t least, std::int64_t most) {
-  const std::string_view word = take_word(line);
-  std::int64_t number = 0;
-  const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), number);
-  if (error != std::errc() || end != word.data() + word.size() || number < least || number > most)
-    throw RunError(fmt::format("is none: {:?} is no number from {} to {}", word, least, most));
-  return number;
-}
-
-/// Throws RunError unless some state has it.
-void require_type(const FieldType& type) {
-  using Kind = FieldType::Kind;
-  const int least = type.kind == Kind::real ? 4 : 1;
-  const int most = type.kind == Kind::bytes ? 1 : 8;
-  if (type.width < least || type.width > most || !std::has_single_bit(static_cast<unsigned>(type.width)))
-    throw RunError(fmt::format("is none: a number is {} bytes wide", type.width));
-}
-
 /// A field by its line of the directory, its bytes from the file's.
 SavedField field_of(std::string_view line, std::string_view file) {
-  constexpr std::int64_t most_columns = 1 << 16;
   const auto size = std::ssize(file);
-  const auto kind =
-      static_cast<std::size_t>(std::ranges::find(kind_words, take_word(line)) - kind_words.begin());
-  if (kind == kind_words.size()) throw RunError("is none: a field is of no kind");
-  const auto width = static_cast<int>(take_number(line, 1, sizeof(double)));
-  const auto columns = static_cast<int>(take_number(line, 1, most_columns));
-  SavedField field{{}, {static_cast<FieldType::Kind>(kind), width, columns}, {}};
-  require_type(field.type);
+  SavedField field{{}, take_type(line), {}};
   const std::int64_t bytes = take_number(line, 0, size / field.type.row()) * field.type.row();
   const std::int64_t place = take_number(line, 0, size - bytes);
   field.name = line;
@@ -219,7 +145,7 @@ SavedState state_of(std::string_view file) {
 }  // namespace
 
 void write_checkpoint(const fs::path& file, const SavedState& state) {
-  silence();
+  hdf5::start();
   write_file(file, file_of(state));
 }
 

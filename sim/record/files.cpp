@@ -80,6 +80,12 @@ void AtomicFile::commit() {
   sync_folder(file_.has_parent_path() ? file_.parent_path() : ".");
 }
 
+std::filesystem::path AtomicFile::part() const { return part_of(file_); }
+
+void AtomicFile::discard() {
+  if (::unlink(part_of(file_).c_str()) != 0) fail("remove", part_of(file_));
+}
+
 void AtomicFile::archive(Archive& archive) {
   std::int64_t length = ::lseek(descriptor_, 0, SEEK_END);
   if (length < 0) fail("find the end of", part_of(file_));

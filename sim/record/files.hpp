@@ -28,6 +28,10 @@ class AtomicFile {
   /// row is left.
   void write(std::string_view text);
   void commit();
+  /// What it is called until then.
+  std::filesystem::path part() const;
+  /// Removes it instead.
+  void discard();
   /// What was written until the state was saved is on the disk; what was written since is gone after loading.
   void archive(Archive& archive);
 

@@ -208,6 +208,7 @@ std::string manifest_of(const Scene& scene, const RunSummary& run) {
   json["observation"] = json_of(run.last);
   json["frames"] = run.frames;
   if (!run.movie.empty()) json["movie"] = run.movie;
+  if (run.trajectory_frames > 0) json["trajectory_frames"] = run.trajectory_frames;
   json["warnings"] = run.warnings;
   json["wall_s"] = run.wall;
   if (!run.resumed_at.empty()) json["resumed_at"] = run.resumed_at;

@@ -42,6 +42,7 @@ struct RunSummary {
   std::vector<std::int64_t> resumed_at = {};  ///< steps
   std::int64_t frames = 0;
   std::string movie = {};  ///< file name; empty if there is none
+  std::int64_t trajectory_frames = 0;
   std::vector<CheckResult> checks = {};
   std::vector<std::string> warnings = {};
 };

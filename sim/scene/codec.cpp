@@ -101,16 +101,13 @@ std::size_t read_word(const Node& node, const Type& type, const Reader& reader) 
   if (node.kind != Node::Kind::scalar || node.quoted) fail_form(node, type, reader);
   const auto found = std::find(type.words.begin(), type.words.end(), node.text);
   if (found != type.words.end()) return static_cast<std::size_t>(found - type.words.begin());
-  if (std::find(type.future.begin(), type.future.end(), node.text) != type.future.end())
-    reader.fail(node.mark, fmt::format("{} {}", node.text, future_text));
   reader.fail(node.mark, fmt::format("must be {}, not {}{}", words_of(type), shown(node),
                                      suggestion(node.text, {type.words.begin(), type.words.end()})));
 }
 
-Type word_type(std::vector<std::string> words, std::vector<std::string> future) {
+Type word_type(std::vector<std::string> words) {
   Type type{.kind = Type::Kind::word};
   type.words = std::move(words);
-  type.future = std::move(future);
   return type;
 }
 

@@ -44,15 +44,15 @@ bool is_file_name(std::string_view word);
 [[noreturn]] void fail_form(const Node& node, const Type& type, const Reader& reader);
 /// The index of a word; throws if it is none of them.
 std::size_t read_word(const Node& node, const Type& type, const Reader& reader);
-Type word_type(std::vector<std::string> words, std::vector<std::string> future);
+Type word_type(std::vector<std::string> words);
 Type list_type(const Type& item, std::int64_t least, std::int64_t most);
 
 /// One of a few words, each with its value.
 template <class T>
-Codec<T> word(std::vector<std::pair<std::string, T>> words, std::vector<std::string> future = {}) {
+Codec<T> word(std::vector<std::pair<std::string, T>> words) {
   std::vector<std::string> names;
   for (const auto& [name, value] : words) names.push_back(name);
-  const Type type = word_type(std::move(names), std::move(future));
+  const Type type = word_type(std::move(names));
   return {type,
           [words, type](T& value, const Node& node, Reader& reader) {
             value = words[read_word(node, type, reader)].second;
@@ -157,7 +157,7 @@ Codec<T> any_of(std::vector<Codec<T>> alternatives) {
 template <class T>
 Codec<std::optional<T>> or_auto(Codec<T> codec) {
   const Codec<std::optional<T>> automatic{
-      word_type({"auto"}, {}), [](std::optional<T>& value, const Node&, Reader&) { value.reset(); },
+      word_type({"auto"}), [](std::optional<T>& value, const Node&, Reader&) { value.reset(); },
       [](const std::optional<T>& value) {
         return value ? std::nullopt : std::optional(Node::scalar("auto"));
       }};

@@ -103,15 +103,44 @@ Codec<World> world_section() {
       check_world);
 }
 
-Codec<RecordEntry> record_section() {
-  using T = RecordEntry;
+Codec<std::optional<TrajectorySettings>> trajectory_section() {
+  using T = TrajectorySettings;
+  using Maybe = std::optional<T>;
+  const Codec<Maybe> whether{word_type({"false", "true"}),
+                             [](Maybe& trajectory, const Node& node, Reader&) {
+                               trajectory = node.text == "true" ? Maybe(T{}) : std::nullopt;
+                             },
+                             [](const Maybe& trajectory) {
+                               return trajectory ? std::nullopt : std::optional(Node::scalar("false"));
+                             }};
+  return any_of<Maybe>(
+      {whether,
+       optional(section<T>(
+           "record.trajectory",
+           "trajectory.vtkhdf: number, place, size, shape, material and mobility of every body, and what "
+           "else "
+           "is asked for; `true` stands for the defaults.",
+           {
+               with_default(key<T>("every", &T::every, optional(number(above_zero, "s")), optionally,
+                                   "simulated time between frames; a frame for each picture if not given"),
+                            ""),
+               key<T>("orientation", &T::orientation, boolean(), optionally,
+                      "with the orientations, as quaternions w, x, y, z"),
+               key<T>("velocity", &T::velocity, boolean(), optionally, "with the velocities"),
+               key<T>("spin", &T::spin, boolean(), optionally, "with the angular velocities"),
+               key<T>("precision", &T::in_double, word<bool>({{"single", false}, {"double", true}}),
+                      optionally, "of the real numbers in the file"),
+           }))});
+}
+
+Codec<RecordSettings> record_section() {
+  using T = RecordSettings;
   return section<T>(
       "record", "What a run writes besides pictures.",
       {
           key<T>("metrics_every", &T::metrics_every, number(above_zero, "s"), optionally,
                  "simulated time between rows of metrics.csv"),
-          key<T>("trajectory", &T::trajectory, word<Trajectory>({{"false", Trajectory::none}}, {"true"}),
-                 optionally, "the motion of every body"),
+          key<T>("trajectory", &T::trajectory, trajectory_section(), optionally, "the motion of every body"),
           key<T>("checkpoint_every", &T::checkpoint_every, number(above_zero, "s"), optionally,
                  "wall time between saved states that `--resume` can go on from"),
       });

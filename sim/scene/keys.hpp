@@ -104,12 +104,6 @@ struct CheckEntry : Check {
   const Node* node = nullptr;
 };
 
-enum class Trajectory { none };
-
-struct RecordEntry : RecordSettings {
-  Trajectory trajectory = Trajectory::none;
-};
-
 struct SceneEntry {
   int format = 1;
   std::string name;
@@ -130,7 +124,7 @@ struct SceneEntry {
   Precision precision = Precision::double_precision;
   ModelSettings model;
   RenderSettings render;
-  RecordEntry record;
+  RecordSettings record;
   std::vector<CheckEntry> checks;
 };
 

@@ -78,7 +78,7 @@ Codec<NarrowPhaseSettings> narrowphase_section() {
 Codec<ModelSettings> model_section() {
   using T = ModelSettings;
   const auto feature = or_auto(word<bool>({{"on", true}, {"off", false}, {"true", true}, {"false", false}}));
-  const Codec<T> automatic{word_type({"auto"}, {}), [](T& model, const Node&, Reader&) { model = {}; },
+  const Codec<T> automatic{word_type({"auto"}), [](T& model, const Node&, Reader&) { model = {}; },
                            [](const T& model) -> std::optional<Node> {
                              const bool given =
                                  model.rotation || model.friction || model.restitution || model.continuous;

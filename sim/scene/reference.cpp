@@ -104,7 +104,6 @@ void append_section(std::string& page, const SectionType& section) {
                                                                     : fmt::format("`{}`", key.fallback);
     page +=
         fmt::format("| `{}` | {} | {} | {} |\n", key.name, cell(kind_of(key.type)), cell(key.help), fallback);
-    for (const std::string& word : key.type.future) later.push_back(fmt::format("`{}: {}`", key.name, word));
   }
   if (!later.empty())
     page += fmt::format("\nPart of the language, but not in this version: {}.\n", fmt::join(later, ", "));

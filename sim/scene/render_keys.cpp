@@ -95,7 +95,7 @@ Codec<Overlay> overlay_word() {
 Codec<RenderSettings> render_section() {
   using T = RenderSettings;
   const Codec<T> nothing{
-      word_type({"false", "true"}, {}),
+      word_type({"false", "true"}),
       [](T& render, const Node& node, Reader&) { render.enabled = node.text == "true"; },
       [](const T& render) { return render.enabled ? std::nullopt : std::optional(Node::scalar("false")); }};
   return any_of<T>(

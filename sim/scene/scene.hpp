@@ -149,9 +149,18 @@ struct RenderSettings {
   std::vector<Overlay> overlay;
 };
 
+struct TrajectorySettings {
+  std::optional<double> every = {};  ///< s; absent: a frame for each picture
+  bool orientation = true;
+  bool velocity = true;
+  bool spin = false;
+  bool in_double = false;  ///< real numbers in the file; else single
+};
+
 struct RecordSettings {
-  double metrics_every = 0.01;   ///< s
-  double checkpoint_every = 60;  ///< of wall time (s)
+  double metrics_every = 0.01;                   ///< s
+  std::optional<TrajectorySettings> trajectory;  ///< absent: none
+  double checkpoint_every = 60;                  ///< of wall time (s)
 };
 
 /// Where in the scene file something stands, for messages; counted from 1.

@@ -42,13 +42,12 @@ struct Type {
   };
 
   Kind kind = Kind::number;
-  Range range{};                      ///< of integer and number
-  std::string unit{};                 ///< empty: none
-  std::vector<std::string> words{};   ///< of word
-  std::vector<std::string> future{};  ///< words of the language that this version does not have
-  std::string pattern{};              ///< of text: what is allowed, as a regular expression
-  std::string pattern_words{};        ///< the same in words
-  std::int64_t least = 0;             ///< items of a list, or names
+  Range range{};                     ///< of integer and number
+  std::string unit{};                ///< empty: none
+  std::vector<std::string> words{};  ///< of word
+  std::string pattern{};             ///< of text: what is allowed, as a regular expression
+  std::string pattern_words{};       ///< the same in words
+  std::int64_t least = 0;            ///< items of a list, or names
   std::int64_t most = INT64_MAX;
   std::vector<Type> parts{};
   std::shared_ptr<const SectionType> section{};

@@ -108,6 +108,17 @@ ssize_t write(int descriptor, const void* bytes, size_t count) {
   return -1;
 }
 
+// HDF5's.
+ssize_t pwrite(int descriptor, const void* bytes, size_t count, off_t place) {
+  if (is("write") && concerns_file(descriptor) && is_due((long long)count)) {
+    errno = error_number;
+    return -1;
+  }
+  ssize_t (*next)(int, const void*, size_t, off_t) = NULL;
+  *(void**)&next = dlsym(RTLD_NEXT, "pwrite");
+  return next(descriptor, bytes, count, place);
+}
+
 int fsync(int descriptor) {
   if (is("fsync") && concerns_file(descriptor) && is_due(1)) {
     errno = error_number;

@@ -58,6 +58,10 @@ FULL, BROKEN, FORBIDDEN = "No space left on device", "Input/output error", "Perm
     ("a frame cannot be renamed", no_room("/frames/", 12, errno.ENOSPC, "rename"), FULL),
     ("checkpoints cannot be renamed", no_room("/checkpoint/", 3, errno.EACCES, "rename"), FORBIDDEN),
     ("metrics.csv cannot get its name", no_room("/metrics.csv", 0, errno.EACCES, "rename"), FORBIDDEN),
+    ("disk full for the trajectory's journal", no_room("/trajectory.journal", 30000), FULL),
+    ("the journal cannot be brought to the disk", no_room("/trajectory.journal", 3, errno.EIO, "fsync"), BROKEN),
+    ("disk full for the trajectory", no_room("/trajectory.vtkhdf", 30000), FULL),
+    ("the trajectory cannot be renamed", no_room("/trajectory.vtkhdf", 0, errno.EACCES, "rename"), FORBIDDEN),
     ("disk full for final.csv", no_room("/final.csv", 1000), FULL),
     ("disk full for the manifest", no_room("/manifest.json", 1000), FULL),
 )

@@ -100,6 +100,9 @@ class Case:
             expect(frame.read_bytes().endswith(b"IEND\xaeB`\x82"), f"{frame.name} is half")
         words += [f"{len(frames)} frames"] if frames else []
         words += [f"checkpoint of step {steps[-1]}"] if steps else []
+        if (self.folder / "trajectory.vtkhdf").exists():
+            expect((self.folder / "trajectory.vtkhdf").read_bytes().splitlines()[-1].startswith(b"scree trajectory 1,"), "the trajectory is half")
+            words.append("trajectory")
         if (self.folder / "movie.mp4").exists():
             expect(b"moov" in (self.folder / "movie.mp4").read_bytes(), "the movie is half")
             words.append("movie")

@@ -13,7 +13,7 @@ def contents(folder):
     """By name, of what must be the same to the byte."""
     manifest = json.loads((folder / "manifest.json").read_text())
     found = {f"manifest: {key}": json.dumps(manifest[key]) for key in ("status", "state_hash", "states", "steps", "checks", "observation", "counters", "frames")}
-    for file in [folder / "metrics.csv", folder / "final.csv", folder / "scene.yaml", *sorted(folder.glob("frames/*"))]:
+    for file in [folder / "metrics.csv", folder / "final.csv", folder / "scene.yaml", folder / "trajectory.vtkhdf", *sorted(folder.glob("frames/*"))]:
         found[str(file.relative_to(folder))] = file.read_bytes()
     found["files"] = sorted(str(path.relative_to(folder)) for path in folder.rglob("*"))
     return found, manifest

@@ -29,6 +29,8 @@ TEST(HostileInput, BodyFilesLoadOrAreRefused) { read_all("body_file", read_hosti
 
 TEST(HostileInput, CheckpointsAreReadOrRefused) { read_all("checkpoint", read_hostile_checkpoint); }
 
+TEST(HostileInput, TrajectoriesAreReadOrRefused) { read_all("trajectory", read_hostile_trajectory); }
+
 TEST(HostileInput, TablesAreComparedOrRefused) { read_all("tables", read_hostile_tables); }
 
 TEST(HostileInput, ManifestsAreReadOrRefused) { read_all("manifest", read_hostile_manifest); }

@@ -19,6 +19,11 @@ void read_hostile_body_file(std::string_view bytes);
 /// than the file, which is the same when it is written and read again.
 void read_hostile_checkpoint(std::string_view bytes);
 
+/// Reads the bytes as a trajectory: what it has of numbers, a line of `====`, and its index, which is given
+/// the right checksum. Throws std::logic_error if what came is neither an InputError nor numbers of which
+/// there are no more than bytes can hold.
+void read_hostile_trajectory(std::string_view bytes);
+
 /// Reads the bytes as two tables, parted by a line of `====`, and compares them. Throws std::logic_error if
 /// what came is neither an InputError nor a comparison that is fair: the same from either side, and nothing
 /// where a table is beside itself.

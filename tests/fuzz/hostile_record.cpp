@@ -6,6 +6,7 @@
 #include "sim/record/checkpoint.hpp"
 #include "sim/record/comparison.hpp"
 #include "sim/record/manifest.hpp"
+#include "sim/record/trajectory_reader.hpp"
 #include "tests/fuzz/breach.hpp"
 #include "tests/fuzz/hostile_input.hpp"
 #include "tests/sim/record/temporary_folder.hpp"
@@ -28,6 +29,9 @@ void require_same(const SavedState& a, const SavedState& b) {
   });
   if (!same) breach("the state is another when it is written and read again");
 }
+
+/// What parts an input in two.
+constexpr std::string_view between = "====\n";
 
 /// A part with every kind of field.
 struct Part {
@@ -125,8 +129,33 @@ void read_hostile_checkpoint(std::string_view bytes) {
   }
 }
 
+void read_hostile_trajectory(std::string_view bytes) {
+  constexpr std::size_t most_frames = 8;  // they may be of the same chunks, without end
+  const std::size_t end = std::min(bytes.find(between), bytes.size());
+  const std::string_view numbers = bytes.substr(0, end);
+  const std::string_view lines = bytes.substr(std::min(end + between.size(), bytes.size()));
+  const std::string file =
+      fmt::format("{}{}scree trajectory 1, xxh3 and length of the lines before: {:016x} {:015}\n", numbers,
+                  lines, hash_of(lines.data(), lines.size()), lines.size());
+  try {
+    TrajectoryReader trajectory(file_of(file));
+    const std::size_t frames = std::min(trajectory.index().frames().size(), most_frames);
+    for (std::size_t f = 0; f < frames; ++f) {
+      for (std::size_t c = 0; c < trajectory.index().columns().size(); ++c) {
+        const std::size_t found = trajectory.numbers(f, c).size();
+        const auto asked = trajectory.index().frames()[f].rows * trajectory.index().columns()[c].type.columns;
+        if (static_cast<std::int64_t>(found) != asked) breach("a frame of other rows than its own");
+        if (found > 1100 * (numbers.size() + 1)) breach("more numbers than bytes can hold");
+      }
+    }
+  } catch (const InputError& error) {
+    require_message(error.what());
+    if (std::string_view(error.what()).find("its index is another") != std::string_view::npos)
+      breach(error.what());
+  }
+}
+
 void read_hostile_tables(std::string_view bytes) {
-  constexpr std::string_view between = "====\n";
   const std::size_t end = bytes.find(between);
   const std::string_view a = bytes.substr(0, end);
   const std::string_view b = end == std::string_view::npos ? a : bytes.substr(end + between.size());

@@ -138,6 +138,12 @@ TEST(Checkpoint, OtherReadersOfHdf5FindTheFields) {
   EXPECT_GE(H5Dread(data, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, numbers.data()), 0);
   EXPECT_EQ(numbers[2], 3);
   EXPECT_EQ(numbers[4], 1e308);
+  // Numbers wider than a byte are numbers as wide.
+  const hid_t number = H5Dopen2(file, "outer/inner/number", H5P_DEFAULT);
+  std::int64_t whole = 0;
+  EXPECT_GE(H5Dread(number, H5T_NATIVE_INT64, H5S_ALL, H5S_ALL, H5P_DEFAULT, &whole), 0);
+  EXPECT_EQ(whole, -(std::int64_t{1} << 62));
+  H5Dclose(number);
   const hid_t note = H5Aopen(data, "xxh3", H5P_DEFAULT);
   std::uint64_t sum = 0;
   EXPECT_GE(H5Aread(note, H5T_NATIVE_UINT64, &sum), 0);

@@ -141,7 +141,7 @@ constexpr BadScene bad_scenes[] = {
     {"range_reversed", 7, 31, "render.range: must be [low, high] with low < high"},
     {"range_of_kinds", 7, 28, "render.range: needs a color that is a number"},
     {"overlay_word", 7, 20, "render.overlay[0]: must be one of grid, pairs, forces, not girds"},
-    {"later_trajectory", 7, 22, "record.trajectory: true is part of the scene language but not in this version"},
+    {"trajectory_every", 7, 30, "record.trajectory.every: must be a number > 0 (s), not 0"},
     {"mixed_accurate", 7, 12, "precision: cannot be mixed in the accurate mode, whose tolerance is beyond it"},
     {"body_beyond_end", 8, 65, "bodies[2].from: must be before the end, 1 s, not 1 s"},
     {"body_gone_first", 8, 77, "bodies[2].until: must be at least a step after from, 0.5 s, not 0.501 s"},

@@ -1,0 +1,40 @@
+#include "sim/record/hdf5.hpp"
+
+#include "core/error.hpp"
+
+#include <fmt/format.h>
+
+#include <cstddef>
+
+namespace scree::hdf5 {
+
+Handle::Handle(hid_t id, Close close, const char* what) : id_(id), close_(close) {
+  if (id < 0) throw RunError(fmt::format("HDF5 cannot {}", what));
+}
+
+void check(herr_t status, const char* what) {
+  if (status < 0) throw RunError(fmt::format("HDF5 cannot {}", what));
+}
+
+void start() {
+  static const herr_t told = H5dont_atexit();
+  check(told, "start");
+  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
+}
+
+Handle type_of(const FieldType& type) {
+  using Kind = FieldType::Kind;
+  if (type.kind == Kind::bytes)
+    return {H5Tcreate(H5T_OPAQUE, static_cast<std::size_t>(type.columns)), H5Tclose, "make a type"};
+  const hid_t real = type.width == 4 ? H5T_IEEE_F32LE : H5T_IEEE_F64LE;
+  const hid_t whole = type.kind == Kind::integer ? H5T_STD_I8LE : H5T_STD_U8LE;
+  const hid_t id = H5Tcopy(type.kind == Kind::real ? real : whole);
+  if (type.kind != Kind::real) {
+    const auto bytes = static_cast<std::size_t>(type.width);
+    check(H5Tset_size(id, bytes), "make a type");
+    check(H5Tset_precision(id, 8 * bytes), "make a type");  // or all but 8 bits would be padding
+  }
+  return {id, H5Tclose, "make a type"};
+}
+
+}  // namespace scree::hdf5

@@ -1,0 +1,96 @@
+// Trajectories end to end: they are written, gone on with, drawn again and exported.
+#include "tests/sim/cli/falling_ball.hpp"
+
+namespace scree {
+namespace {
+
+class TrajectoryProgramTest : public ProgramTest {
+ protected:
+  const std::string pictures_ = "render: {size: [64, 48], fps: 50}\n";
+  const std::string trajectory_ = "--set=record.trajectory={precision: double}";
+};
+
+TEST_F(TrajectoryProgramTest, NoneUnlessTheSceneAsks) {
+  ASSERT_EQ(run_scene(falling_ball(no_pictures)).status, 0);
+  EXPECT_FALSE(fs::exists(folder_ / "output/fall/trajectory.vtkhdf"));
+  EXPECT_EQ(manifest_in(folder_ / "output/fall").count("trajectory_frames"), 0);
+}
+
+TEST_F(TrajectoryProgramTest, HasAFrameForEachPicture) {
+  ASSERT_EQ(run_scene(falling_ball(pictures_), {trajectory_}).status, 0);
+  EXPECT_EQ(manifest_in(folder_ / "output/fall")["trajectory_frames"], 6);
+  EXPECT_EQ(files_below(folder_ / "output/fall").back(), "trajectory.vtkhdf") << "and no journal";
+}
+
+TEST_F(TrajectoryProgramTest, OrAsManyAsTheSceneAsks) {
+  ASSERT_EQ(
+      run_scene(falling_ball(no_pictures), {"--set", "record.trajectory={every: 0.01, velocity: false}"})
+          .status,
+      0);
+  EXPECT_EQ(manifest_in(folder_ / "output/fall")["trajectory_frames"], 11);
+}
+
+TEST_F(TrajectoryProgramTest, GoneOnWithItHasTheSameBytes) {
+  const std::string scene = falling_ball(pictures_);
+  ASSERT_EQ(run_scene(scene, {"-o", "whole", trajectory_}).status, 0);
+  ASSERT_EQ(run_scene(scene, {"-o", "parts", "--until", "0.05", trajectory_}).status, 0);
+  ASSERT_TRUE(fs::exists(folder_ / "parts/trajectory.vtkhdf")) << "of what there is";
+  ASSERT_EQ(run_scene(scene, {"-o", "parts", "--resume", trajectory_}).status, 0);
+  EXPECT_TRUE(text_of(folder_ / "whole/trajectory.vtkhdf") == text_of(folder_ / "parts/trajectory.vtkhdf"));
+  EXPECT_EQ(files_below(folder_ / "whole"), files_below(folder_ / "parts"));
+}
+
+TEST_F(TrajectoryProgramTest, IsDrawnAgainAsTheRunDrewIt) {
+  const std::string scene = falling_ball("render: {size: [64, 48], fps: 50, color: speed}\n");
+  ASSERT_EQ(run_scene(scene, {trajectory_}).status, 0);
+  if (manifest_in(folder_ / "output/fall")["frames"] == 0) GTEST_SKIP() << "no pictures on this machine";
+  const Finished again = scree_in(folder_, {"render", "output/fall/"});
+  ASSERT_EQ(again.status, 0) << again.error;
+  for (const char* frame : {"frames/00000.png", "frames/00003.png", "frames/00005.png"})
+    EXPECT_EQ(text_of(folder_ / "output/fall" / frame), text_of(folder_ / "output/fall-render" / frame))
+        << frame;
+  EXPECT_FALSE(fs::exists(folder_ / "output/fall-render/frames/00006.png"));
+}
+
+TEST_F(TrajectoryProgramTest, IsDrawnFromElsewhere) {
+  ASSERT_EQ(run_scene(falling_ball(pictures_), {trajectory_}).status, 0);
+  if (manifest_in(folder_ / "output/fall")["frames"] == 0) GTEST_SKIP() << "no pictures on this machine";
+  const std::vector<std::string> again = {"render", "output/fall",
+                                          "-o",     "side",
+                                          "--set",  "render.camera.from=[3, 0, 10]",
+                                          "--set",  "render.camera.to=[0, 0, 10]"};
+  ASSERT_EQ(scree_in(folder_, again).status, 0);
+  EXPECT_NE(text_of(folder_ / "output/fall/frames/00000.png"), text_of(folder_ / "side/frames/00000.png"));
+  EXPECT_EQ(scree_in(folder_, again).status, 2) << "pictures are there";
+}
+
+TEST_F(TrajectoryProgramTest, WhatItDoesNotHaveIsNotDrawn) {
+  ASSERT_EQ(run_scene(falling_ball(no_pictures), {"--set", "record.trajectory={velocity: false}"}).status, 0);
+  const auto expect_refused = [&](const std::string& setting, const std::string& words) {
+    const Finished run = scree_in(folder_, {"render", "output/fall", "--set", setting});
+    EXPECT_EQ(run.status, 2);
+    EXPECT_TRUE(contains(run.error, words)) << run.error;
+    EXPECT_FALSE(fs::exists(folder_ / "output/fall-render"));
+  };
+  expect_refused("render={color: speed}", "no velocity");
+  expect_refused("render={color: force}", "no contacts");
+  expect_refused("render={overlay: [pairs]}", "no contacts");
+  expect_refused("gravity=[0, 0, -1]", "another render alone");
+}
+
+TEST_F(TrajectoryProgramTest, IsExported) {
+  ASSERT_EQ(run_scene(falling_ball(no_pictures), {"--set", "record.trajectory=true"}).status, 0);
+  for (const char* format : {"vtp", "xyz", "lammps", "csv"}) {
+    const Finished run = scree_in(folder_, {"export", "output/fall", "--to", format});
+    EXPECT_EQ(run.status, 0) << run.error;
+    EXPECT_TRUE(run.out.starts_with("4 frames: output/fall-" + std::string(format) + "/")) << run.out;
+  }
+  EXPECT_EQ(scree_in(folder_, {"export", "output/fall", "--to", "obj"}).status, 2);
+  ASSERT_EQ(run_scene(falling_ball(no_pictures), {"-o", "bare"}).status, 0);
+  const Finished none = scree_in(folder_, {"export", "bare", "--to", "xyz"});
+  EXPECT_EQ(none.status, 2);
+  EXPECT_TRUE(contains(none.error, "bare/trajectory.vtkhdf: there is none")) << none.error;
+}
+
+}  // namespace
+}  // namespace scree
