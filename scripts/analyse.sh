@@ -22,7 +22,9 @@ print(*sorted(f for f in files if not f.startswith(root + "/build") and re.searc
 END
 }
 
+# A configuration that does not parse would leave the checks of clang-tidy itself.
 tidy() {
+  ! clang-tidy-14 --dump-config "$root/core/parallel.hpp" 2>&1 | grep -F .clang-tidy || return 1
   chosen | xargs -P "$(nproc)" -n 1 clang-tidy-14 --quiet -p "$sources" 2>/dev/null >"$log/tidy.log" || true
   # A finding in a header comes once for each source that reads it.
   grep -E '(warning|error): ' "$log/tidy.log" | sort -u | tee "$log/tidy.txt"
