@@ -35,7 +35,9 @@ struct LevelCells {
     bits = std::min(bits, most_bits);
   }
 
-  int key_bits() const { return 1 + 3 * bits + std::bit_width(static_cast<unsigned>(count - 1)); }
+  int key_bits() const {
+    return 1 + 3 * bits + static_cast<int>(std::bit_width(static_cast<unsigned>(count - 1)));
+  }
 
   SCREE_HD int level_of(const Aabb& box) const { return level_of_extent(levels, extent_of(box)); }
 

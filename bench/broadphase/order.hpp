@@ -24,7 +24,7 @@ struct Objects {
 class Permutation {
  public:
   Permutation(std::int64_t n, std::uint64_t seed)
-      : n_(static_cast<std::uint64_t>(n)), half_bits_((std::bit_width(n_ - 1) + 1) / 2) {
+      : n_(static_cast<std::uint64_t>(n)), half_bits_((static_cast<int>(std::bit_width(n_ - 1)) + 1) / 2) {
     for (int round = 0; round < rounds; ++round)
       key_[round] = philox({static_cast<std::uint32_t>(round), 0, 0, 0},
                            {static_cast<std::uint32_t>(seed), static_cast<std::uint32_t>(seed >> 32)})[0];

@@ -144,7 +144,8 @@ void find_truth(ClosedForm form, Item& item) {
     case ClosedForm::sphere_plane:
       return set_gap(item, oracle::height(b, centre) - radius);
     case ClosedForm::box_plane:
-      return set_gap(item, lowest(oracle::Box(a), [&](const auto& p) { return oracle::height(b, p); }));
+      return set_gap(
+          item, lowest(oracle::Box(a), [&plane = b](const auto& p) { return oracle::height(plane, p); }));
     case ClosedForm::sphere_tube:
     case ClosedForm::box_tube:
       return true_gap_in_tube(form, pair, item);

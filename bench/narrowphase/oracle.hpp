@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 namespace scree::oracle {
@@ -64,7 +65,7 @@ inline Real separation_along(const Box& a, const Box& b, const Vec& n) {
 /// Largest separation over the 15 axes: minus the penetration depth, if negative.
 inline Real separation(const Solid& sa, const Solid& sb) {
   const Box a(sa), b(sb);
-  Real best = -INFINITY;
+  Real best = -std::numeric_limits<Real>::infinity();
   for (int i = 0; i < 3; ++i) {
     best = std::max({best, separation_along(a, b, a.axes.col(i)), separation_along(a, b, b.axes.col(i))});
     for (int j = 0; j < 3; ++j) {

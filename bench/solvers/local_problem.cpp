@@ -58,7 +58,7 @@ Vec3 LocalProblem::solve_slip(const Vec3& q) const {
 Vec3 LocalProblem::solve(const Vec3& q) const {
   if (q.x() >= 0) return Vec3::Zero();
   if (friction_ == 0) return {-q.x() * normal_mass_, 0, 0};
-  const Vec3 sticking = -inverse_ * q;
+  Vec3 sticking = -inverse_ * q;
   if (std::hypot(sticking.y(), sticking.z()) <= friction_ * sticking.x()) return sticking;
   return solve_slip(q);
 }

@@ -93,7 +93,8 @@ class Source {
       auto& row = lower[r / 3];
       const auto column = static_cast<std::int32_t>(c / 3);
       const auto at = std::ranges::find(row, column, &BlockMatrix::Block::column);
-      Mat3& block = at == row.end() ? row.emplace_back(column, Mat3::Zero()).value : at->value;
+      Mat3& block =
+          at == row.end() ? row.emplace_back(BlockMatrix::Block{column, Mat3::Zero()}).value : at->value;
       block(static_cast<int>(r % 3), static_cast<int>(c % 3)) = number();
     }
     for (std::size_t r = 0; r < points; ++r) {

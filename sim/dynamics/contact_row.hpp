@@ -155,7 +155,7 @@ SCREE_HD inline Vec3 coulomb_update(const ContactRow& row, const RowCoupling& co
                                     double friction, const Vec3& u) {
   const double pn_old = row.impulse.dot(normal);
   if (friction > 0) {
-    const Vec3 sticking = row.impulse - coupling.stick * (u - row.target * normal);
+    Vec3 sticking = row.impulse - coupling.stick * (u - row.target * normal);
     const double pn = sticking.dot(normal);
     if (pn >= 0 && (sticking - pn * normal).squaredNorm() <= friction * friction * pn * pn) return sticking;
   }

@@ -76,7 +76,7 @@ struct FlightInTube {
 struct WallImpact {
   double time = HUGE_VAL;  ///< into the substep (s)
   Vec3 outward;            ///< unit, from the axis to where the ball touches
-  double speed;            ///< at which it does (m/s)
+  double speed = 0;        ///< at which it does (m/s)
 };
 
 /// When the centre leaves the circle of radius `reach`, at `earliest` or later; infinite if it does not. The

@@ -293,7 +293,7 @@ fs::path export_to_vtp(TrajectoryReader& trajectory, const fs::path& folder) {
     fmt::format_to(std::back_inserter(text), "<DataSet timestep=\"{}\" file=\"vtp/{:05}.vtp\"/>\n",
                    trajectory.index().frames()[f].time, f);
   text += "</Collection>\n</VTKFile>\n";
-  const fs::path file = folder / "trajectory.pvd";
+  fs::path file = folder / "trajectory.pvd";
   write_file(file, text);
   return file;
 }

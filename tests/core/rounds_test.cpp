@@ -22,7 +22,7 @@ struct Ring {
     std::int64_t sum = 0;
     int rounds = 0;
   };
-  static constexpr int threads = 512;
+  [[maybe_unused]] static constexpr int threads = 512;
   static constexpr std::int64_t prime = 1000003;
 
   View<std::int64_t> even, odd;

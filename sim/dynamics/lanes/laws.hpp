@@ -199,7 +199,7 @@ SCREE_LAW BallContact<A> contact_of(const Facing<A>& at, const typename A::V& fr
   const V parting = noise - dot(before, at.normal);
   target = parting < target ? parting : target;
   const V flight = closing - tolerance::flight_margin * (closing < 0 ? -closing : closing);
-  target = flies & (flight < target) ? flight : target;
+  target = (flies & (flight < target)) ? flight : target;
   const V masses = i.inverse_mass + j.inverse_mass;
   const V turning = i.inverse_inertia * (arm_i * arm_i) + j.inverse_inertia * (arm_j * arm_j);
   const V normal_mass = masses > 0 ? 1.0 / masses : zero + 1.0;

@@ -39,7 +39,7 @@ TEST(ProcessPool, ADeadChildIsReportedAndTakesNothingWithIt) {
   ASSERT_EQ(results.size(), 3U);
   EXPECT_EQ(results[0].text, "fine");
   EXPECT_NE(results[1].death.find("Killed"), std::string::npos) << results[1].death;
-  EXPECT_NE(results[2].death.find("7"), std::string::npos) << results[2].death;
+  EXPECT_NE(results[2].death.find('7'), std::string::npos) << results[2].death;
 }
 
 TEST(ProcessPool, WithNothingToDoReturnsAtOnce) {

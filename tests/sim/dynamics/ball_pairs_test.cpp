@@ -97,7 +97,7 @@ struct Substep {
     load_solver_bodies(bodies, solver);
     color_contacts(balls, manifolds.headers, std::as_const(bodies.mobility).view(), set.coloring);
     prepare_contacts(manifolds, laws(), memory, 1, parameters, set);
-    const Ledger ledger =
+    Ledger ledger =
         response.solve(manifolds, step, parameters, balls, 1, view_of(bodies), solver, set, counters);
     memory.remember(manifolds, set, bodies.count());
     set.list_all(solver.view());

@@ -215,8 +215,8 @@ TEST(Lanes, BooksWhatTheImpulsesMove) {
       mean[b].velocity = 0.5 * (before[b].velocity + after[b].velocity);
       mean[b].spin = 0.5 * (before[b].spin + after[b].spin);
     }
-    const auto check = [&](const lanes::Members& members, const lanes::Losses& losses,
-                           const lanes::Lane& square) {
+    const auto check = [&, &name = name](const lanes::Members& members, const lanes::Losses& losses,
+                                         const lanes::Lane& square) {
       Ledger all;
       for (int l = 0; l < lanes::width; ++l) {
         if (members.contact[l] < 0) continue;
@@ -320,7 +320,7 @@ TEST(Lanes, PartsByTheShareAndKeepsTheCentre) {
       const bool of_points = !p.contacts[b / 2].aligned;
       if (of_points) moved[b].spin = (factors[b] * moved[b].spin).eval();
     }
-    const auto check = [&](const lanes::Members& members) {
+    const auto check = [&, &name = name](const lanes::Members& members) {
       for (int l = 0; l < lanes::width; ++l) {
         if (members.contact[l] < 0) continue;
         const Contact& c = p.contacts[static_cast<std::size_t>(members.contact[l])];

@@ -55,7 +55,7 @@ Snapshot shot(const Scene& scene, int f) {
 constexpr int frames = 6;
 
 fs::path write(const Scene& scene, const TemporaryFolder& folder, int threads = 1) {
-  const fs::path file = folder / "trajectory.vtkhdf";
+  fs::path file = folder / "trajectory.vtkhdf";
   TrajectoryWriter writer(scene, file, Opening::anew, threads);
   for (int f = 0; f < frames; ++f) writer.append(shot(scene, f));
   writer.finish();
@@ -307,8 +307,8 @@ TEST(Trajectory, IsExportedForLammps) {
       "1 3",
       "0 0",
       "0.33333334 0.33333334",
-      "ITEM: ATOMS id type x y z radius shapex shapey shapez quatw quati quatj "
-      "quatk vx vy vz",
+      ("ITEM: ATOMS id type x y z radius shapex shapey shapez quatw quati quatj "
+       "quatk vx vy vz"),
       "2 1 1 0 0.33333334 0.1 0.2 0.2 0.2 0.9950042 0.099833414 0 0 0 0.5 0"};
   ASSERT_GE(text.size(), start.size());
   EXPECT_TRUE(std::equal(start.begin(), start.end(), text.begin()));

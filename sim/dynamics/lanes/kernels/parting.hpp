@@ -35,7 +35,7 @@ double fly_balls(const BallBatch& batch, BallParting& parting, const Body* veloc
   if (any_flies != 0) {
     // What flies past is nearer to the other's tangent plane than to the other.
     const V3 p = get(batch.impulse.impulse);
-    gap = (spread(parting.flying) > 0) & (dot(p, p) == 0) ? all(__builtin_huge_val()) : gap;
+    gap = ((spread(parting.flying) > 0) & (dot(p, p) == 0)) ? all(__builtin_huge_val()) : gap;
   }
   set(parting.flown, gap);
   double least = 0;

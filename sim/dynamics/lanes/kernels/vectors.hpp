@@ -157,7 +157,7 @@ std::uint64_t bits_of(const decltype(V{} > V{}) & lanes) {
 
 /// A lane that is 1 where a byte is.
 V spread(const std::uint8_t* bytes) {
-  V lanes;
+  V lanes{};
   for (int l = 0; l < width; ++l) lanes[l] = bytes[l];
   return lanes;
 }
