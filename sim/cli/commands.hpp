@@ -44,6 +44,9 @@ struct ExportArguments {
 };
 int export_trajectory(const ExportArguments& arguments);
 
+/// Makes report.html of a run folder again.
+int report(const std::filesystem::path& run);
+
 struct RenderArguments {
   std::filesystem::path run;     ///< run folder
   std::filesystem::path output;  ///< empty: the run folder's name and -render

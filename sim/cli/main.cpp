@@ -131,6 +131,12 @@ CLI::App* add_render(CLI::App& app, RenderArguments& arguments) {
   return command;
 }
 
+CLI::App* add_report(CLI::App& app, std::filesystem::path& run) {
+  CLI::App* command = app.add_subcommand("report", "Make the page that tells of a run again");
+  command->add_option("run", run, "Run folder")->required()->type_name("DIR");
+  return command;
+}
+
 CLI::App* add_compare(CLI::App& app, CompareArguments& arguments) {
   CLI::App* command =
       app.add_subcommand("compare", "Say how far the numbers of two runs differ, column by column");
@@ -240,6 +246,8 @@ int main(int argc, char** argv) {
   const CLI::App* study_command = add_study(app, study_arguments);
   const CLI::App* export_command = add_export(app, export_arguments);
   const CLI::App* render_command = add_render(app, render_arguments);
+  std::filesystem::path reported;
+  const CLI::App* report_command = add_report(app, reported);
   const CLI::App* compare_command = add_compare(app, compare_arguments);
   const CLI::App* bench_command = add_bench(app);
   app.add_subcommand("info", "Say what this program is and what it finds on this machine");
@@ -251,6 +259,7 @@ int main(int argc, char** argv) {
     if (study_command->parsed()) return after_printing(study(study_arguments));
     if (export_command->parsed()) return after_printing(export_trajectory(export_arguments));
     if (render_command->parsed()) return after_printing(render_again(render_arguments));
+    if (report_command->parsed()) return after_printing(report(reported));
     if (compare_command->parsed()) return after_printing(compare(compare_arguments));
     if (bench_command->parsed()) return bench(bench_command->remaining());
     if (plan_command->parsed())

@@ -12,6 +12,7 @@
 #include "sim/record/guards.hpp"
 #include "sim/record/manifest.hpp"
 #include "sim/record/outcome.hpp"
+#include "sim/record/report/report.hpp"
 #include "sim/record/run_folder.hpp"
 #include "sim/record/trajectory_reader.hpp"
 #include "sim/step_failure.hpp"
@@ -96,6 +97,7 @@ void say_summary(const Scene& scene, const RunSummary& summary, const RunFolder&
     console.say(fmt::format("motion:   {} frames in {}", summary.trajectory_frames,
                             (folder / trajectory_name).string()));
   console.say(fmt::format("numbers:  {}", (folder / "metrics.csv").string()));
+  console.say(fmt::format("report:   {}", (folder / report_name).string()));
 }
 
 BodyTable state_of(const Simulation& simulation) {
@@ -154,6 +156,15 @@ void say_guards(const Observation& last, Console& console) {
 bool is_whole(const RunSummary& summary, const Simulation& simulation, const Recorder& recorder) {
   if (summary.error.empty()) return true;
   return summary.error != out_of_memory && recorder.recorded() == simulation.steps();
+}
+
+/// A page of what is there already: without it the run has come out no worse.
+void try_report(const RunFolder& folder) {
+  try {
+    write_report(folder.path());
+  } catch (const std::exception& error) {
+    print_error(fmt::format("warning: no report: {}; `scree report` makes it again", error.what()));
+  }
 }
 
 int status_of(const RunSummary& summary) {
@@ -266,6 +277,7 @@ int run(const RunArguments& arguments) {
     checkpoints.drop();
     recorder.drop();
   }
+  try_report(folder);
   return status_of(summary);
 }
 

@@ -3,6 +3,7 @@
 #include "sim/record/study.hpp"
 
 #include "core/error.hpp"
+#include "core/program.hpp"
 #include "sim/cli/commands.hpp"
 #include "sim/cli/process_pool.hpp"
 #include "sim/cli/trial.hpp"
@@ -14,15 +15,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cerrno>
 #include <cmath>
 #include <cstdio>
-#include <cstring>
 #include <limits>
-#include <spawn.h>
-#include <sys/wait.h>
-
-extern char** environ;
 
 namespace scree::cli {
 
@@ -134,32 +129,20 @@ void print_check(const Study& study, std::size_t check) {
   }
 }
 
-/// False if there is no gnuplot. Throws RunError if it fails.
-bool run_gnuplot(const fs::path& folder, const std::string& script) {
-  std::string place;  // in gnuplot's quotes, where two of them are one
-  for (const char c : folder.string()) place += c == '\'' ? std::string("''") : std::string(1, c);
-  std::string program = "gnuplot", option = "-e", change = fmt::format("cd '{}'", place), file = script;
-  char* const arguments[] = {program.data(), option.data(), change.data(), file.data(), nullptr};
-  pid_t child = 0;
-  const int error = posix_spawnp(&child, arguments[0], nullptr, nullptr, arguments, environ);
-  if (error == ENOENT) return false;
-  if (error != 0) throw RunError(fmt::format("cannot start gnuplot: {}", std::strerror(error)));
-  int status = 0;
-  while (waitpid(child, &status, 0) < 0 && errno == EINTR) continue;
-  if (!WIFEXITED(status) || WEXITSTATUS(status) != 0)
-    throw RunError(fmt::format("gnuplot could not draw {}", (folder / script).string()));
-  return true;
-}
-
 void draw(const Study& study, const RunFolder& folder) {
-  bool drawn = true;
+  std::string place;  // in gnuplot's quotes, where two of them are one
+  for (const char c : folder.path().string()) place += c == '\'' ? std::string("''") : std::string(1, c);
   for (std::size_t k = 0; k < study.checks().size(); ++k) {
     if (pareto_front(study, k).empty()) continue;
     const std::string name = fmt::format("error_{}", k + 1);
-    write_file(folder / (name + ".gp").c_str(), plot_script(study, k, name));
-    drawn = drawn && run_gnuplot(folder.path(), name + ".gp");
+    const std::string script = plot_script(study, k, name);
+    write_file(folder / (name + ".gp").c_str(), script);
+    try {
+      run_program({"gnuplot"}, fmt::format("cd '{}'\n{}", place, script));
+    } catch (const RunError& error) {
+      fmt::print("no plot: {}; its script is {}\n", error.what(), (folder / (name + ".gp").c_str()).string());
+    }
   }
-  if (!drawn) fmt::print("No plots: gnuplot is not installed. Their scripts are in the folder.\n");
 }
 
 }  // namespace

@@ -1,18 +1,16 @@
 #include "sim/record/comparison.hpp"
 
 #include "core/error.hpp"
+#include "sim/record/table.hpp"
 #include "sim/scene/reader.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
-#include <fstream>
 #include <limits>
 #include <optional>
 #include <string_view>
-#include <unordered_map>
 
 namespace scree {
 
@@ -21,63 +19,6 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr double infinite = std::numeric_limits<double>::infinity();
-
-std::vector<std::string_view> cells_of(std::string_view line) {
-  std::vector<std::string_view> cells;
-  for (std::size_t begin = 0;;) {
-    const std::size_t end = line.find(',', begin);
-    cells.push_back(line.substr(begin, end - begin));
-    if (end == std::string_view::npos) return cells;
-    begin = end + 1;
-  }
-}
-
-std::optional<double> number_in(std::string_view cell) {
-  double value = 0;
-  const auto [end, error] = std::from_chars(cell.data(), cell.data() + cell.size(), value);
-  return error == std::errc() && end == cell.data() + cell.size() ? std::optional(value) : std::nullopt;
-}
-
-/// Lines of comma-separated cells, one at a time: a table may be larger than memory.
-class Table {
- public:
-  explicit Table(const fs::path& file) : file_(file), stream_(file) {
-    if (!stream_.is_open()) throw InputError(fmt::format("{}: cannot be read", file.string()));
-    if (!next()) throw InputError(fmt::format("{}: is empty", file.string()));
-    for (const std::string_view name : cells_) {
-      if (!place_.emplace(name, columns_.size()).second)
-        throw InputError(printable(fmt::format("{}: two columns are called {}", file.string(), name)));
-      columns_.emplace_back(name);
-    }
-  }
-
-  const std::vector<std::string>& columns() const { return columns_; }
-  /// Of a column, if there is one of that name.
-  std::optional<std::size_t> find(const std::string& name) const {
-    const auto found = place_.find(name);
-    return found == place_.end() ? std::nullopt : std::optional(found->second);
-  }
-  /// False at the end.
-  bool next() {
-    if (!std::getline(stream_, line_)) return false;
-    ++number_;
-    cells_ = cells_of(line_);
-    if (!columns_.empty() && cells_.size() != columns_.size())
-      throw InputError(fmt::format("{}:{}: {} cells, where the first line has {}", file_.string(), number_,
-                                   cells_.size(), columns_.size()));
-    return true;
-  }
-  std::string_view cell(std::size_t column) const { return cells_[column]; }
-
- private:
-  fs::path file_;
-  std::ifstream stream_;
-  std::string line_;
-  std::vector<std::string_view> cells_;
-  std::vector<std::string> columns_;
-  std::unordered_map<std::string, std::size_t> place_;
-  std::int64_t number_ = 0;
-};
 
 /// A column that both have.
 struct Common {

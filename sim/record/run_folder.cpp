@@ -24,9 +24,10 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::string_view lock_name = ".lock";
-constexpr std::array<std::string_view, 12> file_names = {
-    "manifest.json",      "scene.yaml", "metrics.csv", "timing.csv",  "final.csv", "trajectory.vtkhdf",
-    "trajectory.journal", "movie.mp4",  "log.txt",     "failure.png", "study.csv", "study.json"};
+constexpr std::array<std::string_view, 13> file_names = {
+    "manifest.json",     "scene.yaml",         "metrics.csv", "timing.csv", "final.csv",
+    "trajectory.vtkhdf", "trajectory.journal", "movie.mp4",   "log.txt",    "failure.png",
+    "report.html",       "study.csv",          "study.json"};
 
 /// Of a study: error_1.gp, error_1.svg, error_1.png, ...
 bool is_plot(std::string_view name) {
@@ -115,7 +116,8 @@ void RunFolder::clear() const {
 }
 
 void RunFolder::remove_results() const {
-  for (const char* name : {"manifest.json", "final.csv", "trajectory.vtkhdf", "movie.mp4", "failure.png"}) {
+  for (const char* name :
+       {"manifest.json", "final.csv", "trajectory.vtkhdf", "movie.mp4", "failure.png", "report.html"}) {
     std::error_code error;
     fs::remove(folder_ / name, error);
     if (error)

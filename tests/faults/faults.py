@@ -83,6 +83,15 @@ def cannot_log(case, fault, words):
     case.nothing_to_resume()
 
 
+@case(("disk full for the report", no_room("/report.html", 1000), FULL))
+def cannot_report(case, fault, words):
+    case.ends(case.run(fault=fault), 0, "no report", words)
+    case.is_undisturbed(but=("files",))
+    case.nothing_to_resume()
+    again = subprocess.run([case.harness.scree, "report", str(case.folder)], capture_output=True, text=True)
+    expect(again.returncode == 0 and (case.folder / "report.html").exists(), f"scree report: {again.returncode} {again.stderr}")
+
+
 def mount(case, *arguments):
     place = case.scratch / "disk"
     place.mkdir(exist_ok=True)

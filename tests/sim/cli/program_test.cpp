@@ -14,8 +14,8 @@ TEST_F(ProgramTest, RunWritesTheRunFolder) {
   EXPECT_EQ(run.status, 0) << run.error;
   EXPECT_EQ(run.error, "");
   EXPECT_EQ(files_below(folder_ / "output/fall"),
-            (std::vector<std::string>{"final.csv", "log.txt", "manifest.json", "metrics.csv", "scene.yaml",
-                                      "timing.csv"}));
+            (std::vector<std::string>{"final.csv", "log.txt", "manifest.json", "metrics.csv", "report.html",
+                                      "scene.yaml", "timing.csv"}));
   EXPECT_EQ(text_of(folder_ / "output/fall/log.txt"), run.out);
   EXPECT_TRUE(contains(run.out, "1 passed, 0 failed")) << run.out;
 
@@ -190,9 +190,9 @@ TEST_F(ProgramTest, ARunWhoseStartCannotBeObservedStillLeavesAManifest) {
   const Finished run = run_scene(falling_ball(no_pictures), {"--set", "bodies[0].velocity=[1e200, 0, 0]"});
   EXPECT_EQ(run.status, 3);
   EXPECT_EQ(manifest_in(folder_ / "output/fall")["status"], "failed");
-  EXPECT_EQ(
-      files_below(folder_ / "output/fall"),
-      (std::vector<std::string>{"log.txt", "manifest.json", "metrics.csv", "scene.yaml", "timing.csv"}));
+  EXPECT_EQ(files_below(folder_ / "output/fall"),
+            (std::vector<std::string>{"log.txt", "manifest.json", "metrics.csv", "report.html", "scene.yaml",
+                                      "timing.csv"}));
 }
 
 /// A run of a million seconds, which has begun to write.
@@ -229,8 +229,8 @@ TEST_F(ProgramTest, AnInterruptExitsWith130AndSavesWhatItHas) {
   const std::string checkpoint =
       fmt::format("checkpoint/{:012}.h5", manifest_in(folder_ / "run")["steps"].get<std::int64_t>());
   EXPECT_EQ(files_below(folder_ / "run"),
-            (std::vector<std::string>{checkpoint, "log.txt", "manifest.json", "metrics.csv", "scene.yaml",
-                                      "timing.csv"}));
+            (std::vector<std::string>{checkpoint, "log.txt", "manifest.json", "metrics.csv", "report.html",
+                                      "scene.yaml", "timing.csv"}));
 }
 
 TEST_F(ProgramTest, ReproduceRunsAgainAndComparesTheStates) {
