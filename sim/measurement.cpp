@@ -50,11 +50,12 @@ void measure_totals(const Totals& totals, const EnergyBaseline& baseline, const 
 }
 
 void measure_regions(const std::vector<Region>& regions, const std::vector<RegionContents>& now,
-                     const std::vector<RegionContents>& before, double step, std::vector<RegionState>& out) {
+                     const std::vector<RegionContents>& before, const std::vector<Removed>& removed,
+                     double step, std::vector<RegionState>& out) {
   out.clear();
   for (std::size_t r = 0; r < regions.size(); ++r) {
     const double flux = step > 0 ? (now[r].mass - before[r].mass) / step : 0.0;
-    out.push_back({now[r].count, now[r].volume / (regions[r].to - regions[r].from).prod(), flux});
+    out.push_back({now[r].count, now[r].volume / (regions[r].to - regions[r].from).prod(), flux, removed[r]});
   }
 }
 

@@ -48,9 +48,11 @@ double explained_energy(const Ledger& ledger, const Exchange& exchange);
 void measure_totals(const Totals& totals, const EnergyBaseline& baseline, const Vec3& gravity,
                     const Vec3& reference, Observation& out);
 
-/// Of each region, from what it holds now and held one step before; `step` is its length (s), 0 at t = 0.
+/// Of each region, from what it holds now and held one step before, and what it has taken out; `step` is its
+/// length (s), 0 at t = 0.
 void measure_regions(const std::vector<Region>& regions, const std::vector<RegionContents>& now,
-                     const std::vector<RegionContents>& before, double step, std::vector<RegionState>& out);
+                     const std::vector<RegionContents>& before, const std::vector<Removed>& removed,
+                     double step, std::vector<RegionState>& out);
 
 /// Counts and gaps of the contacts that carried an impulse in the last substep.
 void measure_contacts(const ContactSet& contacts, std::int64_t free_bodies, Observation& out);

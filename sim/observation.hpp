@@ -75,11 +75,24 @@ struct Counters {
   NarrowPhaseStats narrowphase;
 };
 
+/// What a region has taken out, since t = 0.
+struct Removed {
+  std::int64_t count = 0;
+  double mass = 0;  ///< kg
+
+  Removed& operator+=(const Removed& more) {
+    count += more.count;
+    mass += more.mass;
+    return *this;
+  }
+};
+
 /// A region of the scene at one instant; its bodies are the free ones whose centre lies in it.
 struct RegionState {
   std::int64_t count = 0;
   double fraction = 0;  ///< of its volume that is solid
   double flux = 0;      ///< mass gained over the last step / step (kg/s)
+  Removed removed;
 };
 
 struct Observation {
@@ -97,12 +110,14 @@ struct Observation {
   Vec3 centre = Vec3::Zero();            ///< of mass, of the free bodies (m); NaN if there are none
   Counters counters;
   Penetration penetration;
-  double gap_mean = 0;        ///< mean |gap| of loaded contact points (m)
-  std::int64_t contacts = 0;  ///< contact points that carried an impulse in the last step
-  std::int64_t pairs = 0;     ///< size of the PCS
-  std::int64_t bodies = 0;    ///< that are there
-  std::int64_t left = 0;      ///< that have left the world and were taken out
-  double speed_max = 0;       ///< of the free bodies (m/s)
+  double gap_mean = 0;         ///< mean |gap| of loaded contact points (m)
+  std::int64_t contacts = 0;   ///< contact points that carried an impulse in the last step
+  std::int64_t pairs = 0;      ///< size of the PCS
+  std::int64_t bodies = 0;     ///< that are there
+  std::int64_t left = 0;       ///< that have left the world and were taken out
+  std::int64_t requested = 0;  ///< bodies that emitters were to send
+  std::int64_t emitted = 0;    ///< and those that found room
+  double speed_max = 0;        ///< of the free bodies (m/s)
   double speed_rms = 0;
   double speed_kurtosis = 0;         ///< mean v^4 / (mean v^2)^2; NaN at rest
   double coordination_mean = 0;      ///< loaded contacts per free body, counted for each of its two

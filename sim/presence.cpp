@@ -1,9 +1,13 @@
 #include "sim/presence.hpp"
 
-#include "sim/dynamics/leaving.hpp"
+#include "sim/dynamics/coming_and_going.hpp"
 #include "sim/dynamics/motion.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <functional>
+#include <numeric>
 #include <utility>
 
 namespace scree {
@@ -17,6 +21,17 @@ void set_present(std::int64_t k, const BodyTable& start, const BodyView& views) 
   views.inverse_inertia[k] = start.inverse_inertia[from];
 }
 
+/// Of ranges by ascending body, the one that has it; null if none has.
+template <class T, class RangeOf>
+const T* find_range(const std::vector<T>& list, std::int32_t body, RangeOf range_of) {
+  const auto after = std::upper_bound(list.begin(), list.end(), body, [&](std::int32_t id, const T& item) {
+    return id < range_of(item).first;
+  });
+  if (after == list.begin()) return nullptr;
+  const T& item = *std::prev(after);
+  return body < range_of(item).first + range_of(item).count ? &item : nullptr;
+}
+
 }  // namespace
 
 Presence::Presence(const Scene& scene, const TimeGrid& grid) : count_(scene.bodies.count()) {
@@ -24,17 +39,38 @@ Presence::Presence(const Scene& scene, const TimeGrid& grid) : count_(scene.bodi
     windows_.push_back({lifetime.bodies, grid.steps_in(lifetime.span)});
     if (!windows_.back().steps.holds(0)) count_ -= lifetime.bodies.count;
   }
+  for (const Emitter& emitter : scene.emitters) {
+    emissions_.emplace_back(emitter, grid);
+    count_ -= emitter.bodies.count;
+  }
 }
 
 const Presence::Window* Presence::window_of(std::int32_t body) const {
-  const auto after = std::upper_bound(windows_.begin(), windows_.end(), body,
-                                      [](std::int32_t id, const Window& w) { return id < w.bodies.first; });
-  if (after == windows_.begin()) return nullptr;
-  const Window& window = *std::prev(after);
-  return body < window.bodies.first + window.bodies.count ? &window : nullptr;
+  return find_range(windows_, body, [](const Window& window) { return window.bodies; });
+}
+
+const Emission* Presence::emission_of(std::int32_t body) const {
+  return find_range(emissions_, body, [](const Emission& emission) { return emission.bodies(); });
+}
+
+std::int64_t Presence::requested() const {
+  return std::transform_reduce(emissions_.begin(), emissions_.end(), std::int64_t{0}, std::plus<>(),
+                               [](const Emission& emission) { return emission.requested(); });
+}
+
+std::int64_t Presence::emitted() const {
+  return std::transform_reduce(emissions_.begin(), emissions_.end(), std::int64_t{0}, std::plus<>(),
+                               [](const Emission& emission) { return emission.emitted(); });
+}
+
+void Presence::archive(Archive& archive) {
+  archive("count", count_);
+  for (std::size_t e = 0; e < emissions_.size(); ++e)
+    archive.part(fmt::format("emission{}", e).c_str(), emissions_[e]);
 }
 
 bool Presence::holds(std::int32_t body, std::int64_t step) const {
+  if (const Emission* emission = emission_of(body)) return emission->holds(body, step);
   const Window* window = window_of(body);
   return window == nullptr || window->steps.holds(step);
 }
@@ -49,6 +85,10 @@ void Presence::begin(Bodies<Host>& bodies) const {
     if (window.steps.holds(0)) continue;
     for (std::int32_t k = 0; k < window.bodies.count; ++k)
       set_absent(window.bodies.first + k, view_of(bodies));
+  }
+  for (const Emission& emission : emissions_) {
+    for (std::int32_t k = 0; k < emission.bodies().count; ++k)
+      set_absent(emission.bodies().first + k, view_of(bodies));
   }
 }
 
@@ -65,8 +105,10 @@ void Presence::book(const ConstBodyView& bodies, std::int64_t k, double sign, co
   change.exchange.energy += sign * (body.kinetic() + body.potential);
   change.exchange.momentum += sign * body.momentum;
   change.exchange.angular_momentum += sign * body.angular_momentum;
-  const Vec3 start = scene.bodies.position[static_cast<std::size_t>(bodies.id[k])] - reference;
-  change.first_potential -= sign * body.mass * scene.gravity.dot(start);
+  const std::int32_t id = bodies.id[k];
+  const Emission* emission = emission_of(id);
+  const Vec3& start = emission ? emission->place(id) : scene.bodies.position[static_cast<std::size_t>(id)];
+  change.first_potential -= sign * body.mass * scene.gravity.dot(start - reference);
   count_ += sign > 0 ? 1 : -1;
 }
 
@@ -87,13 +129,22 @@ Presence::Change Presence::update(std::int64_t step, const Scene& scene, const V
   return change;
 }
 
-Presence::Change Presence::take_leave_of(const BodyTable& gone, const Scene& scene, const Vec3& reference) {
+Presence::Change Presence::book_all(const BodyTable& table, double sign, const Scene& scene,
+                                    const Vec3& reference) {
   Change change;
   Bodies<Host> bodies;
-  copy_bodies(bodies, gone);
+  copy_bodies(bodies, table);
   for (std::int64_t k = 0; k < bodies.count(); ++k)
-    book(view_of(std::as_const(bodies)), k, -1, scene, reference, change);
+    book(view_of(std::as_const(bodies)), k, sign, scene, reference, change);
   return change;
+}
+
+Presence::Change Presence::take_leave_of(const BodyTable& gone, const Scene& scene, const Vec3& reference) {
+  return book_all(gone, -1, scene, reference);
+}
+
+Presence::Change Presence::welcome(const BodyTable& come, const Scene& scene, const Vec3& reference) {
+  return book_all(come, 1, scene, reference);
 }
 
 }  // namespace scree

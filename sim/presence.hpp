@@ -3,6 +3,7 @@
 
 #include "core/archive.hpp"
 #include "core/bodies.hpp"
+#include "sim/emission.hpp"
 #include "sim/observation.hpp"
 #include "sim/scene/scene.hpp"
 #include "sim/scene/time_grid.hpp"
@@ -19,10 +20,12 @@ class Presence {
   Presence(const Scene& scene, const TimeGrid& grid);
 
   bool holds(std::int32_t body, std::int64_t step) const;
-  /// First step in whose state the body is there.
+  /// First step in whose state the body is there, if it is no emitter's.
   std::int64_t first_step(std::int32_t body) const;
   std::int64_t count() const { return count_; }  ///< bodies that are there
-  void archive(Archive& archive) { archive("count", count_); }
+  std::int64_t requested() const;                ///< of all emitters so far
+  std::int64_t emitted() const;
+  void archive(Archive& archive);
 
   /// To be called at t = 0, if some body is not there: takes out those that come later.
   void begin(Bodies<Host>& bodies) const;
@@ -38,6 +41,9 @@ class Presence {
   Change update(std::int64_t step, const Scene& scene, const Vec3& reference, Bodies<Host>& bodies);
   /// These were taken out for another reason, as they are.
   Change take_leave_of(const BodyTable& gone, const Scene& scene, const Vec3& reference);
+  /// These, of an emission, were brought in.
+  Change welcome(const BodyTable& come, const Scene& scene, const Vec3& reference);
+  std::vector<Emission>& emissions() { return emissions_; }
 
  private:
   struct Window {
@@ -46,10 +52,13 @@ class Presence {
     bool changes_at(std::int64_t step) const { return steps.first == step || steps.end == step; }
   };
   const Window* window_of(std::int32_t body) const;
+  const Emission* emission_of(std::int32_t body) const;
   void book(const ConstBodyView& bodies, std::int64_t k, double sign, const Scene& scene,
             const Vec3& reference, Change& change);
+  Change book_all(const BodyTable& table, double sign, const Scene& scene, const Vec3& reference);
 
-  std::vector<Window> windows_;  // by ascending body
+  std::vector<Window> windows_;      // by ascending body
+  std::vector<Emission> emissions_;  // likewise
   std::int64_t count_;
 };
 

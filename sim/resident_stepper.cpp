@@ -4,8 +4,8 @@
 #include "core/timing.hpp"
 #include "core/tolerances.hpp"
 #include "sim/applied_forces.hpp"
+#include "sim/dynamics/coming_and_going.hpp"
 #include "sim/dynamics/impact_rounds.hpp"
-#include "sim/dynamics/leaving.hpp"
 #include "sim/dynamics/motion.hpp"
 #include "sim/moving_state.hpp"
 #include "sim/pair_finder.hpp"
@@ -88,6 +88,10 @@ class ResidentStepper final : public Stepper {
     forget_pairs();
     return gone;
   }
+  void bring_in(const BodyTable& bodies) override {
+    scree::bring_in<Space>(bodies, bodies_);
+    forget_pairs();
+  }
 
   void archive(Archive& archive) override;
 
@@ -105,6 +109,12 @@ class ResidentStepper final : public Stepper {
   }
   std::vector<std::int32_t> bodies_beyond(const World& world) const override {
     return scree::bodies_beyond<Space>(world, bodies_);
+  }
+  std::vector<std::int32_t> bodies_in(const Region& region) const override {
+    return scree::bodies_in<Space>(region, bodies_);
+  }
+  BodyTable bodies_near(const Vec3& low, const Vec3& high) const override {
+    return scree::bodies_near<Space>(low, high, bodies_);
   }
 
   std::vector<BodyPair> pairs() override;

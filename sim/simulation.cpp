@@ -86,6 +86,7 @@ struct Simulation::Parts {
   std::vector<Quat> first_orientation;
   Exchange exchange;                            // potential energy about `origin`
   std::int64_t left = 0;                        // bodies that have left the world and were taken out
+  std::vector<Removed> removed;                 // by each region
   std::vector<RegionContents> contents;         // of each region
   std::vector<RegionContents> contents_before;  // and one step earlier
   Observation observation;
@@ -108,6 +109,8 @@ struct Simulation::Parts {
       stepper->change_bodies([this](Bodies<Host>& bodies) { presence.begin(bodies); });
     first_orientation = scene.bodies.orientation;
     steps.start(*stepper, lifting_energy(scene));
+    removed.resize(scene.regions.size());
+    emit();
     contents = contents_before = region_contents();
   }
 
@@ -140,18 +143,38 @@ struct Simulation::Parts {
     loaded = true;
   }
 
-  /// Bodies that have left the world, and those whose time has come or is over.
+  /// Bodies that have left the world or come to where they end, those whose time has come or is over, and
+  /// those that an emitter sends.
   void come_and_go() {
-    if (scene.world && scene.world->leaving == Leaving::remove) {
-      const std::vector<std::int32_t> out = stepper->bodies_beyond(*scene.world);
-      left += static_cast<std::int64_t>(out.size());
-      if (!out.empty()) book(presence.take_leave_of(stepper->take_out(out), scene, origin));
+    if (scene.world && scene.world->leaving == Leaving::remove)
+      left += take_out(stepper->bodies_beyond(*scene.world)).count;
+    for (std::size_t r = 0; r < scene.regions.size(); ++r)
+      if (scene.regions[r].removes) removed[r] += take_out(stepper->bodies_in(scene.regions[r]));
+    if (presence.changes(step)) {
+      Presence::Change change;
+      stepper->change_bodies(
+          [&](Bodies<Host>& bodies) { change = presence.update(step, scene, origin, bodies); });
+      book(change);
     }
-    if (!presence.changes(step)) return;
-    Presence::Change change;
-    stepper->change_bodies(
-        [&](Bodies<Host>& bodies) { change = presence.update(step, scene, origin, bodies); });
+    emit();
+  }
+
+  Removed take_out(const std::vector<std::int32_t>& bodies) {
+    if (bodies.empty()) return {};
+    const Presence::Change change = presence.take_leave_of(stepper->take_out(bodies), scene, origin);
     book(change);
+    return {static_cast<std::int64_t>(bodies.size()), -change.exchange.mass};
+  }
+
+  /// One emitter after another, each where those before it have left room.
+  void emit() {
+    for (Emission& emission : presence.emissions()) {
+      const BodyTable come = emission.emit(
+          step, scene, [this](const Vec3& low, const Vec3& high) { return stepper->bodies_near(low, high); });
+      if (come.count() == 0) continue;
+      stepper->bring_in(come);
+      book(presence.welcome(come, scene, origin));
+    }
   }
 
   void book(const Presence::Change& change) {
@@ -171,7 +194,9 @@ struct Simulation::Parts {
     const Totals totals = stepper->totals(origin);
     measure_totals(totals, steps.baseline(), scene.gravity, origin, o);
     o.speed_max = stepper->largest_speed();
-    measure_regions(scene.regions, contents, contents_before, last_step, o.regions);
+    o.requested = presence.requested();
+    o.emitted = presence.emitted();
+    measure_regions(scene.regions, contents, contents_before, removed, last_step, o.regions);
     if (!loaded) stepper->measure_contacts(totals.count, o);
     o.penetration = Penetration::unknown();
     o.pairs = -1;
@@ -193,6 +218,8 @@ struct Simulation::Parts {
     archive.part("steps", steps);
     archive("exchange", exchange);
     archive("left", left);
+    archive("removed", removed);
+    archive.expect(removed.size() == scene.regions.size(), "removed");
     archive.part("presence", presence);
     archive("contents", contents);
     archive("contents_before", contents_before);

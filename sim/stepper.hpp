@@ -48,6 +48,8 @@ class Stepper {
   virtual void change_bodies(const std::function<void(Bodies<Host>&)>& change) = 0;
   /// The same for bodies that go, which are few: they are returned as they were.
   virtual BodyTable take_out(const std::vector<std::int32_t>& ids) = 0;
+  /// And for bodies that come.
+  virtual void bring_in(const BodyTable& bodies) = 0;
 
   /// What the next step starts from. The contacts of the last substep are not among it: after loading there
   /// are none until the next.
@@ -62,6 +64,10 @@ class Stepper {
   virtual RegionContents contents_of(const Region& region) const = 0;
   /// The free bodies whose centre is outside of the world, in order.
   virtual std::vector<std::int32_t> bodies_beyond(const World& world) const = 0;
+  /// And those whose centre is in a region.
+  virtual std::vector<std::int32_t> bodies_in(const Region& region) const = 0;
+  /// The bodies that are there and may reach into a box (m), planes and tubes included.
+  virtual BodyTable bodies_near(const Vec3& low, const Vec3& high) const = 0;
 
   // The pairs that may touch, for the state as it is; and the boxes in which the last broad phase looked for
   // them, by body.

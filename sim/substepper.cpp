@@ -70,6 +70,11 @@ BodyTable Substepper::take_out(const std::vector<std::int32_t>& ids) {
   return gone;
 }
 
+void Substepper::bring_in(const BodyTable& bodies) {
+  scree::bring_in<Host>(bodies, bodies_);
+  forget_pairs();
+}
+
 /// Others of the bodies are there now, or somewhere else.
 void Substepper::forget_pairs() {
   kept_pairs_.forget();

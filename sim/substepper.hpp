@@ -5,10 +5,10 @@
 #include "core/bodies.hpp"
 #include "narrowphase/narrow_phase.hpp"
 #include "sim/applied_forces.hpp"
+#include "sim/dynamics/coming_and_going.hpp"
 #include "sim/dynamics/contact_set.hpp"
 #include "sim/dynamics/correction.hpp"
 #include "sim/dynamics/impact_solver.hpp"
-#include "sim/dynamics/leaving.hpp"
 #include "sim/dynamics/motion.hpp"
 #include "sim/dynamics/prescribed.hpp"
 #include "sim/dynamics/response.hpp"
@@ -40,6 +40,7 @@ class Substepper final : public Stepper {
   void undo_step() override;
   void change_bodies(const std::function<void(Bodies<Host>&)>& change) override;
   BodyTable take_out(const std::vector<std::int32_t>& ids) override;
+  void bring_in(const BodyTable& bodies) override;
 
   void archive(Archive& archive) override;
 
@@ -53,6 +54,12 @@ class Substepper final : public Stepper {
   }
   std::vector<std::int32_t> bodies_beyond(const World& world) const override {
     return scree::bodies_beyond<Host>(world, bodies_);
+  }
+  std::vector<std::int32_t> bodies_in(const Region& region) const override {
+    return scree::bodies_in<Host>(region, bodies_);
+  }
+  BodyTable bodies_near(const Vec3& low, const Vec3& high) const override {
+    return scree::bodies_near<Host>(low, high, bodies_);
   }
 
   std::vector<BodyPair> pairs() override;

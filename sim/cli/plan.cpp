@@ -51,6 +51,16 @@ void print_bodies(const Scene& scene) {
   }
 }
 
+void print_emitters(const Scene& scene) {
+  for (const Emitter& emitter : scene.emitters) {
+    const double last = emitter.start + (emitter.bodies.count - 1) / emitter.rate;
+    print_row("", fmt::format("{} one after another, {:.4g} a second, from {} s {}", emitter.bodies.count,
+                              emitter.rate, emitter.start,
+                              last <= scene.time.end ? fmt::format("to {:.4g} s", last)
+                                                     : "past the end: the last ones never appear"));
+  }
+}
+
 /// Past these a run goes on, but a newcomer should know what to expect of it. Contacts reach as far as bodies
 /// travel in a substep: single impacts on a wall as thick as the ball hold to a travel of 4, and some fail
 /// from 8 on; two bodies meet at twice the speed.
@@ -225,6 +235,7 @@ int plan(const PlanArguments& arguments) {
   const OutputPlan output = plan_output(scene, grid);
   print_row("scene", fmt::format("{} ({}), seed {}", scene.name, scene.source.string(), scene.seed));
   print_bodies(scene);
+  print_emitters(scene);
   const std::string substeps = scene.time.substeps
                                    ? std::to_string(*scene.time.substeps)
                                    : fmt::format("1 to {}, as overlaps ask", tolerance::most_substeps);

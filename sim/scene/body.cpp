@@ -10,6 +10,7 @@ namespace scree {
 namespace {
 
 Vec3 place_of(const BodyEntry& entry, std::int64_t k, Random& random) {
+  if (entry.emit) return 0.5 * (entry.emit->from + entry.emit->to);
   Vec3 at = entry.at.value_or(Vec3::Zero());
   if (!entry.repeat) return at;
   const RepeatEntry& repeat = *entry.repeat;
@@ -30,7 +31,7 @@ Quat orientation_of(const BodyEntry& entry, Random& random) {
     const double angle = entry.rotate->degrees ? *entry.rotate->degrees * pi / 180 : *entry.rotate->radians;
     return Quat(Eigen::AngleAxisd(angle, entry.rotate->axis.stableNormalized()));
   }
-  return entry.scatter ? random_orientation(random) : Quat::Identity();
+  return entry.scatter || entry.emit ? random_orientation(random) : Quat::Identity();
 }
 
 /// Of a solid sphere or cuboid (size as in Shape), about the principal axes (kg m^2).

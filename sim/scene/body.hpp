@@ -10,8 +10,9 @@
 namespace scree {
 
 /// Writes body `id` of the table, the k-th of the entry: everything but its material. The place of a
-/// scattered body stays open. All draws are from the stream of (seed, id). False if a free body's mass or
-/// inertia, or the inverse of one, is not a positive finite number.
+/// scattered body stays open; that of one that will be emitted is the middle of the emitter's box until then.
+/// All draws are from the stream of (seed, id). False if a free body's mass or inertia, or the inverse of
+/// one, is not a positive finite number.
 bool make_body(const BodyEntry& entry, std::int64_t k, std::int32_t id, std::uint64_t seed, double density,
                BodyTable& bodies);
 

@@ -142,6 +142,26 @@ Codec<ScatterEntry> scatter_section() {
       check_scatter);
 }
 
+Codec<EmitEntry> emit_section() {
+  using T = EmitEntry;
+  return section<T>(
+      "bodies[].emit",
+      "The body again and again, one after another as time goes by, the first at `from` of the item, at "
+      "random "
+      "places and in random orientations unless one is given. Each appears with its centre between the two "
+      "corners where it overlaps nothing; while there is no such place it waits, and none is left out: see "
+      "the "
+      "measures emission.requested and emission.emitted. Bodies are called `name[0]`, `name[1]`, ... in the "
+      "order in which they are asked for.",
+      {
+          key<T>("count", &T::count, large_integer(at_least(1)), required, "how many in all"),
+          key<T>("rate", &T::rate, number(above_zero, "1/s"), required, "how many a second are asked for"),
+          key<T>("from", &T::from, vector("m"), required, "lower corner"),
+          key<T>("to", &T::to, vector("m"), required, "upper corner"),
+      },
+      check_emit);
+}
+
 }  // namespace
 
 Codec<BodyEntry> body_section() {
@@ -180,10 +200,11 @@ Codec<BodyEntry> body_section() {
                  "the body moves as prescribed"),
           key<T>("repeat", &T::repeat, optional(repeat_section()), optionally, "many on a lattice"),
           key<T>("scatter", &T::scatter, optional(scatter_section()), optionally, "many at random places"),
+          key<T>("emit", &T::emit, optional(emit_section()), optionally, "many, one after another"),
           with_default(
               key<T>("from", &T::from, optional(number(not_negative, "s")), optionally,
                      "when the body appears, in the state given here; its motion starts then. Taken at "
-                     "the nearest step, as is `until`"),
+                     "the nearest step, as is `until`. Of `emit`: when the first one is asked for"),
               "0"),
           key<T>("until", &T::until, optional(number(above_zero, "s")), optionally,
                  "when the body is gone; never if not given"),

@@ -17,6 +17,7 @@ namespace {
 double count_of(const BodyEntry& entry, const BodyFile* file) {
   if (file) return static_cast<double>(file->count());
   if (entry.scatter) return static_cast<double>(entry.scatter->count);
+  if (entry.emit) return static_cast<double>(entry.emit->count);
   if (!entry.repeat) return 1;
   const auto& n = entry.repeat->count;
   return static_cast<double>(n[0]) * static_cast<double>(n[1]) * static_cast<double>(n[2]);
@@ -31,7 +32,11 @@ void add_load(const BodyEntry& body, double count, MemoryLoad& load) {
 }
 
 void require_room(const BodyEntry& body, const MemoryLoad& load, double memory, Reader& reader) {
-  const char* cause = body.repeat ? "repeat" : body.scatter ? "scatter" : body.file.empty() ? "name" : "file";
+  const char* cause = body.repeat         ? "repeat"
+                      : body.scatter      ? "scatter"
+                      : body.emit         ? "emit"
+                      : body.file.empty() ? "name"
+                                          : "file";
   constexpr auto most = std::numeric_limits<std::int32_t>::max();
   if (load.bodies > most)
     reader.fail_at(cause, *body.node,

@@ -12,6 +12,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 namespace scree {
 namespace {
@@ -87,7 +88,7 @@ class Builder {
   void name_bodies(const BodySlot& slot, Scene& scene) const {
     const BodyEntry& entry = *slot.entry;
     if (entry.name.empty()) return;
-    const bool many = entry.repeat || entry.scatter || slot.file;
+    const bool many = entry.repeat || entry.scatter || entry.emit || slot.file;
     for (std::int32_t k = 0; k < slot.bodies.count; ++k)
       scene.body_names.emplace(many ? fmt::format("{}[{}]", entry.name, k) : entry.name,
                                slot.bodies.first + k);
@@ -95,6 +96,7 @@ class Builder {
 
   /// Whether the bodies of `other` are where the scene puts them when those of `slot` appear.
   static bool is_in_place(const BodySlot& other, const BodySlot& slot, const Scene& scene) {
+    if (other.entry->emit) return false;
     const bool fixed = scene.bodies.mobility[static_cast<std::size_t>(other.bodies.first)] == Mobility::fixed;
     return fixed ? other.steps.holds(slot.steps.first) : other.steps.first == slot.steps.first;
   }
@@ -106,8 +108,11 @@ class Builder {
       if (is_in_place(other, slot, scene) &&
           (!other.entry->scatter || other.bodies.first < slot.bodies.first))
         for (std::int32_t k = 0; k < other.bodies.count; ++k) obstacles.push_back(other.bodies.first + k);
-    const std::int64_t fitted = scatter(scene.bodies, slot.bodies.first, slot.bodies.count,
-                                        *slot.entry->scatter, obstacles, scene.seed);
+    std::vector<std::int32_t> bodies(static_cast<std::size_t>(slot.bodies.count));
+    std::iota(bodies.begin(), bodies.end(), slot.bodies.first);
+    const ScatterEntry& box = *slot.entry->scatter;
+    const std::int64_t fitted =
+        scatter(scene.bodies, bodies, {.from = box.from, .to = box.to, .seed = scene.seed}, obstacles);
     if (fitted == slot.bodies.count) return;
     const Reader::Step step(reader_, "bodies");
     const Reader::Step item(reader_, slot.index);
@@ -118,10 +123,14 @@ class Builder {
   }
 
   void find_lifetimes(Scene& scene) {
-    for (const BodySlot& slot : slots_)
-      if (slot.entry->from || slot.entry->until)
-        scene.lifetimes.push_back(
-            {slot.bodies, {slot.entry->from.value_or(0), slot.entry->until.value_or(HUGE_VAL)}});
+    for (const BodySlot& slot : slots_) {
+      const BodyEntry& entry = *slot.entry;
+      if (entry.emit)
+        scene.emitters.push_back(
+            {slot.bodies, entry.emit->from, entry.emit->to, entry.emit->rate, entry.from.value_or(0)});
+      else if (entry.from || entry.until)
+        scene.lifetimes.push_back({slot.bodies, {entry.from.value_or(0), entry.until.value_or(HUGE_VAL)}});
+    }
   }
 
   /// Once every body has its place: the centre of a body that turns about a point moves by that too.
@@ -245,7 +254,7 @@ void fill_defaults(BodyEntry& body) {
   if (body.plane || !body.file.empty()) return;
   const bool free = !body.fixed.value_or(false) && !body.motion;
   if (!body.fixed) body.fixed = false;
-  if (!body.scatter) {
+  if (!body.scatter && !body.emit) {
     if (!body.at) body.at = Vec3::Zero();
     if (!body.rotate && !body.orientation) body.orientation = {1, 0, 0, 0};
   }

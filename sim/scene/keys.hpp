@@ -66,8 +66,12 @@ struct ScatterEntry {
   Vec3 to = Vec3::Zero();
 };
 
-/// One item of `bodies`; stands for many bodies if it repeats or scatters. What does not apply to the item
-/// (the velocity of a plane, say) must be absent.
+struct EmitEntry : ScatterEntry {
+  double rate = 0;
+};
+
+/// One item of `bodies`; stands for many bodies if it repeats, scatters or emits. What does not apply to the
+/// item (the velocity of a plane, say) must be absent.
 struct BodyEntry {
   std::optional<PlaneEntry> plane;
   std::optional<SphereEntry> sphere;
@@ -86,6 +90,7 @@ struct BodyEntry {
   std::optional<MotionEntry> motion;
   std::optional<RepeatEntry> repeat;
   std::optional<ScatterEntry> scatter;
+  std::optional<EmitEntry> emit;
   std::optional<double> from;
   std::optional<double> until;
   const Node* node = nullptr;

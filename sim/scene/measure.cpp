@@ -180,11 +180,17 @@ const std::vector<MeasureInfo>& measure_table() {
        "groups of contacts that neither Newton's method nor all sweeps have solved, since the start"},
       {K::guards_gjk, "guards.gjk", S::run, false, "",
        "calls of libccd that hit their bound, and were answered in another way, since the start"},
+      {K::emission_requested, "emission.requested", S::run, false, "",
+       "bodies that emitters were to send since the start"},
+      {K::emission_emitted, "emission.emitted", S::run, false, "", "and those of them that found room"},
       {K::region_count, "count", S::region, false, "", "free bodies whose centre lies in the closed box"},
       {K::region_fraction, "fraction", S::region, false, "", "volume of these bodies / volume of the box"},
       {K::region_flux, "flux", S::region, false, "kg/s",
        "mass of these bodies less that one step before / step: negative while the region empties. Its mean "
        "over steps a to b is the mass gained since the step before a / the time since then"},
+      {K::region_removed, "removed", S::region, false, "",
+       "bodies that the region has taken out since the start"},
+      {K::region_removed_mass, "removed_mass", S::region, false, "kg", "their mass"},
   };
   return table;
 }
@@ -293,12 +299,20 @@ double evaluate(const Measure& measure, const Observation& observation,
       return static_cast<double>(o.counters.patient_failed);
     case MeasureKind::guards_gjk:
       return static_cast<double>(o.counters.narrowphase.ccd_stopped);
+    case MeasureKind::emission_requested:
+      return static_cast<double>(o.requested);
+    case MeasureKind::emission_emitted:
+      return static_cast<double>(o.emitted);
     case MeasureKind::region_count:
       return static_cast<double>(region().count);
     case MeasureKind::region_fraction:
       return region().fraction;
     case MeasureKind::region_flux:
       return region().flux;
+    case MeasureKind::region_removed:
+      return static_cast<double>(region().removed.count);
+    case MeasureKind::region_removed_mass:
+      return region().removed.mass;
   }
   return 0;
 }

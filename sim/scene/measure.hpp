@@ -55,10 +55,14 @@ enum class MeasureKind {
   guards_impacts,
   guards_newton,
   guards_gjk,
+  emission_requested,
+  emission_emitted,
   // Of a region; see RegionState.
   region_count,
   region_fraction,
   region_flux,
+  region_removed,
+  region_removed_mass,
 };
 
 enum class Component { x, y, z, norm };

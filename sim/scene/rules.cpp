@@ -52,13 +52,14 @@ void refuse(std::initializer_list<const char*> keys, const char* why, const Node
 }
 
 void check_plane_body(const Node& node, Reader& reader) {
-  refuse({"mass", "at", "orientation", "rotate", "velocity", "spin", "fixed", "motion", "repeat", "scatter"},
+  refuse({"mass", "at", "orientation", "rotate", "velocity", "spin", "fixed", "motion", "repeat", "scatter",
+          "emit"},
          "does not go with a plane, which is fixed where its normal and offset say", node, reader);
 }
 
 void check_tube_body(const BodyEntry& body, const Node& node, Reader& reader) {
-  refuse({"mass", "velocity", "spin", "scatter"}, "does not go with a tube, which never moves freely", node,
-         reader);
+  refuse({"mass", "velocity", "spin", "scatter", "emit"}, "does not go with a tube, which never moves freely",
+         node, reader);
   if (!body.fixed.value_or(false) && !body.motion)
     reader.fail_at("tube", node, "never moves freely: give `fixed: true` or `motion`");
 }
@@ -106,6 +107,10 @@ void check_scatter(const ScatterEntry& scatter, const Node& node, Reader& reader
     reader.fail_at("to", node, "is so far from `from` that numbers cannot hold the distance");
 }
 
+void check_emit(const EmitEntry& emit, const Node& node, Reader& reader) {
+  check_scatter(emit, node, reader);
+}
+
 void check_body(const BodyEntry& body, const Node& node, Reader& reader) {
   if (node.find("file")) return check_file_body(body, node, reader);
   const int shapes = given({"plane", "sphere", "box", "tube"}, node);
@@ -120,6 +125,8 @@ void check_body(const BodyEntry& body, const Node& node, Reader& reader) {
   exclude("motion", "spin", node, reader);
   exclude("repeat", "scatter", node, reader);
   exclude("at", "scatter", node, reader);
+  for (const char* key : {"at", "repeat", "scatter", "fixed", "motion", "until"})
+    exclude(key, "emit", node, reader);
   if (body.fixed.value_or(false))
     for (const char* key : {"motion", "velocity", "spin"}) exclude("fixed", key, node, reader);
   if (body.orientation) {

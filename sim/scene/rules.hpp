@@ -13,6 +13,7 @@ void check_plane(const PlaneEntry& plane, const Node& node, Reader& reader);
 void check_rotation(const RotationEntry& rotation, const Node& node, Reader& reader);
 void check_motion(const MotionEntry& motion, const Node& node, Reader& reader);
 void check_scatter(const ScatterEntry& scatter, const Node& node, Reader& reader);
+void check_emit(const EmitEntry& emit, const Node& node, Reader& reader);
 void check_body(const BodyEntry& body, const Node& node, Reader& reader);
 void check_force(const ForceEntry& force, const Node& node, Reader& reader);
 void check_region(const Region& region, const Node& node, Reader& reader);

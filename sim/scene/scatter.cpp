@@ -1,18 +1,15 @@
 // Random sequential addition, with a grid of cells to find what is near.
 #include "sim/scene/scatter.hpp"
 
+#include "core/rng.hpp"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
-#include <numeric>
 
 namespace scree {
 namespace {
-
-// A region that one body cannot enter in this many tries is full for practical purposes: at random sequential
-// packing's limit the free share of the volume falls under 1/1000.
-constexpr int most_tries = 2000;
 
 double radius_of(const BodyTable& bodies, std::size_t b) {
   return bounding_radius(bodies.shape[b], bodies.size[b]);
@@ -101,7 +98,7 @@ class CellGrid {
 
 /// Whether it is a tube that does not reach into the box, by the bounds of its cylinder: what is outside a
 /// tube passes it by, and so nothing is scattered beside one that does.
-bool is_apart(const BodyTable& bodies, std::size_t tube, const ScatterEntry& box) {
+bool is_apart(const BodyTable& bodies, std::size_t tube, const Scattering& box) {
   if (bodies.shape[tube] != Shape::tube) return false;
   const Vec3 axis = bodies.orientation[tube] * Vec3::UnitZ();
   const Vec3 across = (1 - axis.array().square()).cwiseMax(0).sqrt();  // share of the radius along each axis
@@ -127,50 +124,50 @@ double distance_to(const BodyTable& bodies, std::size_t b, const Vec3& point) {
   return 0;
 }
 
-std::int64_t scatter(BodyTable& bodies, std::int64_t first, std::int64_t count, const ScatterEntry& box,
-                     const std::vector<std::int32_t>& obstacles, std::uint64_t seed) {
-  std::vector<std::int32_t> order(static_cast<std::size_t>(count));
-  std::iota(order.begin(), order.end(), static_cast<std::int32_t>(first));
+std::int64_t scatter(BodyTable& bodies, std::vector<std::int32_t>& those, const Scattering& how,
+                     const std::vector<std::int32_t>& obstacles) {
+  if (those.empty()) return 0;
   const auto radius = [&](std::int32_t b) { return radius_of(bodies, static_cast<std::size_t>(b)); };
-  std::stable_sort(order.begin(), order.end(),
+  std::stable_sort(those.begin(), those.end(),
                    [&](std::int32_t a, std::int32_t b) { return radius(a) > radius(b); });
 
-  CellGrid grid(box.from, box.to, count);
+  CellGrid grid(how.from, how.to, std::ssize(those));
   std::vector<std::int32_t> walls;
   const auto insert = [&](std::int32_t b) {
     const Vec3& at = bodies.position[static_cast<std::size_t>(b)];
     if (!grid.insert(b, at.array() - radius(b), at.array() + radius(b))) walls.push_back(b);
   };
-  const double reach = radius(order.front());
+  const double reach = radius(those.front());
   for (const std::int32_t b : obstacles) {
     const auto o = static_cast<std::size_t>(b);
-    if (bodies.shape[o] == Shape::plane || bodies.shape[o] == Shape::tube) {
-      if (!is_apart(bodies, o, box)) walls.push_back(b);
-    } else if ((bodies.position[o].cwiseMax(box.from).cwiseMin(box.to) - bodies.position[o]).norm() <=
+    if (is_boundary(bodies.shape[o])) {
+      if (!is_apart(bodies, o, how)) walls.push_back(b);
+    } else if ((bodies.position[o].cwiseMax(how.from).cwiseMin(how.to) - bodies.position[o]).norm() <=
                reach + radius(b)) {
       insert(b);
     }
   }
 
-  for (std::int64_t fitted = 0; fitted < count; ++fitted) {
-    const std::int32_t b = order[static_cast<std::size_t>(fitted)];
+  for (std::int64_t fitted = 0; fitted < std::ssize(those); ++fitted) {
+    const std::int32_t b = those[static_cast<std::size_t>(fitted)];
     const double r = radius(b);
     Vec3& at = bodies.position[static_cast<std::size_t>(b)];
     const auto clear = [&](std::int32_t other) {
       return distance_to(bodies, static_cast<std::size_t>(other), at) >= r;
     };
-    // Places have a stream of their own, so that what else is drawn for a body does not move it.
-    Random random(seed, static_cast<std::uint64_t>(b) + (std::uint64_t{1} << 32));
+    // Places have streams of their own, so that what else is drawn for a body does not move it.
+    const auto id = static_cast<std::uint64_t>(bodies.id[static_cast<std::size_t>(b)]);
+    Random random(how.seed, id + ((how.round + 1) << 32));
     bool placed = false;
-    for (int tries = 0; tries < most_tries && !placed; ++tries) {
-      for (int k = 0; k < 3; ++k) at[k] = random.uniform(box.from[k], box.to[k]);
+    for (int tries = 0; tries < how.tries && !placed; ++tries) {
+      for (int k = 0; k < 3; ++k) at[k] = random.uniform(how.from[k], how.to[k]);
       placed = std::all_of(walls.begin(), walls.end(), clear) &&
                grid.all_of(at.array() - r, at.array() + r, clear);
     }
     if (!placed) return fitted;
     insert(b);
   }
-  return count;
+  return std::ssize(those);
 }
 
 }  // namespace scree

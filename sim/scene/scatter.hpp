@@ -2,7 +2,6 @@
 #pragma once
 
 #include "core/bodies.hpp"
-#include "sim/scene/keys.hpp"
 
 #include <cstdint>
 #include <vector>
@@ -12,11 +11,21 @@ namespace scree {
 /// Distance from the point to the surface of body b (m); negative inside a sphere or plane, 0 inside a box.
 double distance_to(const BodyTable& bodies, std::size_t b, const Vec3& point);
 
-/// Gives bodies first ... first + count - 1 random positions with centres in `box`, such that the sphere
-/// around each keeps clear of all others of them and of the bodies listed in `obstacles`. Returns how many
-/// fitted: less than `count` if one of them found no place in a bounded number of tries. The largest are
-/// placed first.
-std::int64_t scatter(BodyTable& bodies, std::int64_t first, std::int64_t count, const ScatterEntry& box,
-                     const std::vector<std::int32_t>& obstacles, std::uint64_t seed);
+/// A box for centres, and how they are drawn in it.
+struct Scattering {
+  Vec3 from = Vec3::Zero();  ///< corners (m)
+  Vec3 to = Vec3::Zero();
+  std::uint64_t seed = 0;
+  std::uint64_t round = 0;  ///< in each of which a body draws other places
+  int tries = 2000;         ///< for a body, until it counts as one that does not fit
+};
+
+/// Gives the bodies listed in `those` random positions with centres in a box, such that the sphere around
+/// each keeps clear of all others of them and of the bodies listed in `obstacles`. The largest are placed
+/// first, and `those` is put into that order. Returns how many of them fitted: the first of the others found
+/// no place in a bounded number of tries. By default so many that at random sequential packing's limit the
+/// free share of the volume falls under 1/1000.
+std::int64_t scatter(BodyTable& bodies, std::vector<std::int32_t>& those, const Scattering& how,
+                     const std::vector<std::int32_t>& obstacles);
 
 }  // namespace scree

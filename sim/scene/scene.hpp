@@ -80,6 +80,17 @@ struct Region {
   std::string name;
   Vec3 from = Vec3::Zero();  ///< m
   Vec3 to = Vec3::Zero();    ///< m; greater in each component
+  bool removes = false;      ///< free bodies whose centre comes into it are taken out
+};
+
+/// Free bodies that appear one after another, the n-th as soon after start + n / rate as there is room, with
+/// their centres anywhere in a box.
+struct Emitter {
+  BodyRange bodies;          ///< in the order in which they appear
+  Vec3 from = Vec3::Zero();  ///< corners of the box (m)
+  Vec3 to = Vec3::Zero();
+  double rate = 0;   ///< 1/s
+  double start = 0;  ///< s
 };
 
 /// What becomes of a free body whose centre leaves the world.
@@ -200,6 +211,7 @@ struct Scene {
   std::vector<ContactLaw> laws;     ///< materials x materials, symmetric; see law()
   BodyTable bodies;                 ///< at t = 0, or when they appear; id[k] = k
   std::vector<Lifetime> lifetimes;  ///< of those that are not there all the time, by ascending body
+  std::vector<Emitter> emitters;    ///< of those that appear when there is room, by ascending body
   std::map<std::string, std::int32_t> body_names;  ///< named bodies, name[k] of a repeat included
   std::vector<Motion> motions;                     ///< of the prescribed bodies, by ascending body
   std::optional<World> world;                      ///< absent: without end

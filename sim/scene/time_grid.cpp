@@ -57,7 +57,7 @@ std::int64_t Cadence::due(std::int64_t step) {
   std::int64_t count = 0;
   for (;; ++next_, ++count) {
     if (next_ > 0 && !repeats) return count;
-    const double time = static_cast<double>(next_) * (repeats ? period_ : 0.0);
+    const double time = start_ + static_cast<double>(next_) * (repeats ? period_ : 0.0);
     if (!grid_.contains(time) || grid_.nearest(time) > step) return count;
   }
 }

@@ -41,11 +41,13 @@ class TimeGrid {
   std::int64_t last_;
 };
 
-/// Things that happen every `period` of simulated time, each at the step nearest to its time, from t = 0 on.
+/// Things that happen every `period` of simulated time, each at the step nearest to its time, from `start` on
+/// (s).
 class Cadence {
  public:
-  /// A period of 0 or less, or an infinite one, happens at t = 0 alone.
-  Cadence(const TimeGrid& grid, double period) : grid_(grid), period_(period) {}
+  /// A period of 0 or less, or an infinite one, happens at the start alone.
+  Cadence(const TimeGrid& grid, double period, double start = 0)
+      : grid_(grid), period_(period), start_(start) {}
 
   /// How many are due at a step, each counted once. Steps must come in ascending order.
   std::int64_t due(std::int64_t step);
@@ -54,6 +56,7 @@ class Cadence {
  private:
   TimeGrid grid_;
   double period_;
+  double start_;
   std::int64_t next_ = 0;
 };
 

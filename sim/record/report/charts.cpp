@@ -186,8 +186,14 @@ Chapter named_bodies(const Charts& of) {
   return chapter;
 }
 
-Chapter regions(const Charts& of) {
-  Chapter chapter{"Regions", {}};
+Chapter sources_and_regions(const Charts& of) {
+  Chapter chapter{"Sources and regions", {}};
+  of.add(chapter, {.title = "Bodies from emitters", .unit = "number", .curves = of.each("emission_", "")},
+         "Those that were requested, and those that found room.");
+  of.add(
+      chapter,
+      {.title = "Bodies that regions took out", .unit = "number", .curves = of.each("region_", "_removed")},
+      "Since the start.");
   of.add(chapter, {.title = "Bodies in regions", .unit = "number", .curves = of.each("region_", "_count")},
          "Free bodies whose centre is there.");
   of.add(chapter,
@@ -222,8 +228,9 @@ Chapter speed_of_the_run(const Charts& of, const WallTimes& wall) {
 
 std::vector<Chapter> chapters_of(const Columns& metrics, const WallTimes& wall) {
   const Charts of(metrics);
-  std::vector<Chapter> chapters = {energy(of),  contacts(of),     motion(of),
-                                   regions(of), named_bodies(of), speed_of_the_run(of, wall)};
+  std::vector<Chapter> chapters = {energy(of),       contacts(of),
+                                   motion(of),       sources_and_regions(of),
+                                   named_bodies(of), speed_of_the_run(of, wall)};
   std::erase_if(chapters, [](const Chapter& chapter) { return chapter.charts.empty(); });
   return chapters;
 }

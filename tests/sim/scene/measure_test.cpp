@@ -47,7 +47,9 @@ Observation numbered() {
   o.counters.narrowphase.ccd_stopped = 545;
   o.centre = {2, 3, 6};
   o.coordination_mean = 523;
-  o.regions = {{524, 525, 526}, {527, 528, 529}};
+  o.requested = 546;
+  o.emitted = 547;
+  o.regions = {{524, 525, 526, {548, 549}}, {527, 528, 529, {550, 551}}};
   return o;
 }
 
@@ -104,6 +106,8 @@ TEST(Measure, EachNameHasItsValue) {
       {"guards.impacts", 543},
       {"guards.newton", 544},
       {"guards.gjk", 545},
+      {"emission.requested", 546},
+      {"emission.emitted", 547},
       {"centre.y", 3},
       {"centre.norm", 7},
       {"coordination.mean", 523},
@@ -111,6 +115,8 @@ TEST(Measure, EachNameHasItsValue) {
       {"region.exit.count", 527},
       {"region.entry.fraction", 525},
       {"region.exit.flux", 529},
+      {"region.entry.removed", 548},
+      {"region.exit.removed_mass", 551},
       {"puck.position.x", 4},
       {"bed[0].position.x", 7},
       {"bed[12].position.x", 19},

@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cmath>
 #include <ctime>
+#include <numeric>
 #include <string>
 #include <tuple>
 
@@ -338,8 +339,11 @@ TEST(SceneBodies, ScatterStaysInsideATube) {
     bodies.orientation[k] = Quat::Identity();
     bodies.size[k] = Vec3(0.05, 0, 0);
   }
-  const ScatterEntry box{.count = 200, .from = Vec3(2.2, -0.5, -0.5), .to = Vec3(3.8, 0.5, 0.5)};
-  ASSERT_EQ(scatter(bodies, 1, 200, box, {0}, 7), 200);
+  std::vector<std::int32_t> balls(200);
+  std::iota(balls.begin(), balls.end(), 1);
+  ASSERT_EQ(
+      scatter(bodies, balls, {.from = Vec3(2.2, -0.5, -0.5), .to = Vec3(3.8, 0.5, 0.5), .seed = 7}, {0}),
+      200);
   for (std::size_t k = 1; k <= 200; ++k) {
     const Vec3 x = bodies.position[k];
     EXPECT_LE(std::hypot(x.y(), x.z()), 0.45 + 1e-12);

@@ -1,4 +1,4 @@
-// Bodies that go.
+// Bodies that come and go.
 #pragma once
 
 #include "core/bodies.hpp"
@@ -19,6 +19,19 @@ SCREE_HD inline void set_absent(std::int64_t k, const BodyView& bodies) {
 /// The free bodies whose centre is outside of the world, in order.
 template <class Space>
 std::vector<std::int32_t> bodies_beyond(const World& world, const Bodies<Space>& bodies);
+
+/// The free bodies whose centre is in a region, in order.
+template <class Space>
+std::vector<std::int32_t> bodies_in(const Region& region, const Bodies<Space>& bodies);
+
+/// The bodies that are there and whose bounding sphere reaches into the box from `low` to `high` (m), and all
+/// planes and tubes, in order.
+template <class Space>
+BodyTable bodies_near(const Vec3& low, const Vec3& high, const Bodies<Space>& bodies);
+
+/// Each of these becomes the state of the body with its id.
+template <class Space>
+void bring_in(const BodyTable& those, Bodies<Space>& bodies);
 
 /// Takes out these bodies, and returns them as they were.
 template <class Space>
