@@ -8,6 +8,7 @@
 #include <array>
 #include <memory>
 #include <optional>
+#include <string>
 #include <vector>
 
 namespace scree::render {
@@ -35,10 +36,20 @@ class Renderer {
   /// level ones as ground, walls as a faint film that hides nothing. Of tubes the far side of the wall, with
   /// stripes that show how it turns; the near side and the end caps as faint glass.
   virtual Image draw(const Frame& frame, const Camera& camera, const Style& style) = 0;
+  /// What draws: "EGL, NVIDIA H200/PCIe/SSE2", "OSMesa, llvmpipe (LLVM 15.0.6, 256 bits)".
+  virtual std::string name() const = 0;
 };
 
-/// Draws on the processor through OSMesa. Throws RunError if no OpenGL 3.3 context of this size is to be had.
-std::unique_ptr<Renderer> make_osmesa_renderer(int width, int height);
+/// The ways to OpenGL. Pictures of two differ by what tests/render/context_test.cpp allows; of one, on one
+/// machine, not at all.
+enum class ContextChoice {
+  automatic,  ///< EGL if that has a GPU that draws such pictures, else OSMesa
+  osmesa,     ///< on the processor
+  egl         ///< a GPU if there is one, else Mesa on the processor
+};
+
+/// Throws RunError, saying what was tried, if no OpenGL 3.3 context of this size is to be had.
+std::unique_ptr<Renderer> make_renderer(ContextChoice choice, int width, int height);
 
 /// Draws black pictures, for what needs pictures but not their content.
 std::unique_ptr<Renderer> make_null_renderer(int width, int height);

@@ -1,25 +1,32 @@
 // Time of a picture, snapshot in to pixels out, of a mound of bodies with a splash above it.
 //
-//   scree_bench_render [--shape sphere,box,mixed] [--n 10000,100000,1000000] [--size 1280x720] [--png FOLDER]
+//   scree_bench_render [--context auto,osmesa,egl] [--shape sphere,box,mixed] [--n 10000,100000,1000000]
+//                      [--size 1280x720] [--png FOLDER]
 //
-// One picture to warm up, then the median of five; in wall time, and in processor time of all threads.
-// --png keeps the last picture of each row.
+// One picture to warm up, then the median of five; in wall time, and in processor time of all threads. Of the
+// wall time, how much goes before OpenGL: finding what can be seen, and packing it, on the processor. Beside
+// it, what compressing and writing the picture as PNG takes. --png keeps the last picture of each row.
 #include "bench/clock.hpp"
 #include "bench/options.hpp"
 #include "core/rng.hpp"
 #include "core/snapshot.hpp"
 #include "render/camera.hpp"
+#include "render/gl/frame_data.hpp"
 #include "render/png.hpp"
 #include "render/renderer.hpp"
 
 #include <algorithm>
 #include <cstdio>
+#include <filesystem>
+#include <map>
 #include <string>
 #include <vector>
 
 namespace scree::bench {
 
 namespace {
+
+namespace fs = std::filesystem;
 
 constexpr int repeats = 5;
 const Vec3 gravity(0, 0, -9.81);
@@ -75,27 +82,60 @@ double median(std::vector<double> values) {
   return values[values.size() / 2];
 }
 
-void run(const std::string& shape, std::int64_t n, render::Renderer& renderer, double aspect,
-         const std::string& folder) {
-  const render::Frame frame{.snapshot = mound(shape, n)};
-  const render::Camera camera = render::frame_all(frame.snapshot, gravity, aspect);
-  render::Image image = renderer.draw(frame, camera, {});
+struct Times {
+  double wall, processor;  // medians (s)
+};
+
+template <class Work>
+Times times_of(Work work) {
   std::vector<double> wall, processor;
   for (int k = 0; k < repeats; ++k) {
     const double wall_start = now(CLOCK_MONOTONIC), processor_start = now(CLOCK_PROCESS_CPUTIME_ID);
-    image = renderer.draw(frame, camera, {});
+    work();
     wall.push_back(now(CLOCK_MONOTONIC) - wall_start);
     processor.push_back(now(CLOCK_PROCESS_CPUTIME_ID) - processor_start);
   }
-  std::printf("%-7s %9lld %10.3f %10.3f\n", shape.c_str(),
-              static_cast<long long>(frame.snapshot.bodies.count()), median(wall), median(processor));
+  return {median(wall), median(processor)};
+}
+
+struct Case {
+  std::string context, shape;
+  std::int64_t n;
+};
+
+void run(const Case& c, render::Renderer& renderer, int width, int height, const std::string& folder) {
+  const render::Frame frame{.snapshot = mound(c.shape, c.n)};
+  const render::Camera camera =
+      render::frame_all(frame.snapshot, gravity, static_cast<double>(width) / height);
+  render::Image image = renderer.draw(frame, camera, {});
+  const Times drawing = times_of([&] { image = renderer.draw(frame, camera, {}); });
+  const int shadow_size = render::gl::shadow_size_for(width, height);
+  const Times before =
+      times_of([&] { render::gl::frame_data(frame, camera, {}, width, height, shadow_size); });
+  const std::string name = c.context + "_" + c.shape + "_" + std::to_string(c.n) + ".png";
+  const fs::path file = (folder.empty() ? fs::temp_directory_path() : fs::path(folder)) / name;
+  const Times writing = times_of([&] { render::write_png(file, image); });
+  if (folder.empty()) fs::remove(file);
+  std::printf("%-7s %-7s %9lld %8.3f %8.3f %8.3f %8.3f\n", c.context.c_str(), c.shape.c_str(),
+              static_cast<long long>(frame.snapshot.bodies.count()), drawing.wall, before.wall,
+              drawing.processor, writing.wall);
   std::fflush(stdout);
-  if (!folder.empty()) render::write_png(folder + "/" + shape + "_" + std::to_string(n) + ".png", image);
+}
+
+render::ContextChoice context_of(const std::string& name) {
+  static const std::map<std::string, render::ContextChoice> contexts = {
+      {"auto", render::ContextChoice::automatic},
+      {"osmesa", render::ContextChoice::osmesa},
+      {"egl", render::ContextChoice::egl}};
+  const auto found = contexts.find(name);
+  if (found == contexts.end()) throw InputError("--context " + name + ": must be auto, osmesa or egl");
+  return found->second;
 }
 
 void run_all(int argc, char** argv) {
   const Options options = parse(argc, argv,
-                                {{"--shape", "sphere,box,mixed"},
+                                {{"--context", "auto"},
+                                 {"--shape", "sphere,box,mixed"},
                                  {"--n", "10000,100000,1000000"},
                                  {"--size", "1280x720"},
                                  {"--png", ""}});
@@ -103,11 +143,14 @@ void run_all(int argc, char** argv) {
   if (std::sscanf(options.at("--size").c_str(), "%dx%d", &width, &height) != 2) {
     throw InputError("--size " + options.at("--size") + ": must be WIDTHxHEIGHT");
   }
-  const auto renderer = render::make_osmesa_renderer(width, height);
-  std::printf("shape      bodies     wall s      cpu s\n");
-  for (const std::string& shape : split(options.at("--shape"))) {
-    for (const std::string& n : split(options.at("--n"))) {
-      run(shape, std::stoll(n), *renderer, static_cast<double>(width) / height, options.at("--png"));
+  for (const std::string& context : split(options.at("--context"))) {
+    const auto renderer = render::make_renderer(context_of(context), width, height);
+    std::printf("%s: %s\ncontext shape      bodies   wall s before s    cpu s    png s\n", context.c_str(),
+                renderer->name().c_str());
+    for (const std::string& shape : split(options.at("--shape"))) {
+      for (const std::string& n : split(options.at("--n"))) {
+        run({context, shape, std::stoll(n)}, *renderer, width, height, options.at("--png"));
+      }
     }
   }
 }

@@ -4,6 +4,7 @@
 #include "render/gl/view.hpp"
 #include "render/renderer.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <vector>
@@ -30,6 +31,12 @@ struct FrameData {
   int casting_spheres() const { return uniforms.after[2] - uniforms.after[1]; }
   int casting_boxes() const { return uniforms.after[3] - uniforms.after[2]; }
 };
+
+/// Texels along an edge of the shadow map: as many as the picture has pixels, and some more, since shadows
+/// are seen from nearby too.
+inline int shadow_size_for(int width, int height) {
+  return std::clamp(6 * std::max(width, height) / 5, 512, 4096);
+}
 
 /// `shadow_size`: texels along an edge of the shadow map.
 FrameData frame_data(const Frame& frame, const Camera& camera, const Style& style, int width, int height,

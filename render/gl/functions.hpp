@@ -47,6 +47,7 @@
   X(GetProgramiv, GETPROGRAMIV)                     \
   X(GetShaderInfoLog, GETSHADERINFOLOG)             \
   X(GetShaderiv, GETSHADERIV)                       \
+  X(GetString, GETSTRING)                           \
   X(GetUniformBlockIndex, GETUNIFORMBLOCKINDEX)     \
   X(GetUniformLocation, GETUNIFORMLOCATION)         \
   X(LinkProgram, LINKPROGRAM)                       \

@@ -16,9 +16,6 @@ namespace {
 
 using namespace std::string_view_literals;
 
-// As many texels as the picture has pixels, and some more: shadows are seen from nearby too.
-int shadow_size_for(int width, int height) { return std::clamp(6 * std::max(width, height) / 5, 512, 4096); }
-
 // Texture units; each sampler of the shaders has its own for good.
 enum Unit : GLint {
   bodies_unit,
@@ -132,6 +129,10 @@ class GlRenderer : public Renderer {
     draw_picture(passes_.shade, images_.to_color);
     draw_lines(static_cast<int>(data.lines.size() / 3));
     return read_back();
+  }
+
+  std::string name() const override {
+    return context_->name() + ", " + reinterpret_cast<const char*>(gl_.GetString(GL_RENDERER));
   }
 
  private:
@@ -252,11 +253,3 @@ std::unique_ptr<Renderer> make_gl_renderer(std::unique_ptr<Context> context, int
 }
 
 }  // namespace scree::render::gl
-
-namespace scree::render {
-
-std::unique_ptr<Renderer> make_osmesa_renderer(int width, int height) {
-  return gl::make_gl_renderer(gl::make_osmesa_context(), width, height);
-}
-
-}  // namespace scree::render

@@ -36,6 +36,7 @@ class OsmesaContext : public Context {
     }
   }
   Function function(const char* name) const override { return OSMesaGetProcAddress(name); }
+  std::string name() const override { return "OSMesa"; }
 
  private:
   OSMesaContext context_ = nullptr;

@@ -1,6 +1,7 @@
 // The commands of the program: plain arguments in, exit status out. They throw InputError and RunError.
 #pragma once
 
+#include "render/renderer.hpp"
 #include "sim/record/exports.hpp"
 #include "sim/scene/scene.hpp"
 #include "sim/scene/variations.hpp"
@@ -21,6 +22,7 @@ struct RunArguments {
   std::optional<double> until;      ///< s
   std::optional<double> max_hours;  ///< of wall time
   bool draw = true;
+  render::ContextChoice context = render::ContextChoice::automatic;
   bool overwrite = false;
   bool resume = false;
   std::filesystem::path reproduce;  ///< a manifest; empty: a run of its own
@@ -51,6 +53,8 @@ struct RenderArguments {
   std::filesystem::path run;     ///< run folder
   std::filesystem::path output;  ///< empty: the run folder's name and -render
   std::vector<Override> overrides;
+  render::ContextChoice context = render::ContextChoice::automatic;
+  int jobs = 0;  ///< processes; 0: as many as suit the machine
   bool overwrite = false;
 };
 int render_again(const RenderArguments& arguments);

@@ -45,7 +45,7 @@ void mark(const BodyTable& bodies, std::size_t k, render::Frame& frame) {
 }  // namespace
 
 void draw_failure(const Scene& scene, Simulation& simulation, const std::vector<std::int32_t>& bodies,
-                  const std::filesystem::path& file) {
+                  render::ContextChoice context, const std::filesystem::path& file) {
   FilmLook look = look_of(scene);
   look.style.muted = 0.5f;
   look.style.cell.reset();
@@ -55,7 +55,7 @@ void draw_failure(const Scene& scene, Simulation& simulation, const std::vector<
   const auto first = static_cast<std::size_t>(bodies.front());
   const render::Camera camera =
       camera_at(state.position[first], radius_of(state, first), look.camera(simulation.time()));
-  const auto renderer = render::make_osmesa_renderer(scene.render.width, scene.render.height);
+  const auto renderer = render::make_renderer(context, scene.render.width, scene.render.height);
   render::write_png(file, renderer->draw(frame, camera, look.style));
 }
 

@@ -1,6 +1,7 @@
 // A picture of the place where a run has failed.
 #pragma once
 
+#include "render/renderer.hpp"
 #include "sim/simulation.hpp"
 
 #include <cstdint>
@@ -12,6 +13,6 @@ namespace scree::cli {
 /// Draws the bodies, marked, and what is around the first of them, in the present state. `bodies` holds one
 /// at least. Throws RunError if that cannot be drawn or written.
 void draw_failure(const Scene& scene, Simulation& simulation, const std::vector<std::int32_t>& bodies,
-                  const std::filesystem::path& file);
+                  render::ContextChoice context, const std::filesystem::path& file);
 
 }  // namespace scree::cli

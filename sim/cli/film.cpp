@@ -21,9 +21,9 @@ constexpr std::size_t most_waiting = 2;
 /// What draws: made, used and deleted by one thread, as OpenGL wants it.
 class Film::Studio {
  public:
-  Studio(const RenderSettings& render, const FilmLook& look)
+  Studio(const RenderSettings& render, const FilmLook& look, render::ContextChoice context)
       : look_(look),
-        renderer_(render::make_osmesa_renderer(render.width, render.height)),
+        renderer_(render::make_renderer(context, render.width, render.height)),
         annotator_(look.annotation, render.height, 1 / render.fps) {}
 
   render::Image draw(const render::Frame& frame) {
@@ -31,6 +31,7 @@ class Film::Studio {
     annotator_.annotate(image, frame, look_.style);
     return image;
   }
+  std::string renderer() const { return renderer_->name(); }
 
  private:
   const FilmLook& look_;
@@ -38,10 +39,11 @@ class Film::Studio {
   render::Annotator annotator_;
 };
 
-Film::Film(const Scene& scene, const RunFolder& folder, Console& console)
+Film::Film(const Scene& scene, const RunFolder& folder, render::ContextChoice context, Warn warn)
     : scene_(scene),
       folder_(folder),
-      console_(console),
+      context_(context),
+      warn_(std::move(warn)),
       look_(look_of(scene)),
       frames_due_(TimeGrid(scene.time), 1 / scene.render.fps),
       writer_(most_waiting, [this](Picture& picture) { write(picture); }),
@@ -73,7 +75,10 @@ void Film::draw(std::shared_ptr<Studio>& studio, const Shot& shot) {
   render::Image image;
   try {
     const Stopwatch watch(draw_seconds_);
-    if (!studio) studio = std::make_shared<Studio>(scene_.render, look_);
+    if (!studio) {
+      studio = std::make_shared<Studio>(scene_.render, look_, context_);
+      renderer_ = studio->renderer();
+    }
     image = studio->draw(shot.frame);
   } catch (const RunError& error) {
     const std::lock_guard lock(trouble_mutex_);
@@ -94,7 +99,7 @@ void Film::write(const Picture& picture) {
 void Film::say_trouble() {
   const std::lock_guard lock(trouble_mutex_);
   if (stopped_ || trouble_.empty()) return;
-  console_.warn(trouble_);
+  warn_(trouble_);
   stopped_ = true;
 }
 
@@ -114,7 +119,7 @@ void Film::archive(Archive& archive) {
   folder_.remove_frames_from(frames);
 }
 
-void Film::finish() {
+void Film::finish_frames() {
   if (!failed_) {
     const timing::Region region("render.wait");
     drawer_.finish();
@@ -123,17 +128,17 @@ void Film::finish() {
   timing::add("render.draw", draw_seconds_);
   timing::add("render.write", write_seconds_);
   say_trouble();
-  if (frames_ > 0) make_movie();
 }
 
 void Film::make_movie() {
+  if (frames_ == 0) return;
   const std::filesystem::path frames = folder_.frames();
   const std::filesystem::path file = folder_ / "movie.mp4";
   try {
     const timing::Region region("render.movie");
     render::make_movie(frames, scene_.render.fps, file);
   } catch (const RunError& error) {
-    console_.warn(fmt::format("no movie, but the frames are in {}: {}", frames.string(), error.what()));
+    warn_(fmt::format("no movie, but the frames are in {}: {}", frames.string(), error.what()));
     return;
   }
   movie_ = file.filename();

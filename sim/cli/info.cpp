@@ -19,9 +19,8 @@ std::string gpu() {
   return fmt::format("{}, {:.1f} GiB", device.name, static_cast<double>(device.memory) / (1 << 30));
 }
 
-std::string pictures() try {
-  render::make_osmesa_renderer(16, 16);
-  return "OSMesa";
+std::string pictures(render::ContextChoice context) try {
+  return render::make_renderer(context, 16, 16)->name();
 } catch (const RunError& error) {
   return fmt::format("none: {}", error.what());
 }
@@ -38,7 +37,9 @@ int info() {
   fmt::print("host       {}, {} cores\n", machine.cpu.empty() ? "unknown processor" : machine.cpu,
              machine.cores);
   fmt::print("cuda       {}\n", gpu());
-  fmt::print("pictures   {}\n", pictures());
+  fmt::print("pictures   {}\n", pictures(render::ContextChoice::automatic));
+  fmt::print("--context  osmesa: {}\n", pictures(render::ContextChoice::osmesa));
+  fmt::print("           egl: {}\n", pictures(render::ContextChoice::egl));
   return status_done;
 }
 

@@ -55,6 +55,20 @@ void add_simulation(CLI::App& command, SimulationOptions& options, const char* t
       ->type_name("N");
 }
 
+void add_context(CLI::App& command, render::ContextChoice& context) {
+  static const std::map<std::string, render::ContextChoice> contexts = {
+      {"auto", render::ContextChoice::automatic},
+      {"osmesa", render::ContextChoice::osmesa},
+      {"egl", render::ContextChoice::egl}};
+  command
+      .add_option(
+          "--context", context,
+          "What draws: osmesa (the processor), egl (a GPU if there is one), or auto: egl where there is "
+          "a GPU, else osmesa")
+      ->transform(CLI::Transformer(contexts).description(""))
+      ->type_name("CONTEXT");
+}
+
 CLI::App* add_run(CLI::App& app, RunArguments& arguments) {
   CLI::App* command = app.add_subcommand("run", "Run a scene; writes output/NAME/");
   CLI::Option* scene = command->add_option("scene", arguments.scene, "Scene file")->type_name("SCENE");
@@ -75,6 +89,7 @@ CLI::App* add_run(CLI::App& app, RunArguments& arguments) {
       ->check(CLI::Validator(CLI::NonNegativeNumber).description(""))
       ->type_name("T");
   command->add_flag("!--no-render", arguments.draw, "Draw nothing");
+  add_context(*command, arguments.context);
   command->add_flag_callback(
       "--profile", [] { timing::time_calls(true); }, "Time every parallel call too, into the manifest");
   command->add_flag("--overwrite", arguments.overwrite, "Replace an earlier run in the folder");
@@ -127,6 +142,14 @@ CLI::App* add_render(CLI::App& app, RenderArguments& arguments) {
   command->add_option("run", arguments.run, "Run folder with a trajectory")->required()->type_name("DIR");
   add_overrides(*command, arguments.overrides);
   command->add_option("-o,--output", arguments.output, "Folder instead of DIR-render")->type_name("DIR");
+  add_context(*command, arguments.context);
+  command
+      ->add_option(
+          "--jobs", arguments.jobs,
+          "Processes that draw (default: one for each core, as far as memory goes); never changes the "
+          "result")
+      ->check(CLI::Validator(CLI::PositiveNumber).description(""))
+      ->type_name("N");
   command->add_flag("--overwrite", arguments.overwrite, "Replace earlier pictures in the folder");
   return command;
 }

@@ -15,14 +15,15 @@ Probe probe_of(Simulation& simulation) {
       .body = [&simulation](std::int32_t id) { return simulation.body(id); }};
 }
 
-Recorder::Recorder(const Scene& scene, const RunFolder& folder, Console& console, bool draw, int threads,
-                   AtomicFile::Opening opening)
+Recorder::Recorder(const Scene& scene, const RunFolder& folder, Console& console,
+                   std::optional<render::ContextChoice> draws, int threads, AtomicFile::Opening opening)
     : checks_(scene, TimeGrid(scene.time)),
       rows_due_(TimeGrid(scene.time), scene.record.metrics_every),
       states_due_(TimeGrid(scene.time), scene.time.end / states_of_a_run),
       metrics_(scene, folder / "metrics.csv", opening),
       timing_(folder / "timing.csv", opening) {
-  if (draw) film_.emplace(scene, folder, console);
+  if (draws)
+    film_.emplace(scene, folder, *draws, [&console](std::string_view trouble) { console.warn(trouble); });
   if (scene.record.trajectory) motion_.emplace(scene, folder, opening, threads);
 }
 
@@ -67,7 +68,10 @@ void Recorder::archive(Archive& archive) {
 void Recorder::finish() {
   metrics_.commit();
   timing_.commit();
-  if (film_) film_->finish();
+  if (film_) {
+    film_->finish_frames();
+    film_->make_movie();
+  }
   if (motion_) motion_->finish();
 }
 

@@ -23,9 +23,9 @@ Probe probe_of(Simulation& simulation);
 class Recorder {
  public:
   /// Starts the files in the folder, or goes on with those that are there, once archive() has said up to
-  /// where. `draw`: whether to make frames. `threads` may help.
-  Recorder(const Scene& scene, const RunFolder& folder, Console& console, bool draw, int threads,
-           AtomicFile::Opening opening);
+  /// where. `draws`: what makes frames; none without. `threads` may help.
+  Recorder(const Scene& scene, const RunFolder& folder, Console& console,
+           std::optional<render::ContextChoice> draws, int threads, AtomicFile::Opening opening);
 
   /// What is due at the present state. To be called at t = 0 and after every step.
   void record(Simulation& simulation);

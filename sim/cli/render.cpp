@@ -1,15 +1,20 @@
 // scree render: the pictures of a run again, from its trajectory.
 #include "core/error.hpp"
 #include "sim/cli/commands.hpp"
+#include "sim/cli/console.hpp"
 #include "sim/cli/film.hpp"
 #include "sim/cli/film_look.hpp"
 #include "sim/cli/output_folder.hpp"
+#include "sim/cli/picture_context.hpp"
+#include "sim/cli/process_pool.hpp"
+#include "sim/record/build_info.hpp"
 #include "sim/record/outcome.hpp"
 #include "sim/record/trajectory_reader.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <unistd.h>
 
 namespace scree::cli {
 
@@ -79,6 +84,61 @@ class States {
   StateColumns columns_;
 };
 
+/// The frames of a trajectory in order, cut into as many parts as there are processes.
+struct Part {
+  std::size_t first, last;  ///< the latter is the next part's
+
+  Part(std::size_t frames, int k, int parts)
+      : first(frames * static_cast<std::size_t>(k) / static_cast<std::size_t>(parts)),
+        last(frames * static_cast<std::size_t>(k + 1) / static_cast<std::size_t>(parts)) {}
+};
+
+/// What a process tells: what it drew with, and what it could not do.
+struct PartResult {
+  std::string renderer, trouble;
+
+  std::string text() const { return renderer + '\n' + trouble; }
+  static PartResult from(const ProcessResult& result) {
+    if (!result.death.empty()) return {{}, result.death};
+    const std::size_t end = result.text.find('\n');
+    return {result.text.substr(0, end), result.text.substr(end + 1)};
+  }
+};
+
+/// In a child process: never throws. The trajectory is opened here, since processes that share an open file
+/// share its position.
+PartResult draw_part(const Scene& scene, const RenderArguments& arguments, const RunFolder& folder, int k,
+                     int parts) {
+  PartResult result;
+  try {
+    TrajectoryReader trajectory(arguments.run / trajectory_name);
+    States states(scene, trajectory);
+    const std::vector<TrajectoryFrame>& frames = trajectory.index().frames();
+    const Part part(frames.size(), k, parts);
+    Film film(scene, folder, arguments.context,
+              [&result](std::string_view trouble) { result.trouble = trouble; });
+    for (std::size_t f = 0; f < part.first; ++f) film.pass_over(frames[f].step);
+    for (std::size_t f = part.first; f < part.last; ++f)
+      film.record(frames[f].step, [&] { return frame_of(scene, states.read(f)); });
+    film.finish_frames();
+    result.renderer = film.renderer();
+  } catch (const std::exception& error) {
+    result.trouble = error.what();
+  }
+  return result;
+}
+
+/// A process for each core, but no more than there are frames or than have room in half of the free memory:
+/// each holds a few states, those being read, drawn and waiting, of some 200 bytes a body.
+int jobs_for(const RenderArguments& arguments, const Scene& scene, std::size_t frames) {
+  const double room =
+      0.5 * static_cast<double>(sysconf(_SC_AVPHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGESIZE));
+  const double need = 2e8 + 6 * 200 * static_cast<double>(scene.bodies.count());
+  const int fitting = std::min(static_cast<int>(machine_info().cores), static_cast<int>(room / need));
+  const int wanted = arguments.jobs > 0 ? arguments.jobs : fitting;
+  return std::clamp(wanted, 1, std::max(static_cast<int>(frames), 1));
+}
+
 }  // namespace
 
 int render_again(const RenderArguments& arguments) {
@@ -87,19 +147,37 @@ int render_again(const RenderArguments& arguments) {
       throw InputError(fmt::format("--set {}: pictures of a run that is done can have another render alone",
                                    override.path));
   }
-  TrajectoryReader trajectory(arguments.run / trajectory_name);
-  Scene scene = read_scene(arguments.run / "scene.yaml", arguments.overrides);
-  States states(scene, trajectory);
+  const TrajectoryReader trajectory(arguments.run / trajectory_name);
+  const Scene scene = read_scene(arguments.run / "scene.yaml", arguments.overrides);
+  columns_for(scene, trajectory);
+  expect_context(arguments.context);
   const RunFolder folder(output_folder(arguments.output, arguments.run, "render"),
                          arguments.overwrite ? RunFolder::Earlier::replaced : RunFolder::Earlier::refused);
   Console console(folder / "log.txt", AtomicFile::Opening::anew);
-  Film film(scene, folder, console);
+
   const std::vector<TrajectoryFrame>& frames = trajectory.index().frames();
-  for (std::size_t f = 0; f < frames.size(); ++f)
-    film.record(frames[f].step, [&] { return frame_of(scene, states.read(f)); });
-  film.finish();
-  console.say(fmt::format("pictures: {} frames in {}{}", film.frames(), folder.frames().string(),
-                          film.movie().empty() ? "" : ", " + (folder / film.movie().c_str()).string()));
+  const int jobs = jobs_for(arguments, scene, frames.size());
+  std::vector<std::string> renderers;
+  in_processes(
+      jobs, jobs, [&](int k) { return draw_part(scene, arguments, folder, k, jobs).text(); },
+      [&](int, const ProcessResult& result) {
+        const auto [renderer, trouble] = PartResult::from(result);
+        if (!trouble.empty()) console.warn(trouble);
+        if (!renderer.empty() && !std::ranges::count(renderers, renderer)) renderers.push_back(renderer);
+      });
+  if (!console.warnings().empty()) {
+    console.say("pictures: frames are missing, and there is no movie");
+    console.close();
+    return status_run_failed;
+  }
+  Film film(scene, folder, arguments.context,
+            [&console](std::string_view trouble) { console.warn(trouble); });
+  for (const TrajectoryFrame& frame : frames) film.pass_over(frame.step);
+  film.make_movie();
+  console.say(fmt::format("pictures: {} frames in {}{}; {} processes, {}", film.frames(),
+                          folder.frames().string(),
+                          film.movie().empty() ? "" : ", " + (folder / film.movie().c_str()).string(), jobs,
+                          fmt::join(renderers, " and ")));
   console.close();
   return console.warnings().empty() ? status_done : status_run_failed;
 }

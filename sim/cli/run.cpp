@@ -6,6 +6,7 @@
 #include "sim/cli/console.hpp"
 #include "sim/cli/failure_picture.hpp"
 #include "sim/cli/interrupt.hpp"
+#include "sim/cli/picture_context.hpp"
 #include "sim/cli/recorder.hpp"
 #include "sim/record/build_info.hpp"
 #include "sim/record/final_state.hpp"
@@ -129,7 +130,8 @@ void attempt(RunSummary& summary, Console& console, const std::function<void()>&
 
 /// The step that failed as the manifest has it, and a picture of the place.
 void say_failure(const StepFailure& failure, const Scene& scene, Simulation& simulation,
-                 const RunFolder& folder, RunSummary& summary, Console& console) {
+                 const RunFolder& folder, render::ContextChoice context, RunSummary& summary,
+                 Console& console) {
   if (failure.bodies().empty()) return;
   for (const std::int32_t id : failure.bodies()) {
     const BodyState body = simulation.body(id);
@@ -137,7 +139,7 @@ void say_failure(const StepFailure& failure, const Scene& scene, Simulation& sim
   }
   const std::filesystem::path file = folder / "failure.png";
   try {
-    draw_failure(scene, simulation, failure.bodies(), file);
+    draw_failure(scene, simulation, failure.bodies(), context, file);
     console.say(fmt::format("the place, as it was before: {}", file.string()));
   } catch (const RunError& error) {
     console.warn(fmt::format("no picture of the place: {}", error.what()));
@@ -204,7 +206,9 @@ int run(const RunArguments& arguments) {
   const TimeGrid grid(scene.time);
   const double end = std::min(arguments.until.value_or(scene.time.end), scene.time.end);
   const std::int64_t last_step = grid.nearest(end);
-  const bool draws = arguments.draw && scene.render.enabled;
+  std::optional<render::ContextChoice> draws;
+  if (arguments.draw && scene.render.enabled) draws = arguments.context;
+  if (draws) expect_context(*draws);
   Simulation simulation(scene, arguments.simulation);
 
   // Only now is the input known to be good, and something is written.
@@ -214,7 +218,8 @@ int run(const RunArguments& arguments) {
     fmt::print("{}: done, there is nothing to resume\n", folder.path().string());
     return status_done;
   }
-  Checkpoints checkpoints(folder, scene.record.checkpoint_every, identity_of(scene, simulation, draws));
+  Checkpoints checkpoints(folder, scene.record.checkpoint_every,
+                          identity_of(scene, simulation, draws.has_value()));
   std::vector<std::string> warnings;
   const bool resumes = arguments.resume && checkpoints.find(warnings);
   if (arguments.resume && !resumes) folder.clear();
@@ -259,11 +264,13 @@ int run(const RunArguments& arguments) {
   summary.checks = recorder.check_results();
   attempt(summary, console, [&] { summary.state_hash = simulation.state_hash(); });
   if (failure)
-    attempt(summary, console, [&] { say_failure(*failure, scene, simulation, folder, summary, console); });
+    attempt(summary, console,
+            [&] { say_failure(*failure, scene, simulation, folder, arguments.context, summary, console); });
   summary.states = recorder.states();
   if (const Film* film = recorder.film()) {
     summary.frames = film->frames();
     summary.movie = film->movie();
+    summary.renderer = film->renderer();
   }
   summary.trajectory_frames = recorder.trajectory_frames();
   summary.wall = recorder.wall();

@@ -208,6 +208,7 @@ std::string manifest_of(const Scene& scene, const RunSummary& run) {
   json["observation"] = json_of(run.last);
   json["frames"] = run.frames;
   if (!run.movie.empty()) json["movie"] = run.movie;
+  if (!run.renderer.empty()) json["renderer"] = run.renderer;
   if (run.trajectory_frames > 0) json["trajectory_frames"] = run.trajectory_frames;
   json["warnings"] = run.warnings;
   json["wall_s"] = run.wall;

@@ -41,7 +41,8 @@ struct RunSummary {
   double wall = 0;  ///< of the whole run, drawing and writing included, but not the time it was stopped (s)
   std::vector<std::int64_t> resumed_at = {};  ///< steps
   std::int64_t frames = 0;
-  std::string movie = {};  ///< file name; empty if there is none
+  std::string movie = {};     ///< file name; empty if there is none
+  std::string renderer = {};  ///< what drew the frames of this run, or of the last part of it; empty: nothing
   std::int64_t trajectory_frames = 0;
   std::vector<CheckResult> checks = {};
   std::vector<std::string> warnings = {};

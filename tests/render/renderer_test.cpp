@@ -1,7 +1,6 @@
 // Pictures against closed forms. Shapes are told from the background by its flat colour, which no body has.
 #include "render/renderer.hpp"
 
-#include "core/rng.hpp"
 #include "tests/render/scenes.hpp"
 
 #include <gtest/gtest.h>
@@ -14,7 +13,7 @@ namespace {
 constexpr int width = 320, height = 240;
 
 Renderer& renderer() {
-  static const std::unique_ptr<Renderer> shared = make_osmesa_renderer(width, height);
+  static const std::unique_ptr<Renderer> shared = make_renderer(ContextChoice::osmesa, width, height);
   return *shared;
 }
 
@@ -97,7 +96,7 @@ TEST(Renderer, DrawsAFrameOf4K) {
   Snapshot snapshot;
   add_sphere(snapshot, Vec3::Zero(), 0.8);
   const Camera camera{{0, -4, 0}, Vec3::Zero(), Vec3::UnitZ(), 60};
-  const Image image = make_osmesa_renderer(3840, 2160)->draw({snapshot}, camera, masked());
+  const Image image = make_renderer(ContextChoice::osmesa, 3840, 2160)->draw({snapshot}, camera, masked());
   ASSERT_EQ(image.rgb.size(), 3u * 3840 * 2160);
   const Blob seen = silhouette(image);
   const double area = std::pow(2160.0 / height, 2) * projected_sphere(camera, Vec3::Zero(), 0.8).area;
@@ -139,20 +138,6 @@ TEST(Renderer, BoxFaceHasItsSize) {
   EXPECT_NEAR(seen.area, scale * 1 * scale * 0.5, 0.5 * 2 * scale * 1.5);
 }
 
-Snapshot small_pile() {
-  Snapshot snapshot;
-  add_plane(snapshot, Vec3::UnitZ(), 0);
-  add_plane(snapshot, Vec3::UnitX(), -2);
-  add_plane(snapshot, -Vec3::UnitY(), -2);
-  Random random(1, 1);
-  for (int k = 0; k < 60; ++k) {
-    const Vec3 place(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(0.2, 1.5));
-    const Shape shape = k % 2 == 0 ? Shape::sphere : Shape::box;
-    add_body(snapshot, shape, place, Vec3(0.2, 0.2, 0.1), Mobility::free, rotation_of(3 * place));
-  }
-  return snapshot;
-}
-
 TEST(Renderer, SameInputGivesTheSameBytes) {
   const Snapshot snapshot = small_pile();
   const Camera camera = frame_all(snapshot, {0, 0, -9.81}, 4.0 / 3);
@@ -163,7 +148,8 @@ TEST(Renderer, SameInputGivesTheSameBytes) {
     const Image other = renderer().draw({}, camera, style);
     EXPECT_NE(first.rgb, other.rgb);
     EXPECT_EQ(first.rgb, renderer().draw({snapshot}, camera, style).rgb);
-    EXPECT_EQ(first.rgb, make_osmesa_renderer(width, height)->draw({snapshot}, camera, style).rgb);
+    EXPECT_EQ(first.rgb,
+              make_renderer(ContextChoice::osmesa, width, height)->draw({snapshot}, camera, style).rgb);
   }
 }
 
@@ -224,15 +210,6 @@ TEST(Renderer, ShadowsSoftenWithTheHeightOfWhatCastsThem) {
     EXPECT_GT(half_lit / (dark + half_lit), 1.15 * last) << plate;
     last = half_lit / (dark + half_lit);
   }
-}
-
-Snapshot drum(double turn) {
-  Snapshot snapshot;
-  // Its axis along the view.
-  const Quat lying = Quat::FromTwoVectors(Vec3::UnitZ(), Vec3::UnitY());
-  add_body(snapshot, Shape::tube, Vec3::Zero(), {1, 1, 0.4}, Mobility::prescribed,
-           lying * Quat(Eigen::AngleAxisd(turn, Vec3::UnitZ())));
-  return snapshot;
 }
 
 TEST(Renderer, TubeShowsItsContentsAndItsTurn) {

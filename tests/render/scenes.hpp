@@ -1,6 +1,7 @@
 // Small snapshots to draw.
 #pragma once
 
+#include "core/rng.hpp"
 #include "core/snapshot.hpp"
 
 namespace scree::render {
@@ -30,6 +31,30 @@ inline void add_sphere(Snapshot& snapshot, const Vec3& position, double radius) 
 inline void add_plane(Snapshot& snapshot, const Vec3& normal, double offset) {
   add_body(snapshot, Shape::plane, offset * normal, Vec3::Zero(), Mobility::fixed,
            Quat::FromTwoVectors(Vec3::UnitZ(), normal));
+}
+
+/// Spheres and boxes over a ground, between walls.
+inline Snapshot small_pile() {
+  Snapshot snapshot;
+  add_plane(snapshot, Vec3::UnitZ(), 0);
+  add_plane(snapshot, Vec3::UnitX(), -2);
+  add_plane(snapshot, -Vec3::UnitY(), -2);
+  Random random(1, 1);
+  for (int k = 0; k < 60; ++k) {
+    const Vec3 place(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(0.2, 1.5));
+    const Shape shape = k % 2 == 0 ? Shape::sphere : Shape::box;
+    add_body(snapshot, shape, place, Vec3(0.2, 0.2, 0.1), Mobility::free, rotation_of(3 * place));
+  }
+  return snapshot;
+}
+
+/// A tube, its axis along y.
+inline Snapshot drum(double turn) {
+  Snapshot snapshot;
+  const Quat lying = Quat::FromTwoVectors(Vec3::UnitZ(), Vec3::UnitY());
+  add_body(snapshot, Shape::tube, Vec3::Zero(), {1, 1, 0.4}, Mobility::prescribed,
+           lying * Quat(Eigen::AngleAxisd(turn, Vec3::UnitZ())));
+  return snapshot;
 }
 
 }  // namespace scree::render
