@@ -50,10 +50,13 @@ class FakeStepper final : public Stepper {
 
   void change_bodies(const std::function<void(Bodies<Host>&)>&) override {}
   BodyTable take_out(const std::vector<std::int32_t>&) override { return {}; }
+  void bring_in(const BodyTable&) override {}
   void archive(Archive&) override {}
   SteppedBody body(std::int32_t) const override { return {}; }
   Totals totals(const Vec3&) const override { return {}; }
   double largest_speed() const override { return 0; }
+  std::vector<std::int32_t> bodies_in(const Region&) const override { return {}; }
+  BodyTable bodies_near(const Vec3&, const Vec3&) const override { return {}; }
   RegionContents contents_of(const Region&) const override { return {}; }
   std::vector<BodyPair> pairs() override { return {}; }
   GridOccupancy grid_occupancy() override { return {}; }
