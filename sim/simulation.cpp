@@ -149,7 +149,8 @@ struct Simulation::Parts {
     if (scene.world && scene.world->leaving == Leaving::remove)
       left += take_out(stepper->bodies_beyond(*scene.world)).count;
     for (std::size_t r = 0; r < scene.regions.size(); ++r)
-      if (scene.regions[r].removes) removed[r] += take_out(stepper->bodies_in(scene.regions[r]));
+      if (scene.regions[r].removes.value_or(false))
+        removed[r] += take_out(stepper->bodies_in(scene.regions[r]));
     if (presence.changes(step)) {
       Presence::Change change;
       stepper->change_bodies(

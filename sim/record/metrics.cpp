@@ -45,7 +45,7 @@ std::vector<std::string> metric_names(const Scene& scene) {
   }
   for (const Region& region : scene.regions) {
     for (const MeasureInfo& info : measure_table()) {
-      if (info.of == MeasureSubject::region && (region.removes || !is_of_removal(info.kind)))
+      if (info.of == MeasureSubject::region && (region.removes.value_or(false) || !is_of_removal(info.kind)))
         names.push_back(fmt::format("region.{}.{}", region.name, info.name));
     }
   }

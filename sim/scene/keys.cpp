@@ -73,18 +73,20 @@ Codec<ForceEntry> force_section() {
 
 Codec<Region> region_section() {
   using T = Region;
-  return section<T>("regions.<name>",
-                    "A box to measure in, its faces along the world's axes, or one where bodies end. The "
-                    "names are yours; see "
-                    "Measures.",
-                    {
-                        key<T>("from", &T::from, vector("m"), required, "lower corner"),
-                        key<T>("to", &T::to, vector("m"), required, "upper corner"),
-                        key<T>("removes", &T::removes, boolean(), optionally,
-                               "free bodies whose centre is in the box at the end of a step are taken out, "
-                               "and booked as gone"),
-                    },
-                    check_region);
+  return section<T>(
+      "regions.<name>",
+      "A box to measure in, its faces along the world's axes, or one where bodies end. The "
+      "names are yours; see "
+      "Measures.",
+      {
+          key<T>("from", &T::from, vector("m"), required, "lower corner"),
+          key<T>("to", &T::to, vector("m"), required, "upper corner"),
+          with_default(key<T>("removes", &T::removes, optional(boolean()), optionally,
+                              "free bodies whose centre is in the box at the end of a step are taken out, "
+                              "and booked as gone"),
+                       "false"),
+      },
+      check_region);
 }
 
 Codec<World> world_section() {

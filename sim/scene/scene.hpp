@@ -78,9 +78,9 @@ struct AppliedForce {
 /// A named box to measure in, its faces along the world's axes; closed.
 struct Region {
   std::string name;
-  Vec3 from = Vec3::Zero();  ///< m
-  Vec3 to = Vec3::Zero();    ///< m; greater in each component
-  bool removes = false;      ///< free bodies whose centre comes into it are taken out
+  Vec3 from = Vec3::Zero();          ///< m
+  Vec3 to = Vec3::Zero();            ///< m; greater in each component
+  std::optional<bool> removes = {};  ///< free bodies whose centre comes into it are taken out
 };
 
 /// Free bodies that appear one after another, the n-th as soon after start + n / rate as there is room, with
