@@ -40,6 +40,12 @@ std::map<std::string, fs::path> benchmarks() {
 
 }  // namespace
 
+std::vector<std::string> benchmark_names() {
+  std::vector<std::string> names;
+  for (const auto& [name, program] : benchmarks()) names.push_back(name);
+  return names;
+}
+
 int bench(const std::vector<std::string>& arguments) {
   const std::map<std::string, fs::path> found = benchmarks();
   if (arguments.empty() || arguments.front() == "--help" || arguments.front() == "-h") {

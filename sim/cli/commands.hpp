@@ -90,9 +90,18 @@ int plan(const PlanArguments& arguments);
 int print_schema();
 int print_reference();
 
+struct NewArguments {
+  std::filesystem::path name;  ///< of the scene file, .yaml or not; empty: list the templates
+  std::string from;            ///< a template; empty: the one that the scene is named after
+};
+/// Writes a scene to start from; refuses a file that is there.
+int write_new_scene(const NewArguments& arguments);
+std::vector<std::string> template_names();
+
 /// A benchmark's name, and what it is given; without any, lists those that there are. Becomes that program:
 /// returns only if it starts none.
 int bench(const std::vector<std::string>& arguments);
+std::vector<std::string> benchmark_names();
 
 int info();
 

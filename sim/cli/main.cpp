@@ -3,10 +3,13 @@
 #include "core/timing.hpp"
 #include "sim/cli/commands.hpp"
 #include "sim/cli/console.hpp"
+#include "sim/cli/help.hpp"
+#include "sim/record/build_info.hpp"
 #include "sim/record/outcome.hpp"
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <cerrno>
 #include <cstdio>
@@ -16,6 +19,7 @@
 #include <functional>
 #include <map>
 #include <new>
+#include <ranges>
 #include <tuple>
 #include <unistd.h>
 
@@ -44,12 +48,17 @@ void add_overrides(CLI::App& command, std::vector<Override>& overrides) {
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
 }
 
+/// The value is one of these names, which help and completion show.
+template <class T>
+void choose(CLI::Option* option, const std::map<std::string, T>& choices) {
+  option->transform(CLI::Transformer(choices).description(""))
+      ->type_name(fmt::format("{}", fmt::join(choices | std::views::keys, "|")));
+}
+
 void add_simulation(CLI::App& command, SimulationOptions& options, const char* threads) {
   static const std::map<std::string, SpaceChoice> spaces = {
       {"auto", SpaceChoice::automatic}, {"host", SpaceChoice::host}, {"cuda", SpaceChoice::cuda}};
-  command.add_option("--device", options.space, "Where to run: auto, host or cuda")
-      ->transform(CLI::Transformer(spaces).description(""))
-      ->type_name("DEVICE");
+  choose(command.add_option("--device", options.space, "Where to run"), spaces);
   command.add_option("--threads", options.threads, threads)
       ->check(CLI::Validator(CLI::PositiveNumber).description(""))
       ->type_name("N");
@@ -60,13 +69,11 @@ void add_context(CLI::App& command, render::ContextChoice& context) {
       {"auto", render::ContextChoice::automatic},
       {"osmesa", render::ContextChoice::osmesa},
       {"egl", render::ContextChoice::egl}};
-  command
-      .add_option(
-          "--context", context,
-          "What draws: osmesa (the processor), egl (a GPU if there is one), or auto: egl where there is "
-          "a GPU, else osmesa")
-      ->transform(CLI::Transformer(contexts).description(""))
-      ->type_name("CONTEXT");
+  choose(command.add_option(
+             "--context", context,
+             "What draws: osmesa (the processor), egl (a GPU if there is one), or auto: egl where there is "
+             "a GPU, else osmesa"),
+         contexts);
 }
 
 CLI::App* add_run(CLI::App& app, RunArguments& arguments) {
@@ -128,10 +135,9 @@ CLI::App* add_export(CLI::App& app, ExportArguments& arguments) {
   CLI::App* command =
       app.add_subcommand("export", "Write the trajectory of a run in the format of other programs");
   command->add_option("run", arguments.run, "Run folder with a trajectory")->required()->type_name("DIR");
-  command->add_option("--to", arguments.format, "vtp (ParaView), xyz or lammps (OVITO), or csv")
-      ->required()
-      ->transform(CLI::Transformer(formats).description(""))
-      ->type_name("FORMAT");
+  choose(command->add_option("--to", arguments.format, "vtp (ParaView), xyz or lammps (OVITO), or csv")
+             ->required(),
+         formats);
   command->add_option("-o,--output", arguments.output, "Folder instead of DIR-FORMAT")->type_name("DIR");
   return command;
 }
@@ -224,10 +230,20 @@ CLI::App* add_study(CLI::App& app, StudyArguments& arguments) {
   return command;
 }
 
-/// What follows is the benchmark's, help included.
-CLI::App* add_bench(CLI::App& app) {
-  CLI::App* command =
-      app.add_subcommand("bench", "Run a benchmark: scree bench NAME ...; lists them without");
+CLI::App* add_new(CLI::App& app, NewArguments& arguments) {
+  CLI::App* command = app.add_subcommand("new", "Write a commented scene to start from, NAME.yaml");
+  CLI::Option* name =
+      command->add_option("name", arguments.name, "What to call it; without, lists the templates")
+          ->type_name("NAME");
+  command->add_option("--from", arguments.from, "Template to copy (default: the one called NAME)")
+      ->needs(name)
+      ->type_name("TEMPLATE");
+  return command;
+}
+
+/// What follows the command is for the command to read, help included.
+CLI::App* add_prefix(CLI::App& app, const char* name, const char* description) {
+  CLI::App* command = app.add_subcommand(name, description);
   command->prefix_command();
   command->set_help_flag();
   return command;
@@ -254,6 +270,7 @@ int main(int argc, char** argv) {
       "scree");
   app.footer("Exit status: 0 done; 1 a check failed; 2 bad input; 3 the run failed; 130 interrupted.");
   app.require_subcommand(1);
+  app.set_version_flag("--version", "scree " + build_info().version, "Print the version and exit");
 
   RunArguments run_arguments;
   PlanArguments plan_arguments;
@@ -272,8 +289,14 @@ int main(int argc, char** argv) {
   std::filesystem::path reported;
   const CLI::App* report_command = add_report(app, reported);
   const CLI::App* compare_command = add_compare(app, compare_arguments);
-  const CLI::App* bench_command = add_bench(app);
+  const CLI::App* bench_command =
+      add_prefix(app, "bench", "Run a benchmark: scree bench NAME ...; lists them without");
+  NewArguments new_arguments;
+  const CLI::App* new_command = add_new(app, new_arguments);
   app.add_subcommand("info", "Say what this program is and what it finds on this machine");
+  const CLI::App* complete_command =
+      add_prefix(app, "complete", "Tell a shell what may come next")->group("");
+  set_help(app);
 
   try {
     app.parse(argc, argv);
@@ -285,6 +308,8 @@ int main(int argc, char** argv) {
     if (report_command->parsed()) return after_printing(report(reported));
     if (compare_command->parsed()) return after_printing(compare(compare_arguments));
     if (bench_command->parsed()) return bench(bench_command->remaining());
+    if (new_command->parsed()) return after_printing(write_new_scene(new_arguments));
+    if (complete_command->parsed()) return complete(app, complete_command->remaining());
     if (plan_command->parsed())
       return after_printing(schema ? print_schema() : reference ? print_reference() : plan(plan_arguments));
     return after_printing(info());

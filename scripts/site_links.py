@@ -1,0 +1,41 @@
+"""For mkdocs, which takes what has no extension for no file: a link to a folder of the sources goes to a page that lists
+what is in it, and one that leads nowhere is a warning, as it is for other links."""
+import logging
+import re
+from pathlib import Path
+
+LINK = re.compile(r"(?<=\]\()([^)#:\s]+?)/?(?=\))")
+
+log = logging.getLogger("mkdocs.plugins.site_links")
+
+
+def folder_at(page, target):
+    """The folder that a page links to, or nothing."""
+    path = Path(page).parent / target
+    return path if path.is_dir() else None
+
+
+def on_pre_build(config):
+    source = Path(config["docs_dir"])
+    linked = {folder.resolve() for page in source.rglob("*.md") for target in LINK.findall(page.read_text())
+              if (folder := folder_at(page, target))}
+    for folder in linked:
+        if (folder / "README.md").exists():
+            continue
+        names = sorted(f"{entry.name}{'/README.md' * entry.is_dir()}" for entry in folder.iterdir()
+                       if entry.is_file() or entry.resolve() in linked)
+        (folder / "README.md").write_text(f"# {folder.relative_to(source.resolve())}\n\n"
+                                          + "".join(f"- [{name}]({name})\n" for name in names))
+
+
+def on_page_markdown(markdown, page, **_):
+    here = page.file.abs_src_path
+
+    def corrected(link):
+        if folder_at(here, link[1]):
+            return f"{link[1]}/README.md"
+        if "." not in Path(link[1]).name and not (Path(here).parent / link[1]).exists():
+            log.warning("Documentation file '%s' contains a link to '%s', which is not there", page.file.src_path, link[1])
+        return link[0]
+
+    return LINK.sub(corrected, markdown)

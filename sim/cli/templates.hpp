@@ -1,0 +1,17 @@
+// The scenes of `scree new`: the files of sim/cli/templates, built into the program.
+#pragma once
+
+#include <string_view>
+#include <vector>
+
+namespace scree::cli {
+
+struct Template {
+  std::string_view name;
+  std::string_view text;  ///< a scene file; its first line is a comment that says what it is
+};
+
+/// By name.
+const std::vector<Template>& templates();
+
+}  // namespace scree::cli

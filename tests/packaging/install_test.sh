@@ -1,0 +1,80 @@
+#!/usr/bin/env bash
+# tests/packaging/install_test.sh PACKAGE [MIRROR]: installs the Debian package on a clean Debian 12, which debootstrap makes,
+# and tries there what it brought: program, scenes, manual page, completion; last, that nothing is left when it is removed.
+# Needs root, a mirror of Debian (MIRROR, or debootstrap's own) and 2 GB; about 5 minutes. Ends with "package: passed".
+set -euo pipefail
+if (($# < 1)); then
+  echo "usage: tests/packaging/install_test.sh PACKAGE [MIRROR]" >&2
+  exit 2
+fi
+package=$(realpath "$1")
+system=$(mktemp -d)
+chmod 755 "$system" # mktemp keeps others out, and apt-get downloads as one of them
+leave() {
+  umount "$system/proc" 2>/dev/null || true
+  rm -rf --one-file-system "$system"
+}
+trap leave EXIT
+
+clean() { env -i PATH=/usr/sbin:/usr/bin:/sbin:/bin HOME=/root LC_ALL=C.UTF-8 DEBIAN_FRONTEND=noninteractive chroot "$system" "$@"; }
+install() { clean apt-get install -q -y --no-install-recommends "$@" >"$system/tmp/apt.log" 2>&1 || { cat "$system/tmp/apt.log" >&2; exit 1; }; }
+failed() {
+  echo "package: FAILED: $*" >&2
+  exit 1
+}
+# in_folder COMMAND: in a shell in the folder where a user of the clean system is.
+in_folder() { clean bash -c "cd /home/user && $1"; }
+# expect WORDS COMMAND: its output holds the words.
+expect() {
+  local said
+  said=$(in_folder "$2" 2>&1) || failed "'$2' ended with status $?: $said"
+  printf '$ %s\n%s\n\n' "$2" "$(tail -n 12 <<<"$said")"
+  [[ $said == *"$1"* ]] || failed "'$2' did not say '$1'"
+}
+
+echo "== a clean system"
+debootstrap --variant=minbase bookworm "$system" ${2:+"$2"} >"$system.log" 2>&1 || { tail -n 20 "$system.log" >&2; exit 1; }
+rm "$system.log"
+mount -t proc proc "$system/proc"
+mkdir "$system/home/user"
+cp "$package" "$system/tmp/scree.deb"
+clean apt-get -q update >/dev/null
+
+echo "== the package, with what it depends on and nothing more"
+install /tmp/scree.deb
+changed=$(clean dpkg --verify scree)
+[[ -z $changed ]] || failed "files that are not the package's: $changed"
+version=$(clean dpkg-query -W -f '${Version}' scree)
+expect "scree ${version%-*}" "scree --version"
+expect "pictures   OSMesa" "scree info"
+expect "Next: scree plan hopper.yaml" "scree new hopper"
+# Without ffmpeg a run says so, and is a good run.
+expect "warning: no movie" "scree run hopper.yaml --set render.fps=4"
+expect ", 0 failed" "scree verify /usr/share/scree/configs/validation/{free_motion,resting,single_contact}"
+expect "done at t = 0.2 s" "scree run /usr/share/scree/configs/11_dominoes.yaml --no-render --until 0.2 --set checks=[]"
+
+echo "== what it recommends, and the programs that read its manual and its completion"
+install ffmpeg gnuplot-nox man-db bash-completion zsh fish
+expect "movie.mp4" "scree run hopper.yaml --overwrite --until 1.2 --set checks=[] --set render.fps=10; ls output/hopper/movie.mp4"
+expect "scree run [OPTIONS] [SCENE]" "man --warnings=w scree | cat"
+warnings=$(in_folder 'man --warnings=w scree 2>&1 >/dev/null')
+[[ -z $warnings ]] || failed "man warns: $warnings"
+manual=$(in_folder 'man scree | cat')
+for section in NAME SYNOPSIS OPTIONS COMMANDS 'EXIT STATUS' ENVIRONMENT FILES EXAMPLES 'SEE ALSO'; do
+  grep -q "^$section" <<<"$manual" || failed "no $section in the manual"
+done
+expect "scree ($version)" "zcat /usr/share/doc/scree/changelog.Debian.gz"
+expect "Changelog" "zcat /usr/share/doc/scree/changelog.gz"
+expect "License: Expat" "cat /usr/share/doc/scree/copyright"
+# As bash loads it: by name, when TAB is pressed for the first time.
+expect "hopper.yaml" ". /usr/share/bash-completion/bash_completion; _completion_loader scree; COMP_WORDS=(scree run h); COMP_CWORD=2; _scree; echo \"\${COMPREPLY[@]}\""
+expect "hopper.yaml" "fish -c 'complete -C \"scree run h\"'"
+expect "_scree" "zsh -fc 'autoload -U compinit && compinit -u -D && echo \$_comps[scree]'"
+
+echo "== removed"
+mapfile -t files < <(clean dpkg -L scree | grep /scree)
+((${#files[@]} > 10)) || failed "the package has ${#files[@]} files"
+clean apt-get purge -q -y scree >/dev/null
+left=$(clean ls -d "${files[@]}" 2>/dev/null || true)
+[[ -z $left ]] || failed "left behind: $left"
+echo "package: passed"
