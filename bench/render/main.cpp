@@ -3,9 +3,10 @@
 //   scree_bench_render [--context auto,osmesa,egl] [--shape sphere,box,mixed] [--n 10000,100000,1000000]
 //                      [--size 1280x720] [--png FOLDER]
 //
-// One picture to warm up, then the median of five; in wall time, and in processor time of all threads. Of the
-// wall time, how much goes before OpenGL: finding what can be seen, and packing it, on the processor. Beside
-// it, what compressing and writing the picture as PNG takes. --png keeps the last picture of each row.
+// One picture to warm up, then the median of five; in wall time, and in processor time of all threads. What
+// goes before OpenGL: finding the bodies that can be seen and packing those, as where the processor draws, or
+// packing all, as where a GPU does. And what compressing and writing the picture as PNG takes. --png keeps
+// the last picture of each row.
 #include "bench/clock.hpp"
 #include "bench/options.hpp"
 #include "core/rng.hpp"
@@ -110,15 +111,20 @@ void run(const Case& c, render::Renderer& renderer, int width, int height, const
   render::Image image = renderer.draw(frame, camera, {});
   const Times drawing = times_of([&] { image = renderer.draw(frame, camera, {}); });
   const int shadow_size = render::gl::shadow_size_for(width, height);
-  const Times before =
-      times_of([&] { render::gl::frame_data(frame, camera, {}, width, height, shadow_size); });
+  render::gl::FrameData data;
+  const auto data_with = [&](render::gl::Hidden hidden) {
+    return times_of(
+        [&] { render::gl::set_frame_data(frame, camera, {}, width, height, shadow_size, hidden, data); });
+  };
+  const Times leaving_out = data_with(render::gl::Hidden::left_out);
+  const Times all = data_with(render::gl::Hidden::drawn);
   const std::string name = c.context + "_" + c.shape + "_" + std::to_string(c.n) + ".png";
   const fs::path file = (folder.empty() ? fs::temp_directory_path() : fs::path(folder)) / name;
   const Times writing = times_of([&] { render::write_png(file, image); });
   if (folder.empty()) fs::remove(file);
-  std::printf("%-7s %-7s %9lld %8.3f %8.3f %8.3f %8.3f\n", c.context.c_str(), c.shape.c_str(),
-              static_cast<long long>(frame.snapshot.bodies.count()), drawing.wall, before.wall,
-              drawing.processor, writing.wall);
+  std::printf("%-7s %-7s %9lld %8.3f %8.3f %8.3f %8.3f %8.3f\n", c.context.c_str(), c.shape.c_str(),
+              static_cast<long long>(frame.snapshot.bodies.count()), drawing.wall, drawing.processor,
+              leaving_out.wall, all.wall, writing.wall);
   std::fflush(stdout);
 }
 
@@ -145,8 +151,8 @@ void run_all(int argc, char** argv) {
   }
   for (const std::string& context : split(options.at("--context"))) {
     const auto renderer = render::make_renderer(context_of(context), width, height);
-    std::printf("%s: %s\ncontext shape      bodies   wall s before s    cpu s    png s\n", context.c_str(),
-                renderer->name().c_str());
+    std::printf("%s: %s\ncontext shape      bodies   wall s    cpu s  found s packed s    png s\n",
+                context.c_str(), renderer->name().c_str());
     for (const std::string& shape : split(options.at("--shape"))) {
       for (const std::string& n : split(options.at("--n"))) {
         run({context, shape, std::stoll(n)}, *renderer, width, height, options.at("--png"));

@@ -16,6 +16,8 @@ class Context {
   virtual Function function(const char* name) const = 0;
   /// Of the way: "OSMesa".
   virtual std::string name() const = 0;
+  /// Whether a GPU draws.
+  virtual bool is_hardware() const = 0;
 };
 
 /// An OpenGL 3.3 core context without a window, on the processor. Throws RunError.

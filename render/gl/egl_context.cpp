@@ -56,9 +56,9 @@ std::vector<Device> devices() {
 class EglContext : public Context {
  public:
   /// Throws RunError.
-  explicit EglContext(EGLDeviceEXT device) {
+  explicit EglContext(const Device& device) : is_hardware_(device.is_hardware) {
     const auto display_of = extension<PFNEGLGETPLATFORMDISPLAYEXTPROC>("eglGetPlatformDisplayEXT");
-    if (display_of != nullptr) display_ = display_of(EGL_PLATFORM_DEVICE_EXT, device, nullptr);
+    if (display_of != nullptr) display_ = display_of(EGL_PLATFORM_DEVICE_EXT, device.device, nullptr);
     if (display_ == EGL_NO_DISPLAY || !eglInitialize(display_, nullptr, nullptr))
       throw RunError("has no display: " + last_error());
     const char* extensions = eglQueryString(display_, EGL_EXTENSIONS);
@@ -89,8 +89,10 @@ class EglContext : public Context {
   }
   Function function(const char* name) const override { return eglGetProcAddress(name); }
   std::string name() const override { return "EGL"; }
+  bool is_hardware() const override { return is_hardware_; }
 
  private:
+  bool is_hardware_;
   EGLDisplay display_ = EGL_NO_DISPLAY;
   EGLContext context_ = EGL_NO_CONTEXT;
 };
@@ -99,13 +101,13 @@ class EglContext : public Context {
 
 std::unique_ptr<Context> make_egl_context(EglDevices wanted) {
   std::string tried;
-  for (const auto& [device, is_hardware] : devices()) {
-    if (!is_hardware && wanted == EglDevices::hardware) continue;
+  for (const Device& device : devices()) {
+    if (!device.is_hardware && wanted == EglDevices::hardware) continue;
     try {
       return std::make_unique<EglContext>(device);
     } catch (const RunError& error) {
-      tried += fmt::format("{}a {} device {}", tried.empty() ? "" : "; ", is_hardware ? "GPU's" : "software",
-                           error.what());
+      tried += fmt::format("{}a {} device {}", tried.empty() ? "" : "; ",
+                           device.is_hardware ? "GPU's" : "software", error.what());
     }
   }
   if (tried.empty())

@@ -1,12 +1,42 @@
 #include "render/gl/frame_data.hpp"
 
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+#include <tbb/parallel_invoke.h>
+
 #include <algorithm>
 #include <cmath>
-#include <future>
 
 namespace scree::render::gl {
 
 namespace {
+
+/// Calls work(k) for each k below `count`, in chunks side by side.
+template <class Work>
+void for_each(std::size_t count, Work work) {
+  constexpr std::size_t chunk = 8192;
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, chunk), [&](const auto& range) {
+    for (std::size_t k = range.begin(); k < range.end(); ++k) work(k);
+  });
+}
+
+/// What `of` gives, which returns an optional, for each k below `count`, in order.
+template <class T, class Of>
+std::vector<T> collect(std::size_t count, Of of) {
+  constexpr std::size_t chunk = 16384;
+  std::vector<std::vector<T>> parts((count + chunk - 1) / chunk);
+  tbb::parallel_for(std::size_t{0}, parts.size(), [&](std::size_t p) {
+    for (std::size_t k = p * chunk; k < std::min((p + 1) * chunk, count); ++k)
+      if (const std::optional<T> item = of(k)) parts[p].push_back(*item);
+  });
+  std::vector<std::size_t> first(parts.size() + 1, 0);
+  for (std::size_t p = 0; p < parts.size(); ++p) first[p + 1] = first[p] + parts[p].size();
+  std::vector<T> all(first.back());
+  tbb::parallel_for(std::size_t{0}, parts.size(), [&](std::size_t p) {
+    std::ranges::copy(parts[p], all.begin() + static_cast<std::ptrdiff_t>(first[p]));
+  });
+  return all;
+}
 
 Vec4f packed_color(const Color& c, float w) { return {c.x(), c.y(), c.z(), w}; }
 
@@ -34,8 +64,10 @@ PlaneFace face_of(const BodyTable& bodies, std::size_t k, const View& v) {
 // How far away things still shade each other: a few sizes of a typical body, within what the picture shows
 // well.
 double occlusion_reach(const BodyTable& bodies, const View& v) {
+  // Of many, some: the middle of those is as typical.
+  const std::size_t stride = 1 + bodies.shape.size() / 100000;
   std::vector<double> sizes;
-  for (std::size_t k = 0; k < bodies.shape.size(); ++k) {
+  for (std::size_t k = 0; k < bodies.shape.size(); k += stride) {
     if (is_colored(bodies, k)) sizes.push_back(bounding_radius(bodies.shape[k], bodies.size[k]));
   }
   if (sizes.empty()) return 0.1 * v.view;
@@ -63,46 +95,57 @@ FrameUniforms uniforms_of(const View& v, const LightView& light, const Style& st
   return u;
 }
 
-// Fills the texels, in the order that FrameUniforms::begin and ::after tell.
+// Fills the texels, in the order that FrameUniforms::begin and ::after tell. They are overwritten in place: a
+// vector of a gigabyte takes longer to make than to fill.
 class Packing {
  public:
-  Packing(const Frame& frame, const View& view, const Style& style, double cell, FrameData& data)
+  Packing(const Frame& frame, const View& view, const Style& style, double cell, std::vector<Vec4f>& texels)
       : bodies_(frame.snapshot.bodies),
         view_(view),
         paint_(frame, style.color_by, style.range ? *style.range : value_range(frame, style.color_by),
                style.palette, style.muted),
         cell_(cell),
-        data_(data) {}
+        texels_(texels) {}
+  ~Packing() { texels_.resize(4 * packed_); }
 
   /// Those of the bodies that have the shape; returns where they end.
   std::int32_t append(Shape shape, const std::vector<std::int32_t>& bodies) {
-    for (const std::int32_t body : bodies) {
-      const auto k = static_cast<std::size_t>(body);
-      if (bodies_.shape[k] == shape) append_solid(k);
-    }
-    return count();
+    const std::vector<std::int32_t> alike = collect<std::int32_t>(bodies.size(), [&](std::size_t n) {
+      const std::int32_t body = bodies[n];
+      return bodies_.shape[static_cast<std::size_t>(body)] == shape ? std::optional(body) : std::nullopt;
+    });
+    Vec4f* const first = room_for(alike.size());
+    for_each(alike.size(),
+             [&](std::size_t n) { set_solid(static_cast<std::size_t>(alike[n]), first + 4 * n); });
+    return static_cast<std::int32_t>(packed_);
   }
 
   std::int32_t append(PlaneKind kind, const std::vector<PlaneFace>& faces) {
     for (const PlaneFace& face : faces) {
-      if (face.kind == kind) append_plane(face);
+      if (face.kind == kind) set_plane(face, room_for(1));
     }
-    return count();
+    return static_cast<std::int32_t>(packed_);
   }
 
  private:
-  std::int32_t count() const { return static_cast<std::int32_t>(data_.texels.size() / 4); }
-
-  void append_solid(std::size_t k) {
-    const Quat& q = bodies_.orientation[k];
-    const bool round = bodies_.shape[k] != Shape::box;
-    data_.texels.push_back(packed(Vec3(bodies_.position[k] - view_.eye), round ? bodies_.size[k].x() : 0.0));
-    data_.texels.push_back(packed(Vec3(q.vec()), q.w()));
-    data_.texels.push_back(packed(bodies_.size[k], 0));
-    data_.texels.push_back(packed_color(paint_(k), 0));
+  /// Valid until the next call.
+  Vec4f* room_for(std::size_t bodies) {
+    const std::size_t first = 4 * packed_;
+    packed_ += bodies;
+    if (texels_.size() < 4 * packed_) texels_.resize(4 * packed_);
+    return texels_.data() + first;
   }
 
-  void append_plane(const PlaneFace& face) {
+  void set_solid(std::size_t k, Vec4f* texels) const {
+    const Quat& q = bodies_.orientation[k];
+    const bool round = bodies_.shape[k] != Shape::box;
+    texels[0] = packed(Vec3(bodies_.position[k] - view_.eye), round ? bodies_.size[k].x() : 0.0);
+    texels[1] = packed(Vec3(q.vec()), q.w());
+    texels[2] = packed(bodies_.size[k], 0);
+    texels[3] = packed_color(paint_(k), 0);
+  }
+
+  void set_plane(const PlaneFace& face, Vec4f* texels) const {
     // One axis of the grid is level; on a level plane it is x, or y for a plane at right angles to x.
     const bool level = face.normal.dot(view_.up) > 0.9999;
     const Vec3 world = std::abs(face.normal.x()) < 0.9 ? Vec3::UnitX() : Vec3::UnitY();
@@ -113,18 +156,61 @@ class Packing {
     // The grid passes through the world's origin; what is left of that in floats is the eye's place within
     // ten cells.
     const auto offset = [&](const Vec3& axis) { return std::fmod(axis.dot(view_.eye), 10 * cell_); };
-    data_.texels.push_back(packed(face.point, level ? 1 : 0));
-    data_.texels.push_back(packed(a, offset(a)));
-    data_.texels.push_back(packed(b, offset(b)));
-    data_.texels.push_back(packed(face.normal, cell_));
+    texels[0] = packed(face.point, level ? 1 : 0);
+    texels[1] = packed(a, offset(a));
+    texels[2] = packed(b, offset(b));
+    texels[3] = packed(face.normal, cell_);
   }
 
   const BodyTable& bodies_;
   const View& view_;
   Painter paint_;
   double cell_;
-  FrameData& data_;
+  std::vector<Vec4f>& texels_;
+  std::size_t packed_ = 0;  // bodies
 };
+
+/// The bodies of a frame, by what is done with them.
+struct Shown {
+  std::vector<std::int32_t> solids;   ///< spheres and boxes that the camera sees
+  std::vector<std::int32_t> casters;  ///< and those that the light sees
+  std::vector<std::int32_t> tubes;
+  std::vector<PlaneFace> faces;
+};
+
+Shown shown_in(const BodyTable& bodies, const View& v, const LightView& light, int height, int width,
+               int shadow_size, Hidden hidden) {
+  Shown shown;
+  for (std::size_t k = 0; k < bodies.shape.size(); ++k) {
+    if (bodies.mobility[k] == Mobility::absent) continue;
+    if (bodies.shape[k] == Shape::plane) shown.faces.push_back(face_of(bodies, k, v));
+    if (bodies.shape[k] == Shape::tube) shown.tubes.push_back(static_cast<std::int32_t>(k));
+  }
+  const std::size_t count = bodies.shape.size();
+  const auto is_solid = [&](std::size_t k) {
+    return bodies.mobility[k] != Mobility::absent && !is_boundary(bodies.shape[k]);
+  };
+  const auto seen = [&](std::size_t k) {
+    return is_solid(k) ? v.disc_of(bodies, k, height) : std::optional<Disc>();
+  };
+  const auto lit = [&](std::size_t k) {
+    return is_solid(k) ? std::optional(light.disc_of(bodies, k)) : std::optional<Disc>();
+  };
+  if (hidden == Hidden::drawn) {
+    const auto body_of = [](std::size_t k, bool chosen) {
+      return chosen ? std::optional(static_cast<std::int32_t>(k)) : std::nullopt;
+    };
+    shown.solids =
+        collect<std::int32_t>(count, [&](std::size_t k) { return body_of(k, seen(k).has_value()); });
+    shown.casters = collect<std::int32_t>(count, [&](std::size_t k) { return body_of(k, is_solid(k)); });
+    return shown;
+  }
+  // The two take about as long, and most of the time of a frame's data.
+  tbb::parallel_invoke(
+      [&] { shown.solids = visible_discs(collect<Disc>(count, seen), width, height); },
+      [&] { shown.casters = visible_discs(collect<Disc>(count, lit), shadow_size, shadow_size); });
+  return shown;
+}
 
 void append_line(std::vector<Vec4f>& texels, const Line& line, const View& v, int height) {
   // Lines keep their share of the picture, but never get too thin to be seen.
@@ -136,46 +222,27 @@ void append_line(std::vector<Vec4f>& texels, const Line& line, const View& v, in
 
 }  // namespace
 
-FrameData frame_data(const Frame& frame, const Camera& camera, const Style& style, int width, int height,
-                     int shadow_size) {
+void set_frame_data(const Frame& frame, const Camera& camera, const Style& style, int width, int height,
+                    int shadow_size, Hidden hidden, FrameData& data) {
   const BodyTable& bodies = frame.snapshot.bodies;
   const View v(camera, static_cast<double>(width) / height);
   const LightView light(bodies, v, shadow_size);
-  FrameData data;
   data.uniforms = uniforms_of(v, light, style, width, height);
   data.uniforms.zenith[3] = static_cast<float>(occlusion_reach(bodies, v));
 
-  std::vector<Disc> seen, lit;
-  std::vector<std::int32_t> tubes;
-  std::vector<PlaneFace> faces;
-  for (std::size_t k = 0; k < bodies.shape.size(); ++k) {
-    if (bodies.mobility[k] == Mobility::absent) continue;
-    if (bodies.shape[k] == Shape::plane) {
-      faces.push_back(face_of(bodies, k, v));
-    } else if (bodies.shape[k] == Shape::tube) {
-      tubes.push_back(static_cast<std::int32_t>(k));
-    } else {
-      if (const std::optional<Disc> disc = v.disc_of(bodies, k, height)) seen.push_back(*disc);
-      lit.push_back(light.disc_of(bodies, k));
-    }
-  }
-  // The two take about as long, and most of the time of this function.
-  auto casting = std::async(std::launch::async, [&] { return visible_discs(lit, shadow_size, shadow_size); });
-  const std::vector<std::int32_t> shown = visible_discs(seen, width, height);
-  const std::vector<std::int32_t> casters = casting.get();
-
-  Packing packing(frame, v, style, style.cell.value_or(grid_cell(camera)), data);
+  const Shown shown = shown_in(bodies, v, light, height, width, shadow_size, hidden);
+  Packing packing(frame, v, style, style.cell.value_or(grid_cell(camera)), data.texels);
   std::array<std::int32_t, 4>&begin = data.uniforms.begin, &after = data.uniforms.after;
-  begin[0] = packing.append(Shape::sphere, shown);
-  begin[1] = packing.append(Shape::box, shown);
-  begin[2] = packing.append(Shape::tube, tubes);
-  begin[3] = packing.append(PlaneKind::ground, faces);
-  after[0] = packing.append(PlaneKind::wall, faces);
-  after[1] = packing.append(PlaneKind::hidden, faces);
-  after[2] = packing.append(Shape::sphere, casters);
-  after[3] = packing.append(Shape::box, casters);
+  begin[0] = packing.append(Shape::sphere, shown.solids);
+  begin[1] = packing.append(Shape::box, shown.solids);
+  begin[2] = packing.append(Shape::tube, shown.tubes);
+  begin[3] = packing.append(PlaneKind::ground, shown.faces);
+  after[0] = packing.append(PlaneKind::wall, shown.faces);
+  after[1] = packing.append(PlaneKind::hidden, shown.faces);
+  after[2] = packing.append(Shape::sphere, shown.casters);
+  after[3] = packing.append(Shape::box, shown.casters);
+  data.lines.clear();
   for (const Line& line : frame.lines) append_line(data.lines, line, v, height);
-  return data;
 }
 
 }  // namespace scree::render::gl

@@ -38,8 +38,13 @@ inline int shadow_size_for(int width, int height) {
   return std::clamp(6 * std::max(width, height) / 5, 512, 4096);
 }
 
-/// `shadow_size`: texels along an edge of the shadow map.
-FrameData frame_data(const Frame& frame, const Camera& camera, const Style& style, int width, int height,
-                     int shadow_size);
+/// What is behind other bodies: finding it is the better way where the processor draws, drawing it where a
+/// GPU does. The picture is the same.
+enum class Hidden { left_out, drawn };
+
+/// Sets `data`, whose memory it uses again. `shadow_size`: texels along an edge of the shadow map. On all
+/// threads that TBB has.
+void set_frame_data(const Frame& frame, const Camera& camera, const Style& style, int width, int height,
+                    int shadow_size, Hidden hidden, FrameData& data);
 
 }  // namespace scree::render::gl

@@ -121,13 +121,13 @@ class GlRenderer : public Renderer {
 
   Image draw(const Frame& frame, const Camera& camera, const Style& style) override {
     context_->make_current();
-    const FrameData data = frame_data(frame, camera, style, width_, height_, shadow_size_);
-    upload(data);
-    draw_shadow(data);
-    draw_tags(data);
+    set_frame_data(frame, camera, style, width_, height_, shadow_size_, hidden_for(frame), data_);
+    upload(data_);
+    draw_shadow(data_);
+    draw_tags(data_);
     draw_occlusion();
     draw_picture(passes_.shade, images_.to_color);
-    draw_lines(static_cast<int>(data.lines.size() / 3));
+    draw_lines(static_cast<int>(data_.lines.size() / 3));
     return read_back();
   }
 
@@ -136,6 +136,12 @@ class GlRenderer : public Renderer {
   }
 
  private:
+  /// A GPU draws them all sooner than the processor finds those that matter, if it can read so many.
+  Hidden hidden_for(const Frame& frame) const {
+    const std::int64_t texels = 8 * (frame.snapshot.bodies.count() + 1);
+    return context_->is_hardware() && texels <= most_texels_ ? Hidden::drawn : Hidden::left_out;
+  }
+
   void upload(const FrameData& data) {
     gl_.BindBuffer(GL_UNIFORM_BUFFER, uniforms_.name());
     gl_.BufferData(GL_UNIFORM_BUFFER, sizeof(data.uniforms), &data.uniforms, GL_STREAM_DRAW);
@@ -240,6 +246,7 @@ class GlRenderer : public Renderer {
   Images images_;
   Sampler depths_;
   VertexArray no_attributes_;
+  FrameData data_;
   Buffer uniforms_, bodies_;
   Texture bodies_view_;
   Buffer lines_;

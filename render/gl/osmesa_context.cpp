@@ -37,6 +37,7 @@ class OsmesaContext : public Context {
   }
   Function function(const char* name) const override { return OSMesaGetProcAddress(name); }
   std::string name() const override { return "OSMesa"; }
+  bool is_hardware() const override { return false; }
 
  private:
   OSMesaContext context_ = nullptr;

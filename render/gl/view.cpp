@@ -1,5 +1,8 @@
 #include "render/gl/view.hpp"
 
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_reduce.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -66,16 +69,23 @@ LightView::LightView(const BodyTable& bodies, const View& v, int map_size)
   // One body far off must not take the resolution from all others.
   const double reach = 4 * v.view * std::max(1.0, v.aspect);
   const Vec3 focus = axes_.transpose() * v.focus;
-  Eigen::AlignedBox3d bounds;
-  for (std::size_t k = 0; k < bodies.shape.size(); ++k) {
+  const auto add_to = [&](Eigen::AlignedBox3d& bounds, std::size_t k) {
     // Boundaries cast no shadows: what is in them would lie in the dark.
-    if (is_boundary(bodies.shape[k]) || bodies.mobility[k] == Mobility::absent) continue;
+    if (is_boundary(bodies.shape[k]) || bodies.mobility[k] == Mobility::absent) return;
     const Vec3 center = axes_.transpose() * (bodies.position[k] - eye_);
     const Vec3 radius = Vec3::Constant(bounding_radius(bodies.shape[k], bodies.size[k]));
     const Vec3 low = (center - radius).cwiseMax(focus - Vec3::Constant(reach));
     const Vec3 high = (center + radius).cwiseMin(focus + Vec3::Constant(reach));
     if ((low.array() <= high.array()).all()) bounds.extend(Eigen::AlignedBox3d(low, high));
-  }
+  };
+  using Range = tbb::blocked_range<std::size_t>;
+  Eigen::AlignedBox3d bounds = tbb::parallel_reduce(
+      Range(0, bodies.shape.size(), 8192), Eigen::AlignedBox3d(),
+      [&](const Range& range, Eigen::AlignedBox3d part) {
+        for (std::size_t k = range.begin(); k < range.end(); ++k) add_to(part, k);
+        return part;
+      },
+      [](const Eigen::AlignedBox3d& a, const Eigen::AlignedBox3d& b) { return a.merged(b); });
   if (bounds.isEmpty()) bounds.extend(focus);
   // Sizes in steps and corners on multiples of a texel keep the edges of shadows still while bodies move.
   const double least = 0.01 * v.view;

@@ -1,6 +1,9 @@
 // Every way to OpenGL draws the same pictures, as far as the rounding of their drivers goes.
+#include "render/gl/context.hpp"
+
 #include "core/error.hpp"
 #include "render/annotation.hpp"
+#include "render/gl/gl_renderer.hpp"
 #include "render/renderer.hpp"
 #include "tests/render/scenes.hpp"
 
@@ -9,6 +12,7 @@
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
+#include <memory>
 
 namespace scree::render {
 namespace {
@@ -106,6 +110,27 @@ TEST(Contexts, DrawTheSamePictures) {
               aside.share);
   EXPECT_FALSE(is_same_picture(aside));
   EXPECT_FALSE(is_same_picture(difference(ours.pile, ours.lines)));
+}
+
+/// The processor's, which says that it is a GPU's.
+class AsIfHardware : public gl::Context {
+ public:
+  void make_current() override { context_->make_current(); }
+  Function function(const char* name) const override { return context_->function(name); }
+  std::string name() const override { return context_->name(); }
+  bool is_hardware() const override { return true; }
+
+ private:
+  std::unique_ptr<gl::Context> context_ = gl::make_osmesa_context();
+};
+
+TEST(Contexts, PicturesAreTheSameWithWhatIsHidden) {
+  const Pictures without = draw_all(*make_renderer(ContextChoice::osmesa, width, height));
+  const Pictures with = draw_all(*gl::make_gl_renderer(std::make_unique<AsIfHardware>(), width, height));
+  EXPECT_EQ(without.speeds.rgb, with.speeds.rgb);
+  EXPECT_EQ(without.pile.rgb, with.pile.rgb);
+  EXPECT_EQ(without.lines.rgb, with.lines.rgb);
+  EXPECT_EQ(without.drum.rgb, with.drum.rgb);
 }
 
 TEST(Contexts, SameInputGivesTheSameBytes) {
