@@ -2,6 +2,7 @@
 #include "core/error.hpp"
 #include "sim/cli/commands.hpp"
 #include "sim/cli/output_folder.hpp"
+#include "sim/record/contact_writer.hpp"
 #include "sim/record/exports.hpp"
 #include "sim/record/outcome.hpp"
 #include "sim/record/trajectory_reader.hpp"
@@ -29,6 +30,10 @@ int export_trajectory(const ExportArguments& arguments) {
         fmt::format("cannot make {}: {}; give another folder with -o", folder.string(), error.message()));
   const std::filesystem::path file = scree::export_trajectory(trajectory, arguments.format, folder);
   fmt::print("{} frames: {}\n", trajectory.index().frames().size(), file.string());
+  if (!std::filesystem::exists(arguments.run / contacts_name)) return status_done;
+  TrajectoryReader contacts(arguments.run / contacts_name);
+  if (const auto lines = export_contacts(contacts, arguments.format, folder))
+    fmt::print("contacts:  {}\n", lines->string());
   return status_done;
 }
 

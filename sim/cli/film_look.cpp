@@ -1,5 +1,7 @@
 #include "sim/cli/film_look.hpp"
 
+#include "sim/record/contact_writer.hpp"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -115,21 +117,15 @@ std::array<double, 2> range_of(const Scene& scene, const render::Frame& start, r
   }
 }
 
-void append_forces(const Scene& scene, double widest, std::vector<ContactForce> contacts,
-                   render::Frame& frame) {
+void append_forces(double widest, std::vector<ContactForce> contacts, render::Frame& frame) {
   const auto strength = [](const ContactForce& c) { return c.force.norm(); };
   std::ranges::stable_sort(contacts, {}, strength);
   const BodyTable& bodies = frame.snapshot.bodies;
-  const auto end_of = [&](std::int32_t body, const Vec3& point) {
-    const auto k = static_cast<std::size_t>(body);
-    const bool fixed = scene.bodies.mobility[k] == Mobility::fixed;
-    return fixed || is_boundary(bodies.shape[k]) ? point : bodies.position[k];
-  };
   for (const ContactForce& c : contacts) {
     const auto width = static_cast<float>(std::min(10 * strength(c) / widest, 10.0));
     if (width < 0.1f) continue;  // cannot be seen
-    frame.lines.push_back({.from = end_of(c.i, c.point),
-                           .to = end_of(c.j, c.point),
+    frame.lines.push_back({.from = contact_end(bodies, c.i, c.point),
+                           .to = contact_end(bodies, c.j, c.point),
                            .width = width,
                            .color = render::Color(0.62f, 0.08f, 0.12f),
                            .where_hidden = 0.85f});
@@ -187,16 +183,27 @@ FilmLook look_of(const Scene& scene) {
   return look;
 }
 
-bool needs_contacts_or_grid(const RenderSettings& render) {
-  return !render.overlay.empty() || render.color == ColorBy::level || render.color == ColorBy::force;
+bool shows_contacts(const RenderSettings& render) {
+  return render.color == ColorBy::force || has(render, Overlay::forces);
 }
 
-render::Frame frame_of(const Scene& scene, Snapshot snapshot) {
+bool shows_broad_phase(const RenderSettings& render) {
+  return render.color == ColorBy::level || has(render, Overlay::grid) || has(render, Overlay::pairs);
+}
+
+render::Frame frame_of(const Scene& scene, const FilmLook& look, Snapshot snapshot,
+                       const std::vector<ContactForce>& contacts) {
   render::Frame frame;
   frame.snapshot = std::move(snapshot);
   if (scene.render.color == ColorBy::material) {
     for (const Material& material : scene.materials) frame.kinds.push_back(material.name);
   }
+  if (!shows_contacts(scene.render)) return frame;
+  frame.force.resize(frame.snapshot.bodies.shape.size());
+  for (const ContactForce& c : contacts) {
+    for (const std::int32_t body : {c.i, c.j}) frame.force[static_cast<std::size_t>(body)] += c.force.norm();
+  }
+  if (has(scene.render, Overlay::forces)) append_forces(look.widest_force, contacts, frame);
   return frame;
 }
 
@@ -204,27 +211,18 @@ render::Frame frame_of(const Scene& scene, const FilmLook& look, Simulation& sim
   const RenderSettings& render = scene.render;
   Snapshot snapshot;
   simulation.snapshot(snapshot);
-  render::Frame frame = frame_of(scene, std::move(snapshot));
-  if (render.color == ColorBy::level || has(render, Overlay::grid)) {
-    GridOccupancy grid = simulation.grid_occupancy();
-    if (has(render, Overlay::grid)) append_cells(grid, frame);
-    if (render.color == ColorBy::level) {
-      for (const double width : grid.width) {
-        frame.kinds.push_back(
-            fmt::format("{}: cells of {}", frame.kinds.size(), render::length_words(width)));
-      }
-      frame.level = std::move(grid.level);
-    }
-  }
+  render::Frame frame =
+      frame_of(scene, look, std::move(snapshot),
+               shows_contacts(render) ? simulation.contact_forces() : std::vector<ContactForce>());
   if (has(render, Overlay::pairs)) append_pairs(simulation.pairs(), frame);
-  if (render.color == ColorBy::force || has(render, Overlay::forces)) {
-    const std::vector<ContactForce> contacts = simulation.contact_forces();
-    frame.force.resize(frame.snapshot.bodies.shape.size());
-    for (const ContactForce& c : contacts) {
-      for (const std::int32_t body : {c.i, c.j})
-        frame.force[static_cast<std::size_t>(body)] += c.force.norm();
+  if (render.color != ColorBy::level && !has(render, Overlay::grid)) return frame;
+  GridOccupancy grid = simulation.grid_occupancy();
+  if (has(render, Overlay::grid)) append_cells(grid, frame);
+  if (render.color == ColorBy::level) {
+    for (const double width : grid.width) {
+      frame.kinds.push_back(fmt::format("{}: cells of {}", frame.kinds.size(), render::length_words(width)));
     }
-    if (has(render, Overlay::forces)) append_forces(scene, look.widest_force, contacts, frame);
+    frame.level = std::move(grid.level);
   }
   return frame;
 }

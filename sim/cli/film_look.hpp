@@ -9,6 +9,7 @@
 #include "sim/simulation.hpp"
 
 #include <functional>
+#include <vector>
 
 namespace scree::cli {
 
@@ -25,11 +26,15 @@ struct FilmLook {
 /// of bodies.
 FilmLook look_of(const Scene& scene);
 
-/// Whether pictures show what a state alone does not tell.
-bool needs_contacts_or_grid(const RenderSettings& render);
+/// Whether pictures show the contacts, or the pairs or the grid of the broad phase: what a state alone does
+/// not tell.
+bool shows_contacts(const RenderSettings& render);
+bool shows_broad_phase(const RenderSettings& render);
 
-/// A state as the scene wants it drawn, where that needs no more.
-render::Frame frame_of(const Scene& scene, Snapshot snapshot);
+/// A state as the scene wants it drawn, but for the broad phase; `contacts` are those before it, if pictures
+/// show them.
+render::Frame frame_of(const Scene& scene, const FilmLook& look, Snapshot snapshot,
+                       const std::vector<ContactForce>& contacts);
 /// The present state as the scene wants it drawn.
 render::Frame frame_of(const Scene& scene, const FilmLook& look, Simulation& simulation);
 

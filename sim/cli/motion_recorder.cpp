@@ -16,17 +16,22 @@ MotionRecorder::MotionRecorder(const Scene& scene, const RunFolder& folder, Atom
                                int threads)
     : due_(TimeGrid(scene.time), trajectory_period(scene)),
       writer_(scene, folder / trajectory_name, opening, threads),
-      worker_(most_waiting, [this](Snapshot& snapshot) {
+      worker_(most_waiting, [this](Moment& moment) {
         const Stopwatch watch(seconds_);
-        writer_.append(snapshot);
-      }) {}
+        writer_.append(moment.snapshot);
+        if (contacts_) contacts_->append(moment.snapshot, moment.contacts);
+      }) {
+  if (scene.record.trajectory->contacts.value_or(false))
+    contacts_.emplace(scene, folder / contacts_name, opening, threads);
+}
 
 void MotionRecorder::record(const Simulation& simulation) {
   if (due_.due(simulation.steps()) == 0) return;
-  Snapshot snapshot;
-  simulation.snapshot(snapshot);
+  Moment moment;
+  simulation.snapshot(moment.snapshot);
+  if (contacts_) moment.contacts = simulation.contact_forces();
   const timing::Region region("trajectory.wait");
-  worker_.push(std::move(snapshot));
+  worker_.push(std::move(moment));
 }
 
 void MotionRecorder::archive(Archive& archive) {
@@ -36,6 +41,7 @@ void MotionRecorder::archive(Archive& archive) {
   }
   archive.part("due", due_);
   archive.part("writer", writer_);
+  if (contacts_) archive.part("contacts", *contacts_);
 }
 
 void MotionRecorder::finish() {
@@ -43,6 +49,12 @@ void MotionRecorder::finish() {
   worker_.finish();
   timing::add("trajectory.write", seconds_);
   writer_.finish();
+  if (contacts_) contacts_->finish();
+}
+
+void MotionRecorder::drop() {
+  writer_.drop();
+  if (contacts_) contacts_->drop();
 }
 
 }  // namespace scree::cli

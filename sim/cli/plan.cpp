@@ -3,6 +3,7 @@
 #include "sim/cli/commands.hpp"
 #include "sim/cli/difficulty.hpp"
 #include "sim/model.hpp"
+#include "sim/record/contact_writer.hpp"
 #include "sim/record/metrics.hpp"
 #include "sim/record/outcome.hpp"
 #include "sim/record/trajectory_columns.hpp"
@@ -192,6 +193,8 @@ double trajectory_frame_bytes(const Scene& scene) {
   double row = 0;
   for (const BodyColumnSource& source : body_columns_of(*scene.record.trajectory))
     row += source.is_constant ? 0 : source.column.type.row();
+  constexpr int contacts_of_a_body = 3;  // of spheres in a dense heap
+  if (scene.record.trajectory->contacts.value_or(false)) row += contacts_of_a_body * contact_bytes(scene);
   return row * static_cast<double>(scene.bodies.count());
 }
 
@@ -222,7 +225,8 @@ OutputPlan plan_output(const Scene& scene, const TimeGrid& grid) {
 std::string output_words(const Scene& scene, const OutputPlan& plan) {
   std::string words = fmt::format("{} rows of metrics", plan.rows);
   if (plan.trajectory_frames > 0)
-    words += fmt::format(", {} frames of the trajectory", plan.trajectory_frames);
+    words += fmt::format(", {} frames of the trajectory{}", plan.trajectory_frames,
+                         scene.record.trajectory->contacts.value_or(false) ? " and of the contacts" : "");
   if (plan.frames == 0) return words + ", no pictures";
   return words + fmt::format(", {} frames of {} x {}", plan.frames, scene.render.width, scene.render.height);
 }

@@ -8,12 +8,15 @@
 #include "sim/cli/picture_context.hpp"
 #include "sim/cli/process_pool.hpp"
 #include "sim/record/build_info.hpp"
+#include "sim/record/contact_writer.hpp"
 #include "sim/record/outcome.hpp"
 #include "sim/record/trajectory_reader.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <filesystem>
+#include <optional>
 #include <unistd.h>
 
 namespace scree::cli {
@@ -26,14 +29,16 @@ struct StateColumns {
 };
 
 /// Throws InputError where the pictures that the scene asks for show what the trajectory does not have.
-StateColumns columns_for(const Scene& scene, const TrajectoryReader& trajectory) {
+/// `contacts`: whether they are beside it.
+StateColumns columns_for(const Scene& scene, const TrajectoryReader& trajectory, bool contacts) {
   const auto refuse = [](const char* what) {
     throw InputError(fmt::format("the trajectory has no {}, which these pictures show", what));
   };
   const StateColumns columns{trajectory.column("position"), trajectory.column("id"),
                              trajectory.column("mobility"), trajectory.column("orientation"),
                              trajectory.column("velocity")};
-  if (needs_contacts_or_grid(scene.render)) refuse("contacts and no grid");
+  if (shows_broad_phase(scene.render)) refuse("pairs and no grid");
+  if (shows_contacts(scene.render) && !contacts) refuse("contacts (record.trajectory.contacts)");
   const bool shows_speed =
       scene.render.color == ColorBy::speed || scene.render.color == ColorBy::kinetic_energy;
   if (shows_speed && columns.velocity < 0) refuse("velocity");
@@ -46,10 +51,28 @@ StateColumns columns_for(const Scene& scene, const TrajectoryReader& trajectory)
 
 class States {
  public:
-  States(const Scene& scene, TrajectoryReader& trajectory)
-      : scene_(scene), trajectory_(trajectory), columns_(columns_for(scene, trajectory)) {}
+  /// Of the run in the folder.
+  States(const Scene& scene, const std::filesystem::path& run)
+      : scene_(scene), trajectory_(run / trajectory_name) {
+    if (has_contacts(run)) contacts_.emplace(run / contacts_name);
+    columns_ = columns_for(scene, trajectory_, contacts_.has_value());
+    if (contacts_ && contacts_->index().frames().size() != frames().size())
+      throw InputError(fmt::format("{} has other frames than the trajectory beside it", contacts_name));
+  }
+  static bool has_contacts(const std::filesystem::path& run) {
+    return std::filesystem::exists(run / contacts_name);
+  }
 
-  Snapshot read(std::size_t frame) {
+  const std::vector<TrajectoryFrame>& frames() const { return trajectory_.index().frames(); }
+
+  render::Frame read(const FilmLook& look, std::size_t frame) {
+    return frame_of(scene_, look, snapshot(frame),
+                    shows_contacts(scene_.render) ? contact_forces(*contacts_, frame, scene_.bodies.count())
+                                                  : std::vector<ContactForce>());
+  }
+
+ private:
+  Snapshot snapshot(std::size_t frame) {
     const TrajectoryFrame& about = trajectory_.index().frames()[frame];
     Snapshot snapshot{about.time, about.step, scene_.bodies};
     BodyTable& bodies = snapshot.bodies;
@@ -74,13 +97,13 @@ class States {
     return snapshot;
   }
 
- private:
   std::vector<double> numbers(std::size_t frame, int column) {
     return column < 0 ? std::vector<double>{} : trajectory_.numbers(frame, static_cast<std::size_t>(column));
   }
 
   const Scene& scene_;
-  TrajectoryReader& trajectory_;
+  TrajectoryReader trajectory_;
+  std::optional<TrajectoryReader> contacts_;
   StateColumns columns_;
 };
 
@@ -111,15 +134,14 @@ PartResult draw_part(const Scene& scene, const RenderArguments& arguments, const
                      int parts) {
   PartResult result;
   try {
-    TrajectoryReader trajectory(arguments.run / trajectory_name);
-    States states(scene, trajectory);
-    const std::vector<TrajectoryFrame>& frames = trajectory.index().frames();
+    States states(scene, arguments.run);
+    const std::vector<TrajectoryFrame>& frames = states.frames();
     const Part part(frames.size(), k, parts);
     Film film(scene, folder, arguments.context,
               [&result](std::string_view trouble) { result.trouble = trouble; });
     for (std::size_t f = 0; f < part.first; ++f) film.pass_over(frames[f].step);
     for (std::size_t f = part.first; f < part.last; ++f)
-      film.record(frames[f].step, [&] { return frame_of(scene, states.read(f)); });
+      film.record(frames[f].step, [&] { return states.read(film.look(), f); });
     film.finish_frames();
     result.renderer = film.renderer();
   } catch (const std::exception& error) {
@@ -149,7 +171,7 @@ int render_again(const RenderArguments& arguments) {
   }
   const TrajectoryReader trajectory(arguments.run / trajectory_name);
   const Scene scene = read_scene(arguments.run / "scene.yaml", arguments.overrides);
-  columns_for(scene, trajectory);
+  columns_for(scene, trajectory, States::has_contacts(arguments.run));
   expect_context(arguments.context);
   const RunFolder folder(output_folder(arguments.output, arguments.run, "render"),
                          arguments.overwrite ? RunFolder::Earlier::replaced : RunFolder::Earlier::refused);

@@ -3,6 +3,7 @@
 #include "core/bodies.hpp"
 #include "core/error.hpp"
 #include "sim/record/files.hpp"
+#include "sim/record/vtkhdf.hpp"
 
 #include <fmt/format.h>
 
@@ -224,8 +225,11 @@ std::string_view append_block(std::string& block, const std::vector<double>& num
   return append_bytes<double>(block, numbers), "Float64";
 }
 
-/// A vertex for each row, the first column as points (VTK File Formats, "XML"; appended raw data).
+/// The first column as points, each a vertex, or each two that follow one another a line (VTK File Formats,
+/// "XML"; appended raw data).
+template <Cells cells>
 std::string vtp_of(const Columns& columns) {
+  constexpr bool lines = cells == Cells::lines;
   std::string block, text;
   const auto add_array = [&](std::string_view name, const FieldType& type,
                              const std::vector<double>& numbers) {
@@ -236,25 +240,27 @@ std::string vtp_of(const Columns& columns) {
         "<DataArray type=\"{}\" Name=\"{}\" NumberOfComponents=\"{}\" format=\"appended\" offset=\"{}\"/>\n",
         word, name, type.columns, offset);
   };
-  const std::size_t rows = columns.rows();
+  const std::size_t rows = columns.rows(), count = lines ? rows / 2 : rows;
   fmt::format_to(
       std::back_inserter(text),
       "<?xml version=\"1.0\"?>\n<VTKFile type=\"PolyData\" version=\"1.0\" byte_order=\"LittleEndian\" "
-      "header_type=\"UInt64\">\n<PolyData>\n<Piece NumberOfPoints=\"{0}\" NumberOfVerts=\"{0}\" "
-      "NumberOfLines=\"0\" NumberOfStrips=\"0\" NumberOfPolys=\"0\">\n<PointData>\n",
-      rows);
+      "header_type=\"UInt64\">\n<PolyData>\n<Piece NumberOfPoints=\"{}\" NumberOfVerts=\"{}\" "
+      "NumberOfLines=\"{}\" NumberOfStrips=\"0\" NumberOfPolys=\"0\">\n<PointData>\n",
+      rows, lines ? 0 : count, lines ? count : 0);
   for (std::size_t c = 1; c < columns.about.size(); ++c)
     add_array(columns.about[c].name, columns.about[c].type, columns.numbers[c]);
   text += "</PointData>\n<Points>\n";
   add_array(columns.about[0].name, columns.about[0].type, columns.numbers[0]);
-  text += "</Points>\n<Verts>\n";
+  text += lines ? "</Points>\n<Lines>\n" : "</Points>\n<Verts>\n";
   constexpr FieldType whole_number{FieldType::Kind::integer, sizeof(std::int64_t), 1};
   std::vector<double> numbers(rows);
   for (std::size_t row = 0; row < rows; ++row) numbers[row] = static_cast<double>(row);
   add_array("connectivity", whole_number, numbers);
-  for (double& number : numbers) ++number;
+  numbers.resize(count);
+  for (std::size_t k = 0; k < count; ++k) numbers[k] = static_cast<double>((k + 1) * (lines ? 2 : 1));
   add_array("offsets", whole_number, numbers);
-  text += "</Verts>\n</Piece>\n</PolyData>\n<AppendedData encoding=\"raw\">\n_";
+  text += lines ? "</Lines>\n" : "</Verts>\n";
+  text += "</Piece>\n</PolyData>\n<AppendedData encoding=\"raw\">\n_";
   text += block;
   text += "\n</AppendedData>\n</VTKFile>\n";
   return text;
@@ -286,14 +292,16 @@ fs::path export_to_files(TrajectoryReader& trajectory, const fs::path& folder, c
   return folder;
 }
 
-fs::path export_to_vtp(TrajectoryReader& trajectory, const fs::path& folder) {
-  const fs::path files = export_to_files(trajectory, folder / "vtp", "vtp", vtp_of);
+/// A file for each frame in the folder `name`, and NAME.pvd, which names them.
+fs::path export_to_vtp(TrajectoryReader& trajectory, const fs::path& folder, const char* name,
+                       const char* collection, std::string (*text_of)(const Columns&)) {
+  export_to_files(trajectory, folder / name, "vtp", text_of);
   std::string text = "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\">\n<Collection>\n";
   for (std::size_t f = 0; f < trajectory.index().frames().size(); ++f)
-    fmt::format_to(std::back_inserter(text), "<DataSet timestep=\"{}\" file=\"vtp/{:05}.vtp\"/>\n",
-                   trajectory.index().frames()[f].time, f);
+    fmt::format_to(std::back_inserter(text), "<DataSet timestep=\"{}\" file=\"{}/{:05}.vtp\"/>\n",
+                   trajectory.index().frames()[f].time, name, f);
   text += "</Collection>\n</VTKFile>\n";
-  fs::path file = folder / "trajectory.pvd";
+  fs::path file = folder / collection;
   write_file(file, text);
   return file;
 }
@@ -311,7 +319,14 @@ fs::path export_trajectory(TrajectoryReader& trajectory, ExportFormat format, co
     case ExportFormat::vtp:
       break;
   }
-  return export_to_vtp(trajectory, folder);
+  return export_to_vtp(trajectory, folder, "vtp", "trajectory.pvd", vtp_of<Cells::vertices>);
+}
+
+std::optional<fs::path> export_contacts(TrajectoryReader& contacts, ExportFormat format,
+                                        const fs::path& folder) {
+  if (format == ExportFormat::csv) return export_to_files(contacts, folder / "contacts", "csv", csv_of);
+  if (format != ExportFormat::vtp) return std::nullopt;
+  return export_to_vtp(contacts, folder, "contacts", "contacts.pvd", vtp_of<Cells::lines>);
 }
 
 }  // namespace scree

@@ -4,6 +4,7 @@
 #include "sim/record/trajectory_reader.hpp"
 
 #include <filesystem>
+#include <optional>
 #include <string_view>
 
 namespace scree {
@@ -20,5 +21,11 @@ enum class ExportFormat {
 /// the trajectory cannot be read, RunError if something cannot be written.
 std::filesystem::path export_trajectory(TrajectoryReader& trajectory, ExportFormat format,
                                         const std::filesystem::path& folder);
+
+/// The same of the contacts beside a trajectory (ContactWriter), for vtp, where each is a line, and csv,
+/// where each is two rows, one as each of its bodies feels it; the other formats have none, and nothing is
+/// written.
+std::optional<std::filesystem::path> export_contacts(TrajectoryReader& contacts, ExportFormat format,
+                                                     const std::filesystem::path& folder);
 
 }  // namespace scree

@@ -24,10 +24,10 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::string_view lock_name = ".lock";
-constexpr std::array<std::string_view, 13> file_names = {
+constexpr std::array<std::string_view, 15> file_names = {
     "manifest.json",     "scene.yaml",         "metrics.csv", "timing.csv", "final.csv",
     "trajectory.vtkhdf", "trajectory.journal", "movie.mp4",   "log.txt",    "failure.png",
-    "report.html",       "study.csv",          "study.json"};
+    "contacts.vtkhdf",   "contacts.journal",   "report.html", "study.csv",  "study.json"};
 
 /// Of a study: error_1.gp, error_1.svg, error_1.png, ...
 bool is_plot(std::string_view name) {
@@ -116,8 +116,8 @@ void RunFolder::clear() const {
 }
 
 void RunFolder::remove_results() const {
-  for (const char* name :
-       {"manifest.json", "final.csv", "trajectory.vtkhdf", "movie.mp4", "failure.png", "report.html"}) {
+  for (const char* name : {"manifest.json", "final.csv", "trajectory.vtkhdf", "contacts.vtkhdf", "movie.mp4",
+                           "failure.png", "report.html"}) {
     std::error_code error;
     fs::remove(folder_ / name, error);
     if (error)

@@ -6,7 +6,7 @@ namespace scree {
 
 namespace {
 
-using Numbers = BodyColumnSource::Numbers;
+using Numbers = ColumnNumbers;
 using Kind = FieldType::Kind;
 
 Numbers of(const Vec3& v) { return {v.x(), v.y(), v.z()}; }
@@ -69,13 +69,16 @@ std::vector<BodyColumnSource> body_columns_of(const TrajectorySettings& settings
   return columns;
 }
 
+void append_numbers(const ColumnNumbers& numbers, const FieldType& type, std::byte*& to) {
+  for (int c = 0; c < type.columns; ++c) append(numbers[static_cast<std::size_t>(c)], type, to);
+}
+
 void write_numbers(const BodyColumnSource& source, const BodyTable& bodies,
                    std::span<const std::int32_t> rows, std::span<std::byte> out) {
   const FieldType& type = source.column.type;
   std::byte* to = out.data();
   for (const std::int32_t row : rows) {
-    const Numbers numbers = source.numbers(bodies, static_cast<std::size_t>(row));
-    for (int c = 0; c < type.columns; ++c) append(numbers[static_cast<std::size_t>(c)], type, to);
+    append_numbers(source.numbers(bodies, static_cast<std::size_t>(row)), type, to);
   }
 }
 

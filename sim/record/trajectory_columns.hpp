@@ -13,13 +13,14 @@
 
 namespace scree {
 
+/// Of one row; a column has as many of them as its type says.
+using ColumnNumbers = std::array<double, 4>;
+
 /// One column: its type in the file, and where its numbers come from.
 struct BodyColumnSource {
-  using Numbers = std::array<double, 4>;
-
   TrajectoryColumn column;
   bool is_constant;  ///< of a body
-  Numbers (*numbers)(const BodyTable& bodies, std::size_t k);
+  ColumnNumbers (*numbers)(const BodyTable& bodies, std::size_t k);
 };
 
 /// Simulated time between the frames of a scene's trajectory (s).
@@ -30,6 +31,9 @@ double trajectory_period(const Scene& scene);
 /// `size`, full edges or diameters (m; 0 of a plane); `shape` and `mobility`, numbers of Shape and Mobility;
 /// `material`, its place among the scene's.
 std::vector<BodyColumnSource> body_columns_of(const TrajectorySettings& settings);
+
+/// Sets a row's numbers as the type has them, and moves on behind them.
+void append_numbers(const ColumnNumbers& numbers, const FieldType& type, std::byte*& to);
 
 /// The numbers of these bodies, as the column's type has them, row by row in `out`.
 void write_numbers(const BodyColumnSource& source, const BodyTable& bodies,

@@ -22,15 +22,18 @@ constexpr std::int64_t most_rows = std::numeric_limits<std::int32_t>::max();
 
 /// Numbers in a row of the column of this name; 0 if no trajectory of this version has it.
 int components_of(std::string_view name) {
-  constexpr std::array<std::pair<std::string_view, int>, 9> columns = {{{"position", 3},
-                                                                        {"orientation", 4},
-                                                                        {"velocity", 3},
-                                                                        {"spin", 3},
-                                                                        {"id", 1},
-                                                                        {"size", 3},
-                                                                        {"shape", 1},
-                                                                        {"mobility", 1},
-                                                                        {"material", 1}}};
+  constexpr std::array<std::pair<std::string_view, int>, 12> columns = {{{"position", 3},
+                                                                         {"orientation", 4},
+                                                                         {"velocity", 3},
+                                                                         {"spin", 3},
+                                                                         {"id", 1},
+                                                                         {"size", 3},
+                                                                         {"shape", 1},
+                                                                         {"mobility", 1},
+                                                                         {"material", 1},
+                                                                         {"force", 3},
+                                                                         {"point", 3},
+                                                                         {"other", 1}}};
   const auto found = std::ranges::find(columns, name, &std::pair<std::string_view, int>::first);
   return found == columns.end() ? 0 : found->second;
 }

@@ -1,5 +1,5 @@
-// Where the parts of a trajectory are: frames of rows, one for each body that is there, in columns of
-// numbers.
+// Where the parts of a trajectory are: frames of rows, one for each body that is there or two for each
+// contact, in columns of numbers.
 #pragma once
 
 #include "core/archive.hpp"
@@ -23,7 +23,7 @@ struct TrajectoryColumn {
 struct TrajectoryFrame {
   std::int64_t step = 0;
   double time = 0;        ///< s
-  std::int64_t rows = 0;  ///< bodies
+  std::int64_t rows = 0;  ///< bodies, or twice the contacts
 };
 
 /// The compressed numbers of so many rows of a column, in some file. The last one of a frame is filled up

@@ -160,7 +160,7 @@ class ChunkCopier {
   std::vector<TrajectoryChunk> moved_;
 };
 
-/// A part is what frames with as many points share: a vertex for each.
+/// A part is what frames with as many points share: their cells.
 struct Parts {
   Numbers points;    ///< of each part
   Numbers of_frame;  ///< its part
@@ -175,40 +175,50 @@ Parts parts_of(const TrajectoryIndex& index) {
   return parts;
 }
 
-void write_vertices(hid_t root, const Parts& parts) {
-  Numbers offsets, connectivity;
+/// The format's kinds of cells, in its order.
+struct CellKind {
+  const char* name;
+  std::int64_t points;  ///< of a cell; 0: there are no such cells
+};
+using CellKinds = std::array<CellKind, 4>;
+
+CellKinds kinds_of(Cells cells) {
+  return {{{"Vertices", cells == Cells::vertices ? 1 : 0},
+           {"Lines", cells == Cells::lines ? 2 : 0},
+           {"Polygons", 0},
+           {"Strips", 0}}};
+}
+
+/// Every point is in one cell, in order; or there are none.
+void write_cells(hid_t root, const CellKind& kind, const Parts& parts) {
+  Numbers cells, ids, offsets, connectivity;
   for (const std::int64_t points : parts.points) {
-    for (std::int64_t k = 0; k <= points; ++k) offsets.push_back(k);
-    for (std::int64_t k = 0; k < points; ++k) connectivity.push_back(k);
+    const std::int64_t count = kind.points > 0 ? points / kind.points : 0;
+    cells.push_back(count);
+    ids.push_back(count * kind.points);
+    for (std::int64_t k = 0; k <= count; ++k) offsets.push_back(k * kind.points);
+    for (std::int64_t k = 0; k < ids.back(); ++k) connectivity.push_back(k);
   }
-  const Handle group = make_group(root, "Vertices");
-  write_numbers(group, "NumberOfCells", parts.points);
-  write_numbers(group, "NumberOfConnectivityIds", parts.points);
+  const Handle group = make_group(root, kind.name);
+  write_numbers(group, "NumberOfCells", cells);
+  write_numbers(group, "NumberOfConnectivityIds", ids);
   write_numbers(group, "Offsets", offsets);
   write_numbers(group, "Connectivity", connectivity);
 }
 
-/// The kinds of cells that there are none of.
-void write_no_cells(hid_t root, const char* kind, const Parts& parts) {
-  const Numbers none(parts.points.size(), 0);
-  const Handle group = make_group(root, kind);
-  write_numbers(group, "NumberOfCells", none);
-  write_numbers(group, "NumberOfConnectivityIds", none);
-  write_numbers(group, "Offsets", none);
-  write_numbers(group, "Connectivity", {});
-}
-
-void write_steps(hid_t root, const TrajectoryIndex& index, const Parts& parts,
+void write_steps(hid_t root, const TrajectoryIndex& index, const CellKinds& kinds, const Parts& parts,
                  const std::vector<Placing>& placings) {
-  constexpr int kinds = 4;  // vertices, lines, polygons, strips
-  Numbers first_vertex(parts.points.size(), 0);
-  std::exclusive_scan(parts.points.begin(), parts.points.end(), first_vertex.begin(), std::int64_t{0});
-  Numbers first_cells;
+  Numbers first_point(parts.points.size(), 0);
+  std::exclusive_scan(parts.points.begin(), parts.points.end(), first_point.begin(), std::int64_t{0});
+  Numbers first_cells, first_ids;
   std::vector<double> times;
   for (std::size_t f = 0; f < index.frames().size(); ++f) {
     times.push_back(index.frames()[f].time);
-    first_cells.push_back(first_vertex[static_cast<std::size_t>(parts.of_frame[f])]);
-    first_cells.insert(first_cells.end(), kinds - 1, 0);
+    const std::int64_t point = first_point[static_cast<std::size_t>(parts.of_frame[f])];
+    for (const CellKind& kind : kinds) {
+      first_cells.push_back(kind.points > 0 ? point / kind.points : 0);
+      first_ids.push_back(kind.points > 0 ? point : 0);
+    }
   }
   const std::int64_t frames = std::ssize(index.frames());
   const Handle group = make_group(root, "Steps");
@@ -217,15 +227,15 @@ void write_steps(hid_t root, const TrajectoryIndex& index, const Parts& parts,
   write_numbers(group, "PartOffsets", parts.of_frame);
   write_numbers(group, "NumberOfParts", Numbers(index.frames().size(), 1));
   write_numbers(group, "PointOffsets", placings[0].first_rows);
-  write_numbers(group, "CellOffsets", first_cells, kinds);
-  write_numbers(group, "ConnectivityIdOffsets", first_cells, kinds);
+  write_numbers(group, "CellOffsets", first_cells, static_cast<int>(kinds.size()));
+  write_numbers(group, "ConnectivityIdOffsets", first_ids, static_cast<int>(kinds.size()));
   const Handle offsets = make_group(group, "PointDataOffsets");
   for (std::size_t c = 1; c < placings.size(); ++c)
     write_numbers(offsets, index.columns()[c].name.c_str(), placings[c].first_rows);
 }
 
 /// Returns where the chunks have come to lie.
-std::vector<TrajectoryChunk> write_hdf5(const fs::path& part, const TrajectoryIndex& index,
+std::vector<TrajectoryChunk> write_hdf5(const fs::path& part, const TrajectoryIndex& index, Cells cells,
                                         const fs::path& journal) {
   const Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose, "make settings");
   check(H5Pset_libver_bounds(access, H5F_LIBVER_V18, H5F_LIBVER_V110), "make settings");
@@ -243,9 +253,9 @@ std::vector<TrajectoryChunk> write_hdf5(const fs::path& part, const TrajectoryIn
   const Handle data = make_group(root, "PointData");
   for (std::size_t c = 1; c < placings.size(); ++c)
     copier.copy(data, index.columns()[c].name, c, placings[c]);
-  write_vertices(root, parts);
-  for (const char* kind : {"Lines", "Polygons", "Strips"}) write_no_cells(root, kind, parts);
-  write_steps(root, index, parts, placings);
+  const CellKinds kinds = kinds_of(cells);
+  for (const CellKind& kind : kinds) write_cells(root, kind, parts);
+  write_steps(root, index, kinds, parts, placings);
   check(H5Fflush(file, H5F_SCOPE_GLOBAL), "finish the file");
   return copier.moved();
 }
@@ -259,13 +269,13 @@ void discard(const fs::path& part) {
 
 }  // namespace
 
-void write_vtkhdf(const fs::path& file, const TrajectoryIndex& index, const fs::path& journal) {
+void write_vtkhdf(const fs::path& file, const TrajectoryIndex& index, Cells cells, const fs::path& journal) {
   hdf5::start();
   const fs::path part = fs::path(file) += ".part";
   TrajectoryIndex of_file = index;
   try {
     errno = 0;
-    of_file.move_chunks(write_hdf5(part, index, journal));
+    of_file.move_chunks(write_hdf5(part, index, cells, journal));
   } catch (const RunError& error) {
     // The library says neither the file nor the reason.
     const std::string reason = errno != 0 ? std::strerror(errno) : error.what();

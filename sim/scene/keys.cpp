@@ -136,6 +136,10 @@ Codec<std::optional<TrajectorySettings>> trajectory_section() {
                key<T>("spin", &T::spin, boolean(), optionally, "with the angular velocities"),
                key<T>("precision", &T::in_double, word<bool>({{"single", false}, {"double", true}}),
                       optionally, "of the real numbers in the file"),
+               with_default(key<T>("contacts", &T::contacts, optional(boolean()), optionally,
+                                   "contacts.vtkhdf beside it: a line from body to body for each contact "
+                                   "that carries a force, with that force"),
+                            "false"),
            }))});
 }
 

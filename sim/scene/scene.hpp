@@ -165,7 +165,8 @@ struct TrajectorySettings {
   bool orientation = true;
   bool velocity = true;
   bool spin = false;
-  bool in_double = false;  ///< real numbers in the file; else single
+  bool in_double = false;             ///< real numbers in the file; else single
+  std::optional<bool> contacts = {};  ///< and their forces, in a file of their own; absent: no
 };
 
 struct RecordSettings {

@@ -1,0 +1,114 @@
+#!/usr/bin/env python3
+"""Draws one frame of a run with ParaView, by its own filters alone, as the scene's camera sees it.
+
+    xvfb-run pvpython scripts/paraview_frame.py RUN EXPORT TIME OUT.png
+
+RUN is the folder of a run with a trajectory, EXPORT what `scree export RUN --to vtp -o EXPORT` has made of it, TIME the frame's (s).
+Debian's paraview, python3-paraview, python3-yaml and xvfb; 5.11 and newer. Where the run has contacts, they are drawn as tubes into
+OUT-forces.png.
+"""
+import math
+import sys
+from pathlib import Path
+
+import yaml
+from paraview.simple import (
+    CreateView,
+    Glyph,
+    Hide,
+    OpenDataFile,
+    SaveScreenshot,
+    Show,
+    Threshold,
+    Tube,
+    ColorBy,
+    GetColorTransferFunction,
+)
+
+SPHERE, BOX = 0, 1
+
+
+def bodies_of(source, shape):
+    return Threshold(
+        Input=source, Scalars=["POINTS", "shape"], LowerThreshold=shape, UpperThreshold=shape, ThresholdMethod="Between"
+    )
+
+
+def view_of(scene):
+    width, height = scene["render"]["size"]
+    camera = scene["render"]["camera"]
+    view = CreateView("RenderView")
+    view.ViewSize = [width, height]
+    view.UseColorPaletteForBackground = 0
+    view.Background = [0.88, 0.89, 0.90]
+    view.OrientationAxesVisibility = 0
+    view.CameraPosition = camera["from"]
+    view.CameraFocalPoint = camera["to"]
+    view.CameraViewUp = [-g for g in scene["gravity"]]
+    view.CameraViewAngle = camera["fov"]
+    return view
+
+
+def color_by_material(display):
+    ColorBy(display, ("POINTS", "material"))
+    colors = GetColorTransferFunction("material")
+    colors.ApplyPreset("Cool to Warm", True)
+    display.SetScalarBarVisibility(view, False)
+
+
+def show_spheres(source, opacity=1.0):
+    glyph = Glyph(Input=bodies_of(source, SPHERE), GlyphType="Sphere", GlyphMode="All Points", ScaleFactor=1.0)
+    glyph.GlyphType.Radius = 0.5
+    glyph.GlyphType.ThetaResolution = glyph.GlyphType.PhiResolution = 20
+    glyph.ScaleArray = ["POINTS", "size"]
+    glyph.VectorScaleMode = "Scale by Components"
+    display = Show(glyph, view)
+    display.Opacity = opacity
+    color_by_material(display)
+    return glyph
+
+
+def show_boxes(source, opacity=1.0):
+    boxes = bodies_of(source, BOX)
+    display = Show(boxes, view)
+    display.SetRepresentationType("3D Glyphs")
+    display.GlyphType = "Cube"
+    display.ScaleFactor = 1.0
+    display.Scaling = 1
+    display.ScaleMode = "Scale by Vector Components"
+    display.SelectScaleArray = "size"
+    display.Orient = 1
+    display.OrientationMode = "Quaternion"
+    display.SelectOrientationVectors = "orientation"
+    display.Opacity = opacity
+    color_by_material(display)
+    return boxes
+
+
+def show_forces(file, scene, time):
+    contacts = OpenDataFile(str(file))
+    view.ViewTime = time
+    contacts.UpdatePipeline(time)
+    low, high = contacts.PointData["force"].GetRange(-1)
+    tubes = Tube(Input=contacts, Vectors=["POINTS", "force"], VaryRadius="By Vector Norm", RadiusFactor=30.0)
+    width = math.dist(scene["render"]["camera"]["from"], scene["render"]["camera"]["to"])
+    tubes.Radius = 2e-4 * width
+    display = Show(tubes, view)
+    ColorBy(display, ("POINTS", "force", "Magnitude"))
+    GetColorTransferFunction("force").RescaleTransferFunction(low, 0.5 * high)
+    display.SetScalarBarVisibility(view, False)
+
+
+run, export, time, out = Path(sys.argv[1]), Path(sys.argv[2]), float(sys.argv[3]), Path(sys.argv[4])
+scene = yaml.safe_load((run / "scene.yaml").read_text())
+view = view_of(scene)
+trajectory = OpenDataFile(str(export / "trajectory.pvd"))
+view.ViewTime = time
+trajectory.UpdatePipeline(time)
+shown = [show_spheres(trajectory), show_boxes(trajectory)]
+SaveScreenshot(str(out), view, ImageResolution=view.ViewSize)
+if (export / "contacts.pvd").exists():
+    for source in shown:
+        Hide(source, view)
+    show_forces(export / "contacts.pvd", scene, time)
+    SaveScreenshot(str(out.with_name(out.stem + "-forces.png")), view, ImageResolution=view.ViewSize)
