@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
 """Draws one frame of a run with ParaView, by its own filters alone, as the scene's camera sees it.
 
-    xvfb-run pvpython scripts/paraview_frame.py RUN EXPORT TIME OUT.png
+    xvfb-run -a pvpython scripts/paraview_frame.py RUN EXPORT TIME OUT.png
 
 RUN is the folder of a run with a trajectory, EXPORT what `scree export RUN --to vtp -o EXPORT` has made of it, TIME the frame's (s).
-Debian's paraview, python3-paraview, python3-yaml and xvfb; 5.11 and newer. Where the run has contacts, they are drawn as tubes into
+Debian's paraview, python3-paraview, python3-yaml, xauth and xvfb; 5.11 and newer. Where the run has contacts, they are drawn as tubes into
 OUT-forces.png.
 """
 import math
@@ -14,7 +14,6 @@ from pathlib import Path
 import yaml
 from paraview.simple import (
     CreateView,
-    Glyph,
     Hide,
     OpenDataFile,
     SaveScreenshot,
@@ -49,40 +48,25 @@ def view_of(scene):
     return view
 
 
-def color_by_material(display):
-    ColorBy(display, ("POINTS", "material"))
-    colors = GetColorTransferFunction("material")
-    colors.ApplyPreset("Cool to Warm", True)
-    display.SetScalarBarVisibility(view, False)
-
-
-def show_spheres(source, opacity=1.0):
-    glyph = Glyph(Input=bodies_of(source, SPHERE), GlyphType="Sphere", GlyphMode="All Points", ScaleFactor=1.0)
-    glyph.GlyphType.Radius = 0.5
-    glyph.GlyphType.ThetaResolution = glyph.GlyphType.PhiResolution = 20
-    glyph.ScaleArray = ["POINTS", "size"]
-    glyph.VectorScaleMode = "Scale by Components"
-    display = Show(glyph, view)
-    display.Opacity = opacity
-    color_by_material(display)
-    return glyph
-
-
-def show_boxes(source, opacity=1.0):
-    boxes = bodies_of(source, BOX)
-    display = Show(boxes, view)
+def show_glyphs(source, shape, name):
+    """The bodies of a shape, each a glyph of its size, turned by its quaternion, in the colour of its material."""
+    bodies = bodies_of(source, shape)
+    display = Show(bodies, view)
     display.SetRepresentationType("3D Glyphs")
-    display.GlyphType = "Cube"
-    display.ScaleFactor = 1.0
+    display.GlyphType = name
+    if name == "Sphere":
+        display.GlyphType.ThetaResolution = display.GlyphType.PhiResolution = 24
     display.Scaling = 1
-    display.ScaleMode = "Scale by Vector Components"
+    display.ScaleFactor = 1.0
+    display.ScaleMode = "Vector Components"
     display.SelectScaleArray = "size"
     display.Orient = 1
     display.OrientationMode = "Quaternion"
     display.SelectOrientationVectors = "orientation"
-    display.Opacity = opacity
-    color_by_material(display)
-    return boxes
+    ColorBy(display, ("POINTS", "material"))
+    GetColorTransferFunction("material").RescaleTransferFunction(0, len(scene["materials"]) - 1)
+    display.SetScalarBarVisibility(view, False)
+    return bodies
 
 
 def show_forces(file, scene, time):
@@ -105,7 +89,7 @@ view = view_of(scene)
 trajectory = OpenDataFile(str(export / "trajectory.pvd"))
 view.ViewTime = time
 trajectory.UpdatePipeline(time)
-shown = [show_spheres(trajectory), show_boxes(trajectory)]
+shown = [show_glyphs(trajectory, SPHERE, "Sphere"), show_glyphs(trajectory, BOX, "Box")]
 SaveScreenshot(str(out), view, ImageResolution=view.ViewSize)
 if (export / "contacts.pvd").exists():
     for source in shown:

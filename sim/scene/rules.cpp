@@ -125,8 +125,8 @@ void check_body(const BodyEntry& body, const Node& node, Reader& reader) {
   exclude("motion", "spin", node, reader);
   exclude("repeat", "scatter", node, reader);
   exclude("at", "scatter", node, reader);
-  for (const char* key : {"at", "repeat", "scatter", "fixed", "motion", "until"})
-    exclude(key, "emit", node, reader);
+  for (const char* key : {"at", "repeat", "scatter", "motion", "until"}) exclude(key, "emit", node, reader);
+  if (body.fixed.value_or(false)) exclude("fixed", "emit", node, reader);
   if (body.fixed.value_or(false))
     for (const char* key : {"motion", "velocity", "spin"}) exclude("fixed", key, node, reader);
   if (body.orientation) {
