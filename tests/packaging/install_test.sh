@@ -88,7 +88,7 @@ arguments="/usr/share/scree/configs/01_bouncing_ball.yaml ball 'bodies[1].at[2]=
 expect "Built target drop_height" "cp -r /usr/share/doc/libscree-dev/examples/drop_height . && cmake -S drop_height -B built && cmake --build built"
 expect "held by body 0 with 361.6" "built/drop_height $arguments"
 expect "held by body 0 with 361.6" "g++ -std=c++20 drop_height/main.cpp -o by_hand \$(pkg-config --cflags --libs scree) && ./by_hand $arguments"
-expect "unknown key" "built/drop_height /usr/share/scree/configs/01_bouncing_ball.yaml ball time.stop=1 || true"
+expect "time has no stop (did you mean step?)" "built/drop_height /usr/share/scree/configs/01_bouncing_ball.yaml ball time.stop=1 || true"
 headers=$(in_folder "g++ -std=c++20 -M drop_height/main.cpp | tr ' ' '\\n' | grep -E '^/usr/include/' | cut -d / -f 4 | sort -u")
 for folder in $headers; do
   [[ $folder =~ ^(scree|c\+\+|[a-z0-9_-]+-linux-gnu|linux|asm|asm-generic|bits|sys|gnu|[a-z0-9_]+\.h)$ ]] || failed "the headers drag in $folder"
