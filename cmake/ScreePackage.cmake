@@ -1,4 +1,4 @@
-# The Debian package: the components below, which `cmake --install BUILD` leaves out because the folder that it makes
+# The Debian packages: the components below, which `cmake --install BUILD` leaves out because the folder that it makes
 # (ScreeInstall.cmake) has other places; `cmake --install BUILD --component NAME --prefix DIR` installs one of them.
 # scripts/package.sh builds the target `manual`, and calls cpack.
 include(GNUInstallDirs)

@@ -39,7 +39,7 @@ ARROWS = {
                               "sim/moving_state.hpp", "sim/observation.hpp", "sim/pair_finder.hpp", "sim/resident/",
                               "sim/response_parameters.hpp", "sim/scene/", "sim/stepper.hpp",
                               "sim/resident_stepper.hpp"],
-    "sim/record/": ["core/", "sim/model.hpp", "sim/observation.hpp", "sim/scene/", "sim/simulation.hpp", "sim/record/"],
+    "sim/record/": ["core/", "sim/inspection.hpp", "sim/model.hpp", "sim/observation.hpp", "sim/scene/", "sim/record/"],
     "sim/simulation.hpp": ["core/", "scree/", "sim/inspection.hpp", "sim/observation.hpp", "sim/scene/"],
     "sim/interface.": ["core/", "scree/", "sim/record/", "sim/scene/", "sim/simulation.hpp"],
     "sim/moving_state.hpp": ["core/"],

@@ -306,6 +306,7 @@ Body Simulation::read_body(std::int32_t id) const {
   const SteppedBody now = p.stepper->body(id);
   Body body = body_at(p.scene.bodies, static_cast<std::size_t>(id));
   body.mobility = now.mobility;
+  body.mass = 1 / now.inverse_mass;
   body.position = plain(now.position);
   body.orientation = plain(now.orientation);
   body.velocity = plain(now.velocity);

@@ -93,7 +93,7 @@ void print_offer(const Offer& offer, std::string_view typed, const std::string& 
 /// `before` stands before what is typed of the option's value.
 void print_values(const std::string& type, std::string_view typed, const std::string& before = "") {
   if (!type.starts_with("KEY=")) return print_offer(offer_of(type), before + std::string(typed), before);
-  fmt::print("keys\n");
+  fmt::print("{}\n", typed.find('=') == typed.npos ? "keys" : "none");
   for (const Continuation& next : continuations_of(typed)) print_word("", before + next.text, next.help);
 }
 

@@ -51,6 +51,8 @@ changed=$(clean dpkg --verify "${names[@]:0:2}")
 version=$(clean dpkg-query -W -f '${Version}' scree)
 expect "scree ${version%-*}" "scree --version"
 expect "pictures   OSMesa" "scree info"
+complaints=$(in_folder 'scree info 2>&1 >/dev/null')
+[[ -z $complaints ]] || failed "scree info complains: $complaints"
 expect "Next: scree plan hopper.yaml" "scree new hopper"
 for template in drum minimal pile validation; do
   expect "Next: scree plan $template.yaml" "scree new $template"
@@ -77,6 +79,7 @@ expect "License: Expat" "cat /usr/share/doc/scree/copyright"
 # As bash loads it: by name, when TAB is pressed for the first time.
 expect "hopper.yaml" ". /usr/share/bash-completion/bash_completion; _completion_loader scree; COMP_WORDS=(scree run h); COMP_CWORD=2; _scree; echo \"\${COMPREPLY[@]}\""
 expect "hopper.yaml" "fish -c 'complete -C \"scree run h\"'"
+expect "time.step=" "fish -c 'complete -C \"scree run hopper.yaml --set time.s\"'"
 expect "_scree" "zsh -fc 'autoload -U compinit && compinit -u -D && echo \$_comps[scree]'"
 
 
