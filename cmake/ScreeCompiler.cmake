@@ -13,6 +13,10 @@ if(SCREE_CCACHE)
   set(CMAKE_CXX_COMPILER_LAUNCHER ${SCREE_CCACHE})
 endif()
 
+# All code may become part of the shared library (ScreeLibrary.cmake); calls inside it are still inlined, because
+# nobody is to replace its functions (-fno-semantic-interposition below).
+set(CMAKE_POSITION_INDEPENDENT_CODE ON)
+
 # Programs look for libraries beside themselves first, from the build on, so that copying them makes a folder that
 # runs elsewhere (scripts/bundle.sh). The old tag, because the new one does not hold for libraries of libraries.
 set(CMAKE_BUILD_WITH_INSTALL_RPATH ON)
@@ -40,7 +44,7 @@ target_compile_definitions(scree_options INTERFACE
   SCREE_WITH_CUDA=$<BOOL:${SCREE_CUDA}>)
 set(warnings -Wall -Wextra -Wpedantic -Wshadow -Werror)
 target_compile_options(scree_options INTERFACE
-  $<$<COMPILE_LANGUAGE:CXX>:${warnings} -ffp-contract=off -fno-math-errno>)
+  $<$<COMPILE_LANGUAGE:CXX>:${warnings} -ffp-contract=off -fno-math-errno -fno-semantic-interposition>)
 if(SCREE_SANITIZE)
   # Not `null`: Debian's Thrust 1.17 binds a reference to *nullptr for empty ranges (reference.h:330). Nor the warning:
   # with sanitizers g++ gives it for initialised variables too, as its manual says.
@@ -70,7 +74,7 @@ target_link_libraries(scree_parallel_options INTERFACE scree_options)
 if(SCREE_CUDA)
   target_compile_options(scree_parallel_options INTERFACE
     $<$<COMPILE_LANGUAGE:CUDA>:-std=c++20 --expt-relaxed-constexpr -diag-suppress=20012 --fmad=false -t2
-      -Xcompiler=-Wall,-Wextra,-Wshadow,-Werror,-ffp-contract=off,-fno-math-errno>)
+      -Xcompiler=-Wall,-Wextra,-Wshadow,-Werror,-ffp-contract=off,-fno-math-errno,-fno-semantic-interposition>)
   target_link_libraries(scree_parallel_options INTERFACE CUDA::cudart_static)
 else()
   target_compile_definitions(scree_parallel_options INTERFACE

@@ -5,6 +5,7 @@
 #include "core/archive.hpp"
 #include "core/array.hpp"
 #include "core/math.hpp"
+#include "scree/body.hpp"
 
 #include <cstdint>
 #include <type_traits>
@@ -14,21 +15,6 @@ namespace scree {
 
 /// A body's place in the arrays. Everything that refers to a body beyond one step uses Bodies::id instead.
 enum class BodyIndex : std::int32_t { none = -1 };
-
-enum class Shape : std::uint8_t {
-  sphere,  ///< size.x() is the radius
-  box,     ///< size holds the half extents
-  plane,   ///< half space below the body's z axis through its position; always fixed
-  tube,  ///< inside of a cylinder along the body's z axis, with end caps; never free. It acts on bodies whose
-         ///< centre is in it. size.x() and size.y() are its radius, size.z() is half its length
-};
-
-enum class Mobility : std::uint8_t {
-  free,        ///< moved by forces and contacts
-  fixed,       ///< never moves
-  prescribed,  ///< moves as its `motion` says, whatever hits it
-  absent,      ///< not there (yet, or any more): touches nothing, counts nowhere
-};
 
 template <class T>
 using HostVector = std::vector<T>;

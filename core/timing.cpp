@@ -1,5 +1,6 @@
 #include "core/timing.hpp"
 
+#include <atomic>
 #include <unordered_map>
 
 namespace scree::timing {
@@ -32,9 +33,10 @@ class Accounts {
   std::unordered_map<const char*, std::size_t> by_address_;
 };
 
-Accounts stage_accounts;
-Accounts call_accounts;
-bool timed_calls = false;
+// Each thread that drives steps has its own.
+thread_local Accounts stage_accounts;
+thread_local Accounts call_accounts;
+std::atomic<bool> timed_calls = false;
 
 }  // namespace
 

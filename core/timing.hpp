@@ -1,4 +1,5 @@
-// Wall times by name: of the stages of the step always, of every labelled parallel call when asked for.
+// Wall times by name: of the stages of the step always, of every labelled parallel call when asked for. Each
+// thread that drives steps has accounts of its own.
 #pragma once
 
 #include <chrono>
@@ -14,7 +15,7 @@ struct Entry {
   std::int64_t calls = 0;
 };
 
-/// Adds `seconds` to the account of a stage. Only the thread that drives the step calls it.
+/// Adds `seconds` to the account of a stage. Only a thread that drives steps calls it.
 void add(const char* label, double seconds);
 /// Accounts of the stages in the order in which their labels first appeared.
 const std::vector<Entry>& entries();

@@ -18,6 +18,7 @@ _scree() {
         while IFS=$'\t' read -r word _; do COMPREPLY+=("${word#"${current%"${current##*[=:]}"}"}"); done
     } < <("${COMP_WORDS[0]}" complete "${typed[@]}" 2>/dev/null)
 
+    [[ $files == keys ]] && compopt -o nospace 2>/dev/null
     current=${current##*=}
     [[ $files == f* ]] && compopt -o filenames 2>/dev/null
     case $files in

@@ -11,5 +11,6 @@ case $lines[1] in
     folders) _files -/ ;;
     files) _files ;;
     files\ *) _files -g "*.${lines[1]#* }" ;;
+    keys) _describe 'key' offers -S '' ;;
     *) _describe 'scree' offers ;;
 esac

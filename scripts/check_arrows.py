@@ -12,14 +12,15 @@ from pathlib import Path
 
 # Who may include what; the row with the longest matching prefix holds. Paths under tests/ may include anything.
 ARROWS = {
-    "core/": ["core/"],
+    "scree/": ["scree/"],
+    "core/": ["core/", "scree/"],
     "broadphase/": ["core/", "broadphase/"],
     "narrowphase/": ["core/", "broadphase/", "narrowphase/"],
     "render/": ["core/", "render/"],
     "sim/observation.hpp": ["core/", "narrowphase/stats.hpp"],
     "sim/inspection.hpp": ["core/"],
     "sim/scene/": ["core/", "broadphase/settings.hpp", "narrowphase/settings.hpp", "sim/observation.hpp",
-                   "sim/scene/"],
+                   "sim/scene/", "scree/"],
     "sim/model.": ["core/", "broadphase/", "sim/scene/", "sim/dynamics/restitution.hpp", "sim/model.hpp"],
     "sim/applied_forces.": ["core/", "sim/scene/", "sim/dynamics/", "sim/applied_forces.hpp"],
     "sim/contact_problem.": ["core/", "sim/dynamics/", "sim/inspection.hpp", "sim/contact_problem.hpp"],
@@ -38,8 +39,9 @@ ARROWS = {
                               "sim/moving_state.hpp", "sim/observation.hpp", "sim/pair_finder.hpp", "sim/resident/",
                               "sim/response_parameters.hpp", "sim/scene/", "sim/stepper.hpp",
                               "sim/resident_stepper.hpp"],
-    "sim/record/": ["core/", "sim/model.hpp", "sim/observation.hpp", "sim/scene/", "sim/simulation.hpp", "sim/record/"],
-    "sim/simulation.hpp": ["core/", "sim/inspection.hpp", "sim/observation.hpp", "sim/scene/"],
+    "sim/record/": ["core/", "sim/inspection.hpp", "sim/model.hpp", "sim/observation.hpp", "sim/scene/", "sim/record/"],
+    "sim/simulation.hpp": ["core/", "scree/", "sim/inspection.hpp", "sim/observation.hpp", "sim/scene/"],
+    "sim/interface.": ["core/", "scree/", "sim/record/", "sim/scene/", "sim/simulation.hpp"],
     "sim/moving_state.hpp": ["core/"],
     "sim/stepper.hpp": ["core/", "sim/dynamics/", "sim/inspection.hpp", "sim/observation.hpp", "sim/scene/scene.hpp"],
     "sim/substepper.": ["core/", "narrowphase/", "sim/applied_forces.hpp", "sim/contact_problem.hpp", "sim/dynamics/",
@@ -57,7 +59,7 @@ ARROWS = {
     "bench/": ["core/", "broadphase/", "narrowphase/", "sim/", "render/", "bench/"],
     "tests/": [""],
 }
-FOLDERS = ["core", "broadphase", "narrowphase", "sim", "render", "bench", "tests"]
+FOLDERS = ["scree", "core", "broadphase", "narrowphase", "sim", "render", "bench", "tests"]
 
 # Each library has one or two files that know it, so that it can be replaced.
 LIBRARIES = {
@@ -123,6 +125,8 @@ class Tree:
                     yield f'{name} includes "{to}": not along an arrow'
                 if mark == '"' and (Path(name).parent / to).as_posix() in self.text:
                     yield f'{name} includes "{to}": write the path from the root'
+                if name.startswith("scree/") and mark == "<" and not re.fullmatch("[a-z_]+", to):
+                    yield f"{name} includes <{to}>: the interface has the standard library alone"
                 if THRUST.match(to) and name not in THRUST_HEADERS:
                     yield f"{name} includes <{to}>: only {' and '.join(THRUST_HEADERS)} do"
 
@@ -139,6 +143,8 @@ def self_test():
     lib = {"core/CMakeLists.txt": "add_library(a core.cpp)"}
     trees = [
         ("not along an arrow", {"core/a.hpp": '#include "sim/simulation.hpp"'}),
+        ("not along an arrow", {"scree/a.hpp": '#include "core/math.hpp"'}),
+        ("the standard library alone", {"scree/a.hpp": "#include <vector>\n#include <Eigen/Core>"}),
         ("not along an arrow", {"broadphase/a.cpp": '#include "narrowphase/contact.hpp"'}),
         ("not along an arrow", {"render/a.cpp": '#include "sim/scene/scene.hpp"'}),
         ("not along an arrow", {"sim/dynamics/a.cpp": '  #  include "sim/record/metrics.hpp"'}),

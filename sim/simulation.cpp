@@ -1,5 +1,6 @@
 #include "sim/simulation.hpp"
 
+#include "core/error.hpp"
 #include "core/timing.hpp"
 #include "sim/dynamics/prescribed.hpp"
 #include "sim/guarded_steps.hpp"
@@ -17,6 +18,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <stdexcept>
 #include <utility>
 
 namespace scree {
@@ -51,6 +53,21 @@ std::vector<PrescribedPath> paths_of(const Scene& scene, const TimeGrid& grid, c
   std::vector<PrescribedPath> paths = prescribed_paths(scene);
   for (PrescribedPath& path : paths) path.start = grid.time(presence.first_step(path.body));
   return paths;
+}
+
+Vector plain(const Vec3& v) { return {v.x(), v.y(), v.z()}; }
+std::array<double, 4> plain(const Quat& q) { return {q.w(), q.x(), q.y(), q.z()}; }
+
+Body body_at(const BodyTable& bodies, std::size_t k) {
+  return {.id = bodies.id[k],
+          .shape = bodies.shape[k],
+          .mobility = bodies.mobility[k],
+          .size = plain(bodies.size[k]),
+          .mass = 1 / bodies.inverse_mass[k],
+          .position = plain(bodies.position[k]),
+          .orientation = plain(bodies.orientation[k]),
+          .velocity = plain(bodies.velocity[k]),
+          .spin = plain(bodies.spin[k])};
 }
 
 /// Free bodies from which on Device takes the steps unless told otherwise (docs/decisions/0022).
@@ -121,6 +138,7 @@ struct Simulation::Parts {
   }
 
   void do_step() {
+    if (step >= grid.last()) throw std::logic_error("Simulation::step() at time.end: there is no step more");
     const double dt = grid.length(step + 1);
     try {
       steps.take(step, grid.time(step), dt, exchange, *stepper);
@@ -237,6 +255,7 @@ Simulation::Simulation(const Scene& scene, const SimulationOptions& options)
     : parts_(std::make_unique<Parts>(scene, options)) {}
 Simulation::~Simulation() = default;
 Simulation::Simulation(Simulation&&) noexcept = default;
+Simulation& Simulation::operator=(Simulation&&) noexcept = default;
 
 void Simulation::step() { parts_->do_step(); }
 void Simulation::archive(Archive& archive) { parts_->archive(archive); }
@@ -245,6 +264,7 @@ double Simulation::time() const { return parts_->grid.time(parts_->step); }
 std::int64_t Simulation::steps() const { return parts_->step; }
 std::int64_t Simulation::steps_total() const { return parts_->grid.last(); }
 const char* Simulation::space_name() const { return parts_->stepper->space_name(); }
+const Scene& Simulation::scene() const { return parts_->scene; }
 
 void Simulation::snapshot(Snapshot& out) const {
   out.time = time();
@@ -277,6 +297,30 @@ BodyState Simulation::body(std::int32_t id) const {
                     ? Vec3((state.acceleration - body.acceleration) / body.inverse_mass)
                     : Vec3(body.contact_impulse / p.last_step);
   return state;
+}
+
+Body Simulation::read_body(std::int32_t id) const {
+  const Parts& p = *parts_;
+  if (id < 0 || id >= p.scene.bodies.count())
+    throw InputError(fmt::format("there is no body {}: they are 0 to {}", id, p.scene.bodies.count() - 1));
+  const SteppedBody now = p.stepper->body(id);
+  Body body = body_at(p.scene.bodies, static_cast<std::size_t>(id));
+  body.mobility = now.mobility;
+  body.mass = 1 / now.inverse_mass;
+  body.position = plain(now.position);
+  body.orientation = plain(now.orientation);
+  body.velocity = plain(now.velocity);
+  body.spin = plain(now.spin);
+  return body;
+}
+
+std::vector<Body> Simulation::bodies() const {
+  BodyTable now;
+  parts_->stepper->copy_state(now);
+  std::vector<Body> all;
+  all.reserve(now.position.size());
+  for (std::size_t k = 0; k < now.position.size(); ++k) all.push_back(body_at(now, k));
+  return all;
 }
 
 std::vector<BodyPair> Simulation::pairs() { return parts_->stepper->pairs(); }

@@ -1,4 +1,4 @@
-// A step that the run cannot go on from.
+// What the message of a step that the run cannot go on from is about.
 #pragma once
 
 #include "core/bodies.hpp"
@@ -10,16 +10,6 @@
 #include <vector>
 
 namespace scree {
-
-class StepFailure : public RunError {
- public:
-  StepFailure(const std::string& what, std::vector<std::int32_t> bodies);
-  /// That it is about, a few; the worst first. Empty if it is about none in particular.
-  const std::vector<std::int32_t>& bodies() const { return bodies_; }
-
- private:
-  std::vector<std::int32_t> bodies_;
-};
 
 /// Bodies with a number in their state that is not finite, or a place that is beyond what the broad phase can
 /// hold, in order.

@@ -7,6 +7,7 @@
 #include <EGL/eglext.h>
 #include <algorithm>
 #include <array>
+#include <cstdlib>
 #include <string_view>
 #include <vector>
 
@@ -36,6 +37,8 @@ struct Device {
 
 /// Those that EGL knows, hardware first. None where no driver is installed.
 std::vector<Device> devices() {
+  // Mesa would warn on the terminal of drivers that are not installed; what fails is told by the errors here.
+  setenv("EGL_LOG_LEVEL", "fatal", 0);
   const char* client = eglQueryString(EGL_NO_DISPLAY, EGL_EXTENSIONS);
   const bool can_list = has(client, "EGL_EXT_device_base") || has(client, "EGL_EXT_device_enumeration");
   if (!can_list || !has(client, "EGL_EXT_platform_device")) return {};

@@ -5,7 +5,6 @@
 
 #include <fmt/format.h>
 
-#include <sstream>
 #include <string_view>
 #include <utility>
 
@@ -13,54 +12,17 @@ namespace scree::cli {
 
 namespace {
 
-/// The first line in which two texts differ, of each.
-std::pair<std::string, std::string> first_difference(const std::string& a, const std::string& b) {
-  std::istringstream lines_a(a), lines_b(b);
-  std::string line_a, line_b;
-  do {
-    line_a.clear();
-    line_b.clear();
-    std::getline(lines_a, line_a);
-    std::getline(lines_b, line_b);
-  } while (line_a == line_b && lines_a && lines_b);
-  return {line_a, line_b};
-}
-
 [[noreturn]] void refuse(std::string_view why) {
   throw InputError(fmt::format("--resume: {}; --overwrite starts from the beginning", why));
 }
 
 }  // namespace
 
-void RunIdentity::archive(Archive& archive) {
-  archive("version", version);
-  archive("commit", commit);
-  archive("space", space);
-  archive("scene", scene);
-  archive("bodies", bodies);
-  archive("draws", draws);
-}
-
-void expect_same_run(const RunIdentity& saved, const RunIdentity& present) {
-  if (saved.version != present.version)
-    refuse(fmt::format("the checkpoint is of version {}, and this is {}", saved.version, present.version));
-  if (saved.scene != present.scene) {
-    const auto [was, is] = first_difference(saved.scene, present.scene);
-    refuse(fmt::format("the checkpoint is of another scene: there `{}`, here `{}`", was, is));
-  }
-  if (saved.bodies != present.bodies)
-    refuse("the scene's bodies are others, so a file of theirs has changed");
-  if (saved.space != present.space)
-    refuse(fmt::format("the checkpoint is of a run on {0}, and this is one on {1} (--device {0})",
-                       saved.space, present.space));
-  if (saved.draws != present.draws)
-    refuse(fmt::format("the checkpoint is of a run {} --no-render", saved.draws ? "without" : "with"));
-}
-
-Checkpoints::Checkpoints(const RunFolder& folder, double every, RunIdentity identity)
+Checkpoints::Checkpoints(const RunFolder& folder, double every, RunIdentity identity, bool draws)
     : folder_(folder / "checkpoint"),
       every_(every),
       identity_(std::move(identity)),
+      draws_(draws),
       writer_(1, [this](Saved& saved) { write(saved); }) {}
 
 bool Checkpoints::find(std::vector<std::string>& warnings) {
@@ -68,8 +30,13 @@ bool Checkpoints::find(std::vector<std::string>& warnings) {
   for (std::string& damaged : warnings) damaged += "; the one before it is taken";
   if (!found_) return false;
   RunIdentity saved;
-  Archive::loading(*found_).part("run", saved);
-  expect_same_run(saved, identity_);
+  bool saved_draws = false;
+  Archive archive = Archive::loading(*found_);
+  archive.part("run", saved);
+  archive("draws", saved_draws);
+  if (const std::string difference = difference_of(saved, identity_); !difference.empty()) refuse(difference);
+  if (saved_draws != draws_)
+    refuse(fmt::format("the checkpoint is of a run {} --no-render", saved_draws ? "without" : "with"));
   if (saved.commit != identity_.commit)
     warnings.push_back(
         fmt::format("the checkpoint is of commit {}, and this is {}: bits may differ from here on",
@@ -96,6 +63,7 @@ void Checkpoints::take(Simulation& simulation, Recorder& recorder) {
   Saved saved{simulation.steps(), {}};
   Archive archive = Archive::saving(saved.state);
   archive.part("run", identity_);
+  archive("draws", draws_);
   this->archive(archive, simulation, recorder);
   writer_.push(std::move(saved));
   last_step_ = simulation.steps();

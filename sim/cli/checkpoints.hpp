@@ -4,6 +4,7 @@
 #include "sim/cli/recorder.hpp"
 #include "sim/cli/worker.hpp"
 #include "sim/record/checkpoint.hpp"
+#include "sim/record/run_identity.hpp"
 #include "sim/simulation.hpp"
 
 #include <chrono>
@@ -16,24 +17,11 @@
 
 namespace scree::cli {
 
-/// What must be the same for a run to go on.
-struct RunIdentity {
-  std::string version, commit, space;
-  std::string scene;         ///< resolved
-  std::uint64_t bodies = 0;  ///< checksum of the bodies that it starts with, which may come from files
-  bool draws = false;
-
-  void archive(Archive& archive);
-};
-
-/// Throws InputError where a checkpoint is of another run than `present`, and says in what.
-void expect_same_run(const RunIdentity& saved, const RunIdentity& present);
-
 /// States are copied by the thread that drives the run, and written by one of their own.
 class Checkpoints {
  public:
-  /// `every`: wall time between them (s).
-  Checkpoints(const RunFolder& folder, double every, RunIdentity identity);
+  /// `every`: wall time between them (s). `draws`: whether the run makes pictures.
+  Checkpoints(const RunFolder& folder, double every, RunIdentity identity, bool draws);
 
   /// Looks for the newest that is whole; false if there is none. Throws InputError if it is of another run.
   /// `warnings`: what is wrong with newer ones, and what may differ from here on.
@@ -64,6 +52,7 @@ class Checkpoints {
   CheckpointFolder folder_;
   std::chrono::duration<double> every_;
   RunIdentity identity_;
+  bool draws_;
   std::optional<SavedState> found_;
   std::vector<std::int64_t> resumed_at_;
   Clock::time_point last_time_ = Clock::now();

@@ -1,9 +1,10 @@
-// Help and completion from one table, so that the two cannot part. The shells' sides are in
-// scripts/completion.
+// Help and completion from one table, so that the two cannot part; keys of --set from that of the scene
+// language. The shells' sides are in packaging/.
 #include "sim/cli/help.hpp"
 
 #include "sim/cli/commands.hpp"
 #include "sim/record/outcome.hpp"
+#include "sim/scene/completion.hpp"
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
@@ -89,6 +90,13 @@ void print_offer(const Offer& offer, std::string_view typed, const std::string& 
   for (const std::string& word : offer.words) print_word(typed, before + word, "");
 }
 
+/// `before` stands before what is typed of the option's value.
+void print_values(const std::string& type, std::string_view typed, const std::string& before = "") {
+  if (!type.starts_with("KEY=")) return print_offer(offer_of(type), before + std::string(typed), before);
+  fmt::print("{}\n", typed.find('=') == typed.npos ? "keys" : "none");
+  for (const Continuation& next : continuations_of(typed)) print_word("", before + next.text, next.help);
+}
+
 const CLI::Option* option_named(const CLI::App& command, const std::string& name) {
   const CLI::Option* option = name.starts_with('-') ? command.get_option_no_throw(name) : nullptr;
   return option != nullptr && option->get_type_size() != 0 ? option : nullptr;
@@ -117,10 +125,11 @@ Offer positional_after(const CLI::App& command, const std::vector<std::string>& 
 
 void complete_in(const CLI::App& command, const std::vector<std::string>& before, const std::string& typed) {
   if (const auto* option = before.empty() ? nullptr : option_named(command, before.back()))
-    return print_offer(offer_of(option->get_type_name()), typed);
+    return print_values(option->get_type_name(), typed);
   const std::size_t equals = typed.find('=');
   if (const auto* option = option_named(command, typed.substr(0, equals)); option && equals != typed.npos)
-    return print_offer(offer_of(option->get_type_name()), typed, typed.substr(0, equals + 1));
+    return print_values(option->get_type_name(), std::string_view(typed).substr(equals + 1),
+                        typed.substr(0, equals + 1));
   if (typed.starts_with('-')) return print_options(command, typed);
   if (command.get_name() == "bench")
     return print_offer(before.empty() ? Offer{"none", benchmark_names()} : Offer{"files"}, typed);

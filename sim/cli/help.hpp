@@ -17,7 +17,7 @@ void set_help(CLI::App& app);
 
 /// Prints what the last word, as far as it is typed, may become after the others (without the program's
 /// name): first a line that says what files there may be (`none`, `folders`, `files`, or `files EXTENSION`),
-/// then a line for each word: the word, a tab, what it means.
+/// or that the words go on (`keys`); then a line for each word: the word, a tab, what it means.
 int complete(const CLI::App& app, const std::vector<std::string>& words);
 
 }  // namespace scree::cli

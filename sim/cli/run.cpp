@@ -8,7 +8,6 @@
 #include "sim/cli/interrupt.hpp"
 #include "sim/cli/picture_context.hpp"
 #include "sim/cli/recorder.hpp"
-#include "sim/record/build_info.hpp"
 #include "sim/record/final_state.hpp"
 #include "sim/record/guards.hpp"
 #include "sim/record/manifest.hpp"
@@ -179,16 +178,6 @@ RunFolder::Earlier what_becomes_of_an_earlier_run(const RunArguments& arguments)
   return arguments.overwrite ? RunFolder::Earlier::replaced : RunFolder::Earlier::refused;
 }
 
-RunIdentity identity_of(const Scene& scene, const Simulation& simulation, bool draws) {
-  const BuildInfo build = build_info();
-  return {.version = build.version,
-          .commit = build.commit,
-          .space = simulation.space_name(),
-          .scene = scene.resolved,
-          .bodies = hash_of(scene.bodies),
-          .draws = draws};
-}
-
 /// Threads that may help the run: where it is on a GPU the processor has nothing else to do.
 int helpers_of(const Simulation& simulation, const RunArguments& arguments) {
   const auto cores = static_cast<int>(std::thread::hardware_concurrency());
@@ -218,8 +207,8 @@ int run(const RunArguments& arguments) {
     fmt::print("{}: done, there is nothing to resume\n", folder.path().string());
     return status_done;
   }
-  Checkpoints checkpoints(folder, scene.record.checkpoint_every,
-                          identity_of(scene, simulation, draws.has_value()));
+  Checkpoints checkpoints(folder, scene.record.checkpoint_every, identity_of(scene, simulation.space_name()),
+                          draws.has_value());
   std::vector<std::string> warnings;
   const bool resumes = arguments.resume && checkpoints.find(warnings);
   if (arguments.resume && !resumes) folder.clear();

@@ -16,6 +16,7 @@
 #include <fstream>
 #include <functional>
 #include <iterator>
+#include <mutex>
 #include <span>
 #include <string_view>
 #include <utility>
@@ -145,6 +146,9 @@ SavedState state_of(std::string_view file) {
 }  // namespace
 
 void write_checkpoint(const fs::path& file, const SavedState& state) {
+  // HDF5 is for one thread at a time.
+  static std::mutex turn;
+  const std::lock_guard lock(turn);
   hdf5::start();
   write_file(file, file_of(state));
 }

@@ -5,6 +5,7 @@
 #include "broadphase/settings.hpp"
 #include "core/bodies.hpp"
 #include "narrowphase/settings.hpp"
+#include "scree/options.hpp"
 
 #include <array>
 #include <cmath>
@@ -231,12 +232,6 @@ struct Scene {
   const ContactLaw& law(std::int32_t a, std::int32_t b) const {
     return laws[static_cast<std::size_t>(a) * materials.size() + static_cast<std::size_t>(b)];
   }
-};
-
-/// `--set key.path=value` of the command line, applied before anything is checked.
-struct Override {
-  std::string path;   ///< bodies[2].velocity[0]
-  std::string value;  ///< YAML
 };
 
 /// Reads and checks a scene file. Throws InputError: file:line:column, the key, what is allowed, and the

@@ -1,13 +1,16 @@
 #!/usr/bin/env bash
-# tests/packaging/install_test.sh PACKAGE [MIRROR]: installs the Debian package on a clean Debian 12, which debootstrap makes,
-# and tries there what it brought: program, scenes, manual page, completion; last, that nothing is left when it is removed.
-# Needs root, a mirror of Debian (MIRROR, or debootstrap's own) and 2 GB; about 5 minutes. Ends with "package: passed".
+# tests/packaging/install_test.sh FOLDER [MIRROR]: installs the Debian packages in FOLDER, where scripts/package.sh made them, on a
+# clean Debian 12, which debootstrap makes, and tries there what they brought: program, scenes, templates, manual page,
+# completion; the library, by building the example with Debian's compiler; last, that nothing is left when they are removed.
+# Needs root, a mirror of Debian (MIRROR, or debootstrap's own) and 3 GB; about 5 minutes. Ends with "package: passed".
 set -euo pipefail
 if (($# < 1)); then
-  echo "usage: tests/packaging/install_test.sh PACKAGE [MIRROR]" >&2
+  echo "usage: tests/packaging/install_test.sh FOLDER [MIRROR]" >&2
   exit 2
 fi
-package=$(realpath "$1")
+program=$(realpath "$1"/scree_*.deb)
+library=$(realpath "$1"/libscree[0-9]*.deb)
+development=$(realpath "$1"/libscree-dev_*.deb)
 system=$(mktemp -d)
 chmod 755 "$system" # mktemp keeps others out, and apt-get downloads as one of them
 leave() {
@@ -37,17 +40,24 @@ debootstrap --variant=minbase bookworm "$system" ${2:+"$2"} >"$system.log" 2>&1 
 rm "$system.log"
 mount -t proc proc "$system/proc"
 mkdir "$system/home/user"
-cp "$package" "$system/tmp/scree.deb"
+cp "$program" "$library" "$development" "$system/tmp/"
 clean apt-get -q update >/dev/null
 
 echo "== the package, with what it depends on and nothing more"
-install /tmp/scree.deb
-changed=$(clean dpkg --verify scree)
-[[ -z $changed ]] || failed "files that are not the package's: $changed"
+install "/tmp/${program##*/}" "/tmp/${library##*/}"
+names=(scree "$(basename "$library" | cut -d _ -f 1)" libscree-dev)
+changed=$(clean dpkg --verify "${names[@]:0:2}")
+[[ -z $changed ]] || failed "files that are not the packages': $changed"
 version=$(clean dpkg-query -W -f '${Version}' scree)
 expect "scree ${version%-*}" "scree --version"
 expect "pictures   OSMesa" "scree info"
+complaints=$(in_folder 'scree info 2>&1 >/dev/null')
+[[ -z $complaints ]] || failed "scree info complains: $complaints"
 expect "Next: scree plan hopper.yaml" "scree new hopper"
+for template in drum minimal pile validation; do
+  expect "Next: scree plan $template.yaml" "scree new $template"
+  expect "memory " "scree plan $template.yaml"
+done
 # Without ffmpeg a run says so, and is a good run.
 expect "warning: no movie" "scree run hopper.yaml --set render.fps=4"
 expect ", 0 failed" "scree verify /usr/share/scree/configs/validation/{free_motion,resting,single_contact}"
@@ -69,12 +79,28 @@ expect "License: Expat" "cat /usr/share/doc/scree/copyright"
 # As bash loads it: by name, when TAB is pressed for the first time.
 expect "hopper.yaml" ". /usr/share/bash-completion/bash_completion; _completion_loader scree; COMP_WORDS=(scree run h); COMP_CWORD=2; _scree; echo \"\${COMPREPLY[@]}\""
 expect "hopper.yaml" "fish -c 'complete -C \"scree run h\"'"
+expect "time.step=" "fish -c 'complete -C \"scree run hopper.yaml --set time.s\"'"
 expect "_scree" "zsh -fc 'autoload -U compinit && compinit -u -D && echo \$_comps[scree]'"
 
+
+echo "== a program of one's own, with the library and Debian's compiler"
+install "/tmp/${development##*/}" g++ cmake make pkg-config
+changed=$(clean dpkg --verify libscree-dev)
+[[ -z $changed ]] || failed "files that are not the package's: $changed"
+arguments="/usr/share/scree/configs/01_bouncing_ball.yaml ball 'bodies[1].at[2]=3' time.end=10"
+expect "Built target drop_height" "cp -r /usr/share/doc/libscree-dev/examples/drop_height . && cmake -S drop_height -B built && cmake --build built"
+expect "held by body 0 with 361.6" "built/drop_height $arguments"
+expect "held by body 0 with 361.6" "g++ -std=c++20 drop_height/main.cpp -o by_hand \$(pkg-config --cflags --libs scree) && ./by_hand $arguments"
+expect "time has no stop (did you mean step?)" "built/drop_height /usr/share/scree/configs/01_bouncing_ball.yaml ball time.stop=1 || true"
+headers=$(in_folder "g++ -std=c++20 -M drop_height/main.cpp | tr ' ' '\\n' | grep -E '^/usr/include/' | cut -d / -f 4 | sort -u")
+for folder in $headers; do
+  [[ $folder =~ ^(scree|c\+\+|[a-z0-9_-]+-linux-gnu|linux|asm|asm-generic|bits|sys|gnu|[a-z0-9_]+\.h)$ ]] || failed "the headers drag in $folder"
+done
+
 echo "== removed"
-mapfile -t files < <(clean dpkg -L scree | grep /scree)
-((${#files[@]} > 10)) || failed "the package has ${#files[@]} files"
-clean apt-get purge -q -y scree >/dev/null
+mapfile -t files < <(for name in "${names[@]}"; do clean dpkg -L "$name"; done | grep /[a-z]*scree)
+((${#files[@]} > 20)) || failed "the packages have ${#files[@]} files"
+clean apt-get purge -q -y "${names[@]}" >/dev/null
 left=$(clean ls -d "${files[@]}" 2>/dev/null || true)
 [[ -z $left ]] || failed "left behind: $left"
 echo "package: passed"

@@ -98,6 +98,40 @@ TEST_F(CompletionTest, ValuesByWhatTheyAre) {
   EXPECT_EQ(files({"nonsense", ""}), "none");
 }
 
+TEST_F(CompletionTest, KeysOfTheSceneLanguage) {
+  std::string first;
+  EXPECT_EQ(offered({"run", "a.yaml", "--set", "ti"}, &first), Words{"time."});
+  EXPECT_EQ(first, "keys");
+  EXPECT_EQ(offered({"plan", "--set", "time."}), (Words{"time.end=", "time.step=", "time.substeps="}));
+  EXPECT_EQ(offered({"plan", "--set", "bodies[0].sphere.r"}),
+            (Words{"bodies[0].sphere.radius.", "bodies[0].sphere.radius="}));
+  EXPECT_EQ(offered({"plan", "--set", "materials.glass.fr"}), Words{"materials.glass.friction="});
+  EXPECT_EQ(offered({"plan", "--set", "regions"}), Words{"regions."});
+  EXPECT_EQ(offered({"study", "--vary", "response.mode=a"}), Words{"response.mode=accurate"});
+  EXPECT_EQ(offered({"study", "--vary=response.mode=a"}), Words{"--vary=response.mode=accurate"});
+  for (const char* nowhere :
+       {"tim.e", "gravity.x", "bodies[", "bodies[0", "[0]", ".", "=", "time.=", "crosscheck"})
+    EXPECT_EQ(offered({"plan", "--set", nowhere}), Words{}) << nowhere;
+
+  // All that the schema has, at the top and below a section.
+  const Json schema = Json::parse(help({"plan", "--schema"}));
+  const auto names_in = [](const Json& section) {
+    Words names;
+    for (const auto& [name, value] : section["properties"].items()) names.push_back(name);
+    std::ranges::sort(names);
+    return names;
+  };
+  const auto keys_after = [this](const std::string& path) {
+    Words keys;
+    for (const std::string& word : offered({"plan", "--set", path}))
+      keys.push_back(word.substr(path.size(), word.size() - path.size() - 1));
+    keys.erase(std::unique(keys.begin(), keys.end()), keys.end());
+    return keys;
+  };
+  EXPECT_EQ(keys_after(""), names_in(schema));
+  EXPECT_EQ(keys_after("response."), names_in(schema["properties"]["response"]));
+}
+
 TEST_F(CompletionTest, ItIsNoCommandForPeople) {
   EXPECT_FALSE(contains(help({"--help-all"}), "scree complete")) << "nor is it completed";
 }
@@ -109,6 +143,8 @@ TEST_F(CompletionTest, InBash) {
   EXPECT_EQ(bash("scree v"), Words{"verify"});
   EXPECT_EQ(bash("scree run --dev"), Words{"--device"});
   EXPECT_EQ(bash("scree run --device = c"), Words{"cuda"}) << "as bash cuts --device=c";
+  EXPECT_EQ(bash("scree run --set gra"), (Words{"gravity=", "gravity["}));
+  EXPECT_EQ(bash("scree run --set precision = m"), Words{"mixed"});
   EXPECT_EQ(bash("scree run ''"), (Words{"output", "scene one.yaml"}));
   EXPECT_EQ(bash("scree render ''"), Words{"output"});
 }

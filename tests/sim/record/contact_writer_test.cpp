@@ -1,6 +1,8 @@
-// Contacts beside a trajectory: what is written is read again, by scree and by HDF5, which knows nothing of it.
-#include "core/error.hpp"
+// Contacts beside a trajectory: what is written is read again, by scree and by HDF5, which knows nothing of
+// it.
 #include "sim/record/contact_writer.hpp"
+
+#include "core/error.hpp"
 #include "sim/record/exports.hpp"
 #include "tests/sim/record/hdf5_dataset.hpp"
 #include "tests/sim/record/temporary_folder.hpp"
