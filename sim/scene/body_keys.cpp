@@ -128,19 +128,28 @@ Codec<MotionKeyEntry> motion_key_section() {
       check_motion_key);
 }
 
+/// Left out of the resolved scene where there are keyframes, and refused there.
+Key<MotionEntry> rate(const char* name, Vec3 MotionEntry::*member, const char* unit, const char* help) {
+  Key<MotionEntry> rate = key<MotionEntry>(name, member, vector(unit), optionally, help);
+  rate.write = [write = rate.write](const MotionEntry& motion) {
+    return motion.keyframes.empty() ? write(motion) : std::nullopt;
+  };
+  return rate;
+}
+
 Codec<MotionEntry> motion_section() {
   using T = MotionEntry;
   return section<T>(
       "bodies[].motion", "Prescribed motion: the body moves like this whatever hits it.",
       {
-          key<T>("velocity", &T::velocity, vector("m/s"), optionally, "constant velocity"),
-          key<T>("spin", &T::spin, vector("rad/s"), optionally, "constant angular velocity"),
+          rate("velocity", &T::velocity, "m/s", "constant velocity"),
+          rate("spin", &T::spin, "rad/s", "constant angular velocity"),
           key<T>("about", &T::about, optional(vector("m")), optionally,
                  "the point to turn about, which moves along with `velocity` and `oscillate`; the body's own "
                  "centre if not given"),
           key<T>("oscillate", &T::oscillate, optional(oscillate_section()), optionally, "to and fro besides"),
           key<T>(
-              "keyframes", &T::keyframes, list_of(motion_key_section(), 2), optionally,
+              "keyframes", &T::keyframes, list_of(motion_key_section(), 1), optionally,
               "instead of all that, and of `at`: places by ascending time. Between them the body goes "
               "smoothly (monotone cubics: along each axis never beyond the two keyframes, and at rest where "
               "it turns round) and turns the short way; before the first and after the last it rests"),

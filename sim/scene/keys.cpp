@@ -193,7 +193,7 @@ Codec<GravityEntry> gravity_value() {
                       std::move(at_start),
                       key<T>("spin", &T::spin, optional(vector("rad/s")), optionally,
                              "constant angular velocity of the vector, from t = 0 on"),
-                      key<T>("keyframes", &T::keyframes, list_of(gravity_key_section(), 2), optionally,
+                      key<T>("keyframes", &T::keyframes, list_of(gravity_key_section(), 1), optionally,
                              "instead of these: gravity by ascending time, straight between, constant "
                              "before the first and after the last"),
                   },
