@@ -7,26 +7,28 @@
 namespace scree {
 
 template <class Space>
-AppliedForces<Space>::AppliedForces(const Scene& scene, const TimeGrid& grid) : forces_(scene.forces) {
+AppliedForces<Space>::AppliedForces(const Scene& scene, const TimeGrid& grid)
+    : forces_(scene.forces), servos_(scene.servos) {
   for (const AppliedForce& force : forces_) steps_.push_back(grid.steps_in(force.during));
 }
 
 template <class Space>
 void AppliedForces<Space>::act(std::int64_t step, const Bodies<Space>& bodies,
                                ResponseParameters& parameters) {
-  if (forces_.empty()) return;
+  if (are_none()) return;
   std::vector<bool> acting;
   for (const TimeGrid::Steps& steps : steps_) acting.push_back(steps.holds(step));
-  if (acting != acting_) {
+  if (!summed_up_ || acting != acting_) {
     acting_ = std::move(acting);
-    sum_up(bodies);
+    sum_up(bodies, parameters.gravity);
+    summed_up_ = true;
   }
   parameters.acceleration = acceleration_.view();
   parameters.torque = torque_.view();
 }
 
 template <class Space>
-void AppliedForces<Space>::sum_up(const Bodies<Space>& bodies) {
+void AppliedForces<Space>::sum_up(const Bodies<Space>& bodies, const Vec3& gravity) {
   const std::vector<double> inverse_mass = to_vector(bodies.inverse_mass);
   std::vector<Vec3> acceleration(inverse_mass.size(), Vec3::Zero());
   std::vector<Vec3> torque(inverse_mass.size(), Vec3::Zero());
@@ -38,18 +40,22 @@ void AppliedForces<Space>::sum_up(const Bodies<Space>& bodies) {
       torque[k] += forces_[f].torque;
     }
   }
+  for (const Servo& servo : servos_) {
+    const auto k = static_cast<std::size_t>(servo.body);
+    acceleration[k] = inverse_mass[k] * servo.force * servo.axis - gravity;
+  }
   copy(acceleration_, acceleration);
   copy(torque_, torque);
 }
 
 template <class Space>
 void AppliedForces<Space>::start_substep(const Bodies<Space>& bodies) {
-  if (!forces_.empty()) copy(start_, bodies.position);
+  if (!are_none()) copy(start_, bodies.position);
 }
 
 template <class Space>
 double AppliedForces<Space>::work(const Bodies<Space>& bodies) const {
-  if (forces_.empty()) return 0;
+  if (are_none()) return 0;
   return work_of_forces(bodies, start_, acceleration_.view());
 }
 

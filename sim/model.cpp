@@ -3,10 +3,12 @@
 #include "broadphase/bounds.hpp"
 #include "broadphase/grid_plan.hpp"
 #include "core/tolerances.hpp"
+#include "sim/scene/courses.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 #include <vector>
 
@@ -60,6 +62,16 @@ Feature plan_levels(const Scene& scene) {
                       widths.back(), why)};
 }
 
+/// The largest that brings a body back from a bounce (m/s^2): gravity, or a servo's drive.
+double pressing_acceleration(const Scene& scene) {
+  double largest = largest_gravity(scene);
+  for (const Servo& servo : scene.servos) {
+    const double inverse_mass = scene.bodies.inverse_mass[static_cast<std::size_t>(servo.body)];
+    largest = std::max(largest, std::abs(servo.force) * inverse_mass);
+  }
+  return largest;
+}
+
 }  // namespace
 
 ModelPlan plan_model(const Scene& scene) {
@@ -75,6 +87,7 @@ ModelPlan plan_model(const Scene& scene) {
                                       [](const AppliedForce& force) { return !force.torque.isZero(0); });
   const bool any_unequal =
       any_free_body(bodies, [&](std::size_t k) { return !has_equal_moments(bodies.inverse_inertia[k]); });
+  const double gravity = largest_gravity(scene);
   ModelPlan plan{
       .friction = choose("friction", scene.model.friction, any_law(&ContactLaw::friction),
                          "some pair has friction", "no pair has friction"),
@@ -84,8 +97,10 @@ ModelPlan plan_model(const Scene& scene) {
       .gyroscopic = {},
       .continuous = choose("continuous", scene.model.continuous, true,
                            "in substeps where some body is fast for the sizes", ""),
-      .gravity = {"gravity", !scene.gravity.isZero(0),
-                  scene.gravity.isZero(0) ? "none" : "bodies have weight"},
+      .gravity = {"gravity", gravity > 0,
+                  gravity == 0         ? "none"
+                  : scene.gravity_turn ? "bodies have weight, which turns"
+                                       : "bodies have weight"},
       .levels = plan_levels(scene),
       .restitution_threshold = {}};
   plan.rotation =
@@ -103,9 +118,10 @@ ModelPlan plan_model(const Scene& scene) {
   const double threshold = scene.response.mode == ResponseMode::accurate
                                ? tolerance::accurate_restitution_threshold
                                : tolerance::restitution_threshold;
-  plan.restitution_threshold = scene.response.restitution_threshold
-                                   ? RestitutionThreshold{.any = *scene.response.restitution_threshold}
-                                   : RestitutionThreshold{.lossy = threshold * scene.gravity.norm() * step};
+  plan.restitution_threshold =
+      scene.response.restitution_threshold
+          ? RestitutionThreshold{.any = *scene.response.restitution_threshold}
+          : RestitutionThreshold{.lossy = threshold * pressing_acceleration(scene) * step};
   return plan;
 }
 

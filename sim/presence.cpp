@@ -99,8 +99,8 @@ bool Presence::changes(std::int64_t step) const {
 
 /// Adds what a body has, or takes it away.
 void Presence::book(const ConstBodyView& bodies, std::int64_t k, double sign, const Scene& scene,
-                    const Vec3& reference, Change& change) {
-  const Totals body = totals_of_body(bodies, k, scene.gravity, reference);
+                    const PotentialField& field, Change& change) {
+  const Totals body = totals_of_body(bodies, k, field.gravity, field.reference);
   change.exchange.mass += sign * body.mass;
   change.exchange.energy += sign * (body.kinetic() + body.potential);
   change.exchange.momentum += sign * body.momentum;
@@ -108,11 +108,11 @@ void Presence::book(const ConstBodyView& bodies, std::int64_t k, double sign, co
   const std::int32_t id = bodies.id[k];
   const Emission* emission = emission_of(id);
   const Vec3& start = emission ? emission->place(id) : scene.bodies.position[static_cast<std::size_t>(id)];
-  change.first_potential -= sign * body.mass * scene.gravity.dot(start - reference);
+  change.first_potential -= sign * body.mass * field.gravity.dot(start - field.reference);
   count_ += sign > 0 ? 1 : -1;
 }
 
-Presence::Change Presence::update(std::int64_t step, const Scene& scene, const Vec3& reference,
+Presence::Change Presence::update(std::int64_t step, const Scene& scene, const PotentialField& field,
                                   Bodies<Host>& bodies) {
   Change change;
   const BodyView views = view_of(bodies);
@@ -122,7 +122,7 @@ Presence::Change Presence::update(std::int64_t step, const Scene& scene, const V
     for (std::int64_t k = window.bodies.first; k < window.bodies.first + window.bodies.count; ++k) {
       if (comes) set_present(k, scene.bodies, views);
       if (views.mobility[k] == Mobility::absent) continue;  // it has left before its time
-      book(view_of(std::as_const(bodies)), k, comes ? 1 : -1, scene, reference, change);
+      book(view_of(std::as_const(bodies)), k, comes ? 1 : -1, scene, field, change);
       if (!comes) set_absent(k, views);
     }
   }
@@ -130,21 +130,22 @@ Presence::Change Presence::update(std::int64_t step, const Scene& scene, const V
 }
 
 Presence::Change Presence::book_all(const BodyTable& table, double sign, const Scene& scene,
-                                    const Vec3& reference) {
+                                    const PotentialField& field) {
   Change change;
   Bodies<Host> bodies;
   copy_bodies(bodies, table);
   for (std::int64_t k = 0; k < bodies.count(); ++k)
-    book(view_of(std::as_const(bodies)), k, sign, scene, reference, change);
+    book(view_of(std::as_const(bodies)), k, sign, scene, field, change);
   return change;
 }
 
-Presence::Change Presence::take_leave_of(const BodyTable& gone, const Scene& scene, const Vec3& reference) {
-  return book_all(gone, -1, scene, reference);
+Presence::Change Presence::take_leave_of(const BodyTable& gone, const Scene& scene,
+                                         const PotentialField& field) {
+  return book_all(gone, -1, scene, field);
 }
 
-Presence::Change Presence::welcome(const BodyTable& come, const Scene& scene, const Vec3& reference) {
-  return book_all(come, 1, scene, reference);
+Presence::Change Presence::welcome(const BodyTable& come, const Scene& scene, const PotentialField& field) {
+  return book_all(come, 1, scene, field);
 }
 
 }  // namespace scree

@@ -13,6 +13,12 @@
 
 namespace scree {
 
+/// What potential energies are of.
+struct PotentialField {
+  Vec3 gravity;    ///< m/s^2
+  Vec3 reference;  ///< where they are 0 (m)
+};
+
 /// Who is there in the state of which step. A body that is not has Mobility::absent and no mass; until it
 /// appears the rest of its state waits as the scene gives it.
 class Presence {
@@ -37,12 +43,12 @@ class Presence {
     double first_potential = 0;  ///< of those that came, when they appear, less that of those that went (J)
   };
   /// The state of a step has been reached: takes out the bodies whose time is over, and brings in those whose
-  /// time has come. Potential energies are about `reference`.
-  Change update(std::int64_t step, const Scene& scene, const Vec3& reference, Bodies<Host>& bodies);
+  /// time has come.
+  Change update(std::int64_t step, const Scene& scene, const PotentialField& field, Bodies<Host>& bodies);
   /// These were taken out for another reason, as they are.
-  Change take_leave_of(const BodyTable& gone, const Scene& scene, const Vec3& reference);
+  Change take_leave_of(const BodyTable& gone, const Scene& scene, const PotentialField& field);
   /// These, of an emission, were brought in.
-  Change welcome(const BodyTable& come, const Scene& scene, const Vec3& reference);
+  Change welcome(const BodyTable& come, const Scene& scene, const PotentialField& field);
   std::vector<Emission>& emissions() { return emissions_; }
 
  private:
@@ -54,8 +60,8 @@ class Presence {
   const Window* window_of(std::int32_t body) const;
   const Emission* emission_of(std::int32_t body) const;
   void book(const ConstBodyView& bodies, std::int64_t k, double sign, const Scene& scene,
-            const Vec3& reference, Change& change);
-  Change book_all(const BodyTable& table, double sign, const Scene& scene, const Vec3& reference);
+            const PotentialField& field, Change& change);
+  Change book_all(const BodyTable& table, double sign, const Scene& scene, const PotentialField& field);
 
   std::vector<Window> windows_;      // by ascending body
   std::vector<Emission> emissions_;  // likewise

@@ -14,6 +14,7 @@
 #include "sim/resident/overlaps.hpp"
 #include "sim/response_parameters.hpp"
 #include "sim/scene/measure.hpp"
+#include "sim/turning_gravity.hpp"
 
 #include <cmath>
 #include <cstdint>
@@ -42,15 +43,15 @@ std::vector<std::int32_t> driven_bodies_asked_for(const Scene& scene) {
 template <class Space, class Real>
 class ResidentStepper final : public Stepper {
  public:
-  ResidentStepper(const Scene& scene, const TimeGrid& grid, const std::vector<PrescribedPath>& paths,
-                  const Vec3& origin)
+  ResidentStepper(const Scene& scene, const TimeGrid& grid, const PathTable& paths, const Vec3& origin)
       : grid_(grid),
+        paths_(paths),
         parameters_(response_parameters_of(scene)),
         forces_(scene, grid),
+        gravity_(scene),
         kept_pairs_(scene.broadphase, is_device, origin),
         seen_pairs_(scene.broadphase, is_device, origin) {
     copy_bodies(bodies_, scene.bodies);
-    copy(paths_, paths);
     copy(laws_, pair_laws_of(scene));
     materials_ = static_cast<std::int64_t>(scene.materials.size());
     for (const std::int32_t body : driven_bodies_asked_for(scene)) driven_impulse_[body] = Vec3::Zero();
@@ -62,6 +63,8 @@ class ResidentStepper final : public Stepper {
     start_.save(bodies_);
     kept_pairs_.start_step(step);
     start_ledger_ = ledger;
+    start_gravity_ = parameters_.gravity;
+    gravity_.start_step();
     for (auto& [body, impulse] : driven_impulse_) impulse.setZero();
     forces_.act(step, bodies_, parameters_);
   }
@@ -72,6 +75,7 @@ class ResidentStepper final : public Stepper {
   void undo_step() override {
     start_.restore(bodies_);
     ledger = start_ledger_;
+    parameters_.gravity = start_gravity_;
     forget_pairs();
     contacts_ = {};
   }
@@ -97,6 +101,7 @@ class ResidentStepper final : public Stepper {
 
   void copy_state(BodyTable& out) const override { copy_bodies(out, bodies_); }
   SteppedBody body(std::int32_t id) const override;
+  Vec3 gravity() const override { return parameters_.gravity; }
   Energies energies(const Vec3& reference) const override {
     return energies_of<Space>(bodies_, parameters_.gravity, reference);
   }
@@ -172,11 +177,12 @@ class ResidentStepper final : public Stepper {
   TimeGrid grid_;
   std::int64_t step_ = 0;
   Bodies<Space> bodies_;
-  Array<PrescribedPath, Space> paths_;
+  PrescribedPaths<Space> paths_;
   ResponseParameters parameters_;
   Array<PairLaw, Space> laws_;
   std::int64_t materials_ = 0;
   AppliedForces<Space> forces_;
+  TurningGravity gravity_;
   KeptPairs<Space> kept_pairs_;
   KeptPairs<Space> seen_pairs_;
   bool sees_kept_ = true;
@@ -188,6 +194,7 @@ class ResidentStepper final : public Stepper {
   double last_substep_ = 0;  // its length; scales the remembered impulses
   MovingState<Space> start_;
   Ledger start_ledger_;
+  Vec3 start_gravity_ = Vec3::Zero();
   std::map<std::int32_t, Vec3> driven_impulse_;  // on bodies that are not free and that the scene asks for
   Array<double, Space> contact_margin_;
   std::vector<Impact> struck_;  // in the last substep
@@ -197,6 +204,7 @@ class ResidentStepper final : public Stepper {
 template <class Space, class Real>
 void ResidentStepper<Space, Real>::substep(double h, double done) {
   struck_.clear();
+  ledger.work += gravity_.turn_to<Space>(grid_.time(step_) + done + 0.5 * h, bodies_, parameters_);
   forces_.start_substep(bodies_);
   fly(grid_.time(step_) + done + 0.5 * h, 0.5 * h);
   const bool struck = resolve_impacts(h, 0, h, reach_from(h, done));
@@ -219,6 +227,7 @@ void ResidentStepper<Space, Real>::substep(double h, double done) {
     contacts_.take_velocities(view_of(std::as_const(bodies_)));
   fly(grid_.time(step_) + done + h, 0.5 * h);
   ledger.work += forces_.work(bodies_);
+  gravity_.count(h, parameters_);
   {
     const timing::Region region("correction");
     ledger = ledger + contacts_.correct(flight, late);
@@ -243,6 +252,7 @@ void ResidentStepper<Space, Real>::archive(Archive& archive) {
   archive("sees_kept", sees_kept_);
   archive("pairs_taken", pairs_taken_);
   archive.part("contacts", contacts_, view_of(std::as_const(bodies_)));
+  gravity_.archive(archive, parameters_);
   if (!archive.is_loading()) return;
   forces_.forget();
   forces_.act(step_, bodies_, parameters_);
@@ -324,15 +334,16 @@ SteppedBody ResidentStepper<Space, Real>::body(std::int32_t id) const {
     copy_bytes<Host, Space>(&value, field.data() + id, sizeof(value));
     return value;
   };
-  SteppedBody body{.mobility = at(bodies_.mobility),
-                   .inverse_mass = at(bodies_.inverse_mass),
-                   .position = at(bodies_.position),
-                   .orientation = at(bodies_.orientation),
-                   .velocity = at(bodies_.velocity),
-                   .spin = at(bodies_.spin),
-                   .velocity_before = at(start_.velocity),
-                   .acceleration = parameters_.gravity,
-                   .contact_impulse = Vec3::Zero()};
+  SteppedBody body{
+      .mobility = at(bodies_.mobility),
+      .inverse_mass = at(bodies_.inverse_mass),
+      .position = at(bodies_.position),
+      .orientation = at(bodies_.orientation),
+      .velocity = at(bodies_.velocity),
+      .spin = at(bodies_.spin),
+      .velocity_before = at(start_.velocity),
+      .acceleration = parameters_.gravity + gravity_.excess_of_mean(grid_.length(step_ + 1), parameters_),
+      .contact_impulse = Vec3::Zero()};
   if (parameters_.acceleration.size() > 0) {
     Vec3 more;
     copy_bytes<Host, Space>(&more, parameters_.acceleration.data() + id, sizeof(more));
@@ -394,8 +405,8 @@ void ResidentStepper<Space, Real>::measure_contacts(std::int64_t free_bodies, Ob
 }
 
 template <class Space>
-std::unique_ptr<Stepper> make_in(const Scene& scene, const TimeGrid& grid,
-                                 const std::vector<PrescribedPath>& paths, const Vec3& origin) {
+std::unique_ptr<Stepper> make_in(const Scene& scene, const TimeGrid& grid, const PathTable& paths,
+                                 const Vec3& origin) {
   if (scene.precision == Precision::mixed)
     return std::make_unique<ResidentStepper<Space, float>>(scene, grid, paths, origin);
   return std::make_unique<ResidentStepper<Space, double>>(scene, grid, paths, origin);
@@ -414,8 +425,7 @@ struct Last<Only> {
 }  // namespace
 
 std::unique_ptr<Stepper> make_resident_stepper(const Scene& scene, const TimeGrid& grid,
-                                               const std::vector<PrescribedPath>& paths, bool on_device,
-                                               const Vec3& origin) {
+                                               const PathTable& paths, bool on_device, const Vec3& origin) {
   if (!on_device) return make_in<Host>(scene, grid, paths, origin);
   const DeviceInfo info = device_info();
   if (!info.available) throw InputError("--device cuda: there is no GPU to run on: " + info.name);

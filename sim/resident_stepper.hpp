@@ -11,11 +11,10 @@
 
 namespace scree {
 
-/// For the default response, whatever the shapes. In scenes with precision: mixed impulses and velocities are
-/// found in float; the state is in double all the same. `on_device`: in Device's memory; throws InputError if
-/// there is no GPU. `origin`: the local origin of the broad phase (m).
+/// For the default response, whatever the shapes, without servos. In scenes with precision: mixed impulses
+/// and velocities are found in float; the state is in double all the same. `on_device`: in Device's memory;
+/// throws InputError if there is no GPU. `origin`: the local origin of the broad phase (m).
 std::unique_ptr<Stepper> make_resident_stepper(const Scene& scene, const TimeGrid& grid,
-                                               const std::vector<PrescribedPath>& paths, bool on_device,
-                                               const Vec3& origin);
+                                               const PathTable& paths, bool on_device, const Vec3& origin);
 
 }  // namespace scree

@@ -1,5 +1,6 @@
 #include "sim/response_parameters.hpp"
 
+#include "sim/dynamics/prescribed.hpp"
 #include "sim/model.hpp"
 
 namespace scree {
@@ -9,6 +10,8 @@ ResponseParameters response_parameters_of(const Scene& scene) {
   return {.gravity = scene.gravity,
           .acceleration = {},
           .torque = {},
+          .guides = {},
+          .prescribed_acceleration = prescribed_acceleration(scene),
           .friction = plan.friction.on,
           .restitution = plan.restitution.on,
           .rotation = plan.rotation.on,

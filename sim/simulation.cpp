@@ -7,6 +7,7 @@
 #include "sim/measurement.hpp"
 #include "sim/presence.hpp"
 #include "sim/resident_stepper.hpp"
+#include "sim/scene/courses.hpp"
 #include "sim/scene/time_grid.hpp"
 #include "sim/step_failure.hpp"
 #include "sim/stepper.hpp"
@@ -43,16 +44,17 @@ double lifting_energy(const Scene& scene) {
   const BodyTable& bodies = scene.bodies;
   for (std::size_t k = 0; k < bodies.position.size(); ++k) {
     if (bodies.mobility[k] != Mobility::free) continue;
-    energy += scene.gravity.norm() / bodies.inverse_mass[k] * smallest_size(bodies.shape[k], bodies.size[k]);
+    energy +=
+        largest_gravity(scene) / bodies.inverse_mass[k] * smallest_size(bodies.shape[k], bodies.size[k]);
   }
   return energy;
 }
 
 /// Of the prescribed bodies, each from when it is there.
-std::vector<PrescribedPath> paths_of(const Scene& scene, const TimeGrid& grid, const Presence& presence) {
-  std::vector<PrescribedPath> paths = prescribed_paths(scene);
-  for (PrescribedPath& path : paths) path.start = grid.time(presence.first_step(path.body));
-  return paths;
+PathTable paths_of(const Scene& scene, const TimeGrid& grid, const Presence& presence) {
+  PathTable table = prescribed_paths(scene);
+  for (PrescribedPath& path : table.paths) path.start = grid.time(presence.first_step(path.body));
+  return table;
 }
 
 Vector plain(const Vec3& v) { return {v.x(), v.y(), v.z()}; }
@@ -73,16 +75,16 @@ Body body_at(const BodyTable& bodies, std::size_t k) {
 /// Free bodies from which on Device takes the steps unless told otherwise (docs/decisions/0022).
 constexpr std::int64_t few_for_device = 20000;
 
-/// The accurate mode, and few bodies, are for Host; its PCS may come from Device all the same.
+/// The accurate mode, servos, and few bodies are for Host; their PCS may come from Device all the same.
 std::unique_ptr<Stepper> make_stepper(const Scene& scene, const TimeGrid& grid, const Presence& presence,
                                       const SimulationOptions& options, const Vec3& origin) {
   const SpaceChoice space = options.space;
-  const std::vector<PrescribedPath> paths = paths_of(scene, grid, presence);
-  const bool accurate = scene.response.mode == ResponseMode::accurate;
+  const PathTable paths = paths_of(scene, grid, presence);
+  const bool only_host = scene.response.mode == ResponseMode::accurate || !scene.servos.empty();
   const bool device = space == SpaceChoice::cuda ||
                       (space == SpaceChoice::automatic && device_info().available &&
                        std::ranges::count(scene.bodies.mobility, Mobility::free) >= few_for_device);
-  if (!accurate && (device || options.resident || scene.precision == Precision::mixed))
+  if (!only_host && (device || options.resident || scene.precision == Precision::mixed))
     return make_resident_stepper(scene, grid, paths, device, origin);
   return std::make_unique<Substepper>(scene, grid, paths, device, origin);
 }
@@ -94,14 +96,15 @@ struct Simulation::Parts {
   TimeGrid grid;
   Presence presence;
   tbb::global_control threads;
-  Vec3 origin;
+  Vec3 origin;     // of the broad phase
+  Vec3 reference;  // of potential energies: only that of the world is one for gravity that turns
   std::unique_ptr<Stepper> stepper;
 
   std::int64_t step = 0;
   GuardedSteps steps;
   double last_step = 0;  // its length
   std::vector<Quat> first_orientation;
-  Exchange exchange;                            // potential energy about `origin`
+  Exchange exchange;                            // potential energy about `reference`
   std::int64_t left = 0;                        // bodies that have left the world and were taken out
   std::vector<Removed> removed;                 // by each region
   std::vector<RegionContents> contents;         // of each region
@@ -120,8 +123,9 @@ struct Simulation::Parts {
                     ? static_cast<std::size_t>(options.threads)
                     : tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism)),
         origin(middle_of(s.bodies)),
+        reference(s.gravity_turn ? Vec3(Vec3::Zero()) : origin),
         stepper(make_stepper(s, grid, presence, options, origin)),
-        steps(scene, origin) {
+        steps(scene, reference) {
     if (presence.count() < scene.bodies.count())
       stepper->change_bodies([this](Bodies<Host>& bodies) { presence.begin(bodies); });
     first_orientation = scene.bodies.orientation;
@@ -172,7 +176,7 @@ struct Simulation::Parts {
     if (presence.changes(step)) {
       Presence::Change change;
       stepper->change_bodies(
-          [&](Bodies<Host>& bodies) { change = presence.update(step, scene, origin, bodies); });
+          [&](Bodies<Host>& bodies) { change = presence.update(step, scene, field(), bodies); });
       book(change);
     }
     emit();
@@ -180,7 +184,7 @@ struct Simulation::Parts {
 
   Removed take_out(const std::vector<std::int32_t>& bodies) {
     if (bodies.empty()) return {};
-    const Presence::Change change = presence.take_leave_of(stepper->take_out(bodies), scene, origin);
+    const Presence::Change change = presence.take_leave_of(stepper->take_out(bodies), scene, field());
     book(change);
     return {static_cast<std::int64_t>(bodies.size()), -change.exchange.mass};
   }
@@ -192,9 +196,11 @@ struct Simulation::Parts {
           step, scene, [this](const Vec3& low, const Vec3& high) { return stepper->bodies_near(low, high); });
       if (come.count() == 0) continue;
       stepper->bring_in(come);
-      book(presence.welcome(come, scene, origin));
+      book(presence.welcome(come, scene, field()));
     }
   }
+
+  PotentialField field() const { return {stepper->gravity(), reference}; }
 
   void book(const Presence::Change& change) {
     exchange = exchange + change.exchange;
@@ -210,8 +216,8 @@ struct Simulation::Parts {
     o.bodies = presence.count();
     o.left = left;
     o.counters = stepper->counters;
-    const Totals totals = stepper->totals(origin);
-    measure_totals(totals, steps.baseline(), scene.gravity, origin, o);
+    const Totals totals = stepper->totals(reference);
+    measure_totals(totals, steps.baseline(), stepper->gravity(), reference, o);
     o.speed_max = stepper->largest_speed();
     o.requested = presence.requested();
     o.emitted = presence.emitted();

@@ -25,7 +25,7 @@ struct SteppedBody {
   Vec3 velocity;         ///< m/s
   Vec3 spin;             ///< rad/s
   Vec3 velocity_before;  ///< at the start of the step (m/s)
-  Vec3 acceleration;     ///< by gravity and applied forces, of a free body (m/s^2)
+  Vec3 acceleration;     ///< by gravity and applied forces over the step, of a free body (m/s^2)
   Vec3 contact_impulse;  ///< over the step, on a body that is not free (N s)
 };
 
@@ -58,6 +58,7 @@ class Stepper {
   // The state.
   virtual void copy_state(BodyTable& out) const = 0;
   virtual SteppedBody body(std::int32_t id) const = 0;
+  virtual Vec3 gravity() const = 0;  ///< of the last substep, or of the start (m/s^2)
   virtual Energies energies(const Vec3& reference) const = 0;
   virtual Totals totals(const Vec3& reference) const = 0;
   virtual double largest_speed() const = 0;

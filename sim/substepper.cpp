@@ -14,6 +14,7 @@ namespace scree {
 
 void Substepper::Restart::save(const Substepper& now) {
   state.save(now.bodies_);
+  gravity = now.parameters_.gravity;
   ledger = now.ledger;
   impacts = now.counters.impacts;
   unfinished_impacts = now.counters.unfinished_impacts;
@@ -22,23 +23,29 @@ void Substepper::Restart::save(const Substepper& now) {
 
 void Substepper::Restart::restore(Substepper& now) const {
   state.restore(now.bodies_);
+  now.parameters_.gravity = gravity;
   now.ledger = ledger;
   now.counters.impacts = impacts;
   now.counters.unfinished_impacts = unfinished_impacts;
   now.contact_impulse_ = contact_impulse;
 }
 
-Substepper::Substepper(const Scene& scene, const TimeGrid& grid, const std::vector<PrescribedPath>& paths,
-                       bool on_device, const Vec3& origin)
+Substepper::Substepper(const Scene& scene, const TimeGrid& grid, const PathTable& paths, bool on_device,
+                       const Vec3& origin)
     : grid_(grid),
+      paths_(paths),
       parameters_(response_parameters_of(scene)),
       materials_(static_cast<std::int64_t>(scene.materials.size())),
       forces_(scene, grid),
+      gravity_(scene),
       kept_pairs_(scene.broadphase, on_device, origin),
       narrow_phase_(scene.narrowphase),
       end_narrow_phase_({.box_box = scene.narrowphase.box_box}) {
   copy_bodies(bodies_, scene.bodies);
-  copy(paths_, paths);
+  std::vector<Guide> guides;
+  for (const Servo& servo : scene.servos) guides.push_back({servo.body, servo.axis});
+  copy(guides_, guides);
+  parameters_.guides = std::as_const(guides_).view();
   copy(laws_, pair_laws_of(scene));
   contact_impulse_.assign(scene.bodies.position.size(), Vec3::Zero());
   start_.save(bodies_);
@@ -48,6 +55,8 @@ void Substepper::start_step(std::int64_t step) {
   step_ = step;
   start_.save(bodies_);
   start_ledger_ = ledger;
+  start_gravity_ = parameters_.gravity;
+  gravity_.start_step();
   std::fill(contact_impulse_.begin(), contact_impulse_.end(), Vec3(Vec3::Zero()));
   forces_.act(step, bodies_, parameters_);
 }
@@ -55,6 +64,7 @@ void Substepper::start_step(std::int64_t step) {
 void Substepper::undo_step() {
   start_.restore(bodies_);
   ledger = start_ledger_;
+  parameters_.gravity = start_gravity_;
   forget_pairs();
   memory_ = {};
 }
@@ -93,6 +103,7 @@ void Substepper::archive(Archive& archive) {
   archive.expect(std::ssize(contact_impulse_) == bodies_.count(), "contact_impulse");
   archive.part("kept_pairs", kept_pairs_);
   archive.part("memory", memory_);
+  gravity_.archive(archive, parameters_);
   if (!archive.is_loading()) return;
   forces_.forget();
   forces_.act(step_, bodies_, parameters_);
@@ -129,6 +140,7 @@ void Substepper::substep(double h, double done) {
 /// impulses. `done`: how much of the step went before (s).
 Manifolds Substepper::fly_and_respond(double h, double done) {
   struck_.clear();
+  turn_gravity(grid_.time(step_) + done + 0.5 * h);
   forces_.start_substep(bodies_);
   {
     const timing::Region region("integration");
@@ -146,6 +158,7 @@ void Substepper::fly_on(const Manifolds& manifolds, double h, double done) {
   if (!impacts_.impacts().empty()) load_solver_bodies(bodies_, solver_);
   fly(grid_.time(step_) + done + h, 0.5 * h);
   ledger.work += forces_.work(bodies_);
+  gravity_.count(h, parameters_);
   ledger = ledger + corrector_.correct(h, parameters_, view_of(bodies_), solver_, contacts_);
   memory_.remember(manifolds, contacts_, bodies_.count());
   for (std::int64_t k = 0; k < contacts_.others(); ++k) {
@@ -160,6 +173,14 @@ void Substepper::fly_on(const Manifolds& manifolds, double h, double done) {
 
 /// Time from a substep to the end of its step, and as long again as the substep (s).
 double Substepper::reach_from(double h, double done) const { return grid_.length(step_ + 1) - done + h; }
+
+/// To what it is at a time (s), the midpoint of the substep that begins.
+void Substepper::turn_gravity(double midpoint) {
+  if (!gravity_.turns()) return;
+  ledger.work += gravity_.turn_to<Host>(midpoint, bodies_, parameters_);
+  forces_.forget();
+  forces_.act(step_, bodies_, parameters_);
+}
 
 /// Moves every body to the time given, dt later than it is.
 void Substepper::fly(double time, double dt) {
@@ -259,6 +280,11 @@ void Substepper::add_impulse_on_driven_bodies(std::int32_t i, std::int32_t j, co
 
 SteppedBody Substepper::body(std::int32_t id) const {
   const ConstBodyView views = view_of(bodies_);
+  const bool guided =
+      std::ranges::any_of(guides_.view(), [id](const Guide& guide) { return guide.body == id; });
+  // A servo's drive bears its weight, whatever that is.
+  const Vec3 excess =
+      guided ? Vec3(Vec3::Zero()) : gravity_.excess_of_mean(grid_.length(step_ + 1), parameters_);
   return {.mobility = views.mobility[id],
           .inverse_mass = views.inverse_mass[id],
           .position = views.position[id],
@@ -266,7 +292,7 @@ SteppedBody Substepper::body(std::int32_t id) const {
           .velocity = views.velocity[id],
           .spin = views.spin[id],
           .velocity_before = start_.velocity.view()[id],
-          .acceleration = parameters_.acceleration_of(id),
+          .acceleration = parameters_.acceleration_of(id) + excess,
           .contact_impulse = contact_impulse_[static_cast<std::size_t>(id)]};
 }
 

@@ -19,6 +19,7 @@
 #include "sim/scene/scene.hpp"
 #include "sim/scene/time_grid.hpp"
 #include "sim/stepper.hpp"
+#include "sim/turning_gravity.hpp"
 
 #include <cstdint>
 #include <functional>
@@ -30,8 +31,8 @@ namespace scree {
 class Substepper final : public Stepper {
  public:
   /// The bodies as the scene starts. `origin`: the local origin of the broad phase (m).
-  Substepper(const Scene& scene, const TimeGrid& grid, const std::vector<PrescribedPath>& paths,
-             bool on_device, const Vec3& origin);
+  Substepper(const Scene& scene, const TimeGrid& grid, const PathTable& paths, bool on_device,
+             const Vec3& origin);
 
   void start_step(std::int64_t step) override;
   /// In the accurate mode in parts that end where contacts come to stick.
@@ -46,6 +47,7 @@ class Substepper final : public Stepper {
 
   void copy_state(BodyTable& out) const override { copy_bodies(out, bodies_); }
   SteppedBody body(std::int32_t id) const override;
+  Vec3 gravity() const override { return parameters_.gravity; }
   Energies energies(const Vec3& reference) const override;
   Totals totals(const Vec3& reference) const override;
   double largest_speed() const override { return scree::largest_speed<Host>(bodies_); }
@@ -77,6 +79,7 @@ class Substepper final : public Stepper {
   /// What the first half of a substep changes.
   struct Restart {
     MovingState<Host> state;
+    Vec3 gravity;
     Ledger ledger;
     std::int64_t impacts = 0, unfinished_impacts = 0;
     std::vector<Vec3> contact_impulse;
@@ -91,6 +94,7 @@ class Substepper final : public Stepper {
   double reach_from(double h, double done) const;
   Manifolds fly_and_respond(double h, double done);
   void fly_on(const Manifolds& manifolds, double h, double done);
+  void turn_gravity(double midpoint);
   void fly(double time, double dt);
   void resolve_impacts(double h, double from, double reach);
   Manifolds find_contacts(double h, double reach);
@@ -102,11 +106,13 @@ class Substepper final : public Stepper {
   TimeGrid grid_;
   std::int64_t step_ = 0;
   Bodies<Host> bodies_;
-  Array<PrescribedPath, Host> paths_;
+  PrescribedPaths<Host> paths_;
   ResponseParameters parameters_;
   Array<PairLaw, Host> laws_;
   std::int64_t materials_;
   AppliedForces<Host> forces_;
+  TurningGravity gravity_;
+  Array<Guide, Host> guides_;
   KeptPairs<Host> kept_pairs_;
   NarrowPhase narrow_phase_;
   NarrowPhase end_narrow_phase_;  // for the penetration at the end of a step
@@ -117,6 +123,7 @@ class Substepper final : public Stepper {
   double last_substep_ = 0;  // its length; scales the remembered impulses
   MovingState<Host> start_;  // of the step
   Ledger start_ledger_;
+  Vec3 start_gravity_ = Vec3::Zero();
   Restart before_;  // of the last substep, in the accurate mode
   std::vector<Vec3> contact_impulse_;
   Array<double, Host> contact_margin_;

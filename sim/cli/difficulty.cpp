@@ -1,5 +1,7 @@
 #include "sim/cli/difficulty.hpp"
 
+#include "sim/scene/courses.hpp"
+
 #include <algorithm>
 #include <cmath>
 
@@ -46,7 +48,7 @@ double speed_of(const BodyTable& bodies, std::size_t k) {
 
 Difficulty difficulty_of(const Scene& scene) {
   const BodyTable& bodies = scene.bodies;
-  const double g = scene.gravity.norm();
+  const double g = largest_gravity(scene);
   const Ground ground(bodies, scene.gravity);
   Difficulty d{.smallest_size = HUGE_VAL, .least_size = HUGE_VAL};
   double heaviest = 0;
@@ -68,6 +70,13 @@ Difficulty difficulty_of(const Scene& scene) {
     // v^2 = v0^2 + 2 g fall, but no longer than the run lasts.
     d.speed =
         std::max(d.speed, std::min(std::sqrt(speed * speed + 2 * g * fall), speed + g * scene.time.end));
+  }
+  for (const Motion& motion : scene.motions) {
+    const auto k = static_cast<std::size_t>(motion.body);
+    const double arm = bodies.shape[k] == Shape::box ? bounding_radius(Shape::box, bodies.size[k]) : 0;
+    const MotionBounds bounds = bounds_of(motion);
+    if (motion.oscillate || !motion.keyframes.empty())
+      d.speed = std::max(d.speed, bounds.speed + bounds.spin * arm);
   }
   if (!std::isfinite(d.smallest_size)) d.smallest_size = 0;
   if (!std::isfinite(d.least_size)) d.least_size = 0;

@@ -1,6 +1,7 @@
 #include "sim/cli/film_look.hpp"
 
 #include "sim/record/contact_writer.hpp"
+#include "sim/scene/courses.hpp"
 
 #include <fmt/format.h>
 
@@ -77,8 +78,8 @@ double expected_speed(const Scene& scene, const render::Frame& start) {
   for (const Motion& motion : scene.motions) {
     const auto k = static_cast<std::size_t>(motion.body);
     // The far end of a turning body.
-    speed = std::max(speed, motion.velocity.norm() +
-                                motion.spin.norm() * bounding_radius(bodies.shape[k], bodies.size[k]));
+    const MotionBounds bounds = bounds_of(motion);
+    speed = std::max(speed, bounds.speed + bounds.spin * bounding_radius(bodies.shape[k], bodies.size[k]));
   }
   return speed;
 }

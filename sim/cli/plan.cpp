@@ -62,6 +62,30 @@ void print_emitters(const Scene& scene) {
   }
 }
 
+/// A little less than x, in two digits.
+double rounded_down(double x) {
+  const double unit = std::pow(10, std::floor(std::log10(x)) - 1);
+  return std::floor(x / unit) * unit;
+}
+
+/// Of what oscillates, how many steps follow the fastest swing: each sees it as a straight piece.
+void print_motion(const Scene& scene) {
+  constexpr double few_steps = 20;
+  double frequency = 0;
+  for (const Motion& motion : scene.motions)
+    if (motion.oscillate) frequency = std::max(frequency, motion.oscillate->frequency);
+  if (frequency > 0) {
+    const double steps = 1 / (frequency * scene.time.step / scene.time.substeps.value_or(1));
+    print_row("motion",
+              fmt::format("{:.3g} steps to the shortest swing{}", steps,
+                          steps < few_steps ? fmt::format(": few; try step <= {:.2g}",
+                                                          rounded_down(scene.time.step * steps / few_steps))
+                                            : ""));
+  }
+  if (!scene.servos.empty())
+    print_row("servos", fmt::format("{} that hold a force: steps are taken on Host", scene.servos.size()));
+}
+
 /// Past these a run goes on, but a newcomer should know what to expect of it. Contacts reach as far as bodies
 /// travel in a substep: single impacts on a wall as thick as the ball hold to a travel of 4, and some fail
 /// from 8 on; two bodies meet at twice the speed.
@@ -69,12 +93,6 @@ constexpr double largest_travel = 2;
 constexpr double advised_travel = 1;
 constexpr double large_mass_ratio = 100;
 constexpr double large_size_ratio = 20;
-
-/// A little less than x, in two digits.
-double rounded_down(double x) {
-  const double unit = std::pow(10, std::floor(std::log10(x)) - 1);
-  return std::floor(x / unit) * unit;
-}
 
 void print_difficulty(const Scene& scene) {
   const Difficulty d = difficulty_of(scene);
@@ -246,6 +264,7 @@ int plan(const PlanArguments& arguments) {
   print_row("time", fmt::format("{} s in {} steps of {} s, substeps {}", scene.time.end, grid.last(),
                                 scene.time.step, substeps));
   print_difficulty(scene);
+  print_motion(scene);
   print_model(plan_model(scene));
   print_row("broad phase", broad_phase_words(scene.broadphase));
   print_row("narrow phase", narrow_phase_words(scene));

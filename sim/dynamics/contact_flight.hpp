@@ -99,7 +99,8 @@ SCREE_HD inline Vec3 moment_of_lead(const BodyView& bodies, std::int32_t body, c
 SCREE_HD inline Ledger shift_late(const FlightStage& stage, std::int32_t body, const Vec3& total) {
   if (!stage.is_late(body)) return {};
   const BodyView& bodies = stage.bodies;
-  const Vec3 moment = (stage.clock[body] - 0.5 * stage.terms.step) * total;
+  Vec3 moment = (stage.clock[body] - 0.5 * stage.terms.step) * total;
+  hold_to_guide(stage.parameters.guides, body, moment);
   bodies.position[body] -= bodies.inverse_mass[body] * moment;
   Ledger ledger;
   ledger.correction = -moment.dot(stage.parameters.acceleration_of(body));

@@ -188,6 +188,7 @@ Ledger PositionCorrector::correct(double step, const ResponseParameters& paramet
                           PartBalls{batches.partings.view(), displacement_.data(), deepest_.data()},
                           PartPoints{batches.points.view(), batches.point_partings.view(),
                                      displacement_.data(), deepest_.data() + balls});
+    for (const Guide& guide : parameters.guides) guide.hold(displacement_.view()[guide.body].velocity);
     const double overlap = tolerance::correction_cap * deepest();
     if (sweep == 0) overlap_ = overlap;
     corrected = overlap <= tolerance::corrected_overlap;

@@ -116,8 +116,33 @@ class IslandSolver {
   void load_bodies() {
     const auto bodies = problem_.islands.bodies(problem_.island);
     change_.resize(6 * bodies.size());
-    for (const std::int32_t body : bodies)
-      inertia_.push_back(problem_.solver[body].inverse_inertia.inverse());
+    for (std::int64_t k = 0; k < bodies.size(); ++k) {
+      inertia_.push_back(problem_.solver[bodies[k]].inverse_inertia.inverse());
+      for (const Guide& guide : problem_.guides) {
+        if (guide.body != bodies[k]) continue;
+        guides_.push_back({6 * k, guide});
+        inertia_.back().setIdentity();  // any will do: nothing turns it
+      }
+    }
+  }
+
+  /// The unknowns of a body in a guide are six as those of the others, of which five stay 0.
+  struct GuidedUnknowns {
+    Eigen::Index first;
+    Guide guide;
+
+    void hold(Vector& v) const {
+      Vec3 along = v.segment<3>(first);
+      guide.hold(along);
+      v.segment<3>(first) = along;
+      v.segment<3>(first + 3).setZero();
+    }
+  };
+
+  const Guide* guide_at(Eigen::Index unknown) const {
+    for (const GuidedUnknowns& guided : guides_)
+      if (guided.first == unknown) return &guided.guide;
+    return nullptr;
   }
 
   void load_rows() {
@@ -213,12 +238,17 @@ class IslandSolver {
         g.segment<3>(row.j + 3) -= row.row->arm_j.cross(p);
       }
     }
+    for (const GuidedUnknowns& guided : guides_) guided.hold(g);
     return g;
   }
 
   using Jacobian = Eigen::Matrix<double, 3, 6>;
-  static Jacobian jacobian(const Vec3& arm) {
+  Jacobian jacobian(const Vec3& arm, Eigen::Index unknown) const {
     Jacobian j;
+    if (const Guide* guide = guide_at(unknown)) {
+      j << guide->axis * guide->axis.transpose(), Mat3::Zero();
+      return j;
+    }
     j << Mat3::Identity(), Mat3::Zero();
     j.col(3) = Vec3::UnitX().cross(arm);
     j.col(4) = Vec3::UnitY().cross(arm);
@@ -257,8 +287,8 @@ class IslandSolver {
     for (const PassRow& row : rows_) {
       const Mat3 a = stiffness_ * row.row->normal_mass * row.derivative;
       if (a.isZero(0)) continue;
-      const Jacobian ji = jacobian(row.row->arm_i);
-      const Jacobian jj = jacobian(row.row->arm_j);
+      const Jacobian ji = jacobian(row.row->arm_i, row.i);
+      const Jacobian jj = jacobian(row.row->arm_j, row.j);
       if (row.i >= 0) add(row.i, row.i, ji.transpose() * a * ji);
       if (row.j >= 0) add(row.j, row.j, jj.transpose() * a * jj);
       if (row.i < 0 || row.j < 0) continue;
@@ -343,12 +373,15 @@ class IslandSolver {
         row.push(row.impulse, problem_.solver[contact.i], problem_.solver[contact.j]);
       }
     }
+    for (const GuidedUnknowns& guided : guides_)
+      guided.guide.hold(problem_.solver[guided.guide.body].velocity);
   }
 
   const IslandProblem& problem_;
   const DirectLimits& limits_;
   std::vector<PassRow> rows_;
   std::vector<Mat3> inertia_;                     // of each body
+  std::vector<GuidedUnknowns> guides_;            // of bodies in guides
   Vector change_;                                 // of the velocities, in a pass
   std::vector<std::vector<Eigen::Index>> below_;  // first unknowns of the later bodies in contact with each
   Eigen::SparseMatrix<double> matrix_;

@@ -55,6 +55,7 @@ struct IslandProblem {
   ConstView<Vec3> spin;
   const Islands& islands;
   std::int64_t island;
+  ConstView<Guide> guides = {};  ///< bodies that move along one axis alone, and do not turn
 };
 
 /// What the natural map changes in the impulses of the island's rows, as they are.

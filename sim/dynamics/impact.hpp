@@ -69,9 +69,21 @@ SCREE_HD inline void strike_balls(ContactRow& row, const Vec3& before, const Vec
   row.push(row.impulse, i, j);
 }
 
+/// The guides of two bodies, which have their say after each sweep: rows take such a body for a free one.
+struct PairGuides {
+  ConstView<Guide> guides;
+  std::int32_t i, j;
+
+  SCREE_HD void hold(SolverBody& body_i, SolverBody& body_j) const {
+    hold_to_guide(guides, i, body_i.velocity);
+    hold_to_guide(guides, j, body_j.velocity);
+  }
+};
+
 /// Goes on until only rounding changes, which does not fall.
 SCREE_HD inline void sweep_impact(ContactRow* rows, const RowCoupling* couplings, int count,
-                                  const Vec3& normal, double friction, SolverBody& i, SolverBody& j) {
+                                  const Vec3& normal, double friction, const PairGuides& guides,
+                                  SolverBody& i, SolverBody& j) {
   constexpr int most_sweeps = 200;
   double last_change = HUGE_VAL;
   for (int sweep = 0; sweep < most_sweeps; ++sweep) {
@@ -80,6 +92,7 @@ SCREE_HD inline void sweep_impact(ContactRow* rows, const RowCoupling* couplings
     Vec3 last[Manifold::max_points];
     for (int k = 0; k < count; ++k) last[k] = rows[k].impulse;
     sweep_rows(rows, couplings, count, normal, friction, i, j);
+    guides.hold(i, j);
     for (int k = 0; k < count; ++k) {
       change += (rows[k].impulse - last[k]).norm();
       size += rows[k].impulse.norm();
@@ -92,8 +105,8 @@ SCREE_HD inline void sweep_impact(ContactRow* rows, const RowCoupling* couplings
 
 /// Newton's law with friction at several points, or at one whose Delassus matrix couples normal and
 /// tangents, can gain energy.
-SCREE_HD inline void keep_from_gaining(ContactRow* rows, const Vec3* before, int count, SolverBody& i,
-                                       SolverBody& j) {
+SCREE_HD inline void keep_from_gaining(ContactRow* rows, const Vec3* before, int count,
+                                       const PairGuides& guides, SolverBody& i, SolverBody& j) {
   Moved moved;
   for (int k = 0; k < count; ++k) {
     moved.linear += rows[k].impulse.dot(before[k]);
@@ -105,6 +118,7 @@ SCREE_HD inline void keep_from_gaining(ContactRow* rows, const Vec3* before, int
     rows[k].push((scale - 1) * rows[k].impulse, i, j);
     rows[k].impulse *= scale;
   }
+  guides.hold(i, j);
 }
 
 /// Turns a body from the midpoint to `s`, gives it the spin that it has there after an impact, and turns it
@@ -199,8 +213,9 @@ SCREE_HD bool solve_impact(const FlightStage& stage, std::int32_t i, std::int32_
   if (of_balls) {
     detail::strike_balls(out.rows[0], out.before[0], m.normal, friction, a, b);
   } else {
-    detail::sweep_impact(out.rows, couplings, count, m.normal, friction, a, b);
-    detail::keep_from_gaining(out.rows, out.before, count, a, b);
+    const detail::PairGuides guides{stage.parameters.guides, i, j};
+    detail::sweep_impact(out.rows, couplings, count, m.normal, friction, guides, a, b);
+    detail::keep_from_gaining(out.rows, out.before, count, guides, a, b);
   }
   out.point = middle / count;
   out.count = count;

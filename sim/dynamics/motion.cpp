@@ -135,7 +135,9 @@ struct SetMargin {
       margin[k] = 0;
       return;
     }
-    const double fall = parameters.acceleration_of(k).norm() * dt * dt;
+    const double curving =
+        bodies.mobility[k] == Mobility::prescribed ? parameters.prescribed_acceleration : 0.0;
+    const double fall = (parameters.acceleration_of(k).norm() + curving) * dt * dt;
     margin[k] = (is_boundary(shape) ? 0.0 : slack * smallest_size(shape, bodies.size[k])) +
                 tolerance::travel_factor * (surface_speed(bodies, k) * dt + fall);
   }

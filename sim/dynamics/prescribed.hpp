@@ -11,34 +11,140 @@
 
 namespace scree {
 
-/// The way of one prescribed body: it turns with a pivot that moves along a line.
+/// A place of a body, and its way to the next one: a cubic (Hermite's) along each axis, and three turns, one
+/// after another, by the cumulative Bernstein polynomials (Kim, Kim and Shin 1995, "A general construction
+/// scheme for unit quaternion curves with simple high order derivatives").
+struct PathKey {
+  double at;  ///< since the start of the path (s)
+  Vec3 position;
+  Vec3 velocity;  ///< m/s
+  Quat orientation;
+  /// To the next key, in the order in which they are made (rad); 0 of the last key.
+  Vec3 turns[3] = {Vec3::Zero(), Vec3::Zero(), Vec3::Zero()};
+};
+
+/// Where a body is, and how it moves.
+struct PathPoint {
+  Vec3 position, velocity;
+  Quat orientation;
+  Vec3 spin;
+};
+
+/// Between two keys.
+SCREE_HD inline PathPoint point_between(const PathKey& from, const PathKey& to, double time) {
+  const double h = to.at - from.at;
+  const double u = (time - from.at) / h;
+  const double v = 1 - u;
+  const double weight = u * u * (3 - 2 * u);
+  PathPoint point;
+  point.position = from.position + weight * (to.position - from.position) +
+                   (h * u * v) * (v * from.velocity - u * to.velocity);
+  point.velocity = (6 * u * v / h) * (to.position - from.position) + (v * (1 - 3 * u)) * from.velocity +
+                   (u * (3 * u - 2)) * to.velocity;
+  const double share[3] = {1 - v * v * v, weight, u * u * u};
+  const double rate[3] = {3 * v * v / h, 6 * u * v / h, 3 * u * u / h};
+  point.orientation = from.orientation;
+  point.spin.setZero();
+  for (int k = 0; k < 3; ++k) {
+    const Quat turn = rotation_of(share[k] * from.turns[k]);
+    point.orientation = turn * point.orientation;
+    point.spin = turn * point.spin + rate[k] * from.turns[k];
+  }
+  point.orientation.normalize();
+  return point;
+}
+
+/// Keys in order of time; at rest at the first before it, and at the last after it.
+SCREE_HD inline PathPoint point_at(const PathKey* keys, std::int32_t count, double time) {
+  std::int32_t after = 0;
+  for (std::int32_t end = count; after < end;) {
+    const std::int32_t middle = (after + end) / 2;
+    if (keys[middle].at <= time)
+      after = middle + 1;
+    else
+      end = middle;
+  }
+  if (after > 0 && after < count) return point_between(keys[after - 1], keys[after], time);
+  const PathKey& rest = keys[after == 0 ? 0 : count - 1];
+  return {rest.position, Vec3::Zero(), rest.orientation, Vec3::Zero()};
+}
+
+/// The way of one prescribed body: it turns with a pivot that moves along a line, and both may oscillate
+/// besides; or it goes from key to key.
 struct PrescribedPath {
   std::int32_t body;
-  Vec3 pivot;        ///< at the start (m)
-  Vec3 arm;          ///< from the pivot to the body's centre, at the start (m)
-  Quat orientation;  ///< at the start
-  Vec3 velocity;     ///< of the pivot (m/s)
-  Vec3 spin;         ///< rad/s
-  double start;      ///< s; the body appears then if it was not there before
+  Vec3 pivot;                        ///< at the start (m)
+  Vec3 arm;                          ///< from the pivot to the body's centre, at the start (m)
+  Quat orientation;                  ///< at the start
+  Vec3 velocity;                     ///< of the pivot, but for what oscillates (m/s)
+  Vec3 spin;                         ///< likewise (rad/s)
+  double start;                      ///< s; the body appears then if it was not there before
+  Vec3 displacement = Vec3::Zero();  ///< amplitude of the pivot (m)
+  Vec3 angle = Vec3::Zero();         ///< amplitude of the turn (rad)
+  double omega = 0;                  ///< rad/s; 0: nothing oscillates
+  double phase = 0;                  ///< rad
+  std::int32_t first_key = 0;
+  std::int32_t key_count = 0;
 
   /// Puts the body, if it is there, where it is at a time (s), with the velocity that it has there. The turn
   /// is that of the start's pose, whole: nothing adds up over the steps, so the radius stays.
-  SCREE_HD void place(double time, const BodyView& bodies) const {
+  SCREE_HD void place(double time, ConstView<PathKey> keys, const BodyView& bodies) const {
     if (bodies.mobility[body] != Mobility::prescribed) return;
-    const Quat turn = rotation_of((time - start) * spin);
+    const PathPoint point = key_count > 0 ? point_at(keys.data() + first_key, key_count, time - start)
+                                          : point_of_pivot(time - start);
+    bodies.position[body] = point.position;
+    bodies.orientation[body] = point.orientation;
+    bodies.velocity[body] = point.velocity;
+    bodies.spin[body] = point.spin;
+  }
+
+ private:
+  SCREE_HD PathPoint point_of_pivot(double time) const {
+    Vec3 moved = time * velocity;
+    Vec3 turned = time * spin;
+    Vec3 pivot_velocity = velocity;
+    Vec3 body_spin = spin;
+    if (omega > 0) {
+      const double share = sin(omega * time + phase) - sin(phase);
+      const double rate = omega * cos(omega * time + phase);
+      moved += share * displacement;
+      turned += share * angle;
+      pivot_velocity += rate * displacement;
+      body_spin += rate * angle;
+    }
+    const Quat turn = rotation_of(turned);
     const Vec3 now = turn * arm;
-    bodies.position[body] = pivot + (time - start) * velocity + now;
-    bodies.orientation[body] = (turn * orientation).normalized();
-    bodies.velocity[body] = velocity + spin.cross(now);
-    bodies.spin[body] = spin;
+    return {pivot + moved + now, pivot_velocity + body_spin.cross(now), (turn * orientation).normalized(),
+            body_spin};
   }
 };
 
+/// The ways of all prescribed bodies, and the keys that they name.
+struct PathTable {
+  std::vector<PrescribedPath> paths;
+  std::vector<PathKey> keys;
+};
+
 /// Of the scene's motions, in their order; all start at 0.
-std::vector<PrescribedPath> prescribed_paths(const Scene& scene);
+PathTable prescribed_paths(const Scene& scene);
+
+/// ResponseParameters::prescribed_acceleration
+double prescribed_acceleration(const Scene& scene);
+
+/// The table in a space.
+template <class Space>
+struct PrescribedPaths {
+  Array<PrescribedPath, Space> paths;
+  Array<PathKey, Space> keys;
+
+  explicit PrescribedPaths(const PathTable& table) {
+    copy(paths, table.paths);
+    copy(keys, table.keys);
+  }
+};
 
 /// Places every prescribed body for a time (s).
 template <class Space>
-void place_prescribed(const Array<PrescribedPath, Space>& paths, double time, Bodies<Space>& bodies);
+void place_prescribed(const PrescribedPaths<Space>& paths, double time, Bodies<Space>& bodies);
 
 }  // namespace scree

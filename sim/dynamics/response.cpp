@@ -70,7 +70,8 @@ struct SolveIsland {
                                 .velocity = stage.free_velocity,
                                 .spin = stage.free_spin,
                                 .islands = *islands,
-                                .island = island};
+                                .island = island,
+                                .guides = stage.guides};
     outcome[island] = (accurate ? natural_residual(problem) : change_of(island)).within(tolerance)
                           ? DirectOutcome::not_needed
                           : solve_directly(problem, tolerance, limits);
@@ -277,7 +278,8 @@ Ledger ResponseSolver::solve(const Manifolds& manifolds, double step, const Resp
                    .free_spin = free_spin_.view(),
                    .step = step,
                    .noise = tolerance::parting_speed * step * parameters.gravity.norm(),
-                   .warm_start = warm_start};
+                   .warm_start = warm_start,
+                   .guides = parameters.guides};
   if (!balls.touching().empty()) {
     stage.balls = &balls;
     stage.pairs = balls.source(bodies, step, parameters);

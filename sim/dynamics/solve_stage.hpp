@@ -25,6 +25,7 @@ struct SolveStage {
   const BallPairs* balls = nullptr;  ///< whose contacts are made in the lanes; null: there are none
   lanes::BallSource pairs = {};      ///< of these
   double warm_start = 0;             ///< share of the impulses remembered that they start from
+  ConstView<Guide> guides = {};      ///< have their say on velocities after each sweep over all contacts
 
   /// Relative velocity of a row of a contact: before the kick,
   SCREE_HD Vec3 velocity_before(const Contact& c, const ContactRow& row) const {

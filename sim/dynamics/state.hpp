@@ -11,6 +11,22 @@
 
 namespace scree {
 
+/// A body that moves along one axis alone, and does not turn. What else pushes it the guide takes, which does
+/// no work.
+struct Guide {
+  std::int32_t body;
+  Vec3 axis;  ///< unit
+
+  SCREE_HD void hold(Vec3& along) const { along = axis.dot(along) * axis; }
+};
+
+/// Leaves of a vector of a body (its velocity, say) what its guide does, if it has one.
+SCREE_HD inline void hold_to_guide(ConstView<Guide> guides, std::int32_t body, Vec3& along) {
+  for (std::int64_t g = 0; g < guides.size(); ++g) {
+    if (guides[g].body == body) guides[g].hold(along);
+  }
+}
+
 /// The settings of the response, resolved.
 struct ResponseParameters {
   Vec3 gravity = Vec3::Zero();  ///< m/s^2
@@ -18,6 +34,9 @@ struct ResponseParameters {
   /// forces.
   ConstView<Vec3> acceleration;
   ConstView<Vec3> torque;
+  ConstView<Guide> guides;  ///< on Host alone; empty without such bodies
+  /// Bound on how fast velocities of prescribed bodies' surfaces change, but for constant spin (m/s^2).
+  double prescribed_acceleration = 0;
   bool friction = true;
   bool restitution = true;
   bool rotation = true;

@@ -109,6 +109,12 @@ void Sweeps::set_velocities() {
   copy(bodies_, free_);
   lanes::for_each_color("response.push", *batches_, PushBalls{batches_->balls.view(), bodies_.view()},
                         PushPoints{batches_->points.view(), batches_->rows.view(), bodies_.view()});
+  hold_to_guides();
+}
+
+/// The contacts take a body in a guide for a free one: what they agree on then is what holds for it.
+void Sweeps::hold_to_guides() {
+  for (const Guide& guide : stage_->guides) guide.hold(bodies_.view()[guide.body].velocity);
 }
 
 void Sweeps::store_velocities() const {
@@ -198,6 +204,7 @@ bool Sweeps::run(const SweepPlan& plan, int most, std::int64_t& count) {
         SweepBalls{kernels.balls, batches_->balls.view(), bodies_.view(), beta, change_.data()},
         SweepPoints{kernels.points, batches_->points.view(), batches_->rows.view(), bodies_.view(), beta,
                     plan.block_sweeps, change_.data() + batches_->balls.size()});
+    hold_to_guides();
     ++count;
     const auto total =
         parallel::sum<ImpulseChange, Host>("response.change", change_.size(), LoadChange{change_.view()});

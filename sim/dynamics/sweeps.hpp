@@ -96,6 +96,7 @@ class Sweeps {
   bool run(const SweepPlan& plan, int most, std::int64_t& count);
 
  private:
+  void hold_to_guides();
   struct Release;
   struct StoreVelocities;
 

@@ -10,6 +10,7 @@ namespace scree {
 namespace {
 
 Vec3 place_of(const BodyEntry& entry, std::int64_t k, Random& random) {
+  if (entry.motion && !entry.motion->keyframes.empty()) return entry.motion->keyframes.front().position;
   if (entry.emit) return 0.5 * (entry.emit->from + entry.emit->to);
   Vec3 at = entry.at.value_or(Vec3::Zero());
   if (!entry.repeat) return at;
@@ -22,15 +23,22 @@ Vec3 place_of(const BodyEntry& entry, std::int64_t k, Random& random) {
   return at;
 }
 
-Quat orientation_of(const BodyEntry& entry, Random& random) {
+/// Of a body or a keyframe that has one.
+template <class Entry>
+std::optional<Quat> given_orientation(const Entry& entry) {
   if (entry.orientation) {
     const auto& q = *entry.orientation;
     return *unit_quaternion(q[0], Vec3(q[1], q[2], q[3]));
   }
-  if (entry.rotate) {
-    const double angle = entry.rotate->degrees ? *entry.rotate->degrees * pi / 180 : *entry.rotate->radians;
-    return Quat(Eigen::AngleAxisd(angle, entry.rotate->axis.stableNormalized()));
-  }
+  if (!entry.rotate) return {};
+  const double angle = entry.rotate->degrees ? *entry.rotate->degrees * pi / 180 : *entry.rotate->radians;
+  return Quat(Eigen::AngleAxisd(angle, entry.rotate->axis.stableNormalized()));
+}
+
+Quat orientation_of(const BodyEntry& entry, Random& random) {
+  if (entry.motion && !entry.motion->keyframes.empty())
+    if (const std::optional<Quat> first = given_orientation(entry.motion->keyframes.front())) return *first;
+  if (const std::optional<Quat> given = given_orientation(entry)) return *given;
   return entry.scatter || entry.emit ? random_orientation(random) : Quat::Identity();
 }
 
@@ -103,7 +111,21 @@ bool make_body(const BodyEntry& entry, std::int64_t k, std::int32_t id, std::uin
   bodies.mobility[b] = entry.fixed.value_or(false) ? Mobility::fixed
                        : entry.motion              ? Mobility::prescribed
                                                    : Mobility::free;
-  return bodies.mobility[b] != Mobility::free || set_mass(entry.mass, density, b, bodies);
+  if (bodies.mobility[b] != Mobility::free) return true;
+  const bool usable = set_mass(entry.mass, density, b, bodies);
+  if (entry.servo) bodies.inverse_inertia[b].setZero();  // its guide keeps it from turning
+  return usable;
+}
+
+Motion motion_of(const MotionEntry& entry, std::int32_t body) {
+  Motion motion{.body = body,
+                .velocity = entry.velocity,
+                .spin = entry.spin,
+                .about = entry.about,
+                .oscillate = entry.oscillate};
+  for (const MotionKeyEntry& key : entry.keyframes)
+    motion.keyframes.push_back({key.at, key.position, given_orientation(key)});
+  return motion;
 }
 
 bool make_body(const BodyRow& row, bool fixed, std::int32_t id, double density, BodyTable& bodies) {

@@ -98,17 +98,80 @@ Codec<RotationEntry> rotate_section() {
       check_rotation);
 }
 
+Codec<Oscillation> oscillate_section() {
+  using T = Oscillation;
+  return section<T>(
+      "bodies[].motion.oscillate",
+      "To and fro: at the time t since the body has appeared it is moved and turned by the share sin(2 pi "
+      "frequency t + phase) - sin(phase) of these, on top of `velocity` and `spin`.",
+      {
+          key<T>("displacement", &T::displacement, vector("m"), optionally, "amplitude"),
+          key<T>("angle", &T::angle, vector("rad"), optionally,
+                 "amplitude of the turn, as a vector along its axis; parallel to `spin`, if there is one"),
+          key<T>("frequency", &T::frequency, number(above_zero, "Hz"), required, "swings per second"),
+          key<T>("phase", &T::phase, number(any_value, "rad"), optionally, "at the start"),
+      },
+      check_oscillation);
+}
+
+Codec<MotionKeyEntry> motion_key_section() {
+  using T = MotionKeyEntry;
+  return section<T>(
+      "bodies[].motion.keyframes[]", "Where the body is at one time.",
+      {
+          key<T>("at", &T::at, number(not_negative, "s"), required, "time since the body has appeared"),
+          key<T>("position", &T::position, vector("m"), required, "of the centre"),
+          key<T>("orientation", &T::orientation, optional(array_of<4>(number())), optionally,
+                 "quaternion [w, x, y, z]; every keyframe has one, or none and the body keeps its own"),
+          key<T>("rotate", &T::rotate, optional(rotate_section()), optionally, "instead of `orientation`"),
+      },
+      check_motion_key);
+}
+
+/// Left out of the resolved scene where there are keyframes, and refused there.
+Key<MotionEntry> rate(const char* name, Vec3 MotionEntry::*member, const char* unit, const char* help) {
+  Key<MotionEntry> rate = key<MotionEntry>(name, member, vector(unit), optionally, help);
+  rate.write = [write = rate.write](const MotionEntry& motion) {
+    return motion.keyframes.empty() ? write(motion) : std::nullopt;
+  };
+  return rate;
+}
+
 Codec<MotionEntry> motion_section() {
   using T = MotionEntry;
-  return section<T>("bodies[].motion", "Prescribed motion: the body moves like this whatever hits it.",
-                    {
-                        key<T>("velocity", &T::velocity, vector("m/s"), optionally, "constant velocity"),
-                        key<T>("spin", &T::spin, vector("rad/s"), optionally, "constant angular velocity"),
-                        key<T>("about", &T::about, optional(vector("m")), optionally,
-                               "the point to turn about, which moves along with `velocity`; the body's own "
-                               "centre if not given"),
-                    },
-                    check_motion);
+  return section<T>(
+      "bodies[].motion", "Prescribed motion: the body moves like this whatever hits it.",
+      {
+          rate("velocity", &T::velocity, "m/s", "constant velocity"),
+          rate("spin", &T::spin, "rad/s", "constant angular velocity"),
+          key<T>("about", &T::about, optional(vector("m")), optionally,
+                 "the point to turn about, which moves along with `velocity` and `oscillate`; the body's own "
+                 "centre if not given"),
+          key<T>("oscillate", &T::oscillate, optional(oscillate_section()), optionally, "to and fro besides"),
+          key<T>(
+              "keyframes", &T::keyframes, list_of(motion_key_section(), 1), optionally,
+              "instead of all that, and of `at`: places by ascending time. Between them the body goes "
+              "smoothly (monotone cubics: along each axis never beyond the two keyframes, and at rest where "
+              "it turns round) and turns the short way; before the first and after the last it rests"),
+      },
+      check_motion);
+}
+
+Codec<ServoEntry> servo_section() {
+  using T = ServoEntry;
+  return section<T>(
+      "bodies[].servo",
+      "A wall that holds a force: a box of its mass that moves along one axis alone, as if in a guide "
+      "without "
+      "friction, and does not turn. What it presses on at rest feels the force. It starts at rest. Its "
+      "weight "
+      "is borne by its drive. Steps are taken on Host, as in the accurate mode.",
+      {
+          key<T>("axis", &T::axis, vector(""), required, "along which it moves; of any length but 0"),
+          key<T>("force", &T::force, number(any_value, "N"), required,
+                 "along the axis, all that moves the body but for contacts"),
+      },
+      check_servo);
 }
 
 Codec<RepeatEntry> repeat_section() {
@@ -198,6 +261,8 @@ Codec<BodyEntry> body_section() {
                        "false"),
           key<T>("motion", &T::motion, optional(motion_section()), optionally,
                  "the body moves as prescribed"),
+          key<T>("servo", &T::servo, optional(servo_section()), optionally,
+                 "the body is pushed along a guide by a force; a box"),
           key<T>("repeat", &T::repeat, optional(repeat_section()), optionally, "many on a lattice"),
           key<T>("scatter", &T::scatter, optional(scatter_section()), optionally, "many at random places"),
           key<T>("emit", &T::emit, optional(emit_section()), optionally, "many, one after another"),

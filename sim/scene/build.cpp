@@ -39,6 +39,7 @@ class Builder {
       if (slot.entry->scatter) scatter_bodies(slot, scene);
     find_lifetimes(scene);
     find_motions(scene);
+    find_servos(scene);
     require_numbers(scene);
     find_forces(scene);
     find_checks(scene);
@@ -137,13 +138,26 @@ class Builder {
   void find_motions(Scene& scene) {
     for (const BodySlot& slot : slots_) {
       if (!slot.entry->motion) continue;
-      const MotionEntry& motion = *slot.entry->motion;
       for (std::int32_t id = slot.bodies.first; id < slot.bodies.first + slot.bodies.count; ++id) {
         const auto b = static_cast<std::size_t>(id);
-        scene.motions.push_back({id, motion.velocity, motion.spin, motion.about});
+        const Motion& motion = scene.motions.emplace_back(motion_of(*slot.entry->motion, id));
+        if (motion.oscillate) {
+          const double rate = motion.oscillate->omega() * std::cos(motion.oscillate->phase);
+          scene.bodies.velocity[b] += rate * motion.oscillate->displacement;
+          scene.bodies.spin[b] += rate * motion.oscillate->angle;
+        }
         if (motion.about)
-          scene.bodies.velocity[b] += motion.spin.cross(scene.bodies.position[b] - *motion.about);
+          scene.bodies.velocity[b] += scene.bodies.spin[b].cross(scene.bodies.position[b] - *motion.about);
       }
+    }
+  }
+
+  void find_servos(Scene& scene) {
+    for (const BodySlot& slot : slots_) {
+      if (!slot.entry->servo) continue;
+      const ServoEntry& servo = *slot.entry->servo;
+      for (std::int32_t id = slot.bodies.first; id < slot.bodies.first + slot.bodies.count; ++id)
+        scene.servos.push_back({id, servo.axis.stableNormalized(), servo.force});
     }
   }
 
@@ -156,7 +170,7 @@ class Builder {
       for (std::int32_t k = 0; k < slot.bodies.count; ++k) {
         const auto b = static_cast<std::size_t>(slot.bodies.first + k);
         if (!bodies.position[b].allFinite() || !bodies.orientation[b].coeffs().allFinite() ||
-            !bodies.velocity[b].allFinite())
+            !bodies.velocity[b].allFinite() || !bodies.spin[b].allFinite())
           reader_.fail(slot.entry->node->mark, beyond_places);
       }
     }
@@ -171,9 +185,16 @@ class Builder {
       if (scene.bodies.mobility[static_cast<std::size_t>(on.first)] != Mobility::free)
         reader_.fail_at("on", *force.node,
                         fmt::format("{} is not free; forces move free bodies alone", force.on));
+      if (is_servo(on.first, scene))
+        reader_.fail_at("on", *force.node,
+                        fmt::format("{} is a servo, which has a force of its own", force.on));
       scene.forces.push_back(
           {on, force.force, force.torque, time_span(force.from, force.until, grid_, *force.node, reader_)});
     }
+  }
+
+  static bool is_servo(std::int32_t body, const Scene& scene) {
+    return std::ranges::any_of(scene.servos, [body](const Servo& servo) { return servo.body == body; });
   }
 
   /// One body by its name, or all of an entry by the entry's.
@@ -252,9 +273,10 @@ class Builder {
 /// Writes the defaults that depend on other keys into the entry.
 void fill_defaults(BodyEntry& body) {
   if (body.plane || !body.file.empty()) return;
-  const bool free = !body.fixed.value_or(false) && !body.motion;
+  const bool free = !body.fixed.value_or(false) && !body.motion && !body.servo;
+  const bool keyframed = body.motion && !body.motion->keyframes.empty();
   if (!body.fixed) body.fixed = false;
-  if (!body.scatter && !body.emit) {
+  if (!body.scatter && !body.emit && !keyframed) {
     if (!body.at) body.at = Vec3::Zero();
     if (!body.rotate && !body.orientation) body.orientation = {1, 0, 0, 0};
   }
@@ -275,7 +297,9 @@ Scene build_scene(SceneEntry entry, const std::filesystem::path& source, double 
   scene.source = source;
   scene.seed = entry.seed;
   scene.seeds = entry.seeds;
-  scene.gravity = entry.gravity;
+  scene.gravity =
+      entry.gravity.keyframes.empty() ? entry.gravity.vector : entry.gravity.keyframes.front().vector;
+  if (entry.gravity.spin || !entry.gravity.keyframes.empty()) scene.gravity_turn = entry.gravity;
   scene.time = entry.time;
   scene.world = entry.world;
   scene.regions = entry.regions;

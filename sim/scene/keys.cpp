@@ -156,6 +156,50 @@ Codec<RecordSettings> record_section() {
       });
 }
 
+Codec<GravityKey> gravity_key_section() {
+  using T = GravityKey;
+  return section<T>(
+      "gravity.keyframes[]", "Gravity at one time.",
+      {
+          key<T>("at", &T::at, number(not_negative, "s"), required, "time"),
+          key<T>("vector", &T::vector, vector("m/s^2"), required, "acceleration of free bodies"),
+      });
+}
+
+/// A vector, or one that changes with time.
+Codec<GravityEntry> gravity_value() {
+  using T = GravityEntry;
+  const Codec<Vec3> constant = vector("m/s^2");
+  const Codec<T> plain{constant.type,
+                       [constant](T& gravity, const Node& node, Reader& reader) {
+                         constant.read(gravity.vector, node, reader);
+                       },
+                       [constant](const T& gravity) {
+                         return gravity.spin || !gravity.keyframes.empty() ? std::nullopt
+                                                                           : constant.write(gravity.vector);
+                       }};
+  Key<T> at_start = key<T>("vector", &T::vector, constant, optionally, "at t = 0");
+  at_start.type.fallback.clear();
+  at_start.write = [write = at_start.write](const T& gravity) {
+    return gravity.spin ? write(gravity) : std::nullopt;
+  };
+  return any_of<T>(
+      {plain,
+       section<T>("gravity",
+                  "Gravity that turns or changes with time: the force alone. It is that of a frame that "
+                  "turns slowly; a frame that turns fast has centrifugal and Coriolis forces too, which "
+                  "are left out. Its work is booked as energy.work.",
+                  {
+                      std::move(at_start),
+                      key<T>("spin", &T::spin, optional(vector("rad/s")), optionally,
+                             "constant angular velocity of the vector, from t = 0 on"),
+                      key<T>("keyframes", &T::keyframes, list_of(gravity_key_section(), 1), optionally,
+                             "instead of these: gravity by ascending time, straight between, constant "
+                             "before the first and after the last"),
+                  },
+                  check_gravity)});
+}
+
 Codec<Reduce> reduce_word() {
   using enum Reduce;
   return word<Reduce>({{"max", max},
@@ -224,7 +268,8 @@ const Codec<SceneEntry>& scene_codec() {
           key<T>("seed", &T::seed, seed_integer(), optionally, "every random choice follows from it"),
           key<T>("seeds", &T::seeds, integer(between(1, 1000)), optionally,
                  "runs, with seed, seed + 1, ..., that verify and study judge together; run makes the first"),
-          key<T>("gravity", &T::gravity, vector("m/s^2"), optionally, "acceleration of free bodies"),
+          key<T>("gravity", &T::gravity, gravity_value(), optionally,
+                 "acceleration of free bodies; a section where it turns"),
           key<T>("time", &T::time, time_section(), required, "length and step of the run"),
           key<T>("materials", &T::materials, named(material_section(), most_names), required,
                  "a map of names to materials"),

@@ -48,10 +48,28 @@ struct RotationEntry {
   std::optional<double> radians;
 };
 
+struct MotionKeyEntry {
+  double at = 0;
+  Vec3 position = Vec3::Zero();
+  std::optional<std::array<double, 4>> orientation;
+  std::optional<RotationEntry> rotate;
+};
+
 struct MotionEntry {
   Vec3 velocity = Vec3::Zero();
   Vec3 spin = Vec3::Zero();
   std::optional<Vec3> about;
+  std::optional<Oscillation> oscillate;
+  std::vector<MotionKeyEntry> keyframes;
+};
+
+struct ServoEntry {
+  Vec3 axis = Vec3::UnitZ();
+  double force = 0;
+};
+
+struct GravityEntry : GravityTurn {
+  Vec3 vector = Vec3::Zero();
 };
 
 struct RepeatEntry {
@@ -88,6 +106,7 @@ struct BodyEntry {
   std::optional<Vec3> spin;
   std::optional<bool> fixed;
   std::optional<MotionEntry> motion;
+  std::optional<ServoEntry> servo;
   std::optional<RepeatEntry> repeat;
   std::optional<ScatterEntry> scatter;
   std::optional<EmitEntry> emit;
@@ -115,7 +134,7 @@ struct SceneEntry {
   std::string label;
   std::uint64_t seed = 0;
   int seeds = 1;
-  Vec3 gravity = Vec3::Zero();
+  GravityEntry gravity;
   TimeSettings time;
   std::vector<MaterialEntry> materials;
   std::vector<ContactEntry> contacts;

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <array>
+#include <string_view>
 
 namespace scree {
 namespace {
@@ -53,15 +54,51 @@ void refuse(std::initializer_list<const char*> keys, const char* why, const Node
 
 void check_plane_body(const Node& node, Reader& reader) {
   refuse({"mass", "at", "orientation", "rotate", "velocity", "spin", "fixed", "motion", "repeat", "scatter",
-          "emit"},
+          "emit", "servo"},
          "does not go with a plane, which is fixed where its normal and offset say", node, reader);
 }
 
 void check_tube_body(const BodyEntry& body, const Node& node, Reader& reader) {
-  refuse({"mass", "velocity", "spin", "scatter", "emit"}, "does not go with a tube, which never moves freely",
-         node, reader);
+  refuse({"mass", "velocity", "spin", "scatter", "emit", "servo"},
+         "does not go with a tube, which never moves freely", node, reader);
   if (!body.fixed.value_or(false) && !body.motion)
     reader.fail_at("tube", node, "never moves freely: give `fixed: true` or `motion`");
+}
+
+/// Of `keyframes`.
+template <class Key>
+void require_order(const std::vector<Key>& keyframes, const Node& node, Reader& reader) {
+  for (std::size_t k = 1; k < keyframes.size(); ++k) {
+    const double before = keyframes[k - 1].at, at = keyframes[k].at;
+    if (at <= before)
+      reader.fail_at("keyframes", node,
+                     fmt::format("must be in order of time, but {} s follows {} s", at, before));
+  }
+}
+
+void check_orientation(const std::optional<std::array<double, 4>>& q, const Node& node, Reader& reader) {
+  if (q && !unit_quaternion((*q)[0], Vec3((*q)[1], (*q)[2], (*q)[3])))
+    reader.fail_at("orientation", node, "must not be zero");
+}
+
+/// Directions that differ by no more (rad) are one.
+constexpr double parallel = 1e-9;
+
+/// The keyframes say where the body is, and how it lies if they have orientations.
+void check_keyframed_body(const MotionEntry& motion, const Node& node, Reader& reader) {
+  refuse({"at", "repeat", "scatter"}, "does not go with motion.keyframes, which say where the body is", node,
+         reader);
+  const MotionKeyEntry& first = motion.keyframes.front();
+  if (first.orientation || first.rotate)
+    refuse({"orientation", "rotate"}, "does not go with motion.keyframes that have orientations", node,
+           reader);
+}
+
+void check_servo_body(const BodyEntry& body, const Node& node, Reader& reader) {
+  if (!body.box) reader.fail_at("servo", node, "goes with a box alone");
+  for (const char* other : {"fixed", "motion", "velocity", "spin", "scatter", "emit"})
+    if (other != std::string_view("fixed") || body.fixed.value_or(false))
+      exclude("servo", other, node, reader);
 }
 
 /// Of the box with the keys `from` and `to`.
@@ -93,8 +130,40 @@ void check_rotation(const RotationEntry& rotation, const Node& node, Reader& rea
   if (given({"degrees", "radians"}, node) == 0) reader.fail(node.mark, "needs degrees or radians");
 }
 
+void check_oscillation(const Oscillation& oscillation, const Node& node, Reader& reader) {
+  if (oscillation.displacement.isZero(0) && oscillation.angle.isZero(0))
+    reader.fail(node.mark, "needs a displacement or an angle that is not zero");
+}
+
+void check_motion_key(const MotionKeyEntry& key, const Node& node, Reader& reader) {
+  exclude("orientation", "rotate", node, reader);
+  check_orientation(key.orientation, node, reader);
+}
+
 void check_motion(const MotionEntry& motion, const Node& node, Reader& reader) {
-  if (motion.about && motion.spin.isZero(0)) reader.fail_at("about", node, "needs a spin that is not zero");
+  for (const char* other : {"velocity", "spin", "about", "oscillate"})
+    exclude("keyframes", other, node, reader);
+  require_order(motion.keyframes, node, reader);
+  const auto turns = [](const MotionKeyEntry& key) { return key.orientation || key.rotate; };
+  if (std::ranges::any_of(motion.keyframes, turns) && !std::ranges::all_of(motion.keyframes, turns))
+    reader.fail_at("keyframes", node, "must all have an orientation, or none");
+  const Vec3 swing = motion.oscillate ? motion.oscillate->angle : Vec3(Vec3::Zero());
+  if (motion.about && motion.spin.isZero(0) && swing.isZero(0))
+    reader.fail_at("about", node, "needs a spin or oscillate.angle that is not zero");
+  if (swing.cross(motion.spin).norm() > parallel * swing.norm() * motion.spin.norm())
+    reader.fail_at("oscillate", node, "must have its angle parallel to the spin");
+}
+
+void check_servo(const ServoEntry& servo, const Node& node, Reader& reader) {
+  if (!is_direction(servo.axis)) reader.fail_at("axis", node, "must not be zero");
+}
+
+void check_gravity(const GravityEntry& gravity, const Node& node, Reader& reader) {
+  exclude("keyframes", "vector", node, reader);
+  exclude("keyframes", "spin", node, reader);
+  require_order(gravity.keyframes, node, reader);
+  if (gravity.keyframes.empty() && given({"vector", "spin"}, node) != 2)
+    reader.fail(node.mark, "needs vector and spin, or keyframes");
 }
 
 void check_scatter(const ScatterEntry& scatter, const Node& node, Reader& reader) {
@@ -129,11 +198,9 @@ void check_body(const BodyEntry& body, const Node& node, Reader& reader) {
   if (body.fixed.value_or(false)) exclude("fixed", "emit", node, reader);
   if (body.fixed.value_or(false))
     for (const char* key : {"motion", "velocity", "spin"}) exclude("fixed", key, node, reader);
-  if (body.orientation) {
-    const auto& q = *body.orientation;
-    if (!unit_quaternion(q[0], Vec3(q[1], q[2], q[3])))
-      reader.fail_at("orientation", node, "must not be zero");
-  }
+  check_orientation(body.orientation, node, reader);
+  if (body.motion && !body.motion->keyframes.empty()) check_keyframed_body(*body.motion, node, reader);
+  if (body.servo) check_servo_body(body, node, reader);
 }
 
 void check_force(const ForceEntry&, const Node& node, Reader& reader) {
@@ -164,12 +231,7 @@ void check_camera(const CameraSettings& camera, const Node& node, Reader& reader
     reader.fail(node.mark, "`from` and `to` must be given together, or neither");
   if (camera.from && *camera.from == *camera.to)
     reader.fail(node.mark, "`from` and `to` must not be the same point");
-  for (std::size_t k = 1; k < camera.keyframes.size(); ++k) {
-    const double before = camera.keyframes[k - 1].at, at = camera.keyframes[k].at;
-    if (at <= before)
-      reader.fail_at("keyframes", node,
-                     fmt::format("must be in order of time, but {} s follows {} s", at, before));
-  }
+  require_order(camera.keyframes, node, reader);
 }
 
 void check_render(const RenderSettings& render, const Node& node, Reader& reader) {
@@ -227,6 +289,10 @@ void check_distribution(const Distribution<T>& sizes, const Node& node, Reader& 
 void check_precision(const SceneEntry& scene, const Node& node, Reader& reader) {
   if (scene.precision == Precision::mixed && scene.response.mode == ResponseMode::accurate)
     reader.fail_at("precision", node, "cannot be mixed in the accurate mode, whose tolerance is beyond it");
+  const bool servo =
+      std::ranges::any_of(scene.bodies, [](const BodyEntry& body) { return body.servo.has_value(); });
+  if (scene.precision == Precision::mixed && servo)
+    reader.fail_at("precision", node, "cannot be mixed where a body is a servo");
 }
 
 template void check_distribution(const Distribution<double>&, const Node&, Reader&);

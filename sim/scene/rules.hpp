@@ -11,7 +11,11 @@ namespace scree {
 void check_time(const TimeSettings& time, const Node& node, Reader& reader);
 void check_plane(const PlaneEntry& plane, const Node& node, Reader& reader);
 void check_rotation(const RotationEntry& rotation, const Node& node, Reader& reader);
+void check_oscillation(const Oscillation& oscillation, const Node& node, Reader& reader);
+void check_motion_key(const MotionKeyEntry& key, const Node& node, Reader& reader);
 void check_motion(const MotionEntry& motion, const Node& node, Reader& reader);
+void check_servo(const ServoEntry& servo, const Node& node, Reader& reader);
+void check_gravity(const GravityEntry& gravity, const Node& node, Reader& reader);
 void check_scatter(const ScatterEntry& scatter, const Node& node, Reader& reader);
 void check_emit(const EmitEntry& emit, const Node& node, Reader& reader);
 void check_body(const BodyEntry& body, const Node& node, Reader& reader);

@@ -41,12 +41,51 @@ struct TimeSettings {
       {};  ///< contacts are found and solved so often per step; absent: as overlaps ask
 };
 
-/// Prescribed motion: constant spin about a point that moves along with constant velocity.
+/// To and fro: a share of sin(2 pi frequency t + phase) - sin(phase), so that it starts where the body is.
+struct Oscillation {
+  Vec3 displacement = Vec3::Zero();  ///< m
+  Vec3 angle = Vec3::Zero();         ///< turn vector (rad)
+  double frequency = 0;              ///< Hz
+  double phase = 0;                  ///< rad
+
+  double omega() const { return 2 * pi * frequency; }  ///< rad/s
+};
+
+/// Where a body is at one time.
+struct MotionKey {
+  double at = 0;                 ///< since the body has appeared (s)
+  Vec3 position = Vec3::Zero();  ///< of the centre (m)
+  std::optional<Quat> orientation = {};
+};
+
+/// Prescribed motion: constant spin about a point that moves along with constant velocity, both of which may
+/// oscillate besides; or from one key to the next.
 struct Motion {
   std::int32_t body = 0;
-  Vec3 velocity = Vec3::Zero();  ///< m/s
-  Vec3 spin = Vec3::Zero();      ///< rad/s
-  std::optional<Vec3> about;     ///< the point, at the start (m); absent: the body's centre
+  Vec3 velocity = Vec3::Zero();    ///< m/s
+  Vec3 spin = Vec3::Zero();        ///< rad/s
+  std::optional<Vec3> about = {};  ///< the point, at the start (m); absent: the body's centre
+  std::optional<Oscillation> oscillate = {};
+  std::vector<MotionKey> keyframes = {};  ///< by ascending time, all with an orientation or none; instead
+                                          ///< of all that
+};
+
+/// A free body that a guide lets move along one axis alone, and that is driven along it by a constant force.
+struct Servo {
+  std::int32_t body = 0;
+  Vec3 axis = Vec3::UnitZ();  ///< unit
+  double force = 0;           ///< along the axis, all that moves the body but for contacts (N)
+};
+
+struct GravityKey {
+  double at = 0;               ///< s
+  Vec3 vector = Vec3::Zero();  ///< m/s^2
+};
+
+/// How gravity changes with time: one of the two is given.
+struct GravityTurn {
+  std::optional<Vec3> spin = {};           ///< of the vector, from t = 0 on (rad/s)
+  std::vector<GravityKey> keyframes = {};  ///< by ascending time; straight between, constant outside
 };
 
 /// Bodies first, first + 1, ...: those of one item of `bodies`, or one of them.
@@ -207,7 +246,8 @@ struct Scene {
   std::filesystem::path source;  ///< the file it was read from
   std::uint64_t seed = 0;
   int seeds = 1;                ///< runs of the ensemble that the checks are judged by: seed, seed + 1, ...
-  Vec3 gravity = Vec3::Zero();  ///< m/s^2
+  Vec3 gravity = Vec3::Zero();  ///< m/s^2; at t = 0, if it turns
+  std::optional<GravityTurn> gravity_turn;
   TimeSettings time;
   std::vector<Material> materials;
   std::vector<ContactLaw> laws;     ///< materials x materials, symmetric; see law()
@@ -216,6 +256,7 @@ struct Scene {
   std::vector<Emitter> emitters;    ///< of those that appear when there is room, by ascending body
   std::map<std::string, std::int32_t> body_names;  ///< named bodies, name[k] of a repeat included
   std::vector<Motion> motions;                     ///< of the prescribed bodies, by ascending body
+  std::vector<Servo> servos;                       ///< by ascending body
   std::optional<World> world;                      ///< absent: without end
   std::vector<Region> regions;
   std::vector<AppliedForce> forces;  ///< besides gravity

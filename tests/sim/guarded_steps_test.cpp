@@ -39,6 +39,7 @@ class FakeStepper final : public Stepper {
     ledger = start_ledger_;
   }
   void copy_state(BodyTable& out) const override { out = bodies; }
+  Vec3 gravity() const override { return Vec3::Zero(); }
   Energies energies(const Vec3& reference) const override {
     Bodies<Host> copied;
     copy_bodies(copied, bodies);

@@ -133,6 +133,34 @@ bodies:
   EXPECT_GT(contacts, 2500) << "a heap, in is_heap()'s words";
 }
 
+/// A floor that shakes, a paddle that goes from place to place, a wall that holds a force, while gravity
+/// turns.
+TEST_P(Resume, WhatIsInMotionGoesOnWithTheSameBits) {
+  const std::string scene = R"(
+gravity: {vector: [0, 0, -9.81], spin: [0, 0.5, 0.1]}
+materials: {stone: {density: 1000, restitution: 0.2, friction: 0.5}}
+time: {end: 0.5, step: 0.004, substeps: 2}
+bodies:
+  - {plane: {normal: [1, 0, 0], offset: -0.5}, material: stone}
+  - {plane: {normal: [-1, 0, 0], offset: -0.5}, material: stone}
+  - {plane: {normal: [0, 1, 0], offset: -0.5}, material: stone}
+  - {plane: {normal: [0, -1, 0], offset: -0.5}, material: stone}
+  - {box: {size: [1.2, 1.2, 0.2]}, motion: {oscillate: {displacement: [0, 0, 0.01], angle: [0.05, 0, 0], frequency: 5, phase: 1}}, material: stone}
+  - {box: {size: [0.3, 0.1, 0.1]}, from: 0.1, motion: {keyframes: [{at: 0, position: [0, 0, 0.4], rotate: {axis: [0, 0, 1], degrees: 10}}, {at: 0.2, position: [0.2, 0, 0.3], rotate: {axis: [0, 1, 1], degrees: 50}}]}, material: stone}
+  - sphere: {radius: {uniform: [0.05, 0.08]}}
+    at: [-0.3, -0.3, 0.2]
+    repeat: {count: [3, 3, 2], spacing: [0.2, 0.2, 0.2], jitter: 0.01}
+    material: stone
+)";
+  const bool servos = std::string(GetParam().settings).find("mixed") == std::string::npos;
+  const std::string wall =
+      "  - {box: {size: [0.9, 0.9, 0.1]}, at: [0, 0, 0.7], servo: {axis: [0, 0, -1], force: 300}, material: "
+      "stone}";
+  std::int64_t contacts = 0;
+  expect_same_after_resume([&] { return simulate(scene + (servos ? wall : "")); }, 9, contacts);
+  EXPECT_GT(contacts, 15);
+}
+
 /// Loses the last row.
 void shorten(SavedField& field) { field.bytes.resize(field.bytes.size() - field.type.row()); }
 

@@ -169,18 +169,16 @@ TYPED_TEST(MotionTest, WorkIsForceTimesWay) {
 TYPED_TEST(MotionTest, PrescribedBodiesAreWhereTheirPathsSay) {
   const BodyTable start = crowd();
   Bodies<TypeParam> bodies = in_space<TypeParam>(start);
-  std::vector<PrescribedPath> paths;
+  PathTable table;
   for (std::int32_t k = 0; k < static_cast<std::int32_t>(count); ++k)
-    paths.push_back({.body = k,
-                     .pivot = Vec3(1, 0, 2),
-                     .arm = Vec3(0, 1, 0),
-                     .orientation = Quat::Identity(),
-                     .velocity = Vec3(0, 0, 3),
-                     .spin = Vec3(0, 0, 2),
-                     .start = 0.1});
-  Array<PrescribedPath, TypeParam> paths_there;
-  copy(paths_there, paths);
-  place_prescribed(paths_there, 0.6, bodies);
+    table.paths.push_back({.body = k,
+                           .pivot = Vec3(1, 0, 2),
+                           .arm = Vec3(0, 1, 0),
+                           .orientation = Quat::Identity(),
+                           .velocity = Vec3(0, 0, 3),
+                           .spin = Vec3(0, 0, 2),
+                           .start = 0.1});
+  place_prescribed(PrescribedPaths<TypeParam>(table), 0.6, bodies);
   BodyTable placed;
   copy_bodies(placed, bodies);
   const Vec3 arm(-std::sin(1.0), std::cos(1.0), 0);

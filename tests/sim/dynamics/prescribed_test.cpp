@@ -1,12 +1,16 @@
 // Prescribed motion against its closed form.
 #include "sim/dynamics/prescribed.hpp"
 
+#include "sim/dynamics/motion.hpp"
+#include "sim/scene/courses.hpp"
 #include "tests/sim/dynamics/simulations.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <string>
+#include <utility>
+#include <vector>
 
 namespace scree {
 namespace {
@@ -76,6 +80,137 @@ bodies:
   EXPECT_GT(fastest, 1.9);
   EXPECT_LT(fastest, 2.4);
   EXPECT_GT(simulation.observe().ledger.work, 0);
+}
+
+/// Where the paths of a scene are at a time, by the text of its bodies.
+BodyTable placed(const Scene& scene, double time) {
+  Bodies<Host> bodies;
+  copy_bodies(bodies, scene.bodies);
+  place_prescribed(PrescribedPaths<Host>(prescribed_paths(scene)), time, bodies);
+  BodyTable table;
+  copy_bodies(table, bodies);
+  return table;
+}
+
+/// Holds velocities and spins to differences of places and orientations at times as near.
+void expect_derivatives(const Scene& scene, double from, double to) {
+  constexpr double h = 1e-5;
+  const double bound = 1e-7;
+  for (double t = from; t < to; t += 0.0371) {
+    const BodyTable before = placed(scene, t - h);
+    const BodyTable now = placed(scene, t);
+    const BodyTable after = placed(scene, t + h);
+    for (std::size_t k = 0; k < now.position.size(); ++k) {
+      const Vec3 velocity = (after.position[k] - before.position[k]) / (2 * h);
+      Quat turn = after.orientation[k] * before.orientation[k].conjugate();
+      if (turn.w() < 0) turn.coeffs() = -turn.coeffs();
+      ASSERT_LT((now.velocity[k] - velocity).norm(), bound * (1 + velocity.norm())) << k << " at " << t;
+      ASSERT_LT((now.spin[k] - turn.vec() / h).norm(), bound * (1 + now.spin[k].norm())) << k << " at " << t;
+    }
+  }
+}
+
+TEST(Prescribed, WhatOscillatesIsWhereItsSineSays) {
+  const Scene scene = scene_of(materials + R"(
+time: {end: 1, step: 0.1}
+bodies:
+  - {box: {size: 1}, at: [3, 0, 0], motion: {velocity: [1, 2, 3], spin: [0, 0, 2], about: [1, 0, 0], oscillate: {displacement: [0, 0, 0.5], angle: [0, 0, -0.7], frequency: 1.5, phase: 0.3}}, material: a}
+  - {box: {size: 1}, at: [0, 9, 0], rotate: {axis: [1, 1, 0], degrees: 30}, motion: {oscillate: {angle: [0.1, 0.2, -0.3], frequency: 0.25}}, material: a}
+)");
+  EXPECT_EQ(placed(scene, 0).position[0], scene.bodies.position[0]);
+  EXPECT_LT((placed(scene, 0).velocity[0] - scene.bodies.velocity[0]).norm(), 1e-13);
+  const double t = 1.23;
+  const double share = std::sin(3 * pi * t + 0.3) - std::sin(0.3);
+  const double angle = 2 * t - 0.7 * share;
+  const Vec3 place = Vec3(1, 0, 0) + Vec3(1, 2, 3) * t + Vec3(0, 0, 0.5) * share +
+                     2 * Vec3(std::cos(angle), std::sin(angle), 0);
+  EXPECT_LT((placed(scene, t).position[0] - place).norm(), 1e-13);
+  expect_derivatives(scene, 0, 3);
+}
+
+/// Keys in no regular order, one of which goes on, one turns round, one stays, with turns about other axes.
+TEST(Prescribed, KeyframesArePassedSmoothlyAndNeverOvershot) {
+  const Scene scene = scene_of(materials + R"(
+time: {end: 1, step: 0.1}
+bodies:
+  - box: {size: 1}
+    motion:
+      keyframes:
+        - {at: 0.5, position: [0, 0, 0], orientation: [1, 0, 0, 0]}
+        - {at: 1.5, position: [1, 2, 0], rotate: {axis: [0, 0, 1], degrees: 80}}
+        - {at: 1.9, position: [4, 1, 0], rotate: {axis: [0, 1, 1], degrees: 120}}
+        - {at: 3.0, position: [5, 1, 0], rotate: {axis: [1, 2, 3], degrees: -170}}
+        - {at: 3.2, position: [9, 5, -1], rotate: {axis: [1, 0, 0], degrees: 10}}
+    material: a
+)");
+  const std::vector<MotionKey>& keys = scene.motions[0].keyframes;
+  for (const MotionKey& key : keys) {
+    const BodyTable at = placed(scene, key.at);
+    EXPECT_LT((at.position[0] - key.position).norm(), 1e-14);
+    EXPECT_LT(at.orientation[0].angularDistance(*key.orientation), 1e-7);
+    // Not faster after than before.
+    EXPECT_LT((placed(scene, key.at + 1e-9).velocity[0] - placed(scene, key.at - 1e-9).velocity[0]).norm(),
+              1e-5);
+    EXPECT_LT((placed(scene, key.at + 1e-9).spin[0] - placed(scene, key.at - 1e-9).spin[0]).norm(), 1e-5);
+  }
+  const MotionBounds bounds = bounds_of(scene.motions[0]);
+  for (std::size_t k = 1; k < keys.size(); ++k) {
+    for (double u = 0; u <= 1; u += 0.01) {
+      const BodyTable at = placed(scene, keys[k - 1].at + u * (keys[k].at - keys[k - 1].at));
+      const Vec3 low = keys[k - 1].position.cwiseMin(keys[k].position);
+      const Vec3 high = keys[k - 1].position.cwiseMax(keys[k].position);
+      ASSERT_GT((at.position[0] - low).minCoeff(), -1e-13);
+      ASSERT_GT((high - at.position[0]).minCoeff(), -1e-13);
+      ASSERT_LE(at.velocity[0].norm(), bounds.speed);
+      ASSERT_LE(at.spin[0].norm(), bounds.spin);
+    }
+  }
+  expect_derivatives(scene, 0.6, 3.15);
+  for (const double outside : {0.0, 0.4999, 3.2001, 99.0}) {
+    EXPECT_EQ(placed(scene, outside).velocity[0], Vec3(0, 0, 0));
+    EXPECT_EQ(placed(scene, outside).spin[0], Vec3(0, 0, 0));
+  }
+}
+
+/// About one axis the turns are Hermite's cubic of the angle, with the rates of the harmonic mean.
+TEST(Prescribed, TurnsAboutOneAxisFollowTheCubicOfTheirAngle) {
+  const Scene scene = scene_of(materials + R"(
+time: {end: 1, step: 0.1}
+bodies:
+  - box: {size: 1}
+    motion: {keyframes: [{at: 0, position: [0, 0, 0], rotate: {axis: [0, 0, 1], degrees: 0}},
+                         {at: 1, position: [90, 0, 0], rotate: {axis: [0, 0, 1], degrees: 90}},
+                         {at: 3, position: [120, 0, 0], rotate: {axis: [0, 0, 1], degrees: 120}}]}
+    material: a
+)");
+  // w = 1 + 2 . 2 over 3 . 3 of the rate after it, and the rest of that before, harmonically.
+  EXPECT_NEAR(placed(scene, 1).velocity[0].x(), 1 / ((5.0 / 9) / 90 + (4.0 / 9) / 15), 1e-12);
+  for (const double t : {0.3, 0.8, 1.0, 1.7, 2.9}) {
+    const BodyTable at = placed(scene, t);
+    EXPECT_NEAR(at.spin[0].z(), at.velocity[0].x() * pi / 180, 1e-13);
+    EXPECT_NEAR(2 * std::atan2(at.orientation[0].z(), at.orientation[0].w()), at.position[0].x() * pi / 180,
+                1e-13);
+  }
+}
+
+/// The margins of prescribed bodies hold what they travel in a step, from rest too.
+TEST(Prescribed, MarginsKnowHowFastTheyGetFaster) {
+  const Scene scene = scene_of(materials + R"(
+time: {end: 1, step: 0.02}
+bodies:
+  - {box: {size: 0.1}, motion: {oscillate: {displacement: [0, 0, 1], frequency: 2, phase: 1.5707963267948966}}, material: a}
+  - {box: {size: [2, 0.1, 0.1]}, motion: {oscillate: {angle: [0, 0, 1], frequency: 2, phase: 1.5707963267948966}}, material: a}
+)");
+  Bodies<Host> bodies;
+  copy_bodies(bodies, scene.bodies);
+  ResponseParameters parameters;
+  parameters.prescribed_acceleration = prescribed_acceleration(scene);
+  Array<double, Host> margin;
+  contact_margins<Host>(bodies, 0.02, 0, parameters, margin);
+  const double share = 1 - std::cos(4 * pi * 0.02);
+  EXPECT_GT(std::as_const(margin).view()[0], share);
+  EXPECT_GT(std::as_const(margin).view()[1], 2 * std::sin(share / 2));
+  EXPECT_LT(std::as_const(margin).view()[0], 10 * share);
 }
 
 }  // namespace

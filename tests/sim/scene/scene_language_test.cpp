@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include <cmath>
 #include <cstdlib>
 #include <fstream>
 #include <functional>
@@ -134,6 +135,52 @@ TEST(SceneLanguage, EveryKeyReachesTheScene) {
   EXPECT_EQ(scene.checks[1].relative, 0);
   EXPECT_EQ(scene.checks[2].below, 1);
   EXPECT_EQ(scene.checks[2].above, -1);
+}
+
+const std::string moving_scene = R"(format: 1
+time: {end: 6.0, step: 0.002}
+gravity: {vector: [0, 0, -9], spin: [0, 0.5, 0]}
+materials: {glass: {density: 2500}}
+bodies:
+  - {sphere: {radius: 1}, at: [2, 0, 0], motion: {spin: [0, 0, 1], about: [0, 0, 0], oscillate: {displacement: [0, 0, 1], angle: [0, 0, 2], frequency: 0.5, phase: 1}}, material: glass}
+  - {box: {size: 1}, rotate: {axis: [0, 0, 1], degrees: 90}, motion: {keyframes: [{at: 0.5, position: [0, 9, 0]}, {at: 2, position: [1, 9, 0]}]}, material: glass}
+  - {box: {size: 1}, motion: {keyframes: [{at: 0, position: [0, 18, 0], orientation: [2, 0, 0, 0]}, {at: 1, position: [0, 18, 0], rotate: {axis: [1, 0, 0], radians: 1}}]}, material: glass}
+  - {box: {size: 1}, at: [0, 0, 9], repeat: {count: [2, 1, 1], spacing: [3, 0, 0]}, mass: 4, servo: {axis: [0, 3, 4], force: -5}, material: glass}
+render: false
+)";
+
+TEST(SceneLanguage, MotionsServosAndTurningGravityReachTheScene) {
+  const Scene scene = parse(moving_scene);
+  EXPECT_EQ(scene.gravity, Vec3(0, 0, -9));
+  ASSERT_TRUE(scene.gravity_turn);
+  EXPECT_EQ(scene.gravity_turn->spin, Vec3(0, 0.5, 0));
+  ASSERT_EQ(scene.motions.size(), 3u);
+  const Oscillation& oscillation = scene.motions[0].oscillate.value();
+  EXPECT_EQ(oscillation.displacement, Vec3(0, 0, 1));
+  EXPECT_EQ(oscillation.angle, Vec3(0, 0, 2));
+  EXPECT_EQ(oscillation.frequency, 0.5);
+  EXPECT_EQ(oscillation.phase, 1);
+  const double rate = pi * std::cos(1.0);
+  EXPECT_LT((scene.bodies.spin[0] - Vec3(0, 0, 1 + 2 * rate)).norm(), 1e-14);
+  EXPECT_LT((scene.bodies.velocity[0] - Vec3(0, 2 * (1 + 2 * rate), rate)).norm(), 1e-14);
+  EXPECT_EQ(scene.motions[1].keyframes[1].at, 2);
+  EXPECT_FALSE(scene.motions[1].keyframes[1].orientation);
+  EXPECT_EQ(scene.bodies.position[1], Vec3(0, 9, 0));
+  EXPECT_NEAR(scene.bodies.orientation[1].z(), std::sqrt(0.5), 1e-15);
+  EXPECT_EQ(scene.motions[2].keyframes[0].orientation->w(), 1);
+  EXPECT_NEAR(scene.motions[2].keyframes[1].orientation->x(), std::sin(0.5), 1e-15);
+  ASSERT_EQ(scene.servos.size(), 2u);
+  EXPECT_EQ(scene.servos[1].body, 4);
+  EXPECT_LT((scene.servos[1].axis - Vec3(0, 0.6, 0.8)).norm(), 1e-15);
+  EXPECT_EQ(scene.servos[1].force, -5);
+  EXPECT_EQ(scene.bodies.mobility[4], Mobility::free);
+  EXPECT_EQ(scene.bodies.inverse_mass[4], 0.25);
+  EXPECT_EQ(scene.bodies.inverse_inertia[4], Vec3(0, 0, 0));
+  const Scene again = parse(scene.resolved);
+  EXPECT_EQ(again.resolved, scene.resolved);
+  EXPECT_EQ(hash_of(again.bodies), hash_of(scene.bodies));
+  EXPECT_EQ(again.motions[2].keyframes[1].orientation->coeffs(),
+            scene.motions[2].keyframes[1].orientation->coeffs());
 }
 
 TEST(SceneLanguage, AbsentKeysTakeTheirDefaults) {
