@@ -82,7 +82,7 @@ TEST(FilmLook, APeriodicSpaceIsItsCellAndWhatSticksOutAtBothEnds) {
       "  - {sphere: {radius: 0.1}, name: a, at: [0.95, 5.5, 0], material: a}\n"
       "  - {sphere: {radius: 0.1}, name: b, at: [-4.851, 1.5, 0], material: a}\n"
       "  - {sphere: {radius: 0.1}, name: c, at: [0.96, 1.03, 0], fixed: true, material: a}\n"
-      "forces: [{on: a, force: [1, 0, 0]}, {on: b, force: [-1, 0, 0]}]\n"
+      "forces: [{on: a, force: [100, 0, 0]}, {on: b, force: [-100, 0, 0]}]\n"
       "render: {color: force, overlay: [forces, pairs]}\n",
       "test.yaml");
   Simulation simulation(scene);
@@ -96,7 +96,7 @@ TEST(FilmLook, APeriodicSpaceIsItsCellAndWhatSticksOutAtBothEnds) {
   for (std::size_t k = 0; k < expected.size(); ++k)
     EXPECT_LT((position[k + 1] - expected[k]).norm(), 1e-3) << k;
   ASSERT_EQ(frame.force.size(), position.size());
-  EXPECT_NEAR(frame.force[4], 1, 1e-6) << "an image bears what its body bears";
+  EXPECT_NEAR(frame.force[4], 100, 1e-4) << "an image bears what its body bears";
   ASSERT_EQ(frame.lines.size(), 2u) << "a pair, and its force";
   for (const render::Line& line : frame.lines) EXPECT_NEAR((line.to - line.from).norm(), 0.2, 2e-3);
 }
