@@ -13,12 +13,17 @@ struct ComputeBounds {
   ConstView<Quat> orientation;
   ConstView<Vec3> size;
   ConstView<double> margin;
+  Period period;
   Vec3 origin;
   View<Aabb> bounds;
   SCREE_HD void operator()(std::int64_t i) const {
-    bounds[i] = mobility[i] == Mobility::absent
-                    ? absent_bounds()
-                    : bounds_of({shape[i], position[i], orientation[i], size[i]}, margin[i], origin);
+    if (mobility[i] == Mobility::absent) {
+      bounds[i] = absent_bounds();
+      return;
+    }
+    BodyGeometry body{shape[i], position[i], orientation[i], size[i]};
+    period.wrap(body.position);
+    bounds[i] = bounds_of(body, margin[i], origin);
   }
 };
 
@@ -29,7 +34,7 @@ void compute_bounds(const ConstBodyView& bodies, ConstView<double> margin, const
                     View<Aabb> bounds) {
   parallel::for_each<Space>("broadphase.bounds", bodies.count(),
                             ComputeBounds{bodies.shape, bodies.mobility, bodies.position, bodies.orientation,
-                                          bodies.size, margin, origin, bounds});
+                                          bodies.size, margin, bodies.period, origin, bounds});
 }
 
 #define SCREE_INSTANTIATE(Space) \

@@ -5,6 +5,7 @@
 #include "core/archive.hpp"
 #include "core/array.hpp"
 #include "core/math.hpp"
+#include "core/period.hpp"
 #include "scree/body.hpp"
 
 #include <cstdint>
@@ -34,6 +35,8 @@ struct BodyFields {
   Container<Mobility> mobility;
   Container<std::int32_t> material;  ///< index into the scene's materials
   Container<std::int32_t> id;        ///< the body's number in the scene; stays when the arrays are permuted
+
+  Period period = {};  ///< of the space that they are in; no field of theirs
 
   std::int64_t count() const { return static_cast<std::int64_t>(position.size()); }
   void archive(Archive& archive);  ///< of as many as there are
@@ -93,19 +96,22 @@ template <template <class> class Container>
 BodyView view_of(BodyFields<Container>& bodies) {
   BodyView views;
   for_each_field([](const char*, auto& v, auto& field) { v = field.view(); }, views, bodies);
+  views.period = bodies.period;
   return views;
 }
 template <template <class> class Container>
 ConstBodyView view_of(const BodyFields<Container>& bodies) {
   ConstBodyView views;
   for_each_field([](const char*, auto& v, const auto& field) { v = field.view(); }, views, bodies);
+  views.period = bodies.period;
   return views;
 }
 
-/// Every field of `to` becomes that of `from`; the two may live in different spaces.
+/// Every field of `to` becomes that of `from`, and so does the period; the two may live in different spaces.
 template <template <class> class To, template <class> class From>
 void copy_bodies(BodyFields<To>& to, const BodyFields<From>& from) {
   for_each_field([](const char*, auto& t, const auto& f) { copy(t, f); }, to, from);
+  to.period = from.period;
 }
 
 /// Moves every field into the order given: element k becomes the old element order[k].

@@ -69,7 +69,7 @@ struct CandidateKey {
   SCREE_HD bool are_far(std::int32_t i, std::int32_t j) const {
     if (is_boundary(bodies.shape[i])) return is_within(i, j, reach(j) + margin[i]);
     if (is_boundary(bodies.shape[j])) return is_within(j, i, reach(i) + margin[j]);
-    return are_far_apart(bodies.position[i], bodies.position[j], reach(i) + reach(j));
+    return are_far_apart(bodies.period.nearest(bodies.position[j] - bodies.position[i]), reach(i) + reach(j));
   }
   SCREE_HD double reach(std::int32_t k) const {
     return bounding_radius(bodies.shape[k], bodies.size[k]) + margin[k];

@@ -6,10 +6,11 @@
 
 namespace scree {
 
-/// True if two centres (m) are farther apart than `reach` (m), the sum of the radii around the bodies and of
-/// their margins: they cannot have a contact. Not of boundaries, in which other bodies are.
-SCREE_HD inline bool are_far_apart(const Vec3& a, const Vec3& b, double reach) {
-  return (b - a).squaredNorm() > (1 + tolerance::far_rounding) * reach * reach;
+/// True if two centres, one `offset` from the other (m), are farther apart than `reach` (m), the sum of the
+/// radii around the bodies and of their margins: they cannot have a contact. Not of boundaries, in which
+/// other bodies are.
+SCREE_HD inline bool are_far_apart(const Vec3& offset, double reach) {
+  return offset.squaredNorm() > (1 + tolerance::far_rounding) * reach * reach;
 }
 
 }  // namespace scree

@@ -112,7 +112,8 @@ struct FindContacts {
         table->of[static_cast<int>(bodies.shape[i])][static_cast<int>(bodies.shape[j])];
     const double time = later ? late->time_of(i, j) : 0.0;
     const Solid a = later ? late->solid_at(i, time) : solid(i);
-    const Solid b = later ? late->solid_at(j, time) : solid(j);
+    Solid b = later ? late->solid_at(j, time) : solid(j);
+    bodies.period.bring_near(a.position, b.position);
     const int count = pair_test(a, b, margin[i] + margin[j], out, stats);
     if (checked) crosscheck(a, b, stats.crosscheck);
     for (int m = 0; m < count; ++m) {
@@ -124,7 +125,8 @@ struct FindContacts {
 
   /// True if the spheres around two bodies are too far apart for a contact.
   bool are_far(std::int32_t i, std::int32_t j) const {
-    return are_far_apart(bodies.position[i], bodies.position[j], extent[i] + extent[j]);
+    return are_far_apart(bodies.period.nearest(bodies.position[j] - bodies.position[i]),
+                         extent[i] + extent[j]);
   }
 
   bool is_late(std::int32_t i, std::int32_t j) const {

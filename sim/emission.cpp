@@ -56,6 +56,7 @@ BodyTable Emission::emit(std::int64_t step, const Scene& scene, const BodiesNear
                                       {.from = emitter_.from,
                                        .to = emitter_.to,
                                        .seed = scene.seed,
+                                       .period = scene.bodies.period,
                                        .round = static_cast<std::uint64_t>(step) + 1,
                                        .tries = tries_at_each_step},
                                       obstacles);

@@ -2,8 +2,11 @@
 
 #include "broadphase/bounds.hpp"
 #include "broadphase/grid_plan.hpp"
+#include "broadphase/periodic_images.hpp"
 #include "core/error.hpp"
 #include "core/timing.hpp"
+
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
@@ -24,18 +27,9 @@ class PairFinderIn final : public PairFinder<BodySpace> {
   ConstView<Pair> find(const Bodies<BodySpace>& bodies, const Array<double, BodySpace>& margin) override {
     body_bounds_.resize(bodies.count());
     compute_bounds<BodySpace>(view_of(bodies), margin.view(), origin_, body_bounds_.view());
-    if constexpr (std::is_same_v<Space, BodySpace>) {
-      return broad_phase_->find(std::as_const(body_bounds_).view(), bodies.mobility.view());
-    } else {
-      copy(bounds_, body_bounds_);
-      copy(mobility_, bodies.mobility);
-      const ConstView<Pair> found =
-          broad_phase_->find(std::as_const(bounds_).view(), std::as_const(mobility_).view());
-      pairs_.resize(found.size());
-      copy_bytes<BodySpace, Space>(pairs_.data(), found.data(),
-                                   static_cast<std::size_t>(found.size()) * sizeof(Pair));
-      return std::as_const(pairs_).view();
-    }
+    if (!bodies.period.exists) return find_among(body_bounds_, bodies.mobility);
+    images_.take(std::as_const(body_bounds_).view(), bodies.mobility.view(), bodies.period);
+    return images_.pairs_of(find_among(images_.bounds(), images_.mobility()));
   }
 
   const char* space_name() const override { return Space::name; }
@@ -73,6 +67,22 @@ class PairFinderIn final : public PairFinder<BodySpace> {
   }
 
  private:
+  ConstView<Pair> find_among(const Array<Aabb, BodySpace>& bounds,
+                             const Array<Mobility, BodySpace>& mobility) {
+    if constexpr (std::is_same_v<Space, BodySpace>) {
+      return broad_phase_->find(bounds.view(), mobility.view());
+    } else {
+      copy(bounds_, bounds);
+      copy(mobility_, mobility);
+      const ConstView<Pair> found =
+          broad_phase_->find(std::as_const(bounds_).view(), std::as_const(mobility_).view());
+      pairs_.resize(found.size());
+      copy_bytes<BodySpace, Space>(pairs_.data(), found.data(),
+                                   static_cast<std::size_t>(found.size()) * sizeof(Pair));
+      return std::as_const(pairs_).view();
+    }
+  }
+
   OccupiedCell cell_around(const Aabb& box, const std::vector<GridLevel>& levels, int number) const {
     const GridLevel& level = levels[static_cast<std::size_t>(number)];
     OccupiedCell cell{number, Vec3::Zero(), level.cell};
@@ -86,11 +96,25 @@ class PairFinderIn final : public PairFinder<BodySpace> {
   std::unique_ptr<BroadPhase<Space>> broad_phase_;
   Vec3 origin_;
   Array<Aabb, BodySpace> body_bounds_;
+  PeriodicImages<BodySpace> images_;
   // On their way to the space and back, where it is another.
   Array<Aabb, Space> bounds_;
   Array<Mobility, Space> mobility_;
   Array<Pair, BodySpace> pairs_;
 };
+
+/// Throws RunError where bodies look so far for contacts that two may meet through two images: only the
+/// nearest would be seen.
+template <class Space>
+void require_one_image(const Period& period, const Array<double, Space>& contact_margin) {
+  if (!period.exists) return;
+  const double margin = largest_margin<Space>(contact_margin);
+  if (margin <= period.most_margin) return;
+  throw RunError(fmt::format(
+      "a body may travel {:.3g} m within a substep, but in this period no more than {:.3g} m can be looked "
+      "over without meeting a body through two of its images; try a smaller time.step or a longer period",
+      margin, period.most_margin));
+}
 
 /// Picks Device only where the build has it: the last of the spaces is Device there, Host elsewhere.
 template <class First, class... Rest>
@@ -120,6 +144,7 @@ ConstView<Pair> KeptPairs<Space>::make(const Bodies<Space>& bodies,
                                        const Array<double, Space>& contact_margin, double reach,
                                        const ResponseParameters& parameters) {
   const timing::Region region("broadphase");
+  require_one_image<Space>(bodies.period, contact_margin);
   boxes_.put_around(bodies, reach, parameters, contact_margin);
   const ConstView<Pair> pcs = finder_->find(bodies, boxes_.margin());
   pcs_size_ = pcs.size();

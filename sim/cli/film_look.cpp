@@ -1,5 +1,6 @@
 #include "sim/cli/film_look.hpp"
 
+#include "sim/cli/periodic_cell.hpp"
 #include "sim/record/contact_writer.hpp"
 #include "sim/scene/courses.hpp"
 
@@ -42,6 +43,7 @@ render::Camera still_camera(const Scene& scene) {
   if (camera.from) return {*camera.from, *camera.to, render::up_of(scene.gravity), camera.fov};
   Snapshot start;
   start.bodies = scene.bodies;
+  move_into_cell(start.bodies);
   return render::frame_all(start, scene.gravity,
                            static_cast<double>(scene.render.width) / scene.render.height, camera.fov);
 }
@@ -122,7 +124,8 @@ void append_forces(double widest, std::vector<ContactForce> contacts, render::Fr
   const auto strength = [](const ContactForce& c) { return c.force.norm(); };
   std::ranges::stable_sort(contacts, {}, strength);
   const BodyTable& bodies = frame.snapshot.bodies;
-  for (const ContactForce& c : contacts) {
+  for (ContactForce& c : contacts) {
+    bodies.period.wrap(c.point);
     const auto width = static_cast<float>(std::min(10 * strength(c) / widest, 10.0));
     if (width < 0.1f) continue;  // cannot be seen
     frame.lines.push_back({.from = contact_end(bodies, c.i, c.point),
@@ -139,8 +142,10 @@ void append_pairs(const std::vector<BodyPair>& pairs, render::Frame& frame) {
     const auto a = static_cast<std::size_t>(i), b = static_cast<std::size_t>(j);
     // The centre of a plane is nowhere in particular.
     if (bodies.shape[a] == Shape::plane || bodies.shape[b] == Shape::plane) continue;
+    Vec3 to = bodies.position[b];
+    bodies.period.bring_near(bodies.position[a], to);
     frame.lines.push_back({.from = bodies.position[a],
-                           .to = bodies.position[b],
+                           .to = to,
                            .width = 1.2f,
                            .color = render::Color(0.10f, 0.12f, 0.16f),
                            .where_hidden = 0.5f});
@@ -163,6 +168,38 @@ void append_cells(const GridOccupancy& grid, render::Frame& frame) {
                                .where_hidden = 0.12f});
       }
     }
+  }
+}
+
+/// Without the images of what sticks out of a periodic space: those come last.
+render::Frame begun_frame(const Scene& scene, const FilmLook& look, Snapshot snapshot,
+                          const std::vector<ContactForce>& contacts) {
+  render::Frame frame;
+  frame.snapshot = std::move(snapshot);
+  move_into_cell(frame.snapshot.bodies);
+  if (scene.render.color == ColorBy::material) {
+    for (const Material& material : scene.materials) frame.kinds.push_back(material.name);
+  }
+  if (!shows_contacts(scene.render)) return frame;
+  frame.force.resize(frame.snapshot.bodies.shape.size());
+  for (const ContactForce& c : contacts) {
+    for (const std::int32_t body : {c.i, c.j}) frame.force[static_cast<std::size_t>(body)] += c.force.norm();
+  }
+  if (has(scene.render, Overlay::forces)) append_forces(look.widest_force, contacts, frame);
+  return frame;
+}
+
+/// What the broad phase knows of the present state.
+void append_broad_phase(const RenderSettings& render, Simulation& simulation, render::Frame& frame) {
+  if (has(render, Overlay::pairs)) append_pairs(simulation.pairs(), frame);
+  if (render.color != ColorBy::level && !has(render, Overlay::grid)) return;
+  GridOccupancy grid = simulation.grid_occupancy();
+  if (has(render, Overlay::grid)) append_cells(grid, frame);
+  if (render.color == ColorBy::level) {
+    for (const double width : grid.width) {
+      frame.kinds.push_back(fmt::format("{}: cells of {}", frame.kinds.size(), render::length_words(width)));
+    }
+    frame.level = std::move(grid.level);
   }
 }
 
@@ -194,17 +231,8 @@ bool shows_broad_phase(const RenderSettings& render) {
 
 render::Frame frame_of(const Scene& scene, const FilmLook& look, Snapshot snapshot,
                        const std::vector<ContactForce>& contacts) {
-  render::Frame frame;
-  frame.snapshot = std::move(snapshot);
-  if (scene.render.color == ColorBy::material) {
-    for (const Material& material : scene.materials) frame.kinds.push_back(material.name);
-  }
-  if (!shows_contacts(scene.render)) return frame;
-  frame.force.resize(frame.snapshot.bodies.shape.size());
-  for (const ContactForce& c : contacts) {
-    for (const std::int32_t body : {c.i, c.j}) frame.force[static_cast<std::size_t>(body)] += c.force.norm();
-  }
-  if (has(scene.render, Overlay::forces)) append_forces(look.widest_force, contacts, frame);
+  render::Frame frame = begun_frame(scene, look, std::move(snapshot), contacts);
+  append_images(frame);
   return frame;
 }
 
@@ -213,18 +241,10 @@ render::Frame frame_of(const Scene& scene, const FilmLook& look, Simulation& sim
   Snapshot snapshot;
   simulation.snapshot(snapshot);
   render::Frame frame =
-      frame_of(scene, look, std::move(snapshot),
-               shows_contacts(render) ? simulation.contact_forces() : std::vector<ContactForce>());
-  if (has(render, Overlay::pairs)) append_pairs(simulation.pairs(), frame);
-  if (render.color != ColorBy::level && !has(render, Overlay::grid)) return frame;
-  GridOccupancy grid = simulation.grid_occupancy();
-  if (has(render, Overlay::grid)) append_cells(grid, frame);
-  if (render.color == ColorBy::level) {
-    for (const double width : grid.width) {
-      frame.kinds.push_back(fmt::format("{}: cells of {}", frame.kinds.size(), render::length_words(width)));
-    }
-    frame.level = std::move(grid.level);
-  }
+      begun_frame(scene, look, std::move(snapshot),
+                  shows_contacts(render) ? simulation.contact_forces() : std::vector<ContactForce>());
+  append_broad_phase(render, simulation, frame);
+  append_images(frame);
   return frame;
 }
 

@@ -31,8 +31,8 @@ FilmLook look_of(const Scene& scene);
 bool shows_contacts(const RenderSettings& render);
 bool shows_broad_phase(const RenderSettings& render);
 
-/// A state as the scene wants it drawn, but for the broad phase; `contacts` are those before it, if pictures
-/// show them.
+/// A state as the scene wants it drawn, of a periodic space the cell, but for the broad phase; `contacts` are
+/// those before it, if pictures show them.
 render::Frame frame_of(const Scene& scene, const FilmLook& look, Snapshot snapshot,
                        const std::vector<ContactForce>& contacts);
 /// The present state as the scene wants it drawn.

@@ -1,6 +1,7 @@
 #include "sim/cli/motion_recorder.hpp"
 
 #include "core/timing.hpp"
+#include "sim/cli/periodic_cell.hpp"
 #include "sim/cli/stopwatch.hpp"
 #include "sim/record/trajectory_reader.hpp"
 
@@ -29,7 +30,9 @@ void MotionRecorder::record(const Simulation& simulation) {
   if (due_.due(simulation.steps()) == 0) return;
   Moment moment;
   simulation.snapshot(moment.snapshot);
+  move_into_cell(moment.snapshot.bodies);
   if (contacts_) moment.contacts = simulation.contact_forces();
+  for (ContactForce& contact : moment.contacts) moment.snapshot.bodies.period.wrap(contact.point);
   const timing::Region region("trajectory.wait");
   worker_.push(std::move(moment));
 }

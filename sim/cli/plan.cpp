@@ -15,6 +15,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <string>
+#include <vector>
 
 namespace scree::cli {
 
@@ -84,6 +86,22 @@ void print_motion(const Scene& scene) {
   }
   if (!scene.servos.empty())
     print_row("servos", fmt::format("{} that hold a force: steps are taken on Host", scene.servos.size()));
+}
+
+/// The cell, and how fast bodies may be in it: faster ones cost smaller substeps, or fail.
+void print_period(const Scene& scene) {
+  const Period& period = scene.bodies.period;
+  if (!period.exists) return;
+  std::vector<std::string> axes;
+  for (int a = 0; a < 3; ++a) {
+    if (!period.is_along(a)) continue;
+    axes.push_back(
+        fmt::format("{}: {:.6g} m to {:.6g} m", "xyz"[a], period.low[a], period.low[a] + period.length[a]));
+  }
+  print_row("periodic", fmt::format("{}", fmt::join(axes, ", ")));
+  const double h = scene.time.step / scene.time.substeps.value_or(1);
+  print_row("", fmt::format("no image is missed up to {:.3g} m/s in a substep of {:.3g} s",
+                            period.most_margin / (tolerance::travel_factor * h), h));
 }
 
 /// Past these a run goes on, but a newcomer should know what to expect of it. Contacts reach as far as bodies
@@ -258,6 +276,7 @@ int plan(const PlanArguments& arguments) {
   print_row("scene", fmt::format("{} ({}), seed {}", scene.name, scene.source.string(), scene.seed));
   print_bodies(scene);
   print_emitters(scene);
+  print_period(scene);
   const std::string substeps = scene.time.substeps
                                    ? std::to_string(*scene.time.substeps)
                                    : fmt::format("1 to {}, as overlaps ask", tolerance::most_substeps);

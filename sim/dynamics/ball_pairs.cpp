@@ -53,10 +53,11 @@ struct BallPairs::Look {
   const lanes::Triple* up;
   const lanes::Two* pairs;
   std::int64_t first_plane;
+  const Period* period;
   View<std::uint64_t> looks;
   void operator()(std::int64_t look) const {
     const std::int64_t first = look * lanes::look;
-    looks[look] = first < first_plane ? lanes::kernels().touch_balls(reach, pairs + first)
+    looks[look] = first < first_plane ? lanes::kernels().touch_balls(reach, pairs + first, period)
                                       : lanes::kernels().touch_planes(reach, up, pairs + first);
   }
 };
@@ -164,7 +165,8 @@ void BallPairs::find(const ConstBodyView& bodies, ConstView<double> margin, cons
   parallel::for_each<Host>("balls.reach", reach_.size(),
                            SetReach{bodies, margin, late, reach_.view(), up_.view()});
   parallel::for_each<Host>("balls.look", looks_.size(),
-                           Look{reach_.data(), up_.data(), pairs_.data(), first_plane_, looks_.view()});
+                           Look{reach_.data(), up_.data(), pairs_.data(), first_plane_,
+                                bodies.period.exists ? &bodies.period : nullptr, looks_.view()});
   for (std::int64_t look = 0; look < looks_.size(); ++look) {
     for (std::uint64_t left = looks_.view()[look]; left != 0; left &= left - 1) {
       const auto k = static_cast<std::int32_t>(look * lanes::look + std::countr_zero(left));
@@ -267,6 +269,7 @@ struct BallPairs::LoadBall {
 
 lanes::BallSource BallPairs::source(const BodyView& bodies, double step,
                                     const ResponseParameters& parameters) {
+  period_ = bodies.period;
   balls_.resize(bodies.count() + 1);
   inverse_inertia_.resize(bodies.count() + 1);
   kick_.resize(bodies.count() + 1);
@@ -279,7 +282,8 @@ lanes::BallSource BallPairs::source(const BodyView& bodies, double step,
           .kick = kick_.data(),
           .forces = parameters.acceleration.size() > 0,
           .step = step,
-          .noise = 0};
+          .noise = 0,
+          .period = bodies.period.exists ? &period_ : nullptr};
 }
 
 }  // namespace scree

@@ -91,6 +91,7 @@ class BallPairs {
   std::int64_t tested_ = 0;       // candidates that are somebody
   std::int64_t first_plane_ = 0;  // before it pairs of two balls, then of a ball and a plane
   std::int32_t nobody_ = 0;
+  Period period_;                       // of the space of source()
   Array<std::int64_t, Host> begin_[2];  // of either kind, those of each first body
   std::vector<Pair> others_, with_late_;
   // Of each body, and of nobody.

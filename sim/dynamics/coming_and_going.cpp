@@ -19,7 +19,10 @@ struct IsFreeAnd {
   Vec3 high;
   bool inside;
   SCREE_HD int operator()(std::int64_t k) const {
-    return bodies.mobility[k] == Mobility::free && is_in(bodies.position[k], low, high) == inside ? 1 : 0;
+    if (bodies.mobility[k] != Mobility::free) return 0;
+    Vec3 x = bodies.position[k];
+    bodies.period.bring_near(0.5 * (low + high), x);
+    return is_in(x, low, high) == inside ? 1 : 0;
   }
 };
 
@@ -30,7 +33,8 @@ struct IsNear {
   SCREE_HD int operator()(std::int64_t k) const {
     if (bodies.mobility[k] == Mobility::absent) return 0;
     if (is_boundary(bodies.shape[k])) return 1;
-    const Vec3& x = bodies.position[k];
+    Vec3 x = bodies.position[k];
+    bodies.period.bring_near(0.5 * (low + high), x);
     const double distance = (x - x.cwiseMax(low).cwiseMin(high)).norm();
     return distance <= bounding_radius(bodies.shape[k], bodies.size[k]) ? 1 : 0;
   }
@@ -87,6 +91,7 @@ template <class Space>
 BodyTable table_of(const Array<std::int32_t, Space>& ids, const Bodies<Space>& bodies) {
   Bodies<Space> those;
   for_each_field([&ids](const char*, auto& to, const auto& from) { gather(from, ids, to); }, those, bodies);
+  those.period = bodies.period;
   BodyTable on_host;
   copy_bodies(on_host, those);
   return on_host;

@@ -50,8 +50,10 @@ SCREE_HD bool would_push_apart(const StruckFlights& struck, const Header& m, con
     may_close = may_close || (gap > 0 && (gap > size || gap < left * fastest));
   }
   if (!may_close) return false;
-  const BodyInstant i = struck.at(m.i, seen);
-  const BodyInstant j = struck.at(m.j, seen);
+  BodyInstant i = struck.at(m.i, seen);
+  BodyInstant j = struck.at(m.j, seen);
+  stage.bodies.period.bring_near(points[0].position, i.solid.position);
+  stage.bodies.period.bring_near(points[0].position, j.solid.position);
   bool pushes = false;
   for (int k = 0; k < m.count; ++k) {
     const double closing = closing_speed(m.normal, points[k].position, i, j);

@@ -27,8 +27,10 @@ struct PrepareRows {
       const Vec3& point = points[k].position;
       const SolverBody& i = stage.solver[m.i];
       const SolverBody& j = stage.solver[m.j];
-      const Vec3 arm_i = point - (bodies.position[m.i] + contact.lead * i.velocity);
-      const Vec3 arm_j = point - (bodies.position[m.j] + contact.lead * j.velocity);
+      Vec3 arm_i = point - (bodies.position[m.i] + contact.lead * i.velocity);
+      Vec3 arm_j = point - (bodies.position[m.j] + contact.lead * j.velocity);
+      bodies.period.make_nearest(arm_i);
+      bodies.period.make_nearest(arm_j);
       row = contact.balls ? make_ball_row(arm_i, arm_j, points[k].gap, i, j)
                           : row_at(arm_i, arm_j, points[k].gap);
       row.impulse = impulse;

@@ -26,7 +26,8 @@ struct PositionCorrector::Stage {
     if (c.lead == 0) {
       return 0.5 * step * (c.normal.dot(row.relative_velocity(i, j)) + 0.25 * step * row.bend);
     }
-    const Vec3 moved = bodies.position[c.j] - bodies.position[c.i] + row.arm_j - row.arm_i;
+    const Vec3 apart = bodies.period.nearest(bodies.position[c.j] - bodies.position[c.i]);
+    const Vec3 moved = apart + row.arm_j - row.arm_i;
     const Vec3 turned = j.spin.cross(row.arm_j) - i.spin.cross(row.arm_i);
     return c.normal.dot(moved + (0.5 * step - c.lead) * turned);
   }

@@ -132,6 +132,7 @@ struct FlightStage {
   /// Two bodies until the end of the substep; no meeting of theirs counts yet.
   SCREE_HD PairFlight pair_of(std::int32_t i, std::int32_t j, double until) const {
     PairFlight pair{.i = flight(i), .j = flight(j), .until = until, .slowest = {}};
+    bodies.period.bring_near(pair.i.position, pair.j.position);
     for (double& slowest : pair.slowest) slowest = HUGE_VAL;
     return pair;
   }
@@ -215,7 +216,7 @@ struct FlightStage {
   /// True if two bodies do not come near one another in the substep.
   SCREE_HD bool are_far(std::int32_t i, std::int32_t j) const {
     const double near = extent[i] + extent[j];
-    const Vec3 offset = bodies.position[j] - bodies.position[i];
+    const Vec3 offset = bodies.period.nearest(bodies.position[j] - bodies.position[i]);
     if (near < HUGE_VAL) return offset.squaredNorm() > near * near;
     const bool boundary_i = is_boundary(bodies.shape[i]);
     const std::int32_t boundary = boundary_i ? i : j;

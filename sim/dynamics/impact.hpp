@@ -172,6 +172,7 @@ SCREE_HD bool solve_impact(const FlightStage& stage, std::int32_t i, std::int32_
   out.time = s;
   out.flight_i = stage.flight(i);
   out.flight_j = stage.flight(j);
+  stage.bodies.period.bring_near(out.flight_i.position, out.flight_j.position);
   out.at_i = instant_of(out.flight_i, s);
   out.at_j = instant_of(out.flight_j, s);
   const double touching =

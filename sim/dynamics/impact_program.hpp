@@ -386,7 +386,8 @@ struct ImpactProgram {
     const double near = bounding_radius(flight.shape, flight.size) +
                         bounding_radius(others.shape, others.size) +
                         (driven + stage.top_speed[other]) * (until - from);
-    return (others.position_at(from) - flight.position_at(from)).squaredNorm() <= near * near;
+    const Vec3 offset = stage.bodies.period.nearest(others.position_at(from) - flight.position_at(from));
+    return offset.squaredNorm() <= near * near;
   }
 
   /// The speeds that volleys have to do with.

@@ -35,7 +35,9 @@ struct MarkPairs {
       return;
     }
     Manifold found[max_pair_manifolds];
-    find_pair_contacts(bodies.shape[i], solid(i), bodies.shape[j], solid(j), HUGE_VAL, found);
+    Solid of_j = solid(j);
+    bodies.period.bring_near(bodies.position[i], of_j.position);
+    find_pair_contacts(bodies.shape[i], solid(i), bodies.shape[j], of_j, HUGE_VAL, found);
     found[0].i = i;
     found[0].j = j;
     const double size = struck.stage.terms.laws.smaller_size(i, j);
@@ -50,7 +52,7 @@ struct MarkPairs {
     Vec3 w = bodies.velocity[j] - bodies.velocity[i];
     if (stage.is_free(i)) w -= stage.terms.step * stage.parameters.acceleration_of(i);
     if (stage.is_free(j)) w += stage.terms.step * stage.parameters.acceleration_of(j);
-    return w.dot(bodies.position[j] - bodies.position[i]) < 0;
+    return w.dot(bodies.period.nearest(bodies.position[j] - bodies.position[i])) < 0;
   }
   Solid solid(std::int32_t k) const {
     const BodyView& bodies = struck.stage.bodies;

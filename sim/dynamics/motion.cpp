@@ -182,6 +182,11 @@ struct IsOutWithMargin {
   }
 };
 
+struct LoadMargin {
+  ConstView<double> margin;
+  SCREE_HD double operator()(std::int64_t k) const { return margin[k]; }
+};
+
 struct AddTravel {
   Travel travel;
   View<double> margin;
@@ -195,11 +200,13 @@ struct RaiseMargin {
   ConstView<double> wanted;
   View<double> margin;
   double life;
+  double most;  ///< but for what is wanted (m)
   SCREE_HD void operator()(std::int64_t k) const {
     if (bodies.mobility[k] == Mobility::fixed || is_boundary(bodies.shape[k])) return;
     const double size = smallest_size(bodies.shape[k], bodies.size[k]);
     const double travel = tolerance::contact_slack * size + life * surface_speed(bodies, k);
-    margin[k] = fmax(margin[k], fmax(wanted[k] + tolerance::pair_skin * size, travel));
+    const double ample = fmax(margin[k], fmax(wanted[k] + tolerance::pair_skin * size, travel));
+    margin[k] = fmax(wanted[k], fmin(ample, most));
   }
 };
 
@@ -298,6 +305,11 @@ void contact_margins(const Bodies<Space>& bodies, double dt, double slack,
 }
 
 template <class Space>
+double largest_margin(const Array<double, Space>& margin) {
+  return parallel::max<double, Space>("motion.margins", margin.size(), LoadMargin{margin.view()}, 0.0);
+}
+
+template <class Space>
 void FatBoxes<Space>::put_around(const Bodies<Space>& bodies, double dt, const ResponseParameters& parameters,
                                  const Array<double, Space>& contact_margin) {
   const auto leaving =
@@ -307,8 +319,9 @@ void FatBoxes<Space>::put_around(const Bodies<Space>& bodies, double dt, const R
   const double life =
       rate * longest > tolerance::pair_travel ? std::max(dt, tolerance::pair_travel / rate) : longest;
   contact_margins(bodies, dt, tolerance::contact_slack + tolerance::pair_skin, parameters, margin_);
-  parallel::for_each<Space>("motion.margins", bodies.count(),
-                            RaiseMargin{view_of(bodies), contact_margin.view(), margin_.view(), life});
+  parallel::for_each<Space>(
+      "motion.margins", bodies.count(),
+      RaiseMargin{view_of(bodies), contact_margin.view(), margin_.view(), life, bodies.period.most_margin});
   copy(position_, bodies.position);
   copy(orientation_, bodies.orientation);
 }
@@ -373,6 +386,7 @@ double largest_speed(const Bodies<Space>& bodies) {
   template double advance<Space>(Bodies<Space>&, double, const ResponseParameters&);                \
   template void contact_margins(const Bodies<Space>&, double, double, const ResponseParameters&,    \
                                 Array<double, Space>&);                                             \
+  template double largest_margin<Space>(const Array<double, Space>&);                               \
   template class FatBoxes<Space>;                                                                   \
   template double work_of_forces(const Bodies<Space>&, const Array<Vec3, Space>&, ConstView<Vec3>); \
   template void load_solver_bodies(const Bodies<Space>&, Array<SolverBody, Space>&);                \

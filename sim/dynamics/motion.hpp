@@ -20,12 +20,16 @@ template <class Space>
 void contact_margins(const Bodies<Space>& bodies, double dt, double slack,
                      const ResponseParameters& parameters, Array<double, Space>& margin);
 
+/// The largest of them, and at least 0 (m).
+template <class Space>
+double largest_margin(const Array<double, Space>& margin);
+
 /// Boxes around the bodies, fat enough that pairs found with them last while nobody moves far.
 template <class Space>
 class FatBoxes {
  public:
-  /// Around the bodies where they are, with room for their travel within dt (s), and for contacts that reach
-  /// as far as given (m).
+  /// Around the bodies where they are, with room for their travel within dt (s), as far as their period lets
+  /// them look, and for contacts that reach as far as given (m).
   void put_around(const Bodies<Space>& bodies, double dt, const ResponseParameters& parameters,
                   const Array<double, Space>& contact_margin);
   /// Whether every body, wherever it is now, and with contacts that reach as far as given (m), is still in

@@ -13,7 +13,8 @@ struct BodyContents {
   Vec3 high;
   SCREE_HD RegionContents operator()(std::int64_t k) const {
     if (bodies.mobility[k] != Mobility::free) return {};
-    const Vec3& x = bodies.position[k];
+    Vec3 x = bodies.position[k];
+    bodies.period.bring_near(0.5 * (low + high), x);
     if ((x.array() < low.array()).any() || (x.array() > high.array()).any()) return {};
     return {1, volume_of(bodies.shape[k], bodies.size[k]), 1.0 / bodies.inverse_mass[k]};
   }

@@ -63,7 +63,10 @@ constexpr std::int64_t expected_ends = 8;
 Vec3 contact_end(const BodyTable& bodies, std::int32_t body, const Vec3& point) {
   const auto k = static_cast<std::size_t>(body);
   const bool stays = bodies.mobility[k] == Mobility::fixed || is_boundary(bodies.shape[k]);
-  return stays ? point : bodies.position[k];
+  if (stays) return point;
+  Vec3 centre = bodies.position[k];
+  bodies.period.bring_near(point, centre);
+  return centre;
 }
 
 double contact_bytes(const Scene& scene) {

@@ -18,8 +18,9 @@ namespace scree {
 /// In the folder of a run.
 inline constexpr const char* contacts_name = "contacts.vtkhdf";
 
-/// Where the line of a contact ends at one of its bodies (m): at its centre, or at the contact if the body
-/// does not move, for the centre of a floor is nowhere near.
+/// Where the line of a contact ends at one of its bodies (m): at its centre, in a periodic space that of the
+/// image that touches there, or at the contact if the body does not move, for the centre of a floor is
+/// nowhere near.
 Vec3 contact_end(const BodyTable& bodies, std::int32_t body, const Vec3& point);
 
 /// What a contact takes in a frame, before it is made smaller (bytes).

@@ -18,6 +18,7 @@ namespace scree::resident {
 inline ConstBodyView read_only(const BodyView& bodies) {
   ConstBodyView views;
   for_each_field([](const char*, auto& to, const auto& from) { to = from; }, views, bodies);
+  views.period = bodies.period;
   return views;
 }
 

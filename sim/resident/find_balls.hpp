@@ -20,9 +20,16 @@ SCREE_HD inline bool meet(const FindStage<Real>& stage, const SlotBodies<Real>& 
     return Solid{stage.centre(body, k, lead), Quat::Identity(), Vec3(body.size, 0, 0)};
   };
   out.part = 0;
-  if (ball_a && ball_b) return sphere_sphere(ball(at.a, at.slot.i), ball(at.b, at.slot.j), at.margin(), out);
+  const Period& period = stage.bodies.period;
+  if (ball_a && ball_b) {
+    const Solid a = ball(at.a, at.slot.i);
+    Solid b = ball(at.b, at.slot.j);
+    period.bring_near(a.position, b.position);
+    return sphere_sphere(a, b, at.margin(), out);
+  }
   const Solid of_ball = ball_a ? ball(at.a, at.slot.i) : ball(at.b, at.slot.j);
-  const Solid other = stage.solid(ball_a ? at.slot.j : at.slot.i, lead);
+  Solid other = stage.solid(ball_a ? at.slot.j : at.slot.i, lead);
+  period.bring_near(of_ball.position, other.position);
   const Shape shape = ball_a ? at.b.shape : at.a.shape;
   bool found = false;
   if (shape == Shape::plane) {
@@ -110,7 +117,8 @@ struct FindBalls {
     record.normal = m.normal;
     record.gap = m.gap;
     const auto arm = [&](const MidBody<Real>& body, std::int32_t k) {
-      return body.is_free() ? m.normal.dot(m.position - stage.centre(body, k, record.lead)) : 0.0;
+      if (!body.is_free()) return 0.0;
+      return m.normal.dot(stage.bodies.period.nearest(m.position - stage.centre(body, k, record.lead)));
     };
     record.arm_i = arm(at.a, slot.i);
     record.arm_j = arm(at.b, slot.j);

@@ -15,7 +15,7 @@ SCREE_HD inline bool are_far(const FindStage<Real>& stage, const SlotBodies<Real
   if (is_boundary(at.a.shape) || is_boundary(at.b.shape)) return false;
   const double reach = bounding_radius(at.a.shape, stage.bodies.size[at.slot.i]) +
                        bounding_radius(at.b.shape, stage.bodies.size[at.slot.j]) + at.margin();
-  return are_far_apart(at.a.position, at.b.position, reach);
+  return are_far_apart(stage.bodies.period.nearest(at.b.position - at.a.position), reach);
 }
 
 /// What is rare must take no registers from the rest, and so it is called.
@@ -23,8 +23,10 @@ template <class Real>
 [[gnu::noinline]] SCREE_HD bool meet_any(const FindStage<Real>& stage, const SlotBodies<Real>& at,
                                          double lead, Manifold& out) {
   Manifold all[max_pair_manifolds];
-  const int count = find_pair_contacts(at.a.shape, stage.solid(at.slot.i, lead), at.b.shape,
-                                       stage.solid(at.slot.j, lead), at.margin(), all);
+  const Solid a = stage.solid(at.slot.i, lead);
+  Solid b = stage.solid(at.slot.j, lead);
+  stage.bodies.period.bring_near(a.position, b.position);
+  const int count = find_pair_contacts(at.a.shape, a, at.b.shape, b, at.margin(), all);
   const auto is_of = [&](Shape shape) { return at.a.shape == shape || at.b.shape == shape; };
   const bool corners = is_of(Shape::tube) && is_of(Shape::box);
   const Manifold* on = manifold_on(at.slot.surface, corners, all, count);
@@ -42,7 +44,8 @@ SCREE_HD inline bool meet_points(const FindStage<Real>& stage, const SlotBodies<
   const bool plane = at.a.shape == Shape::plane || at.b.shape == Shape::plane;
   if (!(box_a && box_b) && !((box_a || box_b) && plane)) return meet_any(stage, at, lead, out);
   const Solid a = stage.solid(at.slot.i, lead);
-  const Solid b = stage.solid(at.slot.j, lead);
+  Solid b = stage.solid(at.slot.j, lead);
+  stage.bodies.period.bring_near(a.position, b.position);
   out.part = 0;
   if (!plane) return box_box(a, b, at.margin(), out);
   const bool found = box_plane(box_a ? a : b, box_a ? b : a, at.margin(), out);
@@ -100,9 +103,8 @@ struct FindPoints {
     for (int p = 0; p < m.count; ++p) {
       const ContactPoint& point = m.points[p];
       RowCoupling coupling;
-      const ContactRow row =
-          make_row(m.normal, point.position - stage.bodies.position[slot.i],
-                   point.position - stage.bodies.position[slot.j], point.gap, i, j, coupling);
+      const ContactRow row = make_row(m.normal, arm_of(slot.i, point.position),
+                                      arm_of(slot.j, point.position), point.gap, i, j, coupling);
       now.feature[p] = point.feature;
       V3<Real> last{};
       for (int q = 0; q < old.count; ++q)
@@ -137,6 +139,9 @@ struct FindPoints {
   SCREE_HD bool may_hold_apart(double gap, double closing, double lead) const {
     return gap > 0 && (lead > 0 || closing * stage.step > tolerance::likely_closing * gap);
   }
+  SCREE_HD Vec3 arm_of(std::int32_t body, const Vec3& point) const {
+    return stage.bodies.period.nearest(point - stage.bodies.position[body]);
+  }
   /// Before the kick.
   SCREE_HD SolverBody solver_body(const MidBody<Real>& body, std::int32_t k, std::int32_t end) const {
     const ConstBodyView& bodies = stage.bodies;
@@ -167,7 +172,7 @@ struct JudgePoints {
     contacts.flags[c] |= flag_flying;
     const Vec3 kick = stage.kick_of(at.b, slot.j) - stage.kick_of(at.a, slot.i);
     const auto velocity_at = [&](std::int32_t body, const Vec3& point) {
-      const Vec3 arm = point - stage.bodies.position[body];
+      const Vec3 arm = stage.bodies.period.nearest(point - stage.bodies.position[body]);
       return Vec3(stage.bodies.velocity[body] + stage.bodies.spin[body].cross(arm));
     };
     for (int p = 0; p < m.count; ++p) {

@@ -70,7 +70,7 @@ struct FindStage {
   /// Of a wall at a point, when a pair is seen (m/s). Rare: what is called takes no registers from the rest.
   [[gnu::noinline]] SCREE_HD V3<Real> wall_velocity(std::int32_t wall, const Vec3& point, double lead) const {
     const Vec3 centre = bodies.position[wall] + lead * bodies.velocity[wall];
-    return v3<Real>(bodies.velocity[wall] + bodies.spin[wall].cross(point - centre));
+    return v3<Real>(bodies.velocity[wall] + bodies.spin[wall].cross(bodies.period.nearest(point - centre)));
   }
   /// Walls move as their points do.
   SCREE_HD void take_wall_points(SlotBodies<Real>& at) const {
@@ -108,7 +108,8 @@ struct FindStage {
   /// What the gap at the end has beside what the velocities after the response open (m): it bends; and a
   /// late contact is told from where its centres will be then, so that where they are now goes off.
   SCREE_HD double opened_by_then(const SlotBodies<Real>& at, const Vec3& n, double bend, double lead) const {
-    if (lead > 0) return -n.dot(centre(at.b, at.slot.j, lead) - centre(at.a, at.slot.i, lead));
+    if (lead > 0)
+      return -n.dot(bodies.period.nearest(centre(at.b, at.slot.j, lead) - centre(at.a, at.slot.i, lead)));
     return 0.125 * step * step * bend;
   }
 

@@ -81,7 +81,8 @@ struct FlyLateBalls {
     const Slot& slot = places[c - c % 256 + contacts.slot[c]];
     const double left = flight.terms.step - fmax(flight.clock[slot.i], flight.clock[slot.j]);
     const Vec3 turned = turning_of(slot.j, slot.end_j) - turning_of(slot.i, slot.end_i);
-    const Vec3 apart = bodies.position[slot.j] - bodies.position[slot.i] + left * turned;
+    const Vec3 apart =
+        bodies.period.nearest(bodies.position[slot.j] - bodies.position[slot.i]) + left * turned;
     contacts.fields.at(C::flown, c) +=
         static_cast<Real>(vec3(contacts.fields.vector(C::normal, c)).dot(apart));
   }
@@ -102,7 +103,7 @@ struct FlyLatePoints {
     if ((contacts.flags[c] & flag_late) == 0) return;
     const Slot& slot = places[c - c % 256 + contacts.slot[c]];
     const Vec3 n = vec3(contacts.fields.vector(C::normal, c));
-    const Vec3 apart = bodies.position[slot.j] - bodies.position[slot.i];
+    const Vec3 apart = bodies.period.nearest(bodies.position[slot.j] - bodies.position[slot.i]);
     const double left = flight.terms.step - fmax(flight.clock[slot.i], flight.clock[slot.j]);
     for (int k = 0; k < contacts.points[c]; ++k) {
       const auto at = point_at(contacts, c, k);

@@ -39,16 +39,18 @@ struct MeasurePair {
   }
   SCREE_HD double depth_of(const Pair& pair) const {
     const Shape a = bodies.shape[pair.i], b = bodies.shape[pair.j];
+    const Vec3 offset = bodies.period.nearest(bodies.position[pair.j] - bodies.position[pair.i]);
     if (a == Shape::sphere && b == Shape::sphere) {
-      const double distance = (bodies.position[pair.j] - bodies.position[pair.i]).norm();
-      return fmax(0.0, bodies.size[pair.i].x() + bodies.size[pair.j].x() - distance);
+      return fmax(0.0, bodies.size[pair.i].x() + bodies.size[pair.j].x() - offset.norm());
     }
     if (!is_boundary(a) && !is_boundary(b)) {
       const double reach = bounding_radius(a, bodies.size[pair.i]) + bounding_radius(b, bodies.size[pair.j]);
-      if ((bodies.position[pair.j] - bodies.position[pair.i]).squaredNorm() > reach * reach) return 0;
+      if (offset.squaredNorm() > reach * reach) return 0;
     }
     Manifold found[max_pair_manifolds];
-    const int count = find_pair_contacts(a, solid(pair.i), b, solid(pair.j), 0.0, found);
+    Solid of_j = solid(pair.j);
+    bodies.period.bring_near(bodies.position[pair.i], of_j.position);
+    const int count = find_pair_contacts(a, solid(pair.i), b, of_j, 0.0, found);
     double depth = 0;
     for (int m = 0; m < count; ++m)
       for (int p = 0; p < found[m].count; ++p) depth = fmax(depth, -found[m].points[p].gap);

@@ -31,10 +31,12 @@ class Builder {
     slots_ =
         body_slots(entry_.bodies, scene.source, {memory_, scene.render.enabled}, grid_, materials_, reader_);
     make_room(scene);
+    if (entry_.periodic) scene.bodies.period = period_of(*entry_.periodic);
     for (const BodySlot& slot : slots_) {
       slot.file ? read_bodies(slot, scene) : make_bodies(slot, scene);
       name_bodies(slot, scene);
     }
+    if (entry_.periodic) fit_bodies(*entry_.periodic, scene.bodies, reader_);
     for (const BodySlot& slot : slots_)
       if (slot.entry->scatter) scatter_bodies(slot, scene);
     find_lifetimes(scene);
@@ -112,8 +114,9 @@ class Builder {
     std::vector<std::int32_t> bodies(static_cast<std::size_t>(slot.bodies.count));
     std::iota(bodies.begin(), bodies.end(), slot.bodies.first);
     const ScatterEntry& box = *slot.entry->scatter;
-    const std::int64_t fitted =
-        scatter(scene.bodies, bodies, {.from = box.from, .to = box.to, .seed = scene.seed}, obstacles);
+    const std::int64_t fitted = scatter(
+        scene.bodies, bodies,
+        {.from = box.from, .to = box.to, .seed = scene.seed, .period = scene.bodies.period}, obstacles);
     if (fitted == slot.bodies.count) return;
     const Reader::Step step(reader_, "bodies");
     const Reader::Step item(reader_, slot.index);

@@ -109,6 +109,24 @@ Codec<World> world_section() {
       check_world);
 }
 
+Codec<PeriodicEntry> periodic_section() {
+  using T = PeriodicEntry;
+  const auto ends = optional(array_of<2>(number(any_value, "m")));
+  return section<T>(
+      "periodic",
+      "A space that repeats: what goes out of the cell at one end comes in at the other, and bodies meet "
+      "through its ends. Positions count on from period to period (a body that went through twice is two "
+      "periods away), and so does potential energy along a periodic axis; regions and pictures see the image "
+      "in the cell. Planes must be parallel to periodic axes. Momentum is conserved; angular momentum about "
+      "the origin is not, in a space that is the same in certain directions alone.",
+      {
+          key<T>("x", &T::x, ends, optionally, "[low, high]: the cell's ends along x"),
+          key<T>("y", &T::y, ends, optionally, "along y"),
+          key<T>("z", &T::z, ends, optionally, "along z"),
+      },
+      check_periodic);
+}
+
 Codec<std::optional<TrajectorySettings>> trajectory_section() {
   using T = TrajectorySettings;
   using Maybe = std::optional<T>;
@@ -277,6 +295,8 @@ const Codec<SceneEntry>& scene_codec() {
                  "laws of pairs of materials"),
           key<T>("bodies", &T::bodies, list_of(body_section(), 1), required, "the bodies"),
           key<T>("forces", &T::forces, list_of(force_section()), optionally, "forces besides gravity"),
+          key<T>("periodic", &T::periodic, optional(periodic_section()), optionally,
+                 "axes along which the space repeats; none if not given"),
           key<T>("world", &T::world, optional(world_section()), optionally,
                  "where bodies are expected to stay; without end if not given"),
           key<T>("regions", &T::regions, named(region_section(), most_names), optionally,
@@ -296,7 +316,10 @@ const Codec<SceneEntry>& scene_codec() {
           key<T>("checks", &T::checks, list_of(check_section()), optionally, "the scene's own test"),
           future<T>("crosscheck", "the run again by other means, compared"),
       },
-      check_precision);
+      [](const T& scene, const Node& node, Reader& reader) {
+        check_precision(scene, node, reader);
+        check_in_period(scene, node, reader);
+      });
   return codec;
 }
 

@@ -128,6 +128,16 @@ struct CheckEntry : Check {
   const Node* node = nullptr;
 };
 
+/// Where the cell of a periodic space begins and ends along each axis that is so (m).
+struct PeriodicEntry {
+  std::optional<std::array<double, 2>> x, y, z;
+  const Node* node = nullptr;
+
+  const std::optional<std::array<double, 2>>& ends(int axis) const {
+    return axis == 0 ? x : axis == 1 ? y : z;
+  }
+};
+
 struct SceneEntry {
   int format = 1;
   std::string name;
@@ -140,6 +150,7 @@ struct SceneEntry {
   std::vector<ContactEntry> contacts;
   std::vector<BodyEntry> bodies;
   std::vector<ForceEntry> forces;
+  std::optional<PeriodicEntry> periodic;
   std::optional<World> world;
   std::vector<Region> regions;
   ResponseSettings response;

@@ -96,6 +96,23 @@ class CellGrid {
   std::vector<Link> links_;
 };
 
+/// Calls f with each shift (m) from the place of a body to one of its images that may touch something within
+/// half a period of `middle`; true if f always is. `reach`: of that body and of what it may touch (m).
+template <class F>
+bool all_images(const Period& period, const Vec3& middle, const Vec3& at, double reach, F&& f) {
+  std::array<int, 3> first{}, last{};
+  for (int k = 0; k < 3; ++k) {
+    if (!period.is_along(k)) continue;
+    first[k] = at[k] - middle[k] > 0.5 * period.length[k] - reach ? -1 : 0;
+    last[k] = at[k] - middle[k] < reach - 0.5 * period.length[k] ? 1 : 0;
+  }
+  for (int z = first[2]; z <= last[2]; ++z)
+    for (int y = first[1]; y <= last[1]; ++y)
+      for (int x = first[0]; x <= last[0]; ++x)
+        if (!f(Vec3(Vec3(x, y, z).cwiseProduct(period.length)))) return false;
+  return true;
+}
+
 /// Whether it is a tube that does not reach into the box, by the bounds of its cylinder: what is outside a
 /// tube passes it by, and so nothing is scattered beside one that does.
 bool is_apart(const BodyTable& bodies, std::size_t tube, const Scattering& box) {
@@ -133,8 +150,13 @@ std::int64_t scatter(BodyTable& bodies, std::vector<std::int32_t>& those, const 
 
   CellGrid grid(how.from, how.to, std::ssize(those));
   std::vector<std::int32_t> walls;
+  const Period& period = how.period;
+  const Vec3 middle = 0.5 * (how.from + how.to);
+  double largest = radius(those.front());
   const auto insert = [&](std::int32_t b) {
-    const Vec3& at = bodies.position[static_cast<std::size_t>(b)];
+    Vec3 at = bodies.position[static_cast<std::size_t>(b)];
+    period.bring_near(middle, at);
+    largest = std::max(largest, radius(b));
     if (!grid.insert(b, at.array() - radius(b), at.array() + radius(b))) walls.push_back(b);
   };
   const double reach = radius(those.front());
@@ -142,10 +164,12 @@ std::int64_t scatter(BodyTable& bodies, std::vector<std::int32_t>& those, const 
     const auto o = static_cast<std::size_t>(b);
     if (is_boundary(bodies.shape[o])) {
       if (!is_apart(bodies, o, how)) walls.push_back(b);
-    } else if ((bodies.position[o].cwiseMax(how.from).cwiseMin(how.to) - bodies.position[o]).norm() <=
-               reach + radius(b)) {
-      insert(b);
+      continue;
     }
+    Vec3 away = bodies.position[o].cwiseMax(how.from).cwiseMin(how.to) - bodies.position[o];
+    for (int k = 0; k < 3; ++k)
+      if (period.is_along(k)) away[k] = 0;
+    if (away.norm() <= reach + radius(b)) insert(b);
   }
 
   for (std::int64_t fitted = 0; fitted < std::ssize(those); ++fitted) {
@@ -153,7 +177,15 @@ std::int64_t scatter(BodyTable& bodies, std::vector<std::int32_t>& those, const 
     const double r = radius(b);
     Vec3& at = bodies.position[static_cast<std::size_t>(b)];
     const auto clear = [&](std::int32_t other) {
-      return distance_to(bodies, static_cast<std::size_t>(other), at) >= r;
+      Vec3 place = at;
+      period.bring_near(bodies.position[static_cast<std::size_t>(other)], place);
+      return distance_to(bodies, static_cast<std::size_t>(other), place) >= r;
+    };
+    const auto all_clear = [&](const Vec3& place) {
+      return std::all_of(walls.begin(), walls.end(), clear) &&
+             all_images(period, middle, place, r + largest, [&](const Vec3& shift) {
+               return grid.all_of((place + shift).array() - r, (place + shift).array() + r, clear);
+             });
     };
     // Places have streams of their own, so that what else is drawn for a body does not move it.
     const auto id = static_cast<std::uint64_t>(bodies.id[static_cast<std::size_t>(b)]);
@@ -161,8 +193,9 @@ std::int64_t scatter(BodyTable& bodies, std::vector<std::int32_t>& those, const 
     bool placed = false;
     for (int tries = 0; tries < how.tries && !placed; ++tries) {
       for (int k = 0; k < 3; ++k) at[k] = random.uniform(how.from[k], how.to[k]);
-      placed = std::all_of(walls.begin(), walls.end(), clear) &&
-               grid.all_of(at.array() - r, at.array() + r, clear);
+      Vec3 place = at;
+      period.bring_near(middle, place);
+      placed = all_clear(place);
     }
     if (!placed) return fitted;
     insert(b);

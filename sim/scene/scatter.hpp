@@ -16,6 +16,7 @@ struct Scattering {
   Vec3 from = Vec3::Zero();  ///< corners (m)
   Vec3 to = Vec3::Zero();
   std::uint64_t seed = 0;
+  Period period = {};       ///< in which bodies keep clear of one another's images too
   std::uint64_t round = 0;  ///< in each of which a body draws other places
   int tries = 2000;         ///< for a body, until it counts as one that does not fit
 };

@@ -2,7 +2,7 @@
 // and the kernels that work on them.
 #pragma once
 
-#include "core/math.hpp"
+#include "core/period.hpp"
 
 #include <cstdint>
 #include <vector>
@@ -159,11 +159,12 @@ struct BallSource {
   // Of each body, and of nobody:
   const Ball* balls;
   const double* inverse_inertia;
-  const Triple* up;    ///< normals of planes
-  const Triple* kick;  ///< what the substep's forces add to the velocity (m/s)
-  bool forces;         ///< whether it differs between free bodies
-  double step;         ///< s
-  double noise;        ///< parting speeds that count as none (m/s)
+  const Triple* up;      ///< normals of planes
+  const Triple* kick;    ///< what the substep's forces add to the velocity (m/s)
+  bool forces;           ///< whether it differs between free bodies
+  double step;           ///< s
+  double noise;          ///< parting speeds that count as none (m/s)
+  const Period* period;  ///< null: none
 };
 /// Batches of points that a kernel may visit at once, if they are of one colour: what one visit waits for,
 /// the other does not.
@@ -184,8 +185,8 @@ inline constexpr int look = 64;
 struct Kernels {
   SweepKernels rough;   ///< any friction
   SweepKernels smooth;  ///< no friction in any contact: the same bits where balls do not spin
-  /// A bit for each of `look` pairs that come as close as they reach.
-  std::uint64_t (*touch_balls)(const Reach*, const Two* pairs);
+  /// A bit for each of `look` pairs that come as close as they reach; of balls, in a period if there is one.
+  std::uint64_t (*touch_balls)(const Reach*, const Two* pairs, const Period*);
   std::uint64_t (*touch_planes)(const Reach*, const Triple* up, const Two* pairs);
   /// Prepares contacts that know their bodies, friction, and the impulses that they start from.
   void (*prepare_balls)(const BallSource&, BallBatch&, BallParting&);

@@ -70,5 +70,36 @@ TEST(FilmLook, FramesHoldTheForcesAndCellsOfTheStep) {
   }
 }
 
+/// Two balls that touch through the end of a cell, given in other images.
+TEST(FilmLook, APeriodicSpaceIsItsCellAndWhatSticksOutAtBothEnds) {
+  const Scene scene = parse_scene(
+      "format: 1\n"
+      "time: {end: 4, step: 0.01}\n"
+      "materials: {a: {density: 1000}}\n"
+      "periodic: {x: [0, 1], y: [1, 2]}\n"
+      "bodies:\n"
+      "  - {plane: {normal: [0, 0, 1], offset: -1}, material: a}\n"
+      "  - {sphere: {radius: 0.1}, name: a, at: [0.95, 5.5, 0], material: a}\n"
+      "  - {sphere: {radius: 0.1}, name: b, at: [-4.851, 1.5, 0], material: a}\n"
+      "  - {sphere: {radius: 0.1}, name: c, at: [0.96, 1.03, 0], fixed: true, material: a}\n"
+      "forces: [{on: a, force: [100, 0, 0]}, {on: b, force: [-100, 0, 0]}]\n"
+      "render: {color: force, overlay: [forces, pairs]}\n",
+      "test.yaml");
+  Simulation simulation(scene);
+  for (int k = 0; k < 3; ++k) simulation.step();
+  const render::Frame frame = frame_of(scene, look_of(scene), simulation);
+  // Of the first ball one image, of the second none, of the fixed one three.
+  const std::vector<Vec3> expected = {{0.95, 1.5, 0},   {0.149, 1.5, 0}, {0.96, 1.03, 0}, {-0.05, 1.5, 0},
+                                      {-0.04, 1.03, 0}, {0.96, 2.03, 0}, {-0.04, 2.03, 0}};
+  const std::vector<Vec3>& position = frame.snapshot.bodies.position;
+  ASSERT_EQ(position.size(), expected.size() + 1);
+  for (std::size_t k = 0; k < expected.size(); ++k)
+    EXPECT_LT((position[k + 1] - expected[k]).norm(), 1e-3) << k;
+  ASSERT_EQ(frame.force.size(), position.size());
+  EXPECT_NEAR(frame.force[4], 100, 1e-4) << "an image bears what its body bears";
+  ASSERT_EQ(frame.lines.size(), 2u) << "a pair, and its force";
+  for (const render::Line& line : frame.lines) EXPECT_NEAR((line.to - line.from).norm(), 0.2, 2e-3);
+}
+
 }  // namespace
 }  // namespace scree::cli

@@ -251,13 +251,15 @@ TEST(BallPairs, AreTheSameBitsOnEveryInstructionSet) {
       start.batch.impulse.impulse.z.at[l] = p.z();
       start.parting.flying[l] = l % 3 == 0;
     }
+    const Period period = period_of(Vec3::Zero(), Vec3(0.15, 0, 0.3));
     const lanes::BallSource source{.balls = balls.data(),
                                    .inverse_inertia = inertia.data(),
                                    .up = up.data(),
                                    .kick = kick.data(),
                                    .forces = seed % 2 == 0,
                                    .step = step,
-                                   .noise = 1e-7};
+                                   .noise = 1e-7,
+                                   .period = seed % 3 == 0 ? &period : nullptr};
     std::vector<Made> made;
     std::vector<std::uint64_t> touching;
     for (const auto& [name, kernels] : lanes::supported_kernels()) {
@@ -267,7 +269,7 @@ TEST(BallPairs, AreTheSameBitsOnEveryInstructionSet) {
       kernels->square_of_balls(m.batch, free.data(), after.data(), m.square);
       m.deepest = kernels->fly_balls(m.batch, m.parting, after.data(), step);
       made.push_back(m);
-      touching.push_back(kernels->touch_balls(reach.data(), pairs.data()) ^
+      touching.push_back(kernels->touch_balls(reach.data(), pairs.data(), source.period) ^
                          kernels->touch_planes(reach.data(), up.data(), pairs.data()));
     }
     for (std::size_t k = 1; k < made.size(); ++k) {

@@ -19,12 +19,24 @@ static_assert(sizeof(Ball) == sizeof(V) && offsetof(Ball, radius) == 24 && offse
   interleave(offset, rows);
 }
 
-std::uint64_t touch_balls(const Reach* reach, const Two* pairs) {
+/// As Period::nearest(). What is added and taken away again leaves a whole number, as rint() does.
+[[gnu::always_inline]] inline V nearest(const V& offset, double length, double per_length) {
+  constexpr double whole = 0x1.8p52;
+  return offset - length * ((offset * per_length + whole) - whole);
+}
+[[gnu::always_inline]] inline V3 nearest(const V3& offset, const Period* period) {
+  if (period == nullptr) return offset;
+  const Vec3 &length = period->length, &per_length = period->per_length;
+  return {nearest(offset.x, length.x(), per_length.x()), nearest(offset.y, length.y(), per_length.y()),
+          nearest(offset.z, length.z(), per_length.z())};
+}
+
+std::uint64_t touch_balls(const Reach* reach, const Two* pairs, const Period* period) {
   std::uint64_t touching = 0;
   for (int first = 0; first < look; first += width) {
     V at[half];
     load_offsets(reach, pairs + first, at);
-    const V3 offset{at[0], at[1], at[2]};
+    const V3 offset = nearest(V3{at[0], at[1], at[2]}, period);
     touching |= bits_of((at[3] > 0) & (dot(offset, offset) <= at[3] * at[3])) << first;
   }
   return touching;
@@ -85,8 +97,9 @@ void prepare_balls(const BallSource& from, BallBatch& batch, BallParting& partin
   const bool planes = bits_of((i.radius == 0) | (j.radius == 0)) != 0;
   const V3 up = planes ? gather(from.up, batch.ends.i, batch.ends.j) : V3{};
   const V friction = get(batch.friction);
-  const auto contact = contact_of<Lanes>(facing<Lanes>(x_j - x_i, i.radius + j.radius, up), friction, i, j,
-                                         kick, from.step, from.noise, spread(parting.flying) > 0);
+  const V3 offset = nearest(x_j - x_i, from.period);
+  const auto contact = contact_of<Lanes>(facing<Lanes>(offset, i.radius + j.radius, up), friction, i, j, kick,
+                                         from.step, from.noise, spread(parting.flying) > 0);
   const Balls& law = contact.law;
   const V3 start = in_cone<Lanes>(get(batch.impulse.impulse), law.normal, friction);
   set(batch.normal, law.normal);
