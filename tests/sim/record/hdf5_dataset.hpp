@@ -11,7 +11,8 @@
 namespace scree {
 
 /// Part of a dataset as HDF5 reads it.
-inline std::vector<double> dataset(const std::filesystem::path& file, const std::string& name, hsize_t first, hsize_t count) {
+inline std::vector<double> dataset(const std::filesystem::path& file, const std::string& name, hsize_t first,
+                                   hsize_t count) {
   const hid_t opened = H5Fopen(file.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT);
   const hid_t data = H5Dopen2(opened, name.c_str(), H5P_DEFAULT);
   const hid_t space = H5Dget_space(data);

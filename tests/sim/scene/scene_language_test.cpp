@@ -246,7 +246,8 @@ TEST(ResolvedScene, OfEmittersIsAScene) {
   const std::string resolved =
       parse(
           "format: 1\ntime: {end: 1, step: 0.1}\nmaterials: {glass: {}}\nbodies: [{box: {size: 1}, material: "
-          "glass, emit: {count: 3, rate: 5, from: [0, 0, 0], to: [9, 9, 9]}, velocity: [0, 0, -1]}]\nregions: "
+          "glass, emit: {count: 3, rate: 5, from: [0, 0, 0], to: [9, 9, 9]}, velocity: [0, 0, "
+          "-1]}]\nregions: "
           "{sink: {from: [0, 0, -9], to: [9, 9, -8], removes: true}}\n")
           .resolved;
   EXPECT_EQ(parse(resolved).resolved, resolved);
