@@ -22,6 +22,7 @@ MOMENTS = {
     "08_wall": 0.35,
     "10_billiard": 0.4,
     "11_dominoes": 4.0,
+    "14_shaker": 5.5,
 }
 
 HEAD = f"""# Gallery
