@@ -72,7 +72,8 @@ SCREE_HD inline Aabb bounds_of(const BodyGeometry& body, double margin, const Ve
 }
 
 /// bounds[i] = bounds_of(body i, margin[i], origin) for every body, in a periodic space of its image in the
-/// cell; absent ones have absent bounds. Makes no check: find() refuses what is not finite and names the body.
+/// cell; absent ones have absent bounds. Makes no check: find() refuses what is not finite and names the
+/// body.
 template <class Space>
 void compute_bounds(const ConstBodyView& bodies, ConstView<double> margin, const Vec3& origin,
                     View<Aabb> bounds);
