@@ -22,6 +22,8 @@ MOMENTS = {
     "08_wall": 0.35,
     "10_billiard": 0.4,
     "11_dominoes": 4.0,
+    "15_terrain": 4.0,
+    "17_shapes": 2.0,
 }
 
 HEAD = f"""# Gallery
