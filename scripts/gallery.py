@@ -22,7 +22,7 @@ MOMENTS = {
     "08_wall": 0.35,
     "10_billiard": 0.4,
     "11_dominoes": 4.0,
-    "15_terrain": 4.0,
+    "15_terrain": 3.0,
     "17_shapes": 2.0,
 }
 
