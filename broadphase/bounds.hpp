@@ -42,16 +42,27 @@ struct BodyGeometry {
 SCREE_HD inline Vec3 half_extent_of(const BodyGeometry& body) {
   if (body.shape == Shape::sphere) return Vec3::Constant(body.size.x());
   const Mat3 axes = body.orientation.toRotationMatrix();
-  if (body.shape == Shape::box) return axes.cwiseAbs() * body.size;
-  // A tube's: a segment along its z axis plus a disc along the other two. The disc's extent by sqrt(1 - z^2)
-  // would cancel where the axes are aligned.
+  switch (body.shape) {
+    case Shape::box:
+    case Shape::polyhedron:
+      return axes.cwiseAbs() * body.size;
+    case Shape::triangle:
+      // Two corners are opposite to each other in the rectangle around it, whose corners bound it.
+      return axes.col(0).cwiseAbs() * body.size.x() + axes.col(1).cwiseAbs() * body.size.z();
+    case Shape::capsule:
+      return (axes.col(2).cwiseAbs() * (body.size.z() - body.size.x())).array() + body.size.x();
+    default:
+      break;
+  }
+  // A tube's or a cylinder's: a segment along its z axis plus a disc along the other two. The disc's extent
+  // by sqrt(1 - z^2) would cancel where the axes are aligned.
   Vec3 half_extent;
   for (int a = 0; a < 3; ++a)
     half_extent[a] = fabs(axes(a, 2)) * body.size.z() + hypot(axes(a, 0), axes(a, 1)) * body.size.x();
   return half_extent;
 }
 
-/// Box of a sphere, box or tube, fat by `margin` on every side, relative to `origin` (m). It holds the box of
+/// Box of a body, fat by `margin` on every side, relative to `origin` (m). It holds the box of
 /// exact arithmetic: the rounding of the double formula is added before the result is rounded outward to
 /// float. Planes are absent: Candidates lists them with the bodies near them.
 SCREE_HD inline Aabb bounds_of(const BodyGeometry& body, double margin, const Vec3& origin) {

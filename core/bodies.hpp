@@ -123,23 +123,49 @@ std::uint64_t hash_of(const BodyTable& bodies);
 /// Radius of the smallest sphere around the centre that holds the body (m); infinite for a plane.
 SCREE_HD inline double bounding_radius(Shape shape, const Vec3& size) {
   if (shape == Shape::plane) return HUGE_VAL;
-  if (shape == Shape::tube) return hypot(size.x(), size.z());
-  return shape == Shape::sphere ? size.x() : size.norm();
+  switch (shape) {
+    case Shape::sphere:
+      return size.x();
+    case Shape::tube:
+    case Shape::triangle:
+    case Shape::cylinder:
+      return hypot(size.x(), size.z());
+    case Shape::capsule:
+      return size.z();
+    default:
+      return size.norm();
+  }
 }
 
 /// True for shapes that other bodies are in, and that are never free.
 SCREE_HD inline bool is_boundary(Shape shape) { return shape == Shape::plane || shape == Shape::tube; }
 
-/// The length to which a body's tolerances are relative: radius, or smallest half extent (m). Boundaries
-/// (planes and tubes) set none: the body that touches them does.
+/// True for shapes that are surfaces without an inside, and that are never free.
+SCREE_HD inline bool is_surface(Shape shape) { return is_boundary(shape) || shape == Shape::triangle; }
+
+/// True for the shapes that the closed forms and the 15 axes do not know. The step takes them on Host.
+SCREE_HD inline bool is_general(Shape shape) { return shape > Shape::tube; }
+
+/// The length to which a body's tolerances are relative: radius, or smallest half extent (m). Surfaces set
+/// none: the body that touches them does.
 SCREE_HD inline double smallest_size(Shape shape, const Vec3& size) {
-  if (is_boundary(shape)) return HUGE_VAL;
+  if (is_surface(shape)) return HUGE_VAL;
   return shape == Shape::sphere ? size.x() : size.minCoeff();
 }
 
-/// Of a sphere or box (m^3).
+/// Of a body that can be free (m^3); of a polyhedron, of the box around it: its own is Hull::volume.
 SCREE_HD inline double volume_of(Shape shape, const Vec3& size) {
-  return shape == Shape::sphere ? 4.0 / 3.0 * pi * size.x() * size.x() * size.x() : 8.0 * size.prod();
+  const double disc = pi * size.x() * size.x();
+  switch (shape) {
+    case Shape::sphere:
+      return 4.0 / 3.0 * pi * size.x() * size.x() * size.x();
+    case Shape::cylinder:
+      return 2.0 * disc * size.z();
+    case Shape::capsule:
+      return disc * (2.0 * (size.z() - size.x()) + 4.0 / 3.0 * size.x());
+    default:
+      return 8.0 * size.prod();
+  }
 }
 
 /// True where all principal moments are equal (spheres, cubes): the spin is then constant in free flight

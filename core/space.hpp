@@ -10,6 +10,12 @@
 #else
 #define SCREE_HD
 #endif
+/// Statements that only the host's version of a SCREE_HD function has.
+#if defined(__CUDA_ARCH__)
+#define SCREE_ON_HOST(...)
+#else
+#define SCREE_ON_HOST(...) __VA_ARGS__
+#endif
 
 namespace scree {
 

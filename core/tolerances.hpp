@@ -210,6 +210,27 @@ inline constexpr double same_feature = 1e-6;
 /// Overlap that libccd's direction may have beyond the smallest of the 15 axes before it is refused.
 inline constexpr double ccd_excess = 1e-6;
 
+/// By how much a unit normal may leave the cone of a mesh's edge or vertex: rounding, where neither of two
+/// triangles would have the contact otherwise. A bend under this is flat.
+inline constexpr double cone_slack = 1e-9;
+
+/// Cosine short of 1 over which a face is in contact as a whole, and not only its edge or vertex that is
+/// nearest: 0.06 rad. Larger: points that are far from touching.
+inline constexpr double face_cosine = 2e-3;
+
+/// Relative change of a distance at which the search for it ends; some roundings.
+inline constexpr double distance_change = 1e-15;
+/// Distance of two convex bodies under which they count as overlapping in that search, and by which they are
+/// then moved apart to look again (of the smaller smallest_size). Must exceed its rounding.
+inline constexpr double overlapping = 1e-10;
+static_assert(overlapping < closed_gap);
+
+/// Thickness of a triangle or a polyhedron (of its longest extent) under which it is none, and distance from
+/// a face under which a point is in it.
+inline constexpr double flat = 1e-10;
+/// Difference of two principal moments, and products of inertia, that are rounding (of the largest moment).
+inline constexpr double equal_moments = 1e-12;
+
 static_assert(parallel_axes < parallel_edges);
 static_assert(same_feature < axis_preference_length);
 

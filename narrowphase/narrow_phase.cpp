@@ -4,10 +4,10 @@
 
 #include "core/parallel.hpp"
 #include "core/tolerances.hpp"
+#include "narrowphase/any_contacts.hpp"
 #include "narrowphase/box_box_ccd.hpp"
 #include "narrowphase/box_box_crosscheck.hpp"
 #include "narrowphase/far_apart.hpp"
-#include "narrowphase/pair_contacts.hpp"
 
 #include <algorithm>
 #include <type_traits>
@@ -40,8 +40,8 @@ int by_ccd(const Solid& a, const Solid& b, double margin, Manifold* out, NarrowP
   return detail::single(box_box_ccd(a, b, margin, method, *out, stats), *out);
 }
 
-/// The test of each two shapes; rows and columns in the order of Shape. Planes and tubes are never free, and
-/// never tested with each other.
+/// The test of each two shapes that are not general; rows and columns in the order of Shape. Planes and tubes
+/// are never free, and never tested with each other.
 struct PairTable {
   PairTest of[4][4];
 };
@@ -81,6 +81,7 @@ struct FindContacts {
   ConstView<Pair> pairs;
   ConstView<double> margin;
   ConstView<double> extent;
+  ConstView<ShapeData> shapes;
   const PairTable* table;
   double crosscheck_share;
   std::uint64_t search;
@@ -108,19 +109,27 @@ struct FindContacts {
     const bool boxes = bodies.shape[i] == Shape::box && bodies.shape[j] == Shape::box;
     const bool checked = boxes && is_crosschecked(crosscheck_share, search, i, j);
     if (!later && !checked && are_far(i, j)) return 0;
-    const PairTest pair_test =
-        table->of[static_cast<int>(bodies.shape[i])][static_cast<int>(bodies.shape[j])];
     const double time = later ? late->time_of(i, j) : 0.0;
     const Solid a = later ? late->solid_at(i, time) : solid(i);
     Solid b = later ? late->solid_at(j, time) : solid(j);
     bodies.period.bring_near(a.position, b.position);
-    const int count = pair_test(a, b, margin[i] + margin[j], out, stats);
+    const int count = contacts_of(i, a, j, b, out, stats);
     if (checked) crosscheck(a, b, stats.crosscheck);
     for (int m = 0; m < count; ++m) {
       out[m].i = i;
       out[m].j = j;
     }
     return count;
+  }
+
+  int contacts_of(std::int32_t i, const Solid& a, std::int32_t j, const Solid& b, Manifold* out,
+                  NarrowPhaseStats& stats) const {
+    const Shape shape_i = bodies.shape[i], shape_j = bodies.shape[j];
+    const double reach = margin[i] + margin[j];
+    if (is_general(shape_i) || is_general(shape_j))
+      return find_general_contacts({shape_i, a}, {shape_j, b}, {&shapes[i], &shapes[j]}, {.margin = reach},
+                                   out);
+    return table->of[static_cast<int>(shape_i)][static_cast<int>(shape_j)](a, b, reach, out, stats);
   }
 
   /// True if the spheres around two bodies are too far apart for a contact.
@@ -165,7 +174,7 @@ Manifolds NarrowPhase::find(const ConstBodyView& bodies, ConstView<Pair> pairs, 
   extent_.resize(bodies.count());
   parallel::for_each<Host>("find contacts", bodies.count(), SetExtent{bodies, margin, extent_.view()});
   parallel::for_each<Host>("find contacts", count,
-                           FindContacts{bodies, pairs, margin, std::as_const(extent_).view(),
+                           FindContacts{bodies, pairs, margin, std::as_const(extent_).view(), shapes_,
                                         &tables[static_cast<int>(settings_.box_box)], settings_.crosscheck,
                                         searches_++, late, chunk_size, chunks_.data()},
                            few_chunks);

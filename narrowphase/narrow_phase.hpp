@@ -4,6 +4,7 @@
 #include "broadphase/broad_phase.hpp"
 #include "core/array.hpp"
 #include "core/bodies.hpp"
+#include "core/shape_data.hpp"
 #include "narrowphase/contact.hpp"
 #include "narrowphase/settings.hpp"
 #include "narrowphase/solid.hpp"
@@ -47,7 +48,9 @@ class LateBodies {
 /// Finds the contacts of bodies on the host.
 class NarrowPhase {
  public:
-  explicit NarrowPhase(const NarrowPhaseSettings& settings) : settings_(settings) {}
+  /// `shapes`: of each body; empty if no body's shape is general. They must outlive this.
+  explicit NarrowPhase(const NarrowPhaseSettings& settings, ConstView<ShapeData> shapes = {})
+      : settings_(settings), shapes_(shapes) {}
 
   /// All manifolds with a gap of at most margin[i] + margin[j] (m), in the order of the pairs given, which
   /// are Candidates (each has a free body, planes are among them). The views are valid until the next call.
@@ -59,6 +62,7 @@ class NarrowPhase {
 
  private:
   NarrowPhaseSettings settings_;
+  ConstView<ShapeData> shapes_;
   NarrowPhaseStats stats_;
   std::uint64_t searches_ = 0;
   // Buffers that keep their capacity from step to step.

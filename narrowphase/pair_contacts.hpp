@@ -27,7 +27,7 @@ SCREE_HD inline int swapped(int count, Manifold* out) {
   return count;
 }
 
-constexpr int kind_of(Shape a, Shape b) { return 4 * static_cast<int>(a) + static_cast<int>(b); }
+constexpr int kind_of(Shape a, Shape b) { return 8 * static_cast<int>(a) + static_cast<int>(b); }
 
 /// Of shapes in the order of Shape.
 SCREE_HD inline int find_ordered_contacts(Shape shape_a, const Solid& a, Shape shape_b, const Solid& b,

@@ -69,7 +69,7 @@ Color Painter::operator()(std::size_t body) const {
   static const Color background = linear_of(stone);
   const BodyTable& bodies = frame_.snapshot.bodies;
   if (!is_colored(bodies, body)) {
-    const bool shows_material = color_by_ == ColorBy::material && !is_boundary(bodies.shape[body]);
+    const bool shows_material = color_by_ == ColorBy::material && !is_surface(bodies.shape[body]);
     return shows_material ? Color(0.5f * (colored(body) + background)) : background;
   }
   return (1 - muted_) * colored(body) + muted_ * background;

@@ -1,11 +1,13 @@
 // What one picture shows.
 #pragma once
 
+#include "core/geometry.hpp"
 #include "core/snapshot.hpp"
 #include "render/color.hpp"
 
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -15,7 +17,7 @@ namespace scree::render {
 /// and so do boundaries, turning or not.
 inline bool is_colored(const BodyTable& bodies, std::size_t body) {
   return bodies.mobility[body] != Mobility::fixed && bodies.mobility[body] != Mobility::absent &&
-         !is_boundary(bodies.shape[body]);
+         !is_surface(bodies.shape[body]);
 }
 
 /// A straight line over the bodies.
@@ -33,7 +35,8 @@ struct Frame {
   std::vector<std::int32_t> level{};  ///< of the hierarchical grid
   /// Names of the kinds that the colours stand for (materials, levels), in the order of the palette.
   std::vector<std::string> kinds{};
-  std::vector<Line> lines{};  ///< the later ones on top
+  std::vector<Line> lines{};                   ///< the later ones on top
+  std::shared_ptr<const Geometry> geometry{};  ///< by id; null if no body's shape is general
 };
 
 }  // namespace scree::render

@@ -12,6 +12,12 @@ enum class Shape : std::uint8_t {
   plane,   ///< half space below the body's z axis through its position; always fixed
   tube,  ///< inside of a cylinder along the body's z axis, with end caps; never free. It acts on bodies whose
          ///< centre is in it. size[0] and size[1] are its radius, size[2] is half its length
+  triangle,    ///< one of a mesh; never free. Its corners, in its xy plane: (-size[0], -size[2]),
+               ///< (size[0], -size[2]) and (size[1], size[2]); its longest edge is between the first two
+  capsule,     ///< all that is within a radius of a segment along the z axis; size holds the half extents
+  cylinder,    ///< a solid one along the z axis; size holds the half extents
+  polyhedron,  ///< a convex one; size holds the half extents of the box around it whose middle is the centre
+               ///< of mass
 };
 
 enum class Mobility : std::uint8_t {

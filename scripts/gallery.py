@@ -23,6 +23,8 @@ MOMENTS = {
     "10_billiard": 0.4,
     "11_dominoes": 4.0,
     "14_shaker": 5.5,
+    "15_terrain": 3.0,
+    "17_shapes": 2.0,
 }
 
 HEAD = f"""# Gallery

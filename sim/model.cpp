@@ -81,6 +81,7 @@ ModelPlan plan_model(const Scene& scene) {
   };
   const BodyTable& bodies = scene.bodies;
   const bool any_box = any_free_body(bodies, [&](std::size_t k) { return bodies.shape[k] == Shape::box; });
+  const bool any_general = any_free_body(bodies, [&](std::size_t k) { return is_general(bodies.shape[k]); });
   const bool any_spin =
       std::any_of(bodies.spin.begin(), bodies.spin.end(), [](const Vec3& w) { return !w.isZero(0); });
   const bool any_torque = std::any_of(scene.forces.begin(), scene.forces.end(),
@@ -103,17 +104,19 @@ ModelPlan plan_model(const Scene& scene) {
                                        : "bodies have weight"},
       .levels = plan_levels(scene),
       .restitution_threshold = {}};
-  plan.rotation =
-      choose("rotation", scene.model.rotation, any_box || any_spin || any_torque || plan.friction.on,
-             any_box      ? "boxes turn"
-             : any_spin   ? "some body spins"
-             : any_torque ? "a torque acts"
-                          : "friction turns spheres",
-             "spheres without friction, spin or torque never turn");
+  plan.rotation = choose("rotation", scene.model.rotation,
+                         any_box || any_general || any_spin || any_torque || plan.friction.on,
+                         any_box       ? "boxes turn"
+                         : any_general ? "bodies that are no spheres turn"
+                         : any_spin    ? "some body spins"
+                         : any_torque  ? "a torque acts"
+                                       : "friction turns spheres",
+                         "spheres without friction, spin or torque never turn");
   plan.gyroscopic = {"gyroscopic", plan.rotation.on && any_unequal,
-                     !any_unequal       ? "only spheres and cubes move freely"
-                     : plan.rotation.on ? "some box is no cube"
-                                        : "nothing turns"};
+                     !any_unequal ? "only spheres and cubes move freely"
+                     : plan.rotation.on
+                         ? any_general ? "some body has unequal moments" : "some box is no cube"
+                         : "nothing turns"};
   const double step = scene.time.step / scene.time.substeps.value_or(1);
   const double threshold = scene.response.mode == ResponseMode::accurate
                                ? tolerance::accurate_restitution_threshold

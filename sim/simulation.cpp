@@ -84,6 +84,13 @@ std::unique_ptr<Stepper> make_stepper(const Scene& scene, const TimeGrid& grid, 
   const bool device = space == SpaceChoice::cuda ||
                       (space == SpaceChoice::automatic && device_info().available &&
                        std::ranges::count(scene.bodies.mobility, Mobility::free) >= few_for_device);
+  if (scene.geometry) {
+    if (options.resident || scene.precision == Precision::mixed)
+      throw InputError(
+          "meshes, capsules, cylinders and polyhedra are stepped on the host in double precision: leave out "
+          "`precision: mixed` and --resident");
+    return std::make_unique<Substepper>(scene, grid, paths, device, origin);
+  }
   if (!only_host && (device || options.resident || scene.precision == Precision::mixed))
     return make_resident_stepper(scene, grid, paths, device, origin);
   return std::make_unique<Substepper>(scene, grid, paths, device, origin);

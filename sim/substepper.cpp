@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <utility>
 
 namespace scree {
@@ -33,14 +34,15 @@ void Substepper::Restart::restore(Substepper& now) const {
 Substepper::Substepper(const Scene& scene, const TimeGrid& grid, const PathTable& paths, bool on_device,
                        const Vec3& origin)
     : grid_(grid),
+      geometry_(scene.geometry),
       paths_(paths),
       parameters_(response_parameters_of(scene)),
       materials_(static_cast<std::int64_t>(scene.materials.size())),
       forces_(scene, grid),
       gravity_(scene),
       kept_pairs_(scene.broadphase, on_device, origin),
-      narrow_phase_(scene.narrowphase),
-      end_narrow_phase_({.box_box = scene.narrowphase.box_box}) {
+      narrow_phase_(scene.narrowphase, shapes()),
+      end_narrow_phase_({.box_box = scene.narrowphase.box_box}, shapes()) {
   copy_bodies(bodies_, scene.bodies);
   std::vector<Guide> guides;
   for (const Servo& servo : scene.servos) guides.push_back({servo.body, servo.axis});
@@ -267,8 +269,19 @@ ImpactProblem Substepper::impact_problem(ConstView<Pair> pairs, double h, double
 }
 
 ContactLaws Substepper::contact_laws() const {
-  return {bodies_.shape.view(),    bodies_.size.view(), bodies_.mobility.view(),
-          bodies_.material.view(), laws_.view(),        materials_};
+  return {bodies_.shape.view(),
+          bodies_.size.view(),
+          bodies_.mobility.view(),
+          bodies_.material.view(),
+          laws_.view(),
+          materials_,
+          shapes()};
+}
+
+/// Bodies are in the order of their numbers here, as in the scene.
+ConstView<ShapeData> Substepper::shapes() const {
+  if (!geometry_) return {};
+  return {geometry_->of_body.data(), std::ssize(geometry_->of_body)};
 }
 
 /// The impulse of j, and reversed of i.
@@ -294,6 +307,17 @@ SteppedBody Substepper::body(std::int32_t id) const {
           .velocity_before = start_.velocity.view()[id],
           .acceleration = parameters_.acceleration_of(id) + excess,
           .contact_impulse = contact_impulse_[static_cast<std::size_t>(id)]};
+}
+
+/// The volume of polyhedra is not told by their sizes.
+RegionContents Substepper::contents_of(const Region& region) const {
+  RegionContents contents = scree::contents_of<Host>(region, bodies_);
+  if (!geometry_) return contents;
+  for (const std::int32_t k : bodies_in(region)) {
+    const Hull* hull = shapes()[k].hull;
+    if (hull) contents.volume += hull->volume - volume_of(Shape::polyhedron, bodies_.size.view()[k]);
+  }
+  return contents;
 }
 
 Energies Substepper::energies(const Vec3& reference) const {

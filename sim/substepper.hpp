@@ -23,6 +23,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <vector>
 
 namespace scree {
@@ -51,9 +52,7 @@ class Substepper final : public Stepper {
   Energies energies(const Vec3& reference) const override;
   Totals totals(const Vec3& reference) const override;
   double largest_speed() const override { return scree::largest_speed<Host>(bodies_); }
-  RegionContents contents_of(const Region& region) const override {
-    return scree::contents_of<Host>(region, bodies_);
-  }
+  RegionContents contents_of(const Region& region) const override;
   std::vector<std::int32_t> bodies_beyond(const World& world) const override {
     return scree::bodies_beyond<Host>(world, bodies_);
   }
@@ -88,6 +87,7 @@ class Substepper final : public Stepper {
     void restore(Substepper& now) const;
   };
 
+  ConstView<ShapeData> shapes() const;
   void forget_pairs();
   ContactLaws contact_laws() const;
   ImpactProblem impact_problem(ConstView<Pair> pairs, double h, double from) const;
@@ -104,6 +104,7 @@ class Substepper final : public Stepper {
   void add_impulse_on_driven_bodies(std::int32_t i, std::int32_t j, const Vec3& impulse);
 
   TimeGrid grid_;
+  std::shared_ptr<const Geometry> geometry_;
   std::int64_t step_ = 0;
   Bodies<Host> bodies_;
   PrescribedPaths<Host> paths_;

@@ -1,5 +1,7 @@
 #include "render/gl/frame_data.hpp"
 
+#include "render/gl/facets.hpp"
+
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 #include <tbb/parallel_invoke.h>
@@ -120,6 +122,14 @@ class Packing {
     return static_cast<std::int32_t>(packed_);
   }
 
+  void append_facets(const Frame& frame) {
+    std::vector<Vec4f> facets;
+    for (std::size_t k = 0; k < bodies_.shape.size(); ++k)
+      if (is_general(bodies_.shape[k]) && bodies_.mobility[k] != Mobility::absent)
+        facets_of(frame, k, view_.eye, paint_(k), facets);
+    std::ranges::copy(facets, room_for(facets.size() / 4));
+  }
+
   std::int32_t append(PlaneKind kind, const std::vector<PlaneFace>& faces) {
     for (const PlaneFace& face : faces) {
       if (face.kind == kind) set_plane(face, room_for(1));
@@ -188,7 +198,8 @@ Shown shown_in(const BodyTable& bodies, const View& v, const LightView& light, i
   }
   const std::size_t count = bodies.shape.size();
   const auto is_solid = [&](std::size_t k) {
-    return bodies.mobility[k] != Mobility::absent && !is_boundary(bodies.shape[k]);
+    return bodies.mobility[k] != Mobility::absent && !is_boundary(bodies.shape[k]) &&
+           !is_general(bodies.shape[k]);
   };
   const auto seen = [&](std::size_t k) {
     return is_solid(k) ? v.disc_of(bodies, k, height) : std::optional<Disc>();
@@ -241,6 +252,7 @@ void set_frame_data(const Frame& frame, const Camera& camera, const Style& style
   after[1] = packing.append(PlaneKind::hidden, shown.faces);
   after[2] = packing.append(Shape::sphere, shown.casters);
   after[3] = packing.append(Shape::box, shown.casters);
+  packing.append_facets(frame);
   data.lines.clear();
   for (const Line& line : frame.lines) append_line(data.lines, line, v, height);
 }

@@ -30,6 +30,7 @@ struct FrameData {
   int grounds() const { return uniforms.begin[3] - uniforms.begin[2]; }
   int casting_spheres() const { return uniforms.after[2] - uniforms.after[1]; }
   int casting_boxes() const { return uniforms.after[3] - uniforms.after[2]; }
+  int facets() const { return static_cast<int>(texels.size() / 4) - uniforms.after[3]; }
 };
 
 /// Texels along an edge of the shadow map: as many as the picture has pixels, and some more, since shadows

@@ -52,8 +52,10 @@ struct Passes {
       : sphere_shadow(make_pass(gl, "sphere shadow", {shaders::sphere_vert},
                                 {shaders::sphere, shaders::sphere_frag}, for_shadow)),
         box_shadow(make_pass(gl, "box shadow", {shaders::box_vert}, {shaders::flat_frag}, for_shadow)),
+        facet_shadow(make_pass(gl, "facet shadow", {shaders::facet_vert}, {shaders::flat_frag}, for_shadow)),
         sphere(make_pass(gl, "sphere", {shaders::sphere_vert}, {shaders::sphere, shaders::sphere_frag})),
         box(make_pass(gl, "box", {shaders::box_vert}, {shaders::flat_frag})),
+        facet(make_pass(gl, "facet", {shaders::facet_vert}, {shaders::flat_frag})),
         plane(make_pass(gl, "plane", {shaders::plane_vert}, {shaders::plane, shaders::plane_frag})),
         tube(make_pass(gl, "tube", {shaders::plane_vert}, {shaders::tube, shaders::tube_frag}, for_tube)),
         geometry(make_pass(
@@ -66,7 +68,8 @@ struct Passes {
             {shaders::sphere, shaders::plane, shaders::tube, shaders::surface, shaders::shade_frag})),
         line(make_pass(gl, "line", {shaders::line_vert}, {shaders::line_frag})) {}
 
-  Program sphere_shadow, box_shadow, sphere, box, plane, tube, geometry, occlusion, smooth, shade, line;
+  Program sphere_shadow, box_shadow, facet_shadow, sphere, box, facet, plane, tube, geometry, occlusion,
+      smooth, shade, line;
 };
 
 struct Images {
@@ -174,6 +177,7 @@ class GlRenderer : public Renderer {
     gl_.DepthFunc(GL_LESS);
     draw_triangles(passes_.sphere_shadow, data.casting_spheres());
     draw_triangles(passes_.box_shadow, 6 * data.casting_boxes());
+    draw_triangles(passes_.facet_shadow, data.facets());
   }
 
   void draw_tags(const FrameData& data) {
@@ -185,6 +189,7 @@ class GlRenderer : public Renderer {
     gl_.DepthFunc(GL_GREATER);
     draw_triangles(passes_.sphere, data.spheres());
     draw_triangles(passes_.box, 6 * data.boxes());
+    draw_triangles(passes_.facet, data.facets());
     draw_triangles(passes_.tube, data.tubes());
     draw_triangles(passes_.plane, data.grounds());
     gl_.Disable(GL_DEPTH_TEST);

@@ -70,8 +70,8 @@ LightView::LightView(const BodyTable& bodies, const View& v, int map_size)
   const double reach = 4 * v.view * std::max(1.0, v.aspect);
   const Vec3 focus = axes_.transpose() * v.focus;
   const auto add_to = [&](Eigen::AlignedBox3d& bounds, std::size_t k) {
-    // Boundaries cast no shadows: what is in them would lie in the dark.
-    if (is_boundary(bodies.shape[k]) || bodies.mobility[k] == Mobility::absent) return;
+    // Boundaries cast no shadows: what is in them would lie in the dark. Meshes do where bodies need a map.
+    if (is_surface(bodies.shape[k]) || bodies.mobility[k] == Mobility::absent) return;
     const Vec3 center = axes_.transpose() * (bodies.position[k] - eye_);
     const Vec3 radius = Vec3::Constant(bounding_radius(bodies.shape[k], bodies.size[k]));
     const Vec3 low = (center - radius).cwiseMax(focus - Vec3::Constant(reach));

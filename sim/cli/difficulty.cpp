@@ -18,7 +18,7 @@ struct Ground {
   Ground(const BodyTable& bodies, const Vec3& gravity) : up(-gravity.normalized()) {
     for (std::size_t k = 0; k < bodies.shape.size(); ++k) {
       if (bodies.shape[k] == Shape::plane) planes.push_back(k);
-      if (!is_boundary(bodies.shape[k]))
+      if (!is_surface(bodies.shape[k]))
         lowest =
             std::min(lowest, up.dot(bodies.position[k]) - bounding_radius(bodies.shape[k], bodies.size[k]));
     }
@@ -40,7 +40,7 @@ struct Ground {
 
 /// Of the fastest point of the body.
 double speed_of(const BodyTable& bodies, std::size_t k) {
-  const double arm = bodies.shape[k] == Shape::box ? bounding_radius(Shape::box, bodies.size[k]) : 0;
+  const double arm = bodies.shape[k] == Shape::sphere ? 0 : bounding_radius(bodies.shape[k], bodies.size[k]);
   return bodies.velocity[k].norm() + bodies.spin[k].norm() * arm;
 }
 
@@ -54,7 +54,7 @@ Difficulty difficulty_of(const Scene& scene) {
   double heaviest = 0;
   double lightest = HUGE_VAL;
   for (std::size_t k = 0; k < bodies.shape.size(); ++k) {
-    if (is_boundary(bodies.shape[k])) continue;
+    if (is_surface(bodies.shape[k])) continue;
     const double size = smallest_size(bodies.shape[k], bodies.size[k]);
     const double speed = speed_of(bodies, k);
     d.smallest_size = std::min(d.smallest_size, size);

@@ -176,6 +176,7 @@ render::Frame begun_frame(const Scene& scene, const FilmLook& look, Snapshot sna
                           const std::vector<ContactForce>& contacts) {
   render::Frame frame;
   frame.snapshot = std::move(snapshot);
+  frame.geometry = scene.geometry;
   move_into_cell(frame.snapshot.bodies);
   if (scene.render.color == ColorBy::material) {
     for (const Material& material : scene.materials) frame.kinds.push_back(material.name);

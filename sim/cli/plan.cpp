@@ -23,7 +23,8 @@ namespace scree::cli {
 namespace {
 
 // In the order of Shape and Mobility.
-constexpr std::array<const char*, 4> shape_words = {"spheres", "boxes", "planes", "tubes"};
+constexpr std::array<const char*, 8> shape_words = {"spheres",   "boxes",    "planes",    "tubes",
+                                                    "triangles", "capsules", "cylinders", "polyhedra"};
 constexpr std::array<const char*, 3> mobility_words = {"free", "fixed", "prescribed"};
 
 void print_row(const char* subject, const std::string& text) { fmt::print("{:<13}{}\n", subject, text); }
@@ -173,7 +174,20 @@ std::string broad_phase_words(const BroadPhaseSettings& settings) {
   return "hierarchical grid, " + levels;
 }
 
-std::string narrow_phase_words(const Scene& scene) {
+/// Triangles, and ways of contacts that boxes and spheres do not take.
+std::string general_words(const Scene& scene) {
+  if (!scene.geometry) return {};
+  std::string words = "; capsules, cylinders and polyhedra by separating axes and GJK, on the host";
+  if (const std::int64_t triangles = count_shape(scene, Shape::triangle)) {
+    words = fmt::format("; {} triangles of meshes{}", triangles, words);
+    if (scene.geometry->left_out > 0)
+      words +=
+          fmt::format(" ({} triangles without area or given twice are left out)", scene.geometry->left_out);
+  }
+  return words;
+}
+
+std::string box_words(const Scene& scene) {
   if (count_shape(scene, Shape::box) == 0) return "closed forms";
   switch (scene.narrowphase.box_box) {
     case BoxBoxMethod::automatic:
@@ -187,6 +201,8 @@ std::string narrow_phase_words(const Scene& scene) {
   }
   return "closed forms; boxes by the measured best way";
 }
+
+std::string narrow_phase_words(const Scene& scene) { return box_words(scene) + general_words(scene); }
 
 MemoryNeed memory_of(const Scene& scene) {
   const double bodies = static_cast<double>(scene.bodies.count());

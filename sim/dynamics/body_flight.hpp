@@ -2,6 +2,7 @@
 #pragma once
 
 #include "core/bodies.hpp"
+#include "core/shape_data.hpp"
 #include "narrowphase/solid.hpp"
 #include "sim/dynamics/rotation.hpp"
 
@@ -69,7 +70,8 @@ struct PairFlight {
   double until;           ///< end of the search, into the substep (s)
   double slowest[parts];  ///< approach that counts at each part (m/s); infinite: none does
   double farthest =
-      HUGE_VAL;  ///< an approach that would go on for more than this until the end counts too (m)
+      HUGE_VAL;            ///< an approach that would go on for more than this until the end counts too (m)
+  PairShapes shapes = {};  ///< of i and j
 
   SCREE_HD bool counts(int part, double approach, double s) const {
     return approach > slowest[part] || approach * (until - s) > farthest;

@@ -3,6 +3,7 @@
 
 #include "core/array.hpp"
 #include "core/bodies.hpp"
+#include "core/shape_data.hpp"
 
 #include <cstdint>
 
@@ -22,6 +23,7 @@ struct ContactLaws {
   ConstView<std::int32_t> material;  ///< of each body
   ConstView<PairLaw> table;          ///< materials x materials
   std::int64_t materials = 0;
+  ConstView<ShapeData> shapes = {};  ///< of each body, on Host; empty if no body's shape is general
 
   SCREE_HD bool is_free(std::int32_t body) const { return mobility[body] == Mobility::free; }
   SCREE_HD bool acts_as_ball(std::int32_t body) const {
@@ -30,6 +32,10 @@ struct ContactLaws {
   /// The smaller smallest_size of two bodies (m).
   SCREE_HD double smaller_size(std::int32_t i, std::int32_t j) const {
     return fmin(smallest_size(shape[i], size[i]), smallest_size(shape[j], size[j]));
+  }
+  /// What is to be known of a body's shape beyond its size; null for most.
+  SCREE_HD const ShapeData* shape_data(std::int32_t body) const {
+    return shapes.size() > 0 ? &shapes[body] : nullptr;
   }
   SCREE_HD const PairLaw& between(std::int32_t i, std::int32_t j) const {
     return table[material[i] * materials + material[j]];

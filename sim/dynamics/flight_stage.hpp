@@ -126,12 +126,26 @@ struct FlightStage {
     if (!parameters.restitution || restitution == 0) return HUGE_VAL;
     const double rounding =
         tolerance::closing_speed * (bodies.velocity[i].norm() + bodies.velocity[j].norm());
-    return std::max(parameters.restitution_threshold.of(restitution), rounding);
+    double slowest = std::max(parameters.restitution_threshold.of(restitution), rounding);
+    SCREE_ON_HOST(slowest += sinking_speed(i, j);)
+    return slowest;
+  }
+
+  SCREE_HD PairShapes shapes_of(std::int32_t i, std::int32_t j) const {
+    return {terms.laws.shape_data(i), terms.laws.shape_data(j)};
+  }
+
+  /// How fast a body that rests on a mesh falls in the flight of a substep, and so meets the next triangle
+  /// that it comes over (m/s); 0 for all other pairs.
+  double sinking_speed(std::int32_t i, std::int32_t j) const {
+    if (terms.laws.shapes.size() == 0) return 0;
+    if (bodies.shape[i] != Shape::triangle && bodies.shape[j] != Shape::triangle) return 0;
+    return terms.step * parameters.acceleration_of(is_free(i) ? i : j).norm();
   }
 
   /// Two bodies until the end of the substep; no meeting of theirs counts yet.
   SCREE_HD PairFlight pair_of(std::int32_t i, std::int32_t j, double until) const {
-    PairFlight pair{.i = flight(i), .j = flight(j), .until = until, .slowest = {}};
+    PairFlight pair{.i = flight(i), .j = flight(j), .until = until, .slowest = {}, .shapes = shapes_of(i, j)};
     bodies.period.bring_near(pair.i.position, pair.j.position);
     for (double& slowest : pair.slowest) slowest = HUGE_VAL;
     return pair;

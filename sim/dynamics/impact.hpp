@@ -179,7 +179,8 @@ SCREE_HD bool solve_impact(const FlightStage& stage, std::int32_t i, std::int32_
       tolerance::closed_gap * std::min(smallest_size(out.flight_i.shape, out.flight_i.size),
                                        smallest_size(out.flight_j.shape, out.flight_j.size));
   Manifold m;
-  if (!contact_at(out.at_i, out.flight_i.shape, out.at_j, out.flight_j.shape, meeting.part, touching, m))
+  if (!contact_at(out.at_i, out.flight_i.shape, out.at_j, out.flight_j.shape, stage.shapes_of(i, j),
+                  meeting.part, touching, m))
     return false;
   const PairLaw& law = stage.terms.laws.between(i, j);
   const double friction = stage.parameters.friction ? law.friction : 0.0;

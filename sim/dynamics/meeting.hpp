@@ -89,9 +89,10 @@ SCREE_HD inline Meeting next_meeting(const PairFlight& pair, double earliest) {
 /// The contact of two bodies at an instant, on the part given: of its manifolds the one with the smallest gap
 /// at a point that closes, or of all if none does. False if there is none within `reach` (m).
 SCREE_HD inline bool contact_at(const BodyInstant& i, Shape shape_i, const BodyInstant& j, Shape shape_j,
-                                int part, double reach, Manifold& out) {
+                                const PairShapes& shapes, int part, double reach, Manifold& out) {
   Manifold manifolds[max_pair_manifolds];
-  const int count = find_pair_contacts(shape_i, i.solid, shape_j, j.solid, reach, manifolds);
+  const int count =
+      find_any_contacts({shape_i, i.solid}, {shape_j, j.solid}, shapes, {.margin = reach}, manifolds);
   bool found = false;
   bool found_closing = false;
   double least = HUGE_VAL;

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "core/tolerances.hpp"
-#include "narrowphase/pair_contacts.hpp"
+#include "narrowphase/any_contacts.hpp"
 #include "sim/dynamics/body_flight.hpp"
 
 #include <algorithm>
@@ -35,6 +35,7 @@ class MeetingSearch {
       const Look then = look(next);
       const double level = std::min(now.gap, 0.0);
       if (then.hit) {
+        SCREE_ON_HOST(if (now.hidden) return first_hit(s, next, then);)
         if (then.gap >= level - touching()) return {.time = next, .part = then.part};
         // Where it reaches that gap, unless it is not fast enough there yet.
         double touch = next;
@@ -54,6 +55,7 @@ class MeetingSearch {
   /// The pair at one instant.
   struct Look {
     bool near = false;                   // within reach
+    bool hidden = false;                 // what is nearest is none of the pair's contacts
     double gap = HUGE_VAL;               // smallest of the points whose part may count (m)
     double closing = 0;                  // approach there (m/s)
     bool hit = false;                    // at some point that touches the approach counts
@@ -75,10 +77,15 @@ class MeetingSearch {
     const BodyInstant j = instant_of(pair_.j, s);
     Manifold manifolds[max_pair_manifolds];
     const double reach = fastest_ * (pair_.until - s) + 2 * touching();
-    const int count = find_pair_contacts(pair_.i.shape, i.solid, pair_.j.shape, j.solid, reach, manifolds);
+    const int count = find_any_contacts({pair_.i.shape, i.solid}, {pair_.j.shape, j.solid}, pair_.shapes,
+                                        {.margin = reach, .hidden = true}, manifolds);
     Look look;
     for (int m = 0; m < count; ++m) {
       const int part = manifolds[m].part;
+      SCREE_ON_HOST(if (part == hidden_part) {
+        see_hidden(manifolds[m], i, j, look);
+        continue;
+      })
       if (pair_.slowest[part] == HUGE_VAL && pair_.farthest == HUGE_VAL) continue;
       for (int k = 0; k < manifolds[m].count; ++k) {
         const ContactPoint& point = manifolds[m].points[k];
@@ -86,6 +93,7 @@ class MeetingSearch {
         const double closing = closing_speed(manifolds[m].normal, point.position, i, j);
         look.near = true;
         if (gap < look.gap) {
+          look.hidden = false;
           look.gap = gap;
           look.closing = closing;
         }
@@ -100,6 +108,15 @@ class MeetingSearch {
     return look;
   }
 
+  /// What is no contact yet may lead to one.
+  void see_hidden(const Manifold& m, const BodyInstant& i, const BodyInstant& j, Look& look) const {
+    look.near = true;
+    if (m.points[0].gap >= look.gap) return;
+    look.hidden = true;
+    look.gap = m.points[0].gap;
+    look.closing = closing_speed(m.normal, m.points[0].position, i, j);
+  }
+
   /// As far as the gap lasts at the fastest approach; more where that is next to nothing.
   SCREE_HD double step_from(const Look& now) const {
     const double safe = std::max(now.gap, 0.0) / fastest_;
@@ -107,6 +124,22 @@ class MeetingSearch {
     if (now.closing > 0 && now.gap > touching())
       return std::max(safe, std::min(now.gap / now.closing, least));
     return std::max(safe, least);
+  }
+
+  /// Where a contact begins that was hidden before: its gap need not have been 0 then.
+  Meeting first_hit(double from, double to, Look after) const {
+    for (int k = 0; k < most_bisections; ++k) {
+      const double middle = 0.5 * (from + to);
+      if (!(middle > from && middle < to)) break;
+      const Look at = look(middle);
+      if (at.hit) {
+        to = middle;
+        after = at;
+      } else {
+        from = middle;
+      }
+    }
+    return {.time = to, .part = after.part};
   }
 
   /// Where the gap falls through the level between two instants, from above: moves `to` there.

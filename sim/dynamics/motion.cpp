@@ -138,7 +138,7 @@ struct SetMargin {
     const double curving =
         bodies.mobility[k] == Mobility::prescribed ? parameters.prescribed_acceleration : 0.0;
     const double fall = (parameters.acceleration_of(k).norm() + curving) * dt * dt;
-    margin[k] = (is_boundary(shape) ? 0.0 : slack * smallest_size(shape, bodies.size[k])) +
+    margin[k] = (is_surface(shape) ? 0.0 : slack * smallest_size(shape, bodies.size[k])) +
                 tolerance::travel_factor * (surface_speed(bodies, k) * dt + fall);
   }
 };
@@ -202,7 +202,7 @@ struct RaiseMargin {
   double life;
   double most;  ///< but for what is wanted (m)
   SCREE_HD void operator()(std::int64_t k) const {
-    if (bodies.mobility[k] == Mobility::fixed || is_boundary(bodies.shape[k])) return;
+    if (bodies.mobility[k] == Mobility::fixed || is_surface(bodies.shape[k])) return;
     const double size = smallest_size(bodies.shape[k], bodies.size[k]);
     const double travel = tolerance::contact_slack * size + life * surface_speed(bodies, k);
     const double ample = fmax(margin[k], fmax(wanted[k] + tolerance::pair_skin * size, travel));

@@ -96,14 +96,13 @@ Particles particles_of(const Columns& columns) {
                       columns.find("velocity"),
                       columns.find("spin")};
   for (std::size_t row = 0; row < columns.rows(); ++row) {
-    if (columns.number(particles.shape, row) <= static_cast<double>(Shape::box))
-      particles.rows.push_back(row);
+    if (!is_surface(static_cast<Shape>(columns.number(particles.shape, row)))) particles.rows.push_back(row);
   }
   return particles;
 }
 
-// Quaternions are x, y, z, w there (OVITO's manual, "Extended XYZ"). A sphere has a radius, a box half
-// extents.
+// Quaternions are x, y, z, w there (OVITO's manual, "Extended XYZ"). A sphere has a radius, all others half
+// extents, of the boxes around them if they are none.
 std::string xyz_of(const Columns& columns) {
   const Particles particles = particles_of(columns);
   std::string text =

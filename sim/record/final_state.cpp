@@ -22,8 +22,12 @@ void append_row(std::string& text, const BodyTable& bodies, std::size_t k, const
   const Quat& q = bodies.orientation[k];
   if (bodies.shape[k] == Shape::sphere) {
     fmt::format_to(out, "sphere,{},,,", bodies.size[k].x());
+  } else if (bodies.shape[k] == Shape::capsule || bodies.shape[k] == Shape::cylinder) {
+    fmt::format_to(out, "{},{},,,{}", bodies.shape[k] == Shape::capsule ? "capsule" : "cylinder",
+                   bodies.size[k].x(), 2 * bodies.size[k].z());
   } else {
-    text += "box,";
+    // Which polyhedron it is, a row cannot say: reading it back is refused.
+    text += bodies.shape[k] == Shape::polyhedron ? "polyhedron," : "box,";
     append(text, 2 * bodies.size[k]);
   }
   append(text, bodies.position[k]);
@@ -31,7 +35,7 @@ void append_row(std::string& text, const BodyTable& bodies, std::size_t k, const
   append(text, bodies.velocity[k]);
   append(text, bodies.spin[k]);
   text += ',';
-  const double mass = material.density * volume_of(bodies.shape[k], bodies.size[k]);
+  const double mass = material.density * volume_of(bodies.shape[k], bodies.size[k]);  // of no polyhedron
   if (1 / mass != bodies.inverse_mass[k]) fmt::format_to(out, "{}", 1 / bodies.inverse_mass[k]);
   fmt::format_to(out, ",{}\n", material.name);
 }

@@ -42,9 +42,22 @@ Quat orientation_of(const BodyEntry& entry, Random& random) {
   return entry.scatter || entry.emit ? random_orientation(random) : Quat::Identity();
 }
 
-/// Of a solid sphere or cuboid (size as in Shape), about the principal axes (kg m^2).
+/// Of a cylinder with or without a ball's halves at its ends (size as in Shape), about the principal axes (kg
+/// m^2).
+Vec3 inertia_of_round(Shape shape, const Vec3& size, double mass) {
+  const double square = size.x() * size.x();
+  const double half = shape == Shape::capsule ? size.z() - size.x() : size.z();  // of the cylinder
+  const double of_ends = shape == Shape::capsule ? size.x() / (size.x() + 1.5 * half) : 0.0;
+  const double ends = of_ends * mass, middle = mass - ends;
+  const double across =
+      middle * (square / 4 + half * half / 3) + ends * (0.4 * square + half * half + 0.75 * half * size.x());
+  return {across, across, middle * square / 2 + ends * 0.4 * square};
+}
+
+/// Of a solid body (size as in Shape), about the principal axes (kg m^2).
 Vec3 inertia_of(Shape shape, const Vec3& size, double mass) {
   if (shape == Shape::sphere) return Vec3::Constant(0.4 * mass * size.x() * size.x());
+  if (shape == Shape::capsule || shape == Shape::cylinder) return inertia_of_round(shape, size, mass);
   const Vec3 squares = size.cwiseProduct(size);
   return mass / 3 * Vec3(squares.y() + squares.z(), squares.z() + squares.x(), squares.x() + squares.y());
 }
@@ -52,9 +65,11 @@ Vec3 inertia_of(Shape shape, const Vec3& size, double mass) {
 bool is_usable(double x) { return x > 0 && std::isfinite(x) && std::isfinite(1 / x); }
 
 /// Gives a free body its mass (kg; else of the density) and inertia; see make_body() for what it returns.
-bool set_mass(const std::optional<double>& given, double density, std::size_t b, BodyTable& bodies) {
-  const double mass = given.value_or(density * volume_of(bodies.shape[b], bodies.size[b]));
-  const Vec3 inertia = inertia_of(bodies.shape[b], bodies.size[b], mass);
+bool set_mass(const std::optional<double>& given, double density, const Hull* hull, std::size_t b,
+              BodyTable& bodies) {
+  const double volume = hull ? hull->volume : volume_of(bodies.shape[b], bodies.size[b]);
+  const double mass = given.value_or(density * volume);
+  const Vec3 inertia = hull ? Vec3(mass * hull->moments) : inertia_of(bodies.shape[b], bodies.size[b], mass);
   bodies.inverse_mass[b] = 1 / mass;
   bodies.inverse_inertia[b] = inertia.cwiseInverse();
   return is_usable(mass) && is_usable(inertia.minCoeff()) && is_usable(inertia.maxCoeff());
@@ -77,13 +92,23 @@ void make_plane(const PlaneEntry& plane, std::size_t b, BodyTable& bodies) {
 }
 
 /// The shape, and its size drawn.
-void make_shape(const BodyEntry& entry, Random& random, Shape& shape, Vec3& size) {
+void make_shape(const BodyEntry& entry, const Hull* hull, Random& random, Shape& shape, Vec3& size) {
   if (entry.sphere) {
     shape = Shape::sphere;
     size = Vec3(draw(entry.sphere->radius, random), 0, 0);
   } else if (entry.box) {
     shape = Shape::box;
     size = 0.5 * draw(entry.box->size, random);
+  } else if (entry.capsule) {
+    shape = Shape::capsule;
+    const double radius = entry.capsule->radius;
+    size = Vec3(radius, radius, 0.5 * entry.capsule->length + radius);
+  } else if (entry.cylinder) {
+    shape = Shape::cylinder;
+    size = Vec3(entry.cylinder->radius, entry.cylinder->radius, 0.5 * entry.cylinder->length);
+  } else if (hull) {
+    shape = Shape::polyhedron;
+    size = hull->half_extent();
   } else {
     shape = Shape::tube;
     size = Vec3(entry.tube->radius, entry.tube->radius, 0.5 * entry.tube->length);
@@ -93,7 +118,7 @@ void make_shape(const BodyEntry& entry, Random& random, Shape& shape, Vec3& size
 }  // namespace
 
 bool make_body(const BodyEntry& entry, std::int64_t k, std::int32_t id, std::uint64_t seed, double density,
-               BodyTable& bodies) {
+               const Hull* hull, BodyTable& bodies) {
   const auto b = static_cast<std::size_t>(id);
   bodies.id[b] = id;
   bodies.velocity[b] = bodies.spin[b] = bodies.inverse_inertia[b] = Vec3::Zero();
@@ -103,16 +128,21 @@ bool make_body(const BodyEntry& entry, std::int64_t k, std::int32_t id, std::uin
     return true;
   }
   Random random(seed, b);
-  make_shape(entry, random, bodies.shape[b], bodies.size[b]);
+  make_shape(entry, hull, random, bodies.shape[b], bodies.size[b]);
   bodies.position[b] = place_of(entry, k, random);
   bodies.orientation[b] = orientation_of(entry, random);
+  if (hull) {
+    // What the entry has placed is the frame of the points.
+    if (!entry.scatter && !entry.emit) bodies.position[b] += bodies.orientation[b] * hull->centre;
+    bodies.orientation[b] = (bodies.orientation[b] * hull->axes).normalized();
+  }
   bodies.velocity[b] = entry.motion ? entry.motion->velocity : entry.velocity.value_or(Vec3::Zero());
   bodies.spin[b] = entry.motion ? entry.motion->spin : entry.spin.value_or(Vec3::Zero());
   bodies.mobility[b] = entry.fixed.value_or(false) ? Mobility::fixed
                        : entry.motion              ? Mobility::prescribed
                                                    : Mobility::free;
   if (bodies.mobility[b] != Mobility::free) return true;
-  const bool usable = set_mass(entry.mass, density, b, bodies);
+  const bool usable = set_mass(entry.mass, density, hull, b, bodies);
   if (entry.servo) bodies.inverse_inertia[b].setZero();  // its guide keeps it from turning
   return usable;
 }
@@ -128,6 +158,23 @@ Motion motion_of(const MotionEntry& entry, std::int32_t body) {
   return motion;
 }
 
+void make_body(const BodyEntry& entry, const PlacedTriangle& triangle, std::int32_t id, BodyTable& bodies) {
+  const auto b = static_cast<std::size_t>(id);
+  Random unused(0, 0);
+  const Quat turn = orientation_of(entry, unused);
+  const Vec3 at = entry.at.value_or(Vec3::Zero());
+  bodies.id[b] = id;
+  bodies.shape[b] = Shape::triangle;
+  bodies.size[b] = triangle.size;
+  bodies.position[b] = at + turn * triangle.position;
+  bodies.orientation[b] = (turn * triangle.orientation).normalized();
+  bodies.velocity[b] = entry.motion ? entry.motion->velocity : Vec3(Vec3::Zero());
+  bodies.spin[b] = entry.motion ? entry.motion->spin : Vec3(Vec3::Zero());
+  bodies.mobility[b] = entry.motion ? Mobility::prescribed : Mobility::fixed;
+  bodies.inverse_mass[b] = 0;
+  bodies.inverse_inertia[b] = Vec3::Zero();
+}
+
 bool make_body(const BodyRow& row, bool fixed, std::int32_t id, double density, BodyTable& bodies) {
   const auto b = static_cast<std::size_t>(id);
   bodies.id[b] = id;
@@ -140,7 +187,7 @@ bool make_body(const BodyRow& row, bool fixed, std::int32_t id, double density, 
   bodies.mobility[b] = fixed ? Mobility::fixed : Mobility::free;
   bodies.inverse_mass[b] = 0;
   bodies.inverse_inertia[b] = Vec3::Zero();
-  return fixed || set_mass(row.mass, density, b, bodies);
+  return fixed || set_mass(row.mass, density, nullptr, b, bodies);
 }
 
 }  // namespace scree

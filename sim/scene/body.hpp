@@ -2,6 +2,7 @@
 #pragma once
 
 #include "core/bodies.hpp"
+#include "core/geometry.hpp"
 #include "sim/scene/body_file.hpp"
 #include "sim/scene/keys.hpp"
 
@@ -13,8 +14,12 @@ namespace scree {
 /// scattered body stays open; that of one that will be emitted is the middle of the emitter's box until then.
 /// All draws are from the stream of (seed, id). False if a free body's mass or inertia, or the inverse of
 /// one, is not a positive finite number.
+/// `hull`: of a polyhedron.
 bool make_body(const BodyEntry& entry, std::int64_t k, std::int32_t id, std::uint64_t seed, double density,
-               BodyTable& bodies);
+               const Hull* hull, BodyTable& bodies);
+
+/// The same of a mesh's triangle.
+void make_body(const BodyEntry& entry, const PlacedTriangle& triangle, std::int32_t id, BodyTable& bodies);
 
 /// The same of a row of a body file. A fixed body has no velocity, whatever the row says.
 bool make_body(const BodyRow& row, bool fixed, std::int32_t id, double density, BodyTable& bodies);

@@ -224,9 +224,16 @@ Shape BodyFile::shape_of(const Cells& cells) {
   const std::string_view shape = cells[BodyColumn::shape];
   if (shape == "sphere") return Shape::sphere;
   if (shape == "box") return Shape::box;
+  if (shape == "capsule") return Shape::capsule;
+  if (shape == "cylinder") return Shape::cylinder;
+  if (shape == "polyhedron")
+    fail(BodyColumn::shape, cells.mark_of(BodyColumn::shape),
+         "a row cannot say which polyhedron it is; resume the run instead, or give the polyhedra in the "
+         "scene");
   fail(BodyColumn::shape, cells.mark_of(BodyColumn::shape),
-       fmt::format("must be one of sphere, box, not {}{}", shape.empty() ? "nothing" : shape.substr(0, 40),
-                   suggestion(shape, {"sphere", "box"})));
+       fmt::format("must be one of sphere, box, capsule, cylinder, not {}{}",
+                   shape.empty() ? "nothing" : shape.substr(0, 40),
+                   suggestion(shape, {"sphere", "box", "capsule", "cylinder"})));
 }
 
 Quat BodyFile::orientation_of(const Cells& cells) {
@@ -245,16 +252,26 @@ Quat BodyFile::orientation_of(const Cells& cells) {
 }
 
 Vec3 BodyFile::sizes_of(const Cells& cells, Shape shape) {
-  const bool sphere = shape == Shape::sphere;
+  const bool round = shape != Shape::box;
+  const bool along = shape == Shape::capsule || shape == Shape::cylinder;
   for (int k = 0; k < 4; ++k) {
     const BodyColumn column = after(BodyColumn::radius, k);
-    const bool wanted = (column == BodyColumn::radius) == sphere;
+    const bool wanted =
+        column == BodyColumn::radius || (along && column == BodyColumn::size_z) ? round : !round;
     if (wanted == !cells[column].empty()) continue;
     fail(column, cells.mark_of(column),
          wanted ? fmt::format("a {} needs it, a number > 0 (m)", cells[BodyColumn::shape])
                 : fmt::format("does not go with a {}; leave it empty", cells[BodyColumn::shape]));
   }
-  if (sphere) return Vec3(number_of(cells, BodyColumn::radius), 0, 0);
+  const double radius = number_of(cells, BodyColumn::radius);
+  if (shape == Shape::sphere) return Vec3(radius, 0, 0);
+  if (along) {
+    const double half = 0.5 * number_of(cells, BodyColumn::size_z);
+    if (shape == Shape::capsule && !(half > radius))
+      fail(BodyColumn::size_z, cells.mark_of(BodyColumn::size_z),
+           "a capsule's length from end to end exceeds two radii");
+    return Vec3(radius, radius, half);
+  }
   return 0.5 * vector_of(cells, BodyColumn::size_x);
 }
 

@@ -16,9 +16,9 @@ namespace scree {
 /// The columns of a body file, in the order in which runs write them. shape, x, y and z are required, and the
 /// sizes that the shapes need.
 enum class BodyColumn {
-  shape,   ///< sphere or box
-  radius,  ///< of a sphere (m); empty for a box
-  size_x,  ///< full edge lengths of a box (m); empty for a sphere
+  shape,   ///< sphere, box, capsule or cylinder
+  radius,  ///< of a sphere, capsule or cylinder (m); empty for a box
+  size_x,  ///< full edge lengths of a box (m), size_z that of a capsule or cylinder; else empty
   size_y,
   size_z,
   x,  ///< of the centre (m)

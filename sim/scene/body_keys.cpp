@@ -86,6 +86,57 @@ Codec<TubeEntry> tube_section() {
       });
 }
 
+Codec<CapsuleEntry> capsule_section() {
+  using T = CapsuleEntry;
+  return section<T>("bodies[].capsule",
+                    "All that is within a radius of a segment along the z axis of the body.",
+                    {
+                        key<T>("radius", &T::radius, number(above_zero, "m"), required, "about the axis"),
+                        key<T>("length", &T::length, number(above_zero, "m"), required,
+                               "of the segment; from end to end it is two radii more"),
+                    });
+}
+
+Codec<CylinderEntry> cylinder_section() {
+  using T = CylinderEntry;
+  return section<T>("bodies[].cylinder", "A solid cylinder along the z axis of the body.",
+                    {
+                        key<T>("radius", &T::radius, number(above_zero, "m"), required, "about the axis"),
+                        key<T>("length", &T::length, number(above_zero, "m"), required, "from end to end"),
+                    });
+}
+
+Codec<PolyhedronEntry> polyhedron_section() {
+  using T = PolyhedronEntry;
+  return section<T>(
+      "bodies[].polyhedron",
+      "The convex hull of points. `at`, `orientation` and `rotate` place the frame in which the points are "
+      "given; the body's own place is its centre of mass, and its axes are the principal ones. Of `scatter` "
+      "and `emit` the centre of mass is at the random place.",
+      {
+          key<T>("points", &T::points, optional(list_of(vector("m"), 4)), optionally,
+                 "[[x, y, z], ...], not all in a plane"),
+          key<T>("file", &T::file, text(), optionally,
+                 "instead: the vertices of an OBJ or STL file, whether its surface is convex or not"),
+          key<T>("scale", &T::scale, number(above_zero), optionally, "the points are multiplied by it"),
+      },
+      check_polyhedron);
+}
+
+Codec<MeshEntry> mesh_section() {
+  using T = MeshEntry;
+  return section<T>(
+      "bodies[].mesh",
+      "A surface of triangles from a file. Each triangle is a body, called `name[k]`. Bodies may touch both "
+      "sides: a body is on the side of a triangle on which its centre is. Edges between triangles in one "
+      "plane, and hollow ones, are not felt. It never moves freely.",
+      {
+          key<T>("file", &T::file, text(), required,
+                 "Wavefront OBJ (polygons as fans), or STL, as text or binary"),
+          key<T>("scale", &T::scale, number(above_zero), optionally, "vertices are multiplied by it"),
+      });
+}
+
 Codec<RotationEntry> rotate_section() {
   using T = RotationEntry;
   return section<T>(
@@ -230,13 +281,23 @@ Codec<EmitEntry> emit_section() {
 Codec<BodyEntry> body_section() {
   using T = BodyEntry;
   return section<T>(
-      "bodies[]", "One body, or many alike. Each has exactly one shape: plane, sphere, box or tube.",
+      "bodies[]",
+      "One body, or many alike. Each has exactly one shape: plane, sphere, box, tube, capsule, cylinder, "
+      "polyhedron or mesh.",
       {
           key<T>("plane", &T::plane, optional(plane_section()), optionally, "the shape: a fixed half space"),
           key<T>("sphere", &T::sphere, optional(sphere_section()), optionally, "the shape: a ball"),
           key<T>("box", &T::box, optional(box_section()), optionally, "the shape: a cuboid"),
           key<T>("tube", &T::tube, optional(tube_section()), optionally,
                  "the shape: the inside of a cylinder, with end caps; needs `fixed: true` or `motion`"),
+          key<T>("capsule", &T::capsule, optional(capsule_section()), optionally,
+                 "the shape: a cylinder with round ends"),
+          key<T>("cylinder", &T::cylinder, optional(cylinder_section()), optionally,
+                 "the shape: a solid cylinder"),
+          key<T>("polyhedron", &T::polyhedron, optional(polyhedron_section()), optionally,
+                 "the shape: a convex polyhedron"),
+          key<T>("mesh", &T::mesh, optional(mesh_section()), optionally,
+                 "the shape: a surface of triangles; needs `fixed: true` or `motion`"),
           key<T>("file", &T::file, text(), optionally,
                  "instead of a shape: bodies from a CSV file, or those that another run left, by its folder; "
                  "see Body files"),

@@ -14,8 +14,9 @@ namespace scree {
 namespace {
 
 /// A product of counts may exceed every integer, but not the doubles.
-double count_of(const BodyEntry& entry, const BodyFile* file) {
+double count_of(const BodyEntry& entry, const BodyFile* file, const SceneMesh* mesh) {
   if (file) return static_cast<double>(file->count());
+  if (mesh) return static_cast<double>(mesh->triangles.size());
   if (entry.scatter) return static_cast<double>(entry.scatter->count);
   if (entry.emit) return static_cast<double>(entry.emit->count);
   if (!entry.repeat) return 1;
@@ -35,6 +36,7 @@ void require_room(const BodyEntry& body, const MemoryLoad& load, double memory, 
   const char* cause = body.repeat         ? "repeat"
                       : body.scatter      ? "scatter"
                       : body.emit         ? "emit"
+                      : body.mesh         ? "mesh"
                       : body.file.empty() ? "name"
                                           : "file";
   constexpr auto most = std::numeric_limits<std::int32_t>::max();
@@ -60,6 +62,38 @@ std::unique_ptr<BodyFile> open_file(BodyEntry& body, const std::filesystem::path
   }
   body.file = found.string();
   return std::make_unique<BodyFile>(found);
+}
+
+/// Where a mesh's file is, relative to the scene; the entry keeps it.
+std::filesystem::path find_mesh(std::string& file, const std::filesystem::path& scene) {
+  const std::filesystem::path found =
+      std::filesystem::absolute(scene.parent_path() / file).lexically_normal();
+  file = found.string();
+  return found;
+}
+
+std::unique_ptr<SceneMesh> open_mesh(BodyEntry& body, const std::filesystem::path& scene, Reader& reader) {
+  if (!body.mesh) return nullptr;
+  try {
+    return std::make_unique<SceneMesh>(read_scene_mesh(find_mesh(body.mesh->file, scene), body.mesh->scale));
+  } catch (const InputError& error) {
+    reader.fail_at("mesh", *body.node, error.what());
+  }
+}
+
+std::unique_ptr<Hull> open_hull(BodyEntry& body, const std::filesystem::path& scene, Reader& reader) {
+  if (!body.polyhedron) return nullptr;
+  PolyhedronEntry& entry = *body.polyhedron;
+  try {
+    if (!entry.file.empty())
+      return std::make_unique<Hull>(
+          make_hull(read_mesh_file(find_mesh(entry.file, scene), entry.scale).vertices));
+    std::vector<Vec3> points;
+    for (const Vec3& point : *entry.points) points.push_back(entry.scale * point);
+    return std::make_unique<Hull>(make_hull(points));
+  } catch (const InputError& error) {
+    reader.fail_at("polyhedron", *body.node, error.what());
+  }
 }
 
 void claim_name(const BodyEntry& body, std::unordered_map<std::string_view, SourceMark>& names,
@@ -95,7 +129,9 @@ std::vector<BodySlot> body_slots(std::vector<BodyEntry>& entries, const std::fil
     const Reader::Step item(reader, i);
     BodyEntry& body = entries[i];
     std::unique_ptr<BodyFile> file = open_file(body, scene, reader);
-    const double count = count_of(body, file.get());
+    std::unique_ptr<SceneMesh> mesh = open_mesh(body, scene, reader);
+    std::unique_ptr<Hull> hull = open_hull(body, scene, reader);
+    const double count = count_of(body, file.get(), mesh.get());
     const double first = load.bodies;
     add_load(body, count, load);
     require_room(body, load, memory.bytes, reader);
@@ -107,7 +143,9 @@ std::vector<BodySlot> body_slots(std::vector<BodyEntry>& entries, const std::fil
                      {static_cast<std::int32_t>(first), static_cast<std::int32_t>(count)},
                      material,
                      grid.steps_in(span),
-                     std::move(file)});
+                     std::move(file),
+                     std::move(mesh),
+                     std::move(hull)});
   }
   return slots;
 }

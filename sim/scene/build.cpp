@@ -33,9 +33,12 @@ class Builder {
     make_room(scene);
     if (entry_.periodic) scene.bodies.period = period_of(*entry_.periodic);
     for (const BodySlot& slot : slots_) {
-      slot.file ? read_bodies(slot, scene) : make_bodies(slot, scene);
+      slot.file   ? read_bodies(slot, scene)
+      : slot.mesh ? make_triangles(slot, scene)
+                  : make_bodies(slot, scene);
       name_bodies(slot, scene);
     }
+    find_geometry(scene);
     if (entry_.periodic) fit_bodies(*entry_.periodic, scene.bodies, reader_);
     for (const BodySlot& slot : slots_)
       if (slot.entry->scatter) scatter_bodies(slot, scene);
@@ -62,8 +65,52 @@ class Builder {
       const std::int32_t id = slot.bodies.first + k;
       const Material& material = scene.materials[static_cast<std::size_t>(slot.material)];
       scene.bodies.material[static_cast<std::size_t>(id)] = slot.material;
-      if (!make_body(entry, k, id, scene.seed, material.density, scene.bodies))
+      if (!make_body(entry, k, id, scene.seed, material.density, slot.hull.get(), scene.bodies))
         reader_.fail(entry.node->mark, beyond_numbers);
+    }
+  }
+
+  void make_triangles(const BodySlot& slot, Scene& scene) const {
+    for (std::int32_t k = 0; k < slot.bodies.count; ++k) {
+      const std::int32_t id = slot.bodies.first + k;
+      scene.bodies.material[static_cast<std::size_t>(id)] = slot.material;
+      make_body(*slot.entry, slot.mesh->triangles[static_cast<std::size_t>(k)], id, scene.bodies);
+    }
+  }
+
+  /// What general shapes are, beyond their sizes. A tube has no test with them.
+  void find_geometry(Scene& scene) {
+    const auto& shapes = scene.bodies.shape;
+    if (std::ranges::none_of(shapes, is_general)) return;
+    const auto geometry = std::make_shared<Geometry>();
+    geometry->of_body.resize(shapes.size());
+    for (BodySlot& slot : slots_) {
+      require_no_tube(slot);
+      if (slot.mesh) add_mesh(*slot.mesh, slot.bodies, *geometry);
+      if (!slot.hull) continue;
+      geometry->hulls.push_back(std::move(*slot.hull));
+      for (std::int32_t k = 0; k < slot.bodies.count; ++k)
+        geometry->of_body[static_cast<std::size_t>(slot.bodies.first + k)].hull = &geometry->hulls.back();
+    }
+    scene.geometry = geometry;
+  }
+
+  void require_no_tube(const BodySlot& slot) {
+    if (!slot.entry->tube) return;
+    const Reader::Step step(reader_, "bodies");
+    const Reader::Step item(reader_, slot.index);
+    reader_.fail_at(
+        "tube", *slot.entry->node,
+        "holds spheres and boxes alone: it cannot be in a scene with meshes, capsules, cylinders or "
+        "polyhedra; a mesh of its wall can");
+  }
+
+  static void add_mesh(const SceneMesh& mesh, const BodyRange& bodies, Geometry& geometry) {
+    geometry.left_out += mesh.mesh.left_out;
+    std::int32_t id = bodies.first;
+    for (Surroundings& around : surroundings_of(mesh.mesh, mesh.triangles)) {
+      geometry.surroundings.push_back(std::move(around));
+      geometry.of_body[static_cast<std::size_t>(id++)].surroundings = &geometry.surroundings.back();
     }
   }
 
@@ -91,7 +138,7 @@ class Builder {
   void name_bodies(const BodySlot& slot, Scene& scene) const {
     const BodyEntry& entry = *slot.entry;
     if (entry.name.empty()) return;
-    const bool many = entry.repeat || entry.scatter || entry.emit || slot.file;
+    const bool many = entry.repeat || entry.scatter || entry.emit || slot.file || slot.mesh;
     for (std::int32_t k = 0; k < slot.bodies.count; ++k)
       scene.body_names.emplace(many ? fmt::format("{}[{}]", entry.name, k) : entry.name,
                                slot.bodies.first + k);
@@ -143,7 +190,9 @@ class Builder {
       if (!slot.entry->motion) continue;
       for (std::int32_t id = slot.bodies.first; id < slot.bodies.first + slot.bodies.count; ++id) {
         const auto b = static_cast<std::size_t>(id);
-        const Motion& motion = scene.motions.emplace_back(motion_of(*slot.entry->motion, id));
+        Motion& motion = scene.motions.emplace_back(motion_of(*slot.entry->motion, id));
+        // A mesh turns as a whole.
+        if (slot.mesh && !motion.about) motion.about = slot.entry->at.value_or(Vec3::Zero());
         if (motion.oscillate) {
           const double rate = motion.oscillate->omega() * std::cos(motion.oscillate->phase);
           scene.bodies.velocity[b] += rate * motion.oscillate->displacement;

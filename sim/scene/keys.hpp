@@ -42,6 +42,27 @@ struct TubeEntry {
   double length = 0;
 };
 
+struct CapsuleEntry {
+  double radius = 0;
+  double length = 0;  ///< of the segment
+};
+
+struct CylinderEntry {
+  double radius = 0;
+  double length = 0;
+};
+
+struct PolyhedronEntry {
+  std::optional<std::vector<Vec3>> points;
+  std::string file;
+  double scale = 1;
+};
+
+struct MeshEntry {
+  std::string file;
+  double scale = 1;
+};
+
 struct RotationEntry {
   Vec3 axis = Vec3::UnitZ();
   std::optional<double> degrees;
@@ -95,6 +116,10 @@ struct BodyEntry {
   std::optional<SphereEntry> sphere;
   std::optional<BoxEntry> box;
   std::optional<TubeEntry> tube;
+  std::optional<CapsuleEntry> capsule;
+  std::optional<CylinderEntry> cylinder;
+  std::optional<PolyhedronEntry> polyhedron;
+  std::optional<MeshEntry> mesh;
   std::string file;
   std::string name;
   std::string material;

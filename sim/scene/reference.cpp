@@ -47,9 +47,9 @@ to the bit; `file: output/NAME` takes that. `name` names them `name[0]`, `name[1
 
 | column | meaning |
 |---|---|
-| `shape` | `sphere` or `box`; required |
-| `radius` | of a sphere (m); empty for a box |
-| `size_x`, `size_y`, `size_z` | full edge lengths of a box (m); empty for a sphere |
+| `shape` | `sphere`, `box`, `capsule` or `cylinder`; required. Runs write `polyhedron` too, which cannot be read: a row does not say which |
+| `radius` | of a sphere, capsule or cylinder (m); empty for a box |
+| `size_x`, `size_y`, `size_z` | full edge lengths of a box (m); of a capsule or cylinder `size_z` alone, its length from end to end; empty for a sphere |
 | `x`, `y`, `z` | the centre (m); required |
 | `qw`, `qx`, `qy`, `qz` | orientation, a quaternion of any length but 0; all empty: not turned |
 | `vx`, `vy`, `vz` | velocity (m/s); empty: 0 |

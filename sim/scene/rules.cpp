@@ -101,6 +101,16 @@ void check_servo_body(const BodyEntry& body, const Node& node, Reader& reader) {
       exclude("servo", other, node, reader);
 }
 
+void check_mesh_body(const BodyEntry& body, const Node& node, Reader& reader) {
+  refuse({"mass", "velocity", "spin", "repeat", "scatter", "emit"},
+         "does not go with a mesh, which is there once and never moves freely", node, reader);
+  if (!body.fixed.value_or(false) && !body.motion)
+    reader.fail_at("mesh", node, "never moves freely: give `fixed: true` or `motion`");
+  if (body.motion && !body.motion->keyframes.empty())
+    reader.fail_at("motion", node,
+                   "of a mesh has no keyframes: they say where one body is, and a mesh is many");
+}
+
 /// Of the box with the keys `from` and `to`.
 void check_corners(const Vec3& from, const Vec3& to, const Node& node, Reader& reader) {
   for (int k = 0; k < 3; ++k)
@@ -122,6 +132,11 @@ void check_time(const TimeSettings& time, const Node& node, Reader& reader) {
 
 void check_plane(const PlaneEntry& plane, const Node& node, Reader& reader) {
   if (!is_direction(plane.normal)) reader.fail_at("normal", node, "must not be zero");
+}
+
+void check_polyhedron(const PolyhedronEntry&, const Node& node, Reader& reader) {
+  exclude("points", "file", node, reader);
+  if (given({"points", "file"}, node) == 0) reader.fail(node.mark, "needs points or file");
 }
 
 void check_rotation(const RotationEntry& rotation, const Node& node, Reader& reader) {
@@ -182,13 +197,17 @@ void check_emit(const EmitEntry& emit, const Node& node, Reader& reader) {
 
 void check_body(const BodyEntry& body, const Node& node, Reader& reader) {
   if (node.find("file")) return check_file_body(body, node, reader);
-  const int shapes = given({"plane", "sphere", "box", "tube"}, node);
+  const int shapes =
+      given({"plane", "sphere", "box", "tube", "capsule", "cylinder", "polyhedron", "mesh"}, node);
   if (shapes != 1)
-    reader.fail(node.mark, fmt::format("must have exactly one shape (plane, sphere, box or tube), not {}",
-                                       shapes == 0 ? "none" : std::to_string(shapes)));
+    reader.fail(node.mark,
+                fmt::format("must have exactly one shape (plane, sphere, box, tube, capsule, cylinder, "
+                            "polyhedron or mesh), not {}",
+                            shapes == 0 ? "none" : std::to_string(shapes)));
   if (body.material.empty()) reader.fail_at("material", node, "is missing; it must be one of `materials`");
   if (body.plane) return check_plane_body(node, reader);
   if (body.tube) check_tube_body(body, node, reader);
+  if (body.mesh) check_mesh_body(body, node, reader);
   exclude("orientation", "rotate", node, reader);
   exclude("motion", "velocity", node, reader);
   exclude("motion", "spin", node, reader);

@@ -1,6 +1,7 @@
 // Random sequential addition, with a grid of cells to find what is near.
 #include "sim/scene/scatter.hpp"
 
+#include "core/geometry.hpp"
 #include "core/rng.hpp"
 
 #include <algorithm>
@@ -124,6 +125,19 @@ bool is_apart(const BodyTable& bodies, std::size_t tube, const Scattering& box) 
   return (at - half - box.to).maxCoeff() >= 0 || (box.from - at - half).maxCoeff() >= 0;
 }
 
+/// From a point in the triangle's frame (m).
+double distance_to_triangle(const Vec3& size, const Vec3& point) {
+  bool over = true;
+  double nearest = HUGE_VAL;
+  for (int k = 0; k < 3; ++k) {
+    const Vec3 from = triangle_corner(size, k), way = triangle_corner(size, (k + 1) % 3) - from;
+    const Vec3 to = point - from;
+    over = over && way.x() * to.y() - way.y() * to.x() >= 0;
+    nearest = std::min(nearest, (to - std::clamp(way.dot(to) / way.squaredNorm(), 0.0, 1.0) * way).norm());
+  }
+  return over ? std::abs(point.z()) : nearest;
+}
+
 }  // namespace
 
 double distance_to(const BodyTable& bodies, std::size_t b, const Vec3& point) {
@@ -135,6 +149,16 @@ double distance_to(const BodyTable& bodies, std::size_t b, const Vec3& point) {
       return (local.cwiseAbs() - bodies.size[b]).cwiseMax(0.0).norm();
     case Shape::plane:
       return local.z();
+    case Shape::capsule: {
+      const double half = bodies.size[b].z() - bodies.size[b].x();
+      return (local - std::clamp(local.z(), -half, half) * Vec3::UnitZ()).norm() - bodies.size[b].x();
+    }
+    case Shape::cylinder:
+    case Shape::polyhedron:
+      // Of the box around it, which is no farther.
+      return (local.cwiseAbs() - bodies.size[b]).cwiseMax(0.0).norm();
+    case Shape::triangle:
+      return distance_to_triangle(bodies.size[b], local);
     case Shape::tube:
       return std::min(bodies.size[b].x() - local.head<2>().norm(), bodies.size[b].z() - std::abs(local.z()));
   }

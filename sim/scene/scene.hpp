@@ -4,6 +4,7 @@
 
 #include "broadphase/settings.hpp"
 #include "core/bodies.hpp"
+#include "core/geometry.hpp"
 #include "narrowphase/settings.hpp"
 #include "scree/options.hpp"
 
@@ -12,6 +13,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -250,10 +252,11 @@ struct Scene {
   std::optional<GravityTurn> gravity_turn;
   TimeSettings time;
   std::vector<Material> materials;
-  std::vector<ContactLaw> laws;     ///< materials x materials, symmetric; see law()
-  BodyTable bodies;                 ///< at t = 0, or when they appear; id[k] = k
-  std::vector<Lifetime> lifetimes;  ///< of those that are not there all the time, by ascending body
-  std::vector<Emitter> emitters;    ///< of those that appear when there is room, by ascending body
+  std::vector<ContactLaw> laws;              ///< materials x materials, symmetric; see law()
+  BodyTable bodies;                          ///< at t = 0, or when they appear; id[k] = k
+  std::shared_ptr<const Geometry> geometry;  ///< of bodies whose shape is general; null if there are none
+  std::vector<Lifetime> lifetimes;           ///< of those that are not there all the time, by ascending body
+  std::vector<Emitter> emitters;             ///< of those that appear when there is room, by ascending body
   std::map<std::string, std::int32_t> body_names;  ///< named bodies, name[k] of a repeat included
   std::vector<Motion> motions;                     ///< of the prescribed bodies, by ascending body
   std::vector<Servo> servos;                       ///< by ascending body

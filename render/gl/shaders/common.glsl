@@ -14,7 +14,7 @@ layout(std140) uniform Frame {
   vec4 penumbra;     // x: its radius per unit of map depth between caster and receiver; y: depth of the first caster
   ivec4 begin;       // first of: boxes, tubes, grounds, walls; spheres begin at 0
   ivec4 after;       // first of: hidden planes, spheres that cast shadows, boxes that do; w: end of all
-  ivec4 extent;      // yz: size of the picture in pixels
+  ivec4 extent;      // yz: size of the picture in pixels; facets begin at after.w
 };
 
 // Four texels per body:
@@ -22,12 +22,14 @@ layout(std140) uniform Frame {
 //   box     centre           orientation                      half extents               colour
 //   tube    centre, radius   orientation                      z: half length             colour
 //   plane   point, level?    axis along the grid, its offset  the other axis, its offset  normal, cell of the grid
+//   facet   corner, normal   corner, normal                   corner, normal             colour
+// A facet's normals are in its corners' fourth components: see facet_normal().
 uniform samplerBuffer bodies;
 
 // A tag names what a sample of the picture sees: kind and box face in the high bits, then the body. 0: nothing.
 const uint tag_sphere = 1u << 30, tag_box = 2u << 30, tag_plane = 3u << 30;
 const uint tag_kind = 3u << 30, tag_face = 3u << 28, tag_body = (1u << 28) - 1u;
-const uint tag_tube = tag_plane | 1u << 28;
+const uint tag_tube = tag_plane | 1u << 28, tag_facet = tag_plane | 2u << 28;
 
 vec4 texel_of(int body, int k) { return texelFetch(bodies, 4 * body + k); }
 

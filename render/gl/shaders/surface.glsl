@@ -89,10 +89,37 @@ Surface tube_surface(int body, vec3 ray) {
   return Surface(s.leave, s.leave * ray, normal, albedo, 0.1, 0.0);
 }
 
+// Twelve bits for each of two coordinates on an octahedron (Cigolle et al. 2014, "A survey of efficient
+// representations for independent unit vectors").
+vec3 facet_normal(float code) {
+  float high = floor(code / 4096.0);
+  vec2 p = vec2(high, code - 4096.0 * high) / 2047.5 - 1.0;
+  vec3 n = vec3(p, 1.0 - abs(p.x) - abs(p.y));
+  if (n.z < 0.0) n.xy = (1.0 - abs(n.yx)) * vec2(n.x < 0.0 ? -1.0 : 1.0, n.y < 0.0 ? -1.0 : 1.0);
+  return normalize(n);
+}
+
+// A triangle; with the normals of its corners it passes for a part of a curved surface.
+Surface facet_surface(int body, vec3 ray) {
+  vec4 a = texel_of(body, 0), b = texel_of(body, 1), c = texel_of(body, 2);
+  vec3 across = cross(b.xyz - a.xyz, c.xyz - a.xyz);
+  float depth = dot(across, a.xyz) / dot(across, ray);
+  vec3 position = depth * ray;
+  vec3 share = vec3(dot(across, cross(b.xyz - position, c.xyz - position)),
+                    dot(across, cross(c.xyz - position, a.xyz - position)),
+                    dot(across, cross(a.xyz - position, b.xyz - position))) /
+               dot(across, across);
+  vec3 normal = normalize(share.x * facet_normal(a.w) + share.y * facet_normal(b.w) + share.z * facet_normal(c.w));
+  if (dot(across, ray) * dot(across, normal) > 0.0) normal = -normal;
+  vec4 color = texel_of(body, 3);
+  return Surface(depth, position, normal, color.rgb, color.a, 0.0);
+}
+
 Surface surface_of(uint tag, vec3 ray) {
   int body = int(tag & tag_body);
   uint kind = tag & tag_kind;
   if ((tag & (tag_kind | tag_face)) == tag_tube) return tube_surface(body, ray);
+  if ((tag & (tag_kind | tag_face)) == tag_facet) return facet_surface(body, ray);
   if (kind == tag_sphere) return sphere_surface(body, ray);
   if (kind == tag_box) return box_surface(body, ray);
   if (kind == tag_plane) return plane_surface(body, ray);

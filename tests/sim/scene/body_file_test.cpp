@@ -99,8 +99,10 @@ TEST_F(BodyFileTest, EveryFaultIsToldAtItsPlace) {
       {"shape,x,y,z\nsphere,1,2\n", "bed.csv:2:1: has 3 cells; the header names 4 columns"},
       {"shape,x,y,z\nsphere,1,2,3,4\n", "bed.csv:2:1: has 5 cells; the header names 4 columns"},
       {head + "shpere,1,,,,0,0,0,,,,,\n",
-       "bed.csv:2:1: shape: must be one of sphere, box, not shpere (did you mean sphere?)"},
-      {head + ",1,,,,0,0,0,,,,,\n", "bed.csv:2:1: shape: must be one of sphere, box, not nothing"},
+       "bed.csv:2:1: shape: must be one of sphere, box, capsule, cylinder, not shpere (did you mean "
+       "sphere?)"},
+      {head + ",1,,,,0,0,0,,,,,\n",
+       "bed.csv:2:1: shape: must be one of sphere, box, capsule, cylinder, not nothing"},
       {head + "sphere,-1,,,,0,0,0,,,,,\n", "bed.csv:2:8: radius: must be a number > 0 (m), not -1"},
       {head + "sphere,0,,,,0,0,0,,,,,\n", "bed.csv:2:8: radius: must be a number > 0 (m), not 0"},
       {head + "sphere,,,,,0,0,0,,,,,\n", "bed.csv:2:8: radius: a sphere needs it, a number > 0 (m)"},
