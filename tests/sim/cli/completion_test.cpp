@@ -143,7 +143,7 @@ TEST_F(CompletionTest, InBash) {
   EXPECT_EQ(bash("scree v"), Words{"verify"});
   EXPECT_EQ(bash("scree run --dev"), Words{"--device"});
   EXPECT_EQ(bash("scree run --device = c"), Words{"cuda"}) << "as bash cuts --device=c";
-  EXPECT_EQ(bash("scree run --set gra"), (Words{"gravity=", "gravity["}));
+  EXPECT_EQ(bash("scree run --set gra"), (Words{"gravity.", "gravity=", "gravity["}));
   EXPECT_EQ(bash("scree run --set precision = m"), Words{"mixed"});
   EXPECT_EQ(bash("scree run ''"), (Words{"output", "scene one.yaml"}));
   EXPECT_EQ(bash("scree render ''"), Words{"output"});

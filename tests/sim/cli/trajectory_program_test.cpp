@@ -74,8 +74,38 @@ TEST_F(TrajectoryProgramTest, WhatItDoesNotHaveIsNotDrawn) {
   };
   expect_refused("render={color: speed}", "no velocity");
   expect_refused("render={color: force}", "no contacts");
-  expect_refused("render={overlay: [pairs]}", "no contacts");
+  expect_refused("render={overlay: [pairs]}", "no pairs");
   expect_refused("gravity=[0, 0, -1]", "another render alone");
+}
+
+/// Balls on a floor and on one another.
+const std::string heap = R"(format: 1
+gravity: [0, 0, -10]
+name: heap
+time: {end: 0.1, step: 0.01}
+materials: {stone: {density: 1000, friction: 0.5}}
+bodies:
+  - {plane: {normal: [0, 0, 1]}, material: stone}
+  - {sphere: {radius: 0.1}, at: [0, 0, 0.1], repeat: {count: [2, 2, 2], spacing: [0.2, 0.2, 0.2]}, material: stone}
+render: {size: [64, 48], fps: 50, color: force, overlay: [forces]}
+)";
+
+TEST_F(TrajectoryProgramTest, ContactsAreKeptDrawnAgainAndExported) {
+  const std::string contacts = "--set=record.trajectory={precision: double, contacts: true}";
+  ASSERT_EQ(run_scene(heap, {contacts}).status, 0);
+  const Finished table = scree_in(folder_, {"export", "output/heap", "--to", "csv"});
+  EXPECT_TRUE(contains(table.out, "contacts:  output/heap-csv/contacts")) << table.out;
+  EXPECT_GT(text_of(folder_ / "output/heap-csv/contacts/00005.csv").size(), 200u) << "there are some";
+
+  ASSERT_EQ(run_scene(heap, {"-o", "parts", "--until", "0.05", contacts}).status, 0);
+  ASSERT_EQ(run_scene(heap, {"-o", "parts", "--resume", contacts}).status, 0);
+  EXPECT_TRUE(text_of(folder_ / "output/heap/contacts.vtkhdf") == text_of(folder_ / "parts/contacts.vtkhdf"));
+
+  if (manifest_in(folder_ / "output/heap")["frames"] == 0) GTEST_SKIP() << "no pictures on this machine";
+  const Finished again = scree_in(folder_, {"render", "output/heap"});
+  ASSERT_EQ(again.status, 0) << again.error;
+  EXPECT_EQ(text_of(folder_ / "output/heap/frames/00005.png"),
+            text_of(folder_ / "output/heap-render/frames/00005.png"));
 }
 
 TEST_F(TrajectoryProgramTest, IsExported) {
