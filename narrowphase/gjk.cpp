@@ -93,8 +93,8 @@ void keep(Simplex& s, const Part& part) {
   s = kept;
 }
 
-/// False if the origin is in the tetrahedron.
-bool reduce_tetrahedron(Simplex& s) {
+/// False if the origin is in the tetrahedron, which it is not of bodies that are known to be apart.
+bool reduce_tetrahedron(Simplex& s, bool apart) {
   const auto at = [&](int k) -> const Vec3& { return s.point[static_cast<std::size_t>(k)].at; };
   constexpr std::array<std::array<int, 4>, 4> faces = {
       {{0, 1, 2, 3}, {0, 1, 3, 2}, {0, 2, 3, 1}, {1, 2, 3, 0}}};
@@ -106,7 +106,7 @@ bool reduce_tetrahedron(Simplex& s) {
     const double origin = -normal.dot(at(f[0])), other = normal.dot(at(f[3]) - at(f[0]));
     // Behind this face; of a flat tetrahedron nothing is.
     const double rounding = tolerance::flat * normal.norm() * (at(f[3]) - at(f[0])).norm();
-    if (std::abs(other) > rounding && origin * other > 0) continue;
+    if (!apart && std::abs(other) > rounding && origin * other > 0) continue;
     outside = true;
     const Part part = nearest_of_triangle(at(f[0]), at(f[1]), at(f[2]), f[0], f[1], f[2]);
     const double square = point_of(s, part).squaredNorm();
@@ -119,7 +119,7 @@ bool reduce_tetrahedron(Simplex& s) {
   return outside;
 }
 
-bool reduce(Simplex& s) {
+bool reduce(Simplex& s, bool apart) {
   const auto at = [&](int k) -> const Vec3& { return s.point[static_cast<std::size_t>(k)].at; };
   if (s.count == 1) {
     s.weight[0] = 1;
@@ -128,7 +128,7 @@ bool reduce(Simplex& s) {
   } else if (s.count == 3) {
     keep(s, nearest_of_triangle(at(0), at(1), at(2), 0, 1, 2));
   } else {
-    return reduce_tetrahedron(s);
+    return reduce_tetrahedron(s, apart);
   }
   return true;
 }
@@ -142,6 +142,7 @@ ClosestPoints closest_points(const ConvexBody& a, const ConvexBody& b, const Vec
   Vec3 v = b.centre() + shift - a.centre();
   if (v.isZero(0)) v = Vec3::UnitX();
   double square = HUGE_VAL;
+  bool separated = false;  // some plane was seen between them
   for (int iteration = 0; iteration < most_iterations; ++iteration) {
     const Vec3 on_a = a.support(v);
     const Vec3 on_b = b.support(-v) + shift;
@@ -159,7 +160,8 @@ ClosestPoints closest_points(const ConvexBody& a, const ConvexBody& b, const Vec
     if (known) break;
     const Simplex before = s;
     s.point[static_cast<std::size_t>(s.count++)] = next;
-    if (!reduce(s)) return {};
+    separated = separated || (s.count > 1 && v.dot(next.at) > least * v.norm());
+    if (!reduce(s, separated)) return {};
     const Vec3 nearest = s.nearest();
     const double now = nearest.squaredNorm();
     if (now <= least * least) return {};
