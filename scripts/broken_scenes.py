@@ -105,7 +105,10 @@ def main():
             status, message, wall, seconds, megabytes, written = measure(program, file)
             faults = list(faults_of(status, message, seconds, megabytes, written))
             broken += bool(faults)
-            words = (message.strip().splitlines() or [""])[0].replace(f"{file.parent}/", "")[:160].replace("|", "\\|")
+            words = (message.strip().splitlines() or [""])[0]
+            for place in (file.parent, file.parent.parent):
+                words = words.replace(f"{place}/", "")
+            words = words[:160].replace("|", "\\|")
             words += "".join(f" **{fault}**" for fault in faults)
             print(f"| {file.stem} | {wrong} | {wall:.2f} | {seconds:.2f} | {megabytes:.0f} | {words} |")
     print(f"\n{broken} broke a limit")
