@@ -31,7 +31,8 @@ std::vector<std::filesystem::path> all_scenes() {
 }
 
 std::string name_of(const testing::TestParamInfo<std::filesystem::path>& info) {
-  std::string name = info.param.stem().string();
+  // Some are called alike in their folders.
+  std::string name = info.param.parent_path().filename().string() + "_" + info.param.stem().string();
   std::replace_if(
       name.begin(), name.end(), [](char c) { return !std::isalnum(static_cast<unsigned char>(c)); }, '_');
   return name;
