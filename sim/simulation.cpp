@@ -75,22 +75,21 @@ Body body_at(const BodyTable& bodies, std::size_t k) {
 /// Free bodies from which on Device takes the steps unless told otherwise (docs/decisions/0022).
 constexpr std::int64_t few_for_device = 20000;
 
-/// The accurate mode, servos, and few bodies are for Host; their PCS may come from Device all the same.
+/// The accurate mode, servos, general shapes, and few bodies are for Host; their PCS may come from Device all
+/// the same.
 std::unique_ptr<Stepper> make_stepper(const Scene& scene, const TimeGrid& grid, const Presence& presence,
                                       const SimulationOptions& options, const Vec3& origin) {
   const SpaceChoice space = options.space;
   const PathTable paths = paths_of(scene, grid, presence);
-  const bool only_host = scene.response.mode == ResponseMode::accurate || !scene.servos.empty();
+  const bool only_host =
+      scene.response.mode == ResponseMode::accurate || !scene.servos.empty() || scene.geometry != nullptr;
+  if (scene.geometry && scene.precision == Precision::mixed)
+    throw InputError(
+        "meshes, capsules, cylinders and polyhedra are stepped on the host, in double precision: leave out "
+        "`precision: mixed`");
   const bool device = space == SpaceChoice::cuda ||
                       (space == SpaceChoice::automatic && device_info().available &&
                        std::ranges::count(scene.bodies.mobility, Mobility::free) >= few_for_device);
-  if (scene.geometry) {
-    if (options.resident || scene.precision == Precision::mixed)
-      throw InputError(
-          "meshes, capsules, cylinders and polyhedra are stepped on the host in double precision: leave out "
-          "`precision: mixed` and --resident");
-    return std::make_unique<Substepper>(scene, grid, paths, device, origin);
-  }
   if (!only_host && (device || options.resident || scene.precision == Precision::mixed))
     return make_resident_stepper(scene, grid, paths, device, origin);
   return std::make_unique<Substepper>(scene, grid, paths, device, origin);

@@ -103,8 +103,11 @@ TEST(Shapes, GiveTheSameBitsForAnyNumberOfThreadsAndAfterAStop) {
   EXPECT_EQ(resumed.state_hash(), one.state_hash());
 }
 
-TEST(Shapes, StepsThatCannotTakeThemSaySo) {
-  EXPECT_THROW(Simulation(scene_of(all_shapes), {.space = SpaceChoice::host, .resident = true}), InputError);
+TEST(Shapes, StepsAreHostsInDouble) {
+  Simulation plain(scene_of(all_shapes), {.space = SpaceChoice::host});
+  Simulation resident(scene_of(all_shapes), {.space = SpaceChoice::host, .resident = true});
+  for (int k = 0; k < 5; ++k) plain.step(), resident.step();
+  EXPECT_EQ(plain.state_hash(), resident.state_hash());
   EXPECT_THROW(Simulation(scene_of(all_shapes + "precision: mixed\n"), one_thread), InputError);
 }
 
