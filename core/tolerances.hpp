@@ -225,6 +225,17 @@ inline constexpr double distance_change = 1e-15;
 inline constexpr double overlapping = 1e-10;
 static_assert(overlapping < closed_gap);
 
+/// Distance from which on the nearest points of two cores tell their direction to rounding (of the size).
+inline constexpr double clear_gap = 1e-4;
+static_assert(clear_gap > overlapping);
+/// How far bodies are moved apart to see where they are nearest (of the size); small against their features.
+inline constexpr double clear_distance = 0.05;
+/// Overlap under which the best of the faces and edges leads to the best of all directions (of the size).
+inline constexpr double shallow_overlap = 1e-3;
+
+/// Directions in a scene that differ by no more (rad) are one.
+inline constexpr double same_direction = 1e-9;
+
 /// Thickness of a triangle or a polyhedron (of its longest extent) under which it is none, and distance from
 /// a face under which a point is in it.
 inline constexpr double flat = 1e-10;

@@ -1,16 +1,11 @@
 #include "narrowphase/convex_axes.hpp"
 
+#include "core/tolerances.hpp"
 #include "narrowphase/gjk.hpp"
 
 namespace scree {
 
 namespace {
-
-/// Distance to which bodies are moved apart to look at their nearest points (of the size).
-constexpr double clear_distance = 0.05;
-
-/// Overlap under which the best of the faces and edges leads to the best of all directions (likewise).
-constexpr double shallow = 1e-3;
 
 ConvexAxis centre_axis(const ConvexBody& a, const ConvexBody& b) {
   Vec3 direction = b.centre() - a.centre();
@@ -41,7 +36,7 @@ ConvexAxis ascend(const ConvexBody& a, const ConvexBody& b, const ConvexAxis& fr
   ConvexAxis best = from;
   for (int step = 0; step < most_steps; ++step) {
     const double cores = best.separation + a.radius() + b.radius();
-    const double shift = std::max(clear_distance * size - cores, 0.0);
+    const double shift = std::max(tolerance::clear_distance * size - cores, 0.0);
     const ClosestPoints near = closest_points(a, b, shift * best.normal, tolerance::overlapping * size);
     if (!near.apart) break;
     const double separation = separation_along(a, b, near.normal);
@@ -69,7 +64,7 @@ bool best_axes(const ConvexBody& a, const ConvexBody& b, double margin, double s
   };
   if (!visit_faces(a, b, take_face)) return false;
   // What is this far apart needs no more to be exact.
-  const bool clear = near.apart && near.distance > clear_gap * size;
+  const bool clear = near.apart && near.distance > tolerance::clear_gap * size;
   if (clear) return take({near.normal, near.distance - radii});
   const bool round = a.is_cylinder() || b.is_cylinder();
   if (!visit_edges(a, b, take)) return false;
@@ -78,7 +73,7 @@ bool best_axes(const ConvexBody& a, const ConvexBody& b, double margin, double s
   if (round) {
     const ConvexAxis first = ascend(a, b, out.best, size);
     if (!take(first)) return false;
-    if (first.separation > -shallow * size) return true;
+    if (first.separation > -tolerance::shallow_overlap * size) return true;
     // Deep in one another, there are several ways out that are the best of those around them.
     const auto climb = [&](const ConvexAxis& axis) { return take(ascend(a, b, axis, size)); };
     return visit_faces(a, b, climb) && visit_edges(a, b, climb) && visit_radial(a, b, climb);

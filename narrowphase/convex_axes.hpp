@@ -100,9 +100,6 @@ struct ConvexAxes {
   ConvexAxis best;  ///< of all directions
 };
 
-/// Distance from which on the nearest points of two cores tell their direction to rounding (of the size).
-inline constexpr double clear_gap = 1e-4;
-
 /// False if the bodies are farther apart than `margin` (m). `size`: what tolerances are relative to (m).
 bool best_axes(const ConvexBody& a, const ConvexBody& b, double margin, double size, ConvexAxes& out);
 

@@ -1,5 +1,6 @@
 #include "narrowphase/mesh_contacts.hpp"
 
+#include "core/tolerances.hpp"
 #include "narrowphase/box_pair.hpp"
 #include "narrowphase/convex_axes.hpp"
 #include "narrowphase/convex_manifold.hpp"
@@ -164,7 +165,7 @@ class TrianglePair {
     };
     const auto take_faces = [&](const ConvexAxis& axis) { return axis.owner == 0 || take(axis); };
     if (!visit_faces(triangle_, body_, take_faces)) return false;
-    if (near.apart && near.distance > clear_gap * size_)
+    if (near.apart && near.distance > tolerance::clear_gap * size_)
       return take({near.normal, near.distance - body_.radius()});
     if (!visit_edges(triangle_, body_, take)) return false;
     if (body_.is_cylinder() && !take(ascend(triangle_, body_, any_, size_))) return false;

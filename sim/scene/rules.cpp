@@ -1,6 +1,7 @@
 // Rules across the keys of one section.
 #include "sim/scene/rules.hpp"
 
+#include "core/tolerances.hpp"
 #include "sim/scene/unit_quaternion.hpp"
 
 #include <fmt/format.h>
@@ -80,9 +81,6 @@ void check_orientation(const std::optional<std::array<double, 4>>& q, const Node
   if (q && !unit_quaternion((*q)[0], Vec3((*q)[1], (*q)[2], (*q)[3])))
     reader.fail_at("orientation", node, "must not be zero");
 }
-
-/// Directions that differ by no more (rad) are one.
-constexpr double parallel = 1e-9;
 
 /// The keyframes say where the body is, and how it lies if they have orientations.
 void check_keyframed_body(const MotionEntry& motion, const Node& node, Reader& reader) {
@@ -165,7 +163,7 @@ void check_motion(const MotionEntry& motion, const Node& node, Reader& reader) {
   const Vec3 swing = motion.oscillate ? motion.oscillate->angle : Vec3(Vec3::Zero());
   if (motion.about && motion.spin.isZero(0) && swing.isZero(0))
     reader.fail_at("about", node, "needs a spin or oscillate.angle that is not zero");
-  if (swing.cross(motion.spin).norm() > parallel * swing.norm() * motion.spin.norm())
+  if (swing.cross(motion.spin).norm() > tolerance::same_direction * swing.norm() * motion.spin.norm())
     reader.fail_at("oscillate", node, "must have its angle parallel to the spin");
 }
 

@@ -68,6 +68,16 @@ inline PairSet by_definition(const Boxes& boxes, const std::vector<Mobility>& mo
   return pairs;
 }
 
+/// Pairs in a space, in their order.
+template <class Space>
+PairSet set_of(ConstView<Pair> view) {
+  std::vector<Pair> pairs(static_cast<std::size_t>(view.size()));
+  copy_bytes<Host, Space>(pairs.data(), view.data(), pairs.size() * sizeof(Pair));
+  PairSet set;
+  for (const Pair& pair : pairs) set.emplace_back(pair.i, pair.j);
+  return set;
+}
+
 /// The pairs that a broad phase finds, in its order.
 template <class Space>
 PairSet found(BroadPhase<Space>& broad_phase, const Boxes& boxes, const std::vector<Mobility>& mobility) {
@@ -75,12 +85,7 @@ PairSet found(BroadPhase<Space>& broad_phase, const Boxes& boxes, const std::vec
   Array<Mobility, Space> mobilities;
   copy(bounds, boxes);
   copy(mobilities, mobility);
-  const ConstView<Pair> view = broad_phase.find(bounds.view(), mobilities.view());
-  std::vector<Pair> pairs(static_cast<std::size_t>(view.size()));
-  copy_bytes<Host, Space>(pairs.data(), view.data(), pairs.size() * sizeof(Pair));
-  PairSet set;
-  for (const Pair& pair : pairs) set.emplace_back(pair.i, pair.j);
-  return set;
+  return set_of<Space>(broad_phase.find(bounds.view(), mobilities.view()));
 }
 template <class Space>
 PairSet found(const BroadPhaseSettings& settings, const Boxes& boxes, const std::vector<Mobility>& mobility) {

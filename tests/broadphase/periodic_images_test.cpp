@@ -68,13 +68,7 @@ PairSet found_in(const Period& period, const BroadPhaseSettings& settings, const
   PeriodicImages<Space> images;
   images.take(std::as_const(bounds).view(), std::as_const(mobilities).view(), period);
   const auto broad_phase = make_broad_phase<Space>(settings);
-  const ConstView<Pair> view =
-      images.pairs_of(broad_phase->find(images.bounds().view(), images.mobility().view()));
-  std::vector<Pair> pairs(static_cast<std::size_t>(view.size()));
-  copy_bytes<Host, Space>(pairs.data(), view.data(), pairs.size() * sizeof(Pair));
-  PairSet set;
-  for (const Pair& pair : pairs) set.emplace_back(pair.i, pair.j);
-  return set;
+  return set_of<Space>(images.pairs_of(broad_phase->find(images.bounds().view(), images.mobility().view())));
 }
 
 /// Also that some pairs are there by their images alone.

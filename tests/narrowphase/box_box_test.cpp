@@ -3,6 +3,7 @@
 
 #include "bench/narrowphase/families.hpp"
 #include "bench/narrowphase/oracle.hpp"
+#include "tests/narrowphase/families.hpp"
 
 #include <gtest/gtest.h>
 
@@ -19,16 +20,6 @@ class BoxBoxFamilies : public testing::TestWithParam<Family> {
  protected:
   static constexpr std::uint64_t draws = 12000;
 };
-std::string test_name(const testing::TestParamInfo<Family>& info) {
-  std::string name = oracle::name_of(info.param);
-  std::replace(name.begin(), name.end(), ' ', '_');
-  return name;
-}
-std::vector<Family> all_families() {
-  std::vector<Family> all;
-  for (int f = 0; f < static_cast<int>(Family::count); ++f) all.push_back(static_cast<Family>(f));
-  return all;
-}
 INSTANTIATE_TEST_SUITE_P(Each, BoxBoxFamilies, testing::ValuesIn(all_families()), test_name);
 
 TEST_P(BoxBoxFamilies, DepthIsThatOfLongDouble) {

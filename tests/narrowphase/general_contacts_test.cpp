@@ -10,6 +10,7 @@
 #include "core/tolerances.hpp"
 #include "narrowphase/convex_axes.hpp"
 #include "narrowphase/gjk.hpp"
+#include "tests/narrowphase/families.hpp"
 
 #include <gtest/gtest.h>
 
@@ -38,16 +39,6 @@ double least_gap(const Manifold& m) {
 }
 
 class HullFamilies : public testing::TestWithParam<Family> {};
-std::string test_name(const testing::TestParamInfo<Family>& info) {
-  std::string name = oracle::name_of(info.param);
-  std::replace(name.begin(), name.end(), ' ', '_');
-  return name;
-}
-std::vector<Family> all_families() {
-  std::vector<Family> all;
-  for (int f = 0; f < static_cast<int>(Family::count); ++f) all.push_back(static_cast<Family>(f));
-  return all;
-}
 INSTANTIATE_TEST_SUITE_P(Each, HullFamilies, testing::ValuesIn(all_families()), test_name);
 
 // Shallow and deep, aligned, parallel edges, coincident centres, 1:1000, tiny and huge: all that libccd fails

@@ -1,6 +1,6 @@
 // Gravity that turns, servos, and floors that shake, against closed forms, by each way of taking steps.
 #include "sim/scene/courses.hpp"
-#include "tests/sim/dynamics/simulations.hpp"
+#include "tests/sim/ways.hpp"
 
 #include <gtest/gtest.h>
 
@@ -12,21 +12,7 @@
 namespace scree {
 namespace {
 
-struct Way {
-  const char* name;
-  SimulationOptions options;
-  const char* settings;
-};
-
-class MotionAndForces : public testing::TestWithParam<Way> {
- protected:
-  void SetUp() override {
-    if (const std::string why = why_not(GetParam().options); !why.empty()) GTEST_SKIP() << why;
-  }
-  Simulation simulate(const std::string& text) const {
-    return Simulation(scene_of(text + GetParam().settings), GetParam().options);
-  }
-};
+class MotionAndForces : public WayTest {};
 
 void expect_explained(Simulation& run) {
   while (!run.finished()) {
@@ -153,15 +139,7 @@ bodies:
   EXPECT_GT(speed_after("restitution: 0.5, friction: 0.3"), -1 + 0.2 - 1e-9);
 }
 
-INSTANTIATE_TEST_SUITE_P(
-    Ways, MotionAndForces,
-    testing::Values(Way{"host", {SpaceChoice::host, 1}, "precision: double\n"},
-                    Way{"host_accurate", {SpaceChoice::host, 1}, "response: {mode: accurate}\n"},
-                    Way{"host_resident",
-                        {.space = SpaceChoice::host, .threads = 1, .resident = true},
-                        "precision: double\n"},
-                    Way{"cuda", {SpaceChoice::cuda}, "precision: double\n"}),
-    [](const auto& way) { return std::string(way.param.name); });
+INSTANTIATE_TEST_SUITE_P(Ways, MotionAndForces, testing::ValuesIn(double_ways()), way_name);
 
 TEST(Courses, GravityGoesStraightBetweenKeyframesAndRestsOutside) {
   const GravityTurn turn{.keyframes = {{1, Vec3(0, 0, -2)}, {3, Vec3(4, 0, 0)}, {4, Vec3(0, 0, 0)}}};

@@ -3,7 +3,7 @@
 #include "core/rng.hpp"
 #include "narrowphase/pair_contacts.hpp"
 #include "sim/step_failure.hpp"
-#include "tests/sim/dynamics/simulations.hpp"
+#include "tests/sim/ways.hpp"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -16,22 +16,7 @@
 namespace scree {
 namespace {
 
-struct Way {
-  const char* name;
-  SimulationOptions options;
-  const char* settings;
-};
-
-class Periodic : public testing::TestWithParam<Way> {
- protected:
-  void SetUp() override {
-    if (const std::string why = why_not(GetParam().options); !why.empty()) GTEST_SKIP() << why;
-  }
-  bool is_mixed() const { return std::string(GetParam().settings) == "precision: mixed"; }
-  Simulation simulate(const std::string& text) const {
-    return Simulation(scene_of(text + "\n" + GetParam().settings + "\n"), GetParam().options);
-  }
-};
+class Periodic : public WayTest {};
 
 BodyTable state_of(const Simulation& run) {
   Snapshot snapshot;
@@ -364,17 +349,7 @@ bodies:
   EXPECT_LT(run.observe().unexplained, is_mixed() ? 1e-6 : 1e-12);
 }
 
-INSTANTIATE_TEST_SUITE_P(
-    Ways, Periodic,
-    testing::Values(Way{"host", {SpaceChoice::host, 1}, "precision: double"},
-                    Way{"host_accurate", {SpaceChoice::host, 1}, "response: {mode: accurate}"},
-                    Way{"host_resident",
-                        {.space = SpaceChoice::host, .threads = 1, .resident = true},
-                        "precision: double"},
-                    Way{"host_mixed", {SpaceChoice::host, 1}, "precision: mixed"},
-                    Way{"cuda", {SpaceChoice::cuda}, "precision: double"},
-                    Way{"cuda_mixed", {SpaceChoice::cuda}, "precision: mixed"}),
-    [](const auto& way) { return std::string(way.param.name); });
+INSTANTIATE_TEST_SUITE_P(Ways, Periodic, testing::ValuesIn(all_ways()), way_name);
 
 }  // namespace
 }  // namespace scree

@@ -1,7 +1,7 @@
 // A simulation that is saved and loaded goes on with the same bits as one that never stopped.
 #include "core/error.hpp"
 #include "sim/simulation.hpp"
-#include "tests/sim/dynamics/simulations.hpp"
+#include "tests/sim/ways.hpp"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -14,21 +14,7 @@
 namespace scree {
 namespace {
 
-struct Way {
-  const char* name;
-  SimulationOptions options;
-  const char* settings;
-};
-
-class Resume : public testing::TestWithParam<Way> {
- protected:
-  void SetUp() override {
-    if (const std::string why = why_not(GetParam().options); !why.empty()) GTEST_SKIP() << why;
-  }
-  Simulation simulate(const std::string& text) const {
-    return Simulation(scene_of(text + "\n" + GetParam().settings), GetParam().options);
-  }
-};
+class Resume : public WayTest {};
 
 /// What a row of the metrics could hold, to the bit.
 std::string seen(Simulation& run) {
@@ -211,17 +197,7 @@ bodies:
   EXPECT_THROW(run.archive(archive), InputError);
 }
 
-INSTANTIATE_TEST_SUITE_P(
-    Ways, Resume,
-    testing::Values(Way{"host", {SpaceChoice::host, 1}, "precision: double"},
-                    Way{"host_accurate", {SpaceChoice::host, 1}, "response: {mode: accurate}"},
-                    Way{"host_resident",
-                        {.space = SpaceChoice::host, .threads = 1, .resident = true},
-                        "precision: double"},
-                    Way{"host_mixed", {SpaceChoice::host, 1}, "precision: mixed"},
-                    Way{"cuda", {SpaceChoice::cuda}, "precision: double"},
-                    Way{"cuda_mixed", {SpaceChoice::cuda}, "precision: mixed"}),
-    [](const auto& way) { return std::string(way.param.name); });
+INSTANTIATE_TEST_SUITE_P(Ways, Resume, testing::ValuesIn(all_ways()), way_name);
 
 }  // namespace
 }  // namespace scree
