@@ -4,8 +4,9 @@
     xvfb-run -a pvpython scripts/paraview_frame.py RUN EXPORT TIME OUT.png
 
 RUN is the folder of a run with a trajectory, EXPORT what `scree export RUN --to vtp -o EXPORT` has made of it, TIME the frame's (s).
-Debian's paraview, python3-paraview, python3-yaml, xauth and xvfb; 5.11 and newer. Where the run has contacts, they are drawn as tubes into
-OUT-forces.png.
+Debian's paraview, python3-paraview, python3-yaml, xauth and xvfb; 5.11 and newer. Spheres and boxes are glyphs of the trajectory's points; meshes
+and polyhedra are in surfaces.pvd; capsules, cylinders and tubes are lines in axes.pvd with a tube around them, capsules with a sphere at each end.
+Where the run has contacts, they are drawn as tubes into OUT-forces.png.
 """
 import math
 import sys
@@ -14,7 +15,9 @@ from pathlib import Path
 import yaml
 from paraview.simple import (
     CreateView,
+    Glyph,
     Hide,
+    MergeBlocks,
     OpenDataFile,
     SaveScreenshot,
     Show,
@@ -24,12 +27,13 @@ from paraview.simple import (
     GetColorTransferFunction,
 )
 
-SPHERE, BOX = 0, 1
+SPHERE, BOX, CAPSULE = 0, 1, 5
 
 
 def bodies_of(source, shape):
+    # Not from 0 to 0: a limit of 0 is ParaView's default, which it widens to the range of the data.
     return Threshold(
-        Input=source, Scalars=["POINTS", "shape"], LowerThreshold=shape, UpperThreshold=shape, ThresholdMethod="Between"
+        Input=source, Scalars=["POINTS", "shape"], LowerThreshold=shape - 0.5, UpperThreshold=shape + 0.5, ThresholdMethod="Between"
     )
 
 
@@ -48,6 +52,12 @@ def view_of(scene):
     return view
 
 
+def color_by_material(display, where):
+    ColorBy(display, (where, "material"))
+    GetColorTransferFunction("material").RescaleTransferFunction(0, len(scene["materials"]) - 1)
+    display.SetScalarBarVisibility(view, False)
+
+
 def show_glyphs(source, shape, name):
     """The bodies of a shape, each a glyph of its size, turned by its quaternion, in the colour of its material."""
     bodies = bodies_of(source, shape)
@@ -63,16 +73,35 @@ def show_glyphs(source, shape, name):
     display.Orient = 1
     display.OrientationMode = "Quaternion"
     display.SelectOrientationVectors = "orientation"
-    ColorBy(display, ("POINTS", "material"))
-    GetColorTransferFunction("material").RescaleTransferFunction(0, len(scene["materials"]) - 1)
-    display.SetScalarBarVisibility(view, False)
+    color_by_material(display, "POINTS")
     return bodies
+
+
+def show_surfaces(file):
+    """Meshes and polyhedra."""
+    surfaces = OpenDataFile(str(file))
+    color_by_material(Show(surfaces, view), "CELLS")
+    return [surfaces]
+
+
+def show_axes(file):
+    """Capsules, cylinders and tubes."""
+    axes = MergeBlocks(Input=OpenDataFile(str(file)), OutputDataSetType="Polygonal Mesh")
+    solid = Tube(Input=axes, Scalars=["POINTS", "radius"], VaryRadius="By Absolute Scalar", NumberofSides=32, Capping=1)
+    ends = Glyph(Input=bodies_of(axes, CAPSULE), GlyphType="Sphere", ScaleArray=["POINTS", "radius"], GlyphMode="All Points")
+    ends.ScaleFactor = 2
+    ends.GlyphType.ThetaResolution = ends.GlyphType.PhiResolution = 24
+    for shown in (solid, ends):
+        color_by_material(Show(shown, view), "POINTS")
+    return [solid, ends]
 
 
 def show_forces(file, scene, time):
     contacts = OpenDataFile(str(file))
     view.ViewTime = time
     contacts.UpdatePipeline(time)
+    if contacts.GetDataInformation().GetNumberOfPoints() == 0:
+        return
     low, high = contacts.PointData["force"].GetRange(-1)
     tubes = Tube(Input=contacts, Vectors=["POINTS", "force"], VaryRadius="By Vector Norm", RadiusFactor=30.0)
     width = math.dist(scene["render"]["camera"]["from"], scene["render"]["camera"]["to"])
@@ -90,6 +119,9 @@ trajectory = OpenDataFile(str(export / "trajectory.pvd"))
 view.ViewTime = time
 trajectory.UpdatePipeline(time)
 shown = [show_glyphs(trajectory, SPHERE, "Sphere"), show_glyphs(trajectory, BOX, "Box")]
+for name, show in (("surfaces.pvd", show_surfaces), ("axes.pvd", show_axes)):
+    if (export / name).exists():
+        shown += show(export / name)
 SaveScreenshot(str(out), view, ImageResolution=view.ViewSize)
 if (export / "contacts.pvd").exists():
     for source in shown:

@@ -6,31 +6,83 @@
 #include "sim/record/exports.hpp"
 #include "sim/record/outcome.hpp"
 #include "sim/record/trajectory_reader.hpp"
+#include "sim/scene/read_period.hpp"
+#include "sim/scene/scene.hpp"
 
 #include <fmt/format.h>
 
 #include <array>
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
 #include <system_error>
 
 namespace scree::cli {
 
 namespace {
+
+namespace fs = std::filesystem;
+
 // In the order of ExportFormat.
 constexpr std::array<const char*, 4> format_words = {"vtp", "xyz", "lammps", "csv"};
+
+/// Of the run's space; only xyz and lammps can say it.
+Period period_of_run(const ExportArguments& arguments) {
+  if (arguments.format != ExportFormat::xyz && arguments.format != ExportFormat::lammps) return {};
+  return read_period(arguments.run / "scene.yaml");
+}
+
+void print_particles(const LeftOut& left_out) {
+  fmt::print("types:     {}\n", particle_kinds);
+  if (left_out.any())
+    fmt::print("left out:  {}, which are no particles (vtp and csv have them)\n", left_out.words());
+}
+
+/// The hulls of a run's scene, which is read when the first of them is asked for.
+class Hulls {
+ public:
+  explicit Hulls(const fs::path& run) : file_(run / "scene.yaml") {}
+
+  const Hull& of(std::int32_t body) {
+    if (!scene_) scene_ = read_scene(file_);
+    if (body < 0 || body >= scene_->bodies.count() || !scene_->geometry ||
+        !scene_->geometry->of_body[static_cast<std::size_t>(body)].hull)
+      throw InputError(fmt::format("the trajectory is of other bodies than {}", file_.string()));
+    return *scene_->geometry->of_body[static_cast<std::size_t>(body)].hull;
+  }
+
+ private:
+  fs::path file_;
+  std::optional<Scene> scene_;
+};
+
+void export_vtp_shapes(TrajectoryReader& trajectory, const fs::path& run, const fs::path& folder) {
+  Hulls hulls(run);
+  const auto hull_of = [&hulls](std::int32_t body) -> const Hull& { return hulls.of(body); };
+  for (const auto& [name, file] : export_shapes(trajectory, hull_of, folder))
+    fmt::print("{:<11}{}\n", std::string(name) + ":",
+               file ? file->string() : "none: the trajectory has no orientation");
+}
+
 }  // namespace
 
 int export_trajectory(const ExportArguments& arguments) {
   TrajectoryReader trajectory(arguments.run / trajectory_name);
-  const std::filesystem::path folder = output_folder(
-      arguments.output, arguments.run, format_words[static_cast<std::size_t>(arguments.format)]);
+  const fs::path folder = output_folder(arguments.output, arguments.run,
+                                        format_words[static_cast<std::size_t>(arguments.format)]);
   std::error_code error;
-  std::filesystem::create_directories(folder, error);
+  fs::create_directories(folder, error);
   if (error)
     throw InputError(
         fmt::format("cannot make {}: {}; give another folder with -o", folder.string(), error.message()));
-  const std::filesystem::path file = scree::export_trajectory(trajectory, arguments.format, folder);
+  const auto [file, left_out] =
+      scree::export_trajectory(trajectory, arguments.format, period_of_run(arguments), folder);
   fmt::print("{} frames: {}\n", trajectory.index().frames().size(), file.string());
-  if (!std::filesystem::exists(arguments.run / contacts_name)) return status_done;
+  if (arguments.format == ExportFormat::vtp) export_vtp_shapes(trajectory, arguments.run, folder);
+  if (arguments.format == ExportFormat::xyz || arguments.format == ExportFormat::lammps)
+    print_particles(left_out);
+  if (!fs::exists(arguments.run / contacts_name)) return status_done;
   TrajectoryReader contacts(arguments.run / contacts_name);
   if (const auto lines = export_contacts(contacts, arguments.format, folder))
     fmt::print("contacts:  {}\n", lines->string());

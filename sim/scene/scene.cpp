@@ -5,6 +5,8 @@
 #include "sim/scene/build.hpp"
 #include "sim/scene/memory.hpp"
 #include "sim/scene/override.hpp"
+#include "sim/scene/read_period.hpp"
+#include "sim/scene/rules.hpp"
 
 #include <fmt/format.h>
 
@@ -28,12 +30,9 @@ std::string read_text(const std::filesystem::path& file) {
   return text;
 }
 
-}  // namespace
-
-Scene parse_scene(const std::string& text, const std::filesystem::path& name,
-                  const std::vector<Override>& overrides, std::optional<double> memory) {
-  Reader reader(name.string(), overrides);
-  Node root;
+/// `root` becomes the tree that the entry refers to.
+SceneEntry read_entry(const std::string& text, const std::vector<Override>& overrides, Reader& reader,
+                      Node& root) {
   try {
     root = parse_document(text);
   } catch (const SyntaxError& error) {
@@ -50,11 +49,28 @@ Scene parse_scene(const std::string& text, const std::filesystem::path& name,
     reader.note(error);
   }
   reader.finish();
+  return entry;
+}
+
+}  // namespace
+
+Scene parse_scene(const std::string& text, const std::filesystem::path& name,
+                  const std::vector<Override>& overrides, std::optional<double> memory) {
+  Reader reader(name.string(), overrides);
+  Node root;
+  SceneEntry entry = read_entry(text, overrides, reader, root);
   return build_scene(std::move(entry), name, memory.value_or(machine_memory()), reader);
 }
 
 Scene read_scene(const std::filesystem::path& file, const std::vector<Override>& overrides) {
   return parse_scene(read_text(file), file, overrides);
+}
+
+Period read_period(const std::filesystem::path& scene) {
+  Reader reader(scene.string(), {});
+  Node root;
+  const SceneEntry entry = read_entry(read_text(scene), {}, reader, root);
+  return entry.periodic ? period_of(*entry.periodic) : Period{};
 }
 
 }  // namespace scree

@@ -122,5 +122,31 @@ TEST_F(TrajectoryProgramTest, IsExported) {
   EXPECT_TRUE(contains(none.error, "bare/trajectory.vtkhdf: there is none")) << none.error;
 }
 
+// The hulls and the period are those of scene.yaml in the run's folder.
+TEST_F(TrajectoryProgramTest, ShapesAndPeriodsAreExported) {
+  const std::string gem =
+      "format: 1\nname: gem\ntime: {end: 0.1, step: 0.1}\nperiodic: {x: [-2, 2]}\n"
+      "materials: {stone: {density: 1000}}\nrecord: {trajectory: true}\nbodies:\n"
+      "  - {plane: {normal: [0, 0, 1], offset: -1}, material: stone}\n"
+      "  - {polyhedron: {points: [[1, 0, 0], [0, 1, 0], [0, 0, 1], [0, 0, 0]], scale: 0.2}, material: "
+      "stone}\n";
+  ASSERT_EQ(run_scene(gem, {"--no-render"}).status, 0);
+  const Finished vtp = scree_in(folder_, {"export", "output/gem", "--to", "vtp"});
+  EXPECT_EQ(vtp.status, 0) << vtp.error;
+  EXPECT_TRUE(contains(vtp.out, "surfaces:  output/gem-vtp/surfaces.pvd")) << vtp.out;
+  EXPECT_FALSE(contains(vtp.out, "axes")) << vtp.out;
+  EXPECT_TRUE(contains(text_of(folder_ / "output/gem-vtp/surfaces/moving00000.vtp"), "NumberOfPolys=\"4\""));
+  const Finished xyz = scree_in(folder_, {"export", "output/gem", "--to", "xyz"});
+  EXPECT_TRUE(contains(xyz.out, "left out:  1 plane,")) << xyz.out << xyz.error;
+  EXPECT_TRUE(contains(text_of(folder_ / "output/gem-xyz/trajectory.xyz"), "pbc=\"T F F\""));
+
+  const std::string scene = text_of(folder_ / "output/gem/scene.yaml");
+  write_text(folder_ / "output/gem/scene.yaml",
+             scene.substr(0, scene.find("bodies:")) + "bodies: [{sphere: {radius: 1}, material: stone}]\n");
+  const Finished other = scree_in(folder_, {"export", "output/gem", "--to", "vtp"});
+  EXPECT_EQ(other.status, 2);
+  EXPECT_TRUE(contains(other.error, "of other bodies than output/gem/scene.yaml")) << other.error;
+}
+
 }  // namespace
 }  // namespace scree

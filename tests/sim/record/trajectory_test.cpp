@@ -261,13 +261,16 @@ std::vector<std::string> lines(const fs::path& file) {
 TEST(Trajectory, IsExportedAsXyz) {
   const TemporaryFolder folder;
   TrajectoryReader reader(write(scene_of(4), folder));
-  const std::vector<std::string> text = lines(export_trajectory(reader, ExportFormat::xyz, folder.path()));
+  const std::vector<std::string> text =
+      lines(export_trajectory(reader, ExportFormat::xyz, {}, folder.path()).file);
   // Two lines before the particles of each frame, of which the plane is none.
   ASSERT_EQ(text.size(), frames * 2 + 4 * 3 + 2 * 2);
   EXPECT_EQ(text[0], "3");
   EXPECT_EQ(text[1],
             "Properties=type:I:1:pos:R:3:id:I:1:material:I:1:radius:R:1:aspherical_shape:R:3:orientation:R:4:"
-            "velo:R:3 Time=0 Timestep=0 pbc=\"F F F\"");
+            "velo:R:3 Time=0 Timestep=0 pbc=\"F F F\" types=\"1 sphere, 2 box, 3 capsule, 4 cylinder, 5 "
+            "polyhedron as "
+            "the box around it\" left_out=\"1 plane\"");
   EXPECT_EQ(words(text[2]), words("1 1 0 0.33333334 1 1 0.1 0 0 0 0.099833414 0 0 0.9950042 0 0.5 0"));
   EXPECT_EQ(words(text[3]),
             words("2 2 0 0.33333334 2 2 0 0.1 0.2 0.3 0.19866933 0 0 0.9800666 0 0.33333334 0"));
@@ -276,7 +279,8 @@ TEST(Trajectory, IsExportedAsXyz) {
 TEST(Trajectory, IsExportedForLammps) {
   const TemporaryFolder folder;
   TrajectoryReader reader(write(scene_of(4), folder));
-  const std::vector<std::string> text = lines(export_trajectory(reader, ExportFormat::lammps, folder.path()));
+  const std::vector<std::string> text =
+      lines(export_trajectory(reader, ExportFormat::lammps, {}, folder.path()).file);
   const std::vector<std::string> start = {
       "ITEM: TIMESTEP",
       "0",
@@ -298,7 +302,7 @@ TEST(Trajectory, IsExportedForLammps) {
 TEST(Trajectory, IsExportedAsTables) {
   const TemporaryFolder folder;
   TrajectoryReader reader(write(scene_of(2), folder));
-  const fs::path files = export_trajectory(reader, ExportFormat::csv, folder.path());
+  const fs::path files = export_trajectory(reader, ExportFormat::csv, {}, folder.path()).file;
   EXPECT_EQ(std::distance(fs::directory_iterator(files), fs::directory_iterator()), frames);
   EXPECT_EQ(
       text_of(files / "00002.csv"),
@@ -310,7 +314,8 @@ TEST(Trajectory, IsExportedAsTables) {
 TEST(Trajectory, IsExportedForVtk) {
   const TemporaryFolder folder;
   TrajectoryReader reader(write(scene_of(4), folder));
-  const std::string collection = text_of(export_trajectory(reader, ExportFormat::vtp, folder.path()));
+  const std::string collection =
+      text_of(export_trajectory(reader, ExportFormat::vtp, {}, folder.path()).file);
   EXPECT_NE(collection.find("<DataSet timestep=\"0.2\" file=\"vtp/00002.vtp\"/>"), std::string::npos);
   const std::string file = text_of(folder / "vtp/00000.vtp");
   const std::size_t start = file.find("<AppendedData encoding=\"raw\">\n_") + 31;
