@@ -55,6 +55,9 @@ def generated(folder):
         (folder / f"{name}.csv").write_bytes(content)
         yield scene(name, HEAD + f"bodies: [{{file: {name}.csv, material: glass}}]\n"), wrong
     yield scene("csv_endless", HEAD + "bodies: [{file: /dev/zero, material: glass}]\n"), "a body file without end"
+    yield scene("mesh_endless", HEAD + "bodies: [{mesh: {file: /dev/zero}, fixed: true, material: glass}]\n"), "a mesh without end"
+    (folder / "csv_hull_endless.csv").write_text("shape,x,y,z,hull\npolyhedron,0,0,0,/dev/zero\n")
+    yield scene("csv_hull_endless", HEAD + "bodies: [{file: csv_hull_endless.csv, material: glass}]\n"), "a hull without end in a body file"
     yield folder, "a folder instead of a scene"
     yield folder / "absent.yaml", "no such file"
 

@@ -1,6 +1,7 @@
 #include "sim/record/run_folder.hpp"
 
 #include "core/error.hpp"
+#include "sim/record/final_state.hpp"
 
 #include <fmt/format.h>
 
@@ -35,7 +36,9 @@ bool is_plot(std::string_view name) {
          (name.ends_with(".gp") || name.ends_with(".svg") || name.ends_with(".png"));
 }
 
-bool is_folder_of_a_run(std::string_view name) { return name == "frames" || name == "checkpoint"; }
+bool is_folder_of_a_run(std::string_view name) {
+  return name == "frames" || name == "checkpoint" || name == hulls_name;
+}
 
 /// Whether a run or a study wrote this entry of its folder: a final name, or the part of one that did not get
 /// that far.
@@ -45,11 +48,11 @@ bool is_written_by_a_run(const fs::path& entry) {
   return std::ranges::find(file_names, name) != file_names.end() || is_folder_of_a_run(name) || is_plot(name);
 }
 
-/// A picture or a saved state, complete or not.
+/// A picture, a saved state or a hull, complete or not.
 bool is_numbered(const fs::path& entry) {
   const std::string name = entry.filename().string();
   return name.ends_with(".png") || name.ends_with(".png.part") || name.ends_with(".h5") ||
-         name.ends_with(".h5.part");
+         name.ends_with(".h5.part") || name.ends_with(".obj") || name.ends_with(".obj.part");
 }
 
 std::vector<fs::path> entries_of(const fs::path& folder) {

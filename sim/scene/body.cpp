@@ -115,6 +115,14 @@ void make_shape(const BodyEntry& entry, const Hull* hull, Random& random, Shape&
   }
 }
 
+/// From the frame of a hull's points, which is where the body's was said to be, to the hull's own. One that
+/// is its own, but for rounding, stays.
+void place_hull(const Hull& hull, std::size_t b, BodyTable& bodies) {
+  bodies.position[b] += bodies.orientation[b] * hull.centre;
+  if (hull.axes.coeffs() != Quat::Identity().coeffs())
+    bodies.orientation[b] = (bodies.orientation[b] * hull.axes).normalized();
+}
+
 }  // namespace
 
 bool make_body(const BodyEntry& entry, std::int64_t k, std::int32_t id, std::uint64_t seed, double density,
@@ -175,19 +183,24 @@ void make_body(const BodyEntry& entry, const PlacedTriangle& triangle, std::int3
   bodies.inverse_inertia[b] = Vec3::Zero();
 }
 
-bool make_body(const BodyRow& row, bool fixed, std::int32_t id, double density, BodyTable& bodies) {
+bool make_body(const BodyRow& row, bool fixed, std::int32_t id, double density, const Hull* hull,
+               BodyTable& bodies) {
   const auto b = static_cast<std::size_t>(id);
   bodies.id[b] = id;
   bodies.shape[b] = row.shape;
-  bodies.size[b] = row.size;
+  bodies.size[b] = hull ? hull->half_extent() : row.size;
   bodies.position[b] = row.position;
   bodies.orientation[b] = row.orientation;
+  if (hull) place_hull(*hull, b, bodies);
   bodies.velocity[b] = fixed ? Vec3(Vec3::Zero()) : row.velocity;
   bodies.spin[b] = fixed ? Vec3(Vec3::Zero()) : row.spin;
   bodies.mobility[b] = fixed ? Mobility::fixed : Mobility::free;
   bodies.inverse_mass[b] = 0;
   bodies.inverse_inertia[b] = Vec3::Zero();
-  return fixed || set_mass(row.mass, density, nullptr, b, bodies);
+  if (fixed) return true;
+  const bool usable = set_mass(row.mass, density, hull, b, bodies);
+  if (row.servo) bodies.inverse_inertia[b].setZero();  // as above
+  return usable;
 }
 
 }  // namespace scree

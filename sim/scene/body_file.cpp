@@ -1,6 +1,7 @@
 // Rows of text to bodies, strict: what a cell says is taken, or refused at its place.
 #include "sim/scene/body_file.hpp"
 
+#include "core/tolerances.hpp"
 #include "sim/scene/codec.hpp"
 #include "sim/scene/unit_quaternion.hpp"
 
@@ -27,13 +28,15 @@ struct ColumnInfo {
 
 /// In the order of BodyColumn.
 constexpr std::array<ColumnInfo, body_columns> columns = {{
-    {"shape", any_value, ""},    {"radius", above_zero, "m"}, {"size_x", above_zero, "m"},
-    {"size_y", above_zero, "m"}, {"size_z", above_zero, "m"}, {"x", any_value, "m"},
-    {"y", any_value, "m"},       {"z", any_value, "m"},       {"qw", any_value, ""},
-    {"qx", any_value, ""},       {"qy", any_value, ""},       {"qz", any_value, ""},
-    {"vx", any_value, "m/s"},    {"vy", any_value, "m/s"},    {"vz", any_value, "m/s"},
-    {"wx", any_value, "rad/s"},  {"wy", any_value, "rad/s"},  {"wz", any_value, "rad/s"},
-    {"mass", above_zero, "kg"},  {"material", any_value, ""},
+    {"shape", any_value, ""},        {"radius", above_zero, "m"}, {"size_x", above_zero, "m"},
+    {"size_y", above_zero, "m"},     {"size_z", above_zero, "m"}, {"x", any_value, "m"},
+    {"y", any_value, "m"},           {"z", any_value, "m"},       {"qw", any_value, ""},
+    {"qx", any_value, ""},           {"qy", any_value, ""},       {"qz", any_value, ""},
+    {"vx", any_value, "m/s"},        {"vy", any_value, "m/s"},    {"vz", any_value, "m/s"},
+    {"wx", any_value, "rad/s"},      {"wy", any_value, "rad/s"},  {"wz", any_value, "rad/s"},
+    {"mass", above_zero, "kg"},      {"material", any_value, ""}, {"hull", any_value, ""},
+    {"servo_x", any_value, ""},      {"servo_y", any_value, ""},  {"servo_z", any_value, ""},
+    {"servo_force", any_value, "N"},
 }};
 constexpr std::array required = {BodyColumn::shape, BodyColumn::x, BodyColumn::y, BodyColumn::z};
 
@@ -215,8 +218,13 @@ BodyRow BodyFile::row_of(const Cells& cells) {
   row.spin = vector_of(cells, BodyColumn::wx);
   if (!cells[BodyColumn::mass].empty()) row.mass = number_of(cells, BodyColumn::mass);
   row.material = cells[BodyColumn::material];
+  require_hull(cells, row.shape);
+  row.hull = cells[BodyColumn::hull];
+  row.servo = servo_of(cells, row);
   row.mark = {cells.mark_of(BodyColumn::shape).line, 1};
   row.material_mark = cells.mark_of(BodyColumn::material);
+  row.hull_mark = cells.mark_of(BodyColumn::hull);
+  row.servo_mark = cells.mark_of(BodyColumn::servo_x);
   return row;
 }
 
@@ -226,14 +234,44 @@ Shape BodyFile::shape_of(const Cells& cells) {
   if (shape == "box") return Shape::box;
   if (shape == "capsule") return Shape::capsule;
   if (shape == "cylinder") return Shape::cylinder;
-  if (shape == "polyhedron")
-    fail(BodyColumn::shape, cells.mark_of(BodyColumn::shape),
-         "a row cannot say which polyhedron it is; resume the run instead, or give the polyhedra in the "
-         "scene");
+  if (shape == "polyhedron") return Shape::polyhedron;
   fail(BodyColumn::shape, cells.mark_of(BodyColumn::shape),
-       fmt::format("must be one of sphere, box, capsule, cylinder, not {}{}",
+       fmt::format("must be one of sphere, box, capsule, cylinder, polyhedron, not {}{}",
                    shape.empty() ? "nothing" : shape.substr(0, 40),
-                   suggestion(shape, {"sphere", "box", "capsule", "cylinder"})));
+                   suggestion(shape, {"sphere", "box", "capsule", "cylinder", "polyhedron"})));
+}
+
+void BodyFile::require_hull(const Cells& cells, Shape shape) {
+  if ((shape == Shape::polyhedron) == !cells[BodyColumn::hull].empty()) return;
+  fail(BodyColumn::hull, cells.mark_of(BodyColumn::hull),
+       shape == Shape::polyhedron
+           ? std::string("a polyhedron needs it, an OBJ or STL file whose vertices' hull it is")
+           : fmt::format("does not go with a {}; leave it empty", cells[BodyColumn::shape]));
+}
+
+/// It moves along its axis alone.
+std::optional<Servo> BodyFile::servo_of(const Cells& cells, const BodyRow& row) {
+  const auto fail_at = [&](BodyColumn column, const char* what) {
+    fail(column, cells.mark_of(column), what);
+  };
+  int given = 0;
+  for (int k = 0; k < 4; ++k) given += !cells[after(BodyColumn::servo_x, k)].empty();
+  if (given == 0) return {};
+  for (int k = 0; k < 4; ++k)
+    if (const BodyColumn column = after(BodyColumn::servo_x, k); cells[column].empty())
+      fail_at(column, "must be a number, as the others of servo_x, servo_y, servo_z, servo_force");
+  if (row.shape != Shape::box) fail_at(BodyColumn::servo_x, "goes with a box alone");
+  Servo servo{.body = -1,
+              .axis = vector_of(cells, BodyColumn::servo_x),
+              .force = number_of(cells, BodyColumn::servo_force)};
+  const double length = servo.axis.stableNorm();
+  if (!(length > 0)) fail_at(BodyColumn::servo_x, "the axis must not be zero");
+  if (std::abs(length - 1) > tolerance::unit_length) servo.axis = servo.axis.stableNormalized();
+  const double across = (row.velocity - servo.axis.dot(row.velocity) * servo.axis).stableNorm();
+  if (across > tolerance::unit_length * row.velocity.stableNorm())
+    fail_at(BodyColumn::vx, "must be along the axis of the servo");
+  if (row.spin != Vec3::Zero()) fail_at(BodyColumn::wx, "must be zero: a servo does not turn");
+  return servo;
 }
 
 Quat BodyFile::orientation_of(const Cells& cells) {
@@ -252,17 +290,19 @@ Quat BodyFile::orientation_of(const Cells& cells) {
 }
 
 Vec3 BodyFile::sizes_of(const Cells& cells, Shape shape) {
-  const bool round = shape != Shape::box;
   const bool along = shape == Shape::capsule || shape == Shape::cylinder;
   for (int k = 0; k < 4; ++k) {
     const BodyColumn column = after(BodyColumn::radius, k);
-    const bool wanted =
-        column == BodyColumn::radius || (along && column == BodyColumn::size_z) ? round : !round;
+    const bool wanted = shape == Shape::box ? column != BodyColumn::radius
+                        : shape == Shape::sphere
+                            ? column == BodyColumn::radius
+                            : along && (column == BodyColumn::radius || column == BodyColumn::size_z);
     if (wanted == !cells[column].empty()) continue;
     fail(column, cells.mark_of(column),
          wanted ? fmt::format("a {} needs it, a number > 0 (m)", cells[BodyColumn::shape])
                 : fmt::format("does not go with a {}; leave it empty", cells[BodyColumn::shape]));
   }
+  if (shape == Shape::polyhedron) return Vec3::Zero();
   const double radius = number_of(cells, BodyColumn::radius);
   if (shape == Shape::sphere) return Vec3(radius, 0, 0);
   if (along) {

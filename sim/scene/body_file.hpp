@@ -13,10 +13,10 @@
 
 namespace scree {
 
-/// The columns of a body file, in the order in which runs write them. shape, x, y and z are required, and the
-/// sizes that the shapes need.
+/// The columns of a body file, in the order in which runs write them; those from `hull` on, where a body
+/// needs them. shape, x, y and z are required, and the sizes that the shapes need.
 enum class BodyColumn {
-  shape,   ///< sphere, box, capsule or cylinder
+  shape,   ///< sphere, box, capsule, cylinder or polyhedron
   radius,  ///< of a sphere, capsule or cylinder (m); empty for a box
   size_x,  ///< full edge lengths of a box (m), size_z that of a capsule or cylinder; else empty
   size_y,
@@ -36,22 +36,31 @@ enum class BodyColumn {
   wz,
   mass,      ///< kg; empty: from the material's density
   material,  ///< a name of the scene's materials
+  hull,      ///< of a polyhedron: the OBJ or STL file whose vertices' hull it is, relative to the body file
+  servo_x,   ///< of a servo: the axis along which it moves; with servo_force all four or none
+  servo_y,
+  servo_z,
+  servo_force,  ///< N
 };
-inline constexpr int body_columns = static_cast<int>(BodyColumn::material) + 1;
+inline constexpr int body_columns = static_cast<int>(BodyColumn::servo_force) + 1;
 std::string_view name_of(BodyColumn column);
 
 /// One row.
 struct BodyRow {
   Shape shape = Shape::sphere;
-  Vec3 size = Vec3::Zero();  ///< as in Shape
+  Vec3 size = Vec3::Zero();  ///< as in Shape; of a polyhedron unknown
   Vec3 position = Vec3::Zero();
   Quat orientation = Quat::Identity();
   Vec3 velocity = Vec3::Zero();
   Vec3 spin = Vec3::Zero();
   std::optional<double> mass;
-  std::string_view material;  ///< empty: not given
-  SourceMark mark;            ///< of the row
+  std::string_view material;   ///< empty: not given
+  std::string_view hull;       ///< empty: not given
+  std::optional<Servo> servo;  ///< of no body yet
+  SourceMark mark;             ///< of the row
   SourceMark material_mark;
+  SourceMark hull_mark;
+  SourceMark servo_mark;
 };
 
 /// The file that a path names: itself, or the final state in a run's folder. Throws InputError, without a
@@ -69,6 +78,9 @@ class BodyFile {
   /// Calls `take` with each row in order. Throws like the constructor.
   void read(const std::function<void(const BodyRow&)>& take);
 
+  /// The file that a row names.
+  std::filesystem::path hull_file(const BodyRow& row) const { return file_.parent_path() / row.hull; }
+
   [[noreturn]] void fail(BodyColumn column, const SourceMark& mark, std::string_view what);
 
  private:
@@ -79,6 +91,8 @@ class BodyFile {
   Shape shape_of(const Cells& cells);
   Vec3 sizes_of(const Cells& cells, Shape shape);
   Quat orientation_of(const Cells& cells);
+  void require_hull(const Cells& cells, Shape shape);
+  std::optional<Servo> servo_of(const Cells& cells, const BodyRow& row);
   Vec3 vector_of(const Cells& cells, BodyColumn first);
   double number_of(const Cells& cells, BodyColumn column);
 

@@ -12,7 +12,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <numeric>
+#include <string>
+#include <utility>
 
 namespace scree {
 namespace {
@@ -92,6 +95,13 @@ class Builder {
       for (std::int32_t k = 0; k < slot.bodies.count; ++k)
         geometry->of_body[static_cast<std::size_t>(slot.bodies.first + k)].hull = &geometry->hulls.back();
     }
+    std::map<const Hull*, const Hull*> moved;
+    for (auto& [name, hull] : hulls_) {
+      geometry->hulls.push_back(std::move(hull));
+      moved[&hull] = &geometry->hulls.back();
+    }
+    for (const auto& [body, hull] : hulls_of_rows_)
+      geometry->of_body[static_cast<std::size_t>(body)].hull = moved.at(hull);
     scene.geometry = geometry;
   }
 
@@ -115,15 +125,41 @@ class Builder {
   }
 
   void read_bodies(const BodySlot& slot, Scene& scene) {
+    const bool fixed = slot.entry->fixed.value_or(false);
     std::int32_t id = slot.bodies.first;
     slot.file->read([&](const BodyRow& row) {
       const std::int32_t index = slot.material >= 0 ? slot.material : material_of(row, *slot.file);
       const Material& material = scene.materials[static_cast<std::size_t>(index)];
       scene.bodies.material[static_cast<std::size_t>(id)] = index;
-      if (!make_body(row, slot.entry->fixed.value_or(false), id, material.density, scene.bodies))
+      const Hull* hull = row.hull.empty() ? nullptr : &hull_of(row, *slot.file);
+      if (hull) hulls_of_rows_.emplace_back(id, hull);
+      if (row.servo && !fixed) add_servo(row, id, *slot.file, scene);
+      if (!make_body(row, fixed, id, material.density, hull, scene.bodies))
         slot.file->fail(BodyColumn::mass, row.mark, beyond_numbers);
       ++id;
     });
+  }
+
+  /// The one hull of all rows that name the file.
+  const Hull& hull_of(const BodyRow& row, BodyFile& file) {
+    const std::string name = file.hull_file(row).lexically_normal().string();
+    const auto [found, fresh] = hulls_.try_emplace(name);
+    if (fresh) {
+      try {
+        found->second = make_hull(read_mesh_file(name, 1).vertices);
+      } catch (const InputError& error) {
+        file.fail(BodyColumn::hull, row.hull_mark, error.what());
+      }
+    }
+    return found->second;
+  }
+
+  static void add_servo(const BodyRow& row, std::int32_t id, BodyFile& file, Scene& scene) {
+    if (scene.precision == Precision::mixed)
+      file.fail(BodyColumn::servo_x, row.servo_mark,
+                "the scene's precision cannot be mixed where a body is a servo");
+    scene.servos.push_back(*row.servo);
+    scene.servos.back().body = id;
   }
 
   std::int32_t material_of(const BodyRow& row, BodyFile& file) const {
@@ -204,6 +240,7 @@ class Builder {
     }
   }
 
+  /// Those of body files are there already.
   void find_servos(Scene& scene) {
     for (const BodySlot& slot : slots_) {
       if (!slot.entry->servo) continue;
@@ -211,6 +248,7 @@ class Builder {
       for (std::int32_t id = slot.bodies.first; id < slot.bodies.first + slot.bodies.count; ++id)
         scene.servos.push_back({id, servo.axis.stableNormalized(), servo.force});
     }
+    std::ranges::sort(scene.servos, {}, &Servo::body);
   }
 
   /// Sums and products of finite numbers may be infinite.
@@ -320,6 +358,8 @@ class Builder {
   TimeGrid grid_;
   MaterialNames materials_;
   std::vector<BodySlot> slots_;
+  std::map<std::string, Hull> hulls_;  ///< that rows of body files name, by their files
+  std::vector<std::pair<std::int32_t, const Hull*>> hulls_of_rows_;
 };
 
 /// Writes the defaults that depend on other keys into the entry.

@@ -50,6 +50,7 @@ class MeshReader {
     std::ifstream stream(file, std::ios::binary);
     std::error_code error;
     if (fs::is_directory(file, error)) fail("is a folder, not a mesh");
+    if (fs::exists(file, error) && !fs::is_regular_file(file, error)) fail("is no regular file");
     if (!stream) fail(fmt::format("cannot be read: {}", std::strerror(errno)));
     text_.assign(std::istreambuf_iterator<char>(stream), {});
   }

@@ -43,19 +43,23 @@ constexpr const char* body_files = R"(
 
 `file:` takes bodies from a CSV file: a first line that names its columns, in any order, then one line per body. Its path
 is relative to the scene file. A run that is done leaves its free bodies in `final.csv` in this format, every number
-to the bit; `file: output/NAME` takes that. `name` names them `name[0]`, `name[1]`, ...; `fixed: true` holds them all.
+to the bit, and the hulls of polyhedra in `hulls` beside it, which come back to rounding; `file: output/NAME` takes that.
+What is not free, such as a mesh, is for the next scene to give again. `name` names them `name[0]`, `name[1]`, ...;
+`fixed: true` holds them all.
 
 | column | meaning |
 |---|---|
-| `shape` | `sphere`, `box`, `capsule` or `cylinder`; required. Runs write `polyhedron` too, which cannot be read: a row does not say which |
+| `shape` | `sphere`, `box`, `capsule`, `cylinder` or `polyhedron`; required |
 | `radius` | of a sphere, capsule or cylinder (m); empty for a box |
-| `size_x`, `size_y`, `size_z` | full edge lengths of a box (m); of a capsule or cylinder `size_z` alone, its length from end to end; empty for a sphere |
-| `x`, `y`, `z` | the centre (m); required |
+| `size_x`, `size_y`, `size_z` | full edge lengths of a box (m); of a capsule or cylinder `size_z` alone, its length from end to end; else empty |
+| `x`, `y`, `z` | the centre (m); of a polyhedron the origin of its points; required |
 | `qw`, `qx`, `qy`, `qz` | orientation, a quaternion of any length but 0; all empty: not turned |
 | `vx`, `vy`, `vz` | velocity (m/s); empty: 0 |
 | `wx`, `wy`, `wz` | spin, world frame (rad/s); empty: 0 |
 | `mass` | kg; empty: from the material's density |
 | `material` | one of `materials`; `material` in the scene goes before it |
+| `hull` | of a polyhedron: an OBJ or STL file, relative to this one, whose vertices' hull it is; else empty |
+| `servo_x`, `servo_y`, `servo_z`, `servo_force` | of a box that is a servo: its axis, and its force (N); else empty |
 
 Cells are separated by commas and not quoted; columns that are left out count as empty. Blank lines are skipped.
 )";

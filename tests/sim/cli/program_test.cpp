@@ -441,5 +441,30 @@ TEST_F(ProgramTest, InfoAndHelp) {
   }
 }
 
+// The hulls are in the run's folder, which belongs to the run: it is refused, and replaced, like any other.
+TEST_F(ProgramTest, ARunStartsFromThePolyhedraAndServosOfAnother) {
+  const std::string head =
+      "format: 1\ntime: {end: 0.1, step: 0.01}\nmaterials: {stone: {density: 1000}}\nrender: false\n";
+  const std::string first =
+      head +
+      "name: first\nbodies:\n"
+      "  - {polyhedron: {points: [[1, 0, 0], [0, 1, 0], [0, 0, 1], [0, 0, 0]]}, velocity: [1, "
+      "0, 0], material: stone}\n"
+      "  - {box: {size: 1}, at: [0, 5, 0], servo: {axis: [0, 1, 0], force: 10}, material: "
+      "stone}\n";
+  ASSERT_EQ(run_scene(first).status, 0);
+  EXPECT_TRUE(fs::exists(folder_ / "output/first/hulls/0.obj"));
+  EXPECT_EQ(run_scene(first).status, 2) << "there is a run";
+  ASSERT_EQ(run_scene(first, {"--overwrite"}).status, 0);
+  // Free flight, and 10 N on 1000 kg, for twice the time.
+  const std::string second = head +
+                             "name: second\nbodies: [{file: output/first, name: b}]\nchecks:\n"
+                             "  - {measure: \"b[0].position.x\", expect: 0.45, tolerance: 1.0e-12}\n"
+                             "  - {measure: \"b[1].position.y\", expect: 5.0002, tolerance: 1.0e-12}\n"
+                             "  - {measure: \"b[1].velocity.y\", expect: 0.002, tolerance: 1.0e-12}\n";
+  const Finished run = run_scene(second);
+  EXPECT_EQ(run.status, 0) << run.out << run.error;
+}
+
 }  // namespace
 }  // namespace scree

@@ -99,10 +99,11 @@ TEST_F(BodyFileTest, EveryFaultIsToldAtItsPlace) {
       {"shape,x,y,z\nsphere,1,2\n", "bed.csv:2:1: has 3 cells; the header names 4 columns"},
       {"shape,x,y,z\nsphere,1,2,3,4\n", "bed.csv:2:1: has 5 cells; the header names 4 columns"},
       {head + "shpere,1,,,,0,0,0,,,,,\n",
-       "bed.csv:2:1: shape: must be one of sphere, box, capsule, cylinder, not shpere (did you mean "
+       "bed.csv:2:1: shape: must be one of sphere, box, capsule, cylinder, polyhedron, not shpere (did you "
+       "mean "
        "sphere?)"},
       {head + ",1,,,,0,0,0,,,,,\n",
-       "bed.csv:2:1: shape: must be one of sphere, box, capsule, cylinder, not nothing"},
+       "bed.csv:2:1: shape: must be one of sphere, box, capsule, cylinder, polyhedron, not nothing"},
       {head + "sphere,-1,,,,0,0,0,,,,,\n", "bed.csv:2:8: radius: must be a number > 0 (m), not -1"},
       {head + "sphere,0,,,,0,0,0,,,,,\n", "bed.csv:2:8: radius: must be a number > 0 (m), not 0"},
       {head + "sphere,,,,,0,0,0,,,,,\n", "bed.csv:2:8: radius: a sphere needs it, a number > 0 (m)"},
@@ -131,6 +132,93 @@ TEST_F(BodyFileTest, EveryFaultIsToldAtItsPlace) {
   for (const auto& [csv, expected] : faults) {
     const std::string message = message_of(csv);
     EXPECT_EQ(message.rfind(expected, 0), 0u) << expected << "\n" << message;
+  }
+}
+
+TEST_F(BodyFileTest, APolyhedronIsTheHullOfAFile) {
+  // The tetrahedron from the origin to the three unit points.
+  write_text(folder_ / "gem.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nv 0.2 0.2 0.2\n");
+  const std::string rows =
+      "shape,radius,x,y,z,qw,qx,qy,qz,hull\npolyhedron,,1,2,3,1,0,0,0,gem.obj\nsphere,1,9,0,0,,,,,\n"
+      "polyhedron,,5,0,0,0,0,0,1," +
+      (folder_ / "gem.obj").string() + "\n";
+  const Scene scene = scene_with(rows);
+  ASSERT_EQ(scene.bodies.count(), 4);
+  EXPECT_EQ(scene.bodies.shape[1], Shape::polyhedron);
+  EXPECT_LT((scene.bodies.position[1] - Vec3(1.25, 2.25, 3.25)).norm(), 1e-15) << "its centre of mass";
+  EXPECT_LT((scene.bodies.position[3] - Vec3(4.75, -0.25, 0.25)).norm(), 1e-15)
+      << "turned about z by half a turn";
+  EXPECT_NEAR(1 / scene.bodies.inverse_mass[1], 2500.0 / 6, 1e-10);
+  ASSERT_TRUE(scene.geometry);
+  EXPECT_EQ(scene.geometry->hulls.size(), 1u) << "one for both";
+  EXPECT_EQ(scene.geometry->of_body[1].hull, &scene.geometry->hulls[0]);
+  EXPECT_EQ(scene.geometry->of_body[2].hull, nullptr);
+  EXPECT_EQ(scene.geometry->of_body[3].hull, &scene.geometry->hulls[0]);
+  EXPECT_EQ(scene.geometry->hulls[0].vertices.size(), 4u);
+  // As the scene says the same.
+  const Scene other = parse_scene(
+      "format: 1\ntime: {end: 1, step: 0.1}\nmaterials: {glass: {density: 2500}}\nbodies:\n  - {polyhedron: "
+      "{file: gem.obj}, at: [1, 2, 3], material: glass}\n",
+      folder_ / "other.yaml");
+  EXPECT_EQ(scene.bodies.position[1], other.bodies.position[0]);
+  EXPECT_EQ(scene.bodies.orientation[1].coeffs(), other.bodies.orientation[0].coeffs());
+  EXPECT_EQ(scene.bodies.size[1], other.bodies.size[0]);
+  EXPECT_EQ(scene.bodies.inverse_inertia[1], other.bodies.inverse_inertia[0]);
+}
+
+TEST_F(BodyFileTest, AServoIsABoxWithAnAxisAndAForce) {
+  const std::string rows =
+      "shape,size_x,size_y,size_z,x,y,z,vx,vz,servo_x,servo_y,servo_z,servo_force\nbox,1,1,1,0,0,0,3,,2,0,0,-"
+      "7\n"
+      "box,1,1,1,3,0,0,1,1,,,,\n";
+  const Scene scene = scene_with(rows);
+  ASSERT_EQ(scene.servos.size(), 1u);
+  EXPECT_EQ(scene.servos[0].body, 1);
+  EXPECT_EQ(scene.servos[0].axis, Vec3(1, 0, 0));
+  EXPECT_EQ(scene.servos[0].force, -7);
+  EXPECT_EQ(scene.bodies.inverse_inertia[1], Vec3(0, 0, 0)) << "it does not turn";
+  EXPECT_NE(scene.bodies.inverse_inertia[2], Vec3(0, 0, 0));
+  EXPECT_TRUE(scene_with(rows, "material: glass, fixed: true").servos.empty());
+}
+
+TEST_F(BodyFileTest, FaultsOfPolyhedraAndServosAreToldAtTheirPlace) {
+  write_text(folder_ / "flat.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\n");
+  const std::string hulls = "shape,radius,x,y,z,hull\n";
+  const std::string servos =
+      "shape,radius,size_x,size_y,size_z,x,y,z,vx,wx,servo_x,servo_y,servo_z,servo_force\n";
+  const std::pair<std::string, std::string> faults[] = {
+      {hulls + "polyhedron,,0,0,0,\n",
+       "bed.csv:2:19: hull: a polyhedron needs it, an OBJ or STL file whose vertices' hull it is"},
+      {"shape,x,y,z\npolyhedron,0,0,0\n", "bed.csv:2:1: hull: a polyhedron needs it"},
+      {hulls + "polyhedron,1,0,0,0,a.obj\n", "bed.csv:2:12: radius: does not go with a polyhedron"},
+      {hulls + "sphere,1,0,0,0,a.obj\n", "bed.csv:2:16: hull: does not go with a sphere; leave it empty"},
+      {hulls + "polyhedron,,0,0,0,a.obj\n",
+       "bed.csv:2:19: hull: " + (folder_ / "a.obj").string() + ": cannot be read: No such file"},
+      {hulls + "polyhedron,,0,0,0,flat.obj\n", "bed.csv:2:19: hull: the points lie in a plane"},
+      {hulls + "polyhedron,,0,0,0,/dev/zero\n", "bed.csv:2:19: hull: /dev/zero: is no regular file"},
+      {servos + "sphere,1,,,,0,0,0,,,1,0,0,5\n", "bed.csv:2:21: servo_x: goes with a box alone"},
+      {servos + "box,,1,1,1,0,0,0,,,1,0,,5\n",
+       "bed.csv:2:24: servo_z: must be a number, as the others of servo_x, servo_y, servo_z, servo_force"},
+      {servos + "box,,1,1,1,0,0,0,,,0,0,0,5\n", "bed.csv:2:20: servo_x: the axis must not be zero"},
+      {servos + "box,,1,1,1,0,0,0,2,,0,0,1,5\n", "bed.csv:2:18: vx: must be along the axis of the servo"},
+      {servos + "box,,1,1,1,0,0,0,,2,0,0,1,5\n", "bed.csv:2:19: wx: must be zero: a servo does not turn"},
+  };
+  for (const auto& [csv, expected] : faults) {
+    const std::string message = message_of(csv);
+    EXPECT_EQ(message.rfind(expected, 0), 0u) << expected << "\n" << message;
+  }
+  write_text(folder_ / "bed.csv", servos + "box,,1,1,1,0,0,0,,,0,0,1,5\n");
+  try {
+    parse_scene(
+        "format: 1\ntime: {end: 1, step: 0.1}\nprecision: mixed\nmaterials: {glass: {density: "
+        "2500}}\nbodies: "
+        "[{file: bed.csv, material: glass}]\n",
+        folder_ / "scene.yaml");
+    FAIL() << "no error";
+  } catch (const InputError& error) {
+    EXPECT_NE(std::string(error.what()).find("bed.csv:2:20: servo_x: the scene's precision cannot be mixed"),
+              std::string::npos)
+        << error.what();
   }
 }
 
