@@ -174,17 +174,20 @@ std::string broad_phase_words(const BroadPhaseSettings& settings) {
   return "hierarchical grid, " + levels;
 }
 
-/// Triangles, and ways of contacts that boxes and spheres do not take.
+/// Triangles, and the ways of contacts that boxes and spheres do not take; both on Host.
 std::string general_words(const Scene& scene) {
-  if (!scene.geometry) return {};
-  std::string words = "; capsules, cylinders and polyhedra by separating axes and GJK, on the host";
+  std::string words;
   if (const std::int64_t triangles = count_shape(scene, Shape::triangle)) {
-    words = fmt::format("; {} triangles of meshes{}", triangles, words);
+    words += fmt::format("; {} triangles of meshes", triangles);
     if (scene.geometry->left_out > 0)
       words +=
           fmt::format(" ({} triangles without area or given twice are left out)", scene.geometry->left_out);
   }
-  return words;
+  if (count_shape(scene, Shape::capsule) + count_shape(scene, Shape::cylinder) +
+          count_shape(scene, Shape::polyhedron) >
+      0)
+    words += "; capsules, cylinders and polyhedra by separating axes and GJK";
+  return words.empty() ? words : words + "; on the host";
 }
 
 std::string box_words(const Scene& scene) {
