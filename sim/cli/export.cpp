@@ -69,6 +69,7 @@ void export_vtp_shapes(TrajectoryReader& trajectory, const fs::path& run, const 
 
 int export_trajectory(const ExportArguments& arguments) {
   TrajectoryReader trajectory(arguments.run / trajectory_name);
+  const Period period = period_of_run(arguments);
   const fs::path folder = output_folder(arguments.output, arguments.run,
                                         format_words[static_cast<std::size_t>(arguments.format)]);
   std::error_code error;
@@ -76,8 +77,7 @@ int export_trajectory(const ExportArguments& arguments) {
   if (error)
     throw InputError(
         fmt::format("cannot make {}: {}; give another folder with -o", folder.string(), error.message()));
-  const auto [file, left_out] =
-      scree::export_trajectory(trajectory, arguments.format, period_of_run(arguments), folder);
+  const auto [file, left_out] = scree::export_trajectory(trajectory, arguments.format, period, folder);
   fmt::print("{} frames: {}\n", trajectory.index().frames().size(), file.string());
   if (arguments.format == ExportFormat::vtp) export_vtp_shapes(trajectory, arguments.run, folder);
   if (arguments.format == ExportFormat::xyz || arguments.format == ExportFormat::lammps)

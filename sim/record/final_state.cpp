@@ -72,8 +72,7 @@ class Rows {
     append(text, bodies_.spin[k]);
     text += ',';
     const Material& material = scene_.materials[static_cast<std::size_t>(bodies_.material[k])];
-    const double mass = material.density * volume_of(bodies_.shape[k], bodies_.size[k]);  // of no polyhedron
-    if (1 / mass != bodies_.inverse_mass[k]) fmt::format_to(out, "{}", 1 / bodies_.inverse_mass[k]);
+    if (!follows_from_density(k, material.density)) fmt::format_to(out, "{}", 1 / bodies_.inverse_mass[k]);
     fmt::format_to(out, ",{}", material.name);
     if (has_hulls_) fmt::format_to(out, ",{}", hull_file(k));
     if (has_servos_) append_servo(text, k);
@@ -81,6 +80,12 @@ class Rows {
   }
 
  private:
+  /// To the bit. A polyhedron's never does: its hull's volume is made anew.
+  bool follows_from_density(std::size_t k, double density) const {
+    return bodies_.shape[k] != Shape::polyhedron &&
+           1 / (density * volume_of(bodies_.shape[k], bodies_.size[k])) == bodies_.inverse_mass[k];
+  }
+
   void append_sizes(std::string& text, std::size_t k) const {
     const auto out = std::back_inserter(text);
     const Vec3& size = bodies_.size[k];

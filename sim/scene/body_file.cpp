@@ -268,7 +268,7 @@ std::optional<Servo> BodyFile::servo_of(const Cells& cells, const BodyRow& row) 
   if (!(length > 0)) fail_at(BodyColumn::servo_x, "the axis must not be zero");
   if (std::abs(length - 1) > tolerance::unit_length) servo.axis = servo.axis.stableNormalized();
   const double across = (row.velocity - servo.axis.dot(row.velocity) * servo.axis).stableNorm();
-  if (across > tolerance::unit_length * row.velocity.stableNorm())
+  if (!(across <= tolerance::unit_length * row.velocity.stableNorm()))
     fail_at(BodyColumn::vx, "must be along the axis of the servo");
   if (row.spin != Vec3::Zero()) fail_at(BodyColumn::wx, "must be zero: a servo does not turn");
   return servo;

@@ -118,7 +118,10 @@ void require_row(const BodyRow& row) {
   const bool finite = row.position.allFinite() && row.velocity.allFinite() && row.spin.allFinite() &&
                       row.size.allFinite() && std::isfinite(row.mass.value_or(1));
   if (!finite) breach("a row is not finite");
-  if (!(row.size.x() > 0 && row.mass.value_or(1) > 0)) breach("a row without size or mass");
+  const bool has_size = row.shape == Shape::polyhedron ? !row.hull.empty() : row.size.x() > 0;
+  if (!(has_size && row.mass.value_or(1) > 0)) breach("a row without size or mass");
+  if (row.servo && !(std::abs(row.servo->axis.norm() - 1) < 1e-6 && std::isfinite(row.servo->force)))
+    breach("a servo without axis or force");
   if (!(std::abs(row.orientation.norm() - 1) < 1e-6)) breach("a row without orientation");
 }
 

@@ -112,10 +112,14 @@ TEST(FinalState, PolyhedraComeBackToRounding) {
                                 "[2, 1, 1], spacing: [3, 0, 0]}, material: glass}\n"
                                 "  - {sphere: {radius: 1}, at: [9, 0, 0], material: glass}\n"
                                 "  - {polyhedron: {points: [[3, 0, 0], [0, 2, 0], [0, 0, 1], [-1, -1, -1]]}, "
-                                "at: [20, 0, 0], mass: 3, "
+                                "at: [20, 0, 0], "
                                 "material: steel}\n",
                             "a.yaml");
   stir(scene.bodies, 0, 4);
+  // As heavy as the box around it would be.
+  scene.bodies.inverse_mass[3] = 1 / (7850.5 * volume_of(Shape::polyhedron, scene.bodies.size[3]));
+  scene.bodies.inverse_inertia[3] =
+      (scene.geometry->of_body[3].hull->moments / scene.bodies.inverse_mass[3]).cwiseInverse();
   write_final_state(scene.bodies, scene, folder / "final.csv");
   const Scene next = parse_scene(std::string(shapes_head) + "bodies: [{file: .}]\n", folder / "b.yaml");
   ASSERT_EQ(next.bodies.count(), 4);
