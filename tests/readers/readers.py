@@ -3,8 +3,8 @@
 
     readers.py SCREE RUN      RUN is the folder of a run with a trajectory of `precision: double` and `contacts: true`
 
-VTK (9.3 or newer) reads trajectory.vtkhdf and the .vtp files, ASE the extended XYZ, and the tables of `scree export --to csv` are what they are held to. Neither comes
-from Debian 12: `pip install vtk ase numpy`. Where there is OVITO too (`pip install ovito`), it reads the extended XYZ and the dump of LAMMPS. Exit status 1 if a number
+VTK (9.3 or newer) reads trajectory.vtkhdf and the .vtp files, ASE the extended XYZ and the dump of LAMMPS, and the tables of `scree export --to csv` are what they are held to. Neither comes
+from Debian 12: `pip install vtk ase numpy`. Where there is OVITO too (`pip install ovito`), it reads both of them with their shapes. Exit status 1 if a number
 differs; those that are computed may do so by rounding.
 """
 import csv
@@ -135,6 +135,19 @@ def read_xyz(folder, tables):
         report("ASE, xyz", name, len(frames), most, ROUNDING if name == "aspherical_shape" else 0)
 
 
+def read_dump(folder, tables):
+    """What ASE takes of it: in the order of the numbers."""
+    frames = ase.io.read(folder / "trajectory.lammpstrj", index=":", format="lammps-dump-text")
+    worst = {"position": 0, "type": 0}
+    for atoms, table in zip(frames, tables, strict=True):
+        expected = expected_particles(table)
+        order = numpy.argsort(expected["id"])
+        worst["position"] = max(worst["position"], difference(atoms.positions, expected["position"][order]))
+        worst["type"] = max(worst["type"], difference(atoms.arrays["type"], expected["type"][order]))
+    for name, most in worst.items():
+        report("ASE, dump", name, len(frames), most)
+
+
 def read_with_ovito(file, tables):
     """Numbers of a dump begin at 1, and spheres have a shape in it."""
     names = {"position": "Position", "id": "Particle Identifier", "type": "Particle Type", "aspherical_shape": "Aspherical Shape", "velo": "Velocity",
@@ -256,6 +269,7 @@ def main():
         read_vtkhdf(run / "trajectory.vtkhdf", tables, 1)
         read_vtp(folder / "vtp", tables, 1)
         read_xyz(folder, tables)
+        read_dump(folder, tables)
         if (folder / "surfaces.pvd").exists():
             read_surfaces(folder / "surfaces.pvd", tables)
         if (folder / "axes.pvd").exists():
