@@ -39,14 +39,16 @@ void print_particles(const LeftOut& left_out) {
     fmt::print("left out:  {}, which are no particles (vtp and csv have them)\n", left_out.words());
 }
 
-/// The hulls of a run's scene, which is read when the first of them is asked for.
+/// The hulls of a run's scene, which is read if there are any.
 class Hulls {
  public:
-  explicit Hulls(const fs::path& run) : file_(run / "scene.yaml") {}
+  Hulls(const ExportArguments& arguments, TrajectoryReader& trajectory)
+      : file_(arguments.run / "scene.yaml") {
+    if (arguments.format == ExportFormat::vtp && shows_hulls(trajectory)) scene_ = read_scene(file_);
+  }
 
-  const Hull& of(std::int32_t body) {
-    if (!scene_) scene_ = read_scene(file_);
-    if (body < 0 || body >= scene_->bodies.count() || !scene_->geometry ||
+  const Hull& of(std::int32_t body) const {
+    if (!scene_ || body < 0 || body >= scene_->bodies.count() || !scene_->geometry ||
         !scene_->geometry->of_body[static_cast<std::size_t>(body)].hull)
       throw InputError(fmt::format("the trajectory is of other bodies than {}", file_.string()));
     return *scene_->geometry->of_body[static_cast<std::size_t>(body)].hull;
@@ -57,8 +59,7 @@ class Hulls {
   std::optional<Scene> scene_;
 };
 
-void export_vtp_shapes(TrajectoryReader& trajectory, const fs::path& run, const fs::path& folder) {
-  Hulls hulls(run);
+void export_vtp_shapes(TrajectoryReader& trajectory, const Hulls& hulls, const fs::path& folder) {
   const auto hull_of = [&hulls](std::int32_t body) -> const Hull& { return hulls.of(body); };
   for (const auto& [name, file] : export_shapes(trajectory, hull_of, folder))
     fmt::print("{:<11}{}\n", std::string(name) + ":",
@@ -70,6 +71,7 @@ void export_vtp_shapes(TrajectoryReader& trajectory, const fs::path& run, const 
 int export_trajectory(const ExportArguments& arguments) {
   TrajectoryReader trajectory(arguments.run / trajectory_name);
   const Period period = period_of_run(arguments);
+  const Hulls hulls(arguments, trajectory);
   const fs::path folder = output_folder(arguments.output, arguments.run,
                                         format_words[static_cast<std::size_t>(arguments.format)]);
   std::error_code error;
@@ -79,7 +81,7 @@ int export_trajectory(const ExportArguments& arguments) {
         fmt::format("cannot make {}: {}; give another folder with -o", folder.string(), error.message()));
   const auto [file, left_out] = scree::export_trajectory(trajectory, arguments.format, period, folder);
   fmt::print("{} frames: {}\n", trajectory.index().frames().size(), file.string());
-  if (arguments.format == ExportFormat::vtp) export_vtp_shapes(trajectory, arguments.run, folder);
+  if (arguments.format == ExportFormat::vtp) export_vtp_shapes(trajectory, hulls, folder);
   if (arguments.format == ExportFormat::xyz || arguments.format == ExportFormat::lammps)
     print_particles(left_out);
   if (!fs::exists(arguments.run / contacts_name)) return status_done;

@@ -138,8 +138,8 @@ constexpr std::array<ShapeFiles, 2> shape_files = {
     {{"surfaces", has_surface, surfaces_of}, {"axes", has_axis, axes_of}}};
 constexpr std::array<const char*, 2> movement_words = {"fixed", "moving"};  // in the order of Movement
 
-/// Whether bodies that `files` are about are in any frame, by Movement.
-std::array<bool, 2> census(TrajectoryReader& trajectory, const ShapeFiles& files) {
+/// Whether bodies of such shapes are in any frame, by Movement.
+std::array<bool, 2> census(TrajectoryReader& trajectory, bool (*holds)(Shape)) {
   std::array<bool, 2> found{};
   const int shape = trajectory.column("shape"), mobility = trajectory.column("mobility");
   if (shape < 0 || mobility < 0) throw InputError("the trajectory has no shape or no mobility");
@@ -147,7 +147,7 @@ std::array<bool, 2> census(TrajectoryReader& trajectory, const ShapeFiles& files
     const std::vector<double> shapes = trajectory.numbers(f, static_cast<std::size_t>(shape));
     const std::vector<double> mobilities = trajectory.numbers(f, static_cast<std::size_t>(mobility));
     for (std::size_t row = 0; row < shapes.size(); ++row) {
-      if (!files.holds(static_cast<Shape>(shapes[row]))) continue;
+      if (!holds(static_cast<Shape>(shapes[row]))) continue;
       const bool fixed = mobilities[row] == static_cast<double>(Mobility::fixed);
       found[static_cast<std::size_t>(fixed ? Movement::fixed : Movement::not_fixed)] = true;
     }
@@ -209,11 +209,18 @@ ExportedTrajectory export_trajectory(TrajectoryReader& trajectory, ExportFormat 
   return {file, left_out};
 }
 
+bool shows_hulls(TrajectoryReader& trajectory) {
+  if (trajectory.column("orientation") < 0) return false;
+  const std::array<bool, 2> found =
+      census(trajectory, [](Shape shape) { return shape == Shape::polyhedron; });
+  return found[0] || found[1];
+}
+
 std::vector<ExportedShapes> export_shapes(TrajectoryReader& trajectory, const HullOf& hull_of,
                                           const fs::path& folder) {
   std::vector<ExportedShapes> exported;
   for (const ShapeFiles& files : shape_files) {
-    const std::array<bool, 2> found = census(trajectory, files);
+    const std::array<bool, 2> found = census(trajectory, files.holds);
     if (!found[0] && !found[1]) continue;
     exported.push_back({files.name, std::nullopt});
     if (trajectory.column("orientation") < 0) continue;

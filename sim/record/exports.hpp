@@ -35,6 +35,9 @@ struct ExportedShapes {
   std::optional<std::filesystem::path> file;  ///< absent: the trajectory has no orientation
 };
 
+/// Whether export_shapes() will ask for any hull. Throws InputError if the trajectory cannot be read.
+bool shows_hulls(TrajectoryReader& trajectory);
+
 /// What vtp's points with glyphs do not show, beside them: surfaces.pvd and axes.pvd, each if there is
 /// anything to be in it; see surfaces.hpp. Throws as above, and what `hull_of` throws.
 std::vector<ExportedShapes> export_shapes(TrajectoryReader& trajectory, const HullOf& hull_of,

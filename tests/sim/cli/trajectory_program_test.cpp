@@ -146,6 +146,13 @@ TEST_F(TrajectoryProgramTest, ShapesAndPeriodsAreExported) {
   const Finished other = scree_in(folder_, {"export", "output/gem", "--to", "vtp"});
   EXPECT_EQ(other.status, 2);
   EXPECT_TRUE(contains(other.error, "of other bodies than output/gem/scene.yaml")) << other.error;
+  fs::remove(folder_ / "output/gem/scene.yaml");
+  for (const char* format : {"vtp", "xyz", "lammps"}) {
+    const Finished none = scree_in(folder_, {"export", "output/gem", "-o", "none", "--to", format});
+    EXPECT_EQ(none.status, 2) << format;
+    EXPECT_TRUE(contains(none.error, "output/gem/scene.yaml: cannot be read")) << none.error;
+    EXPECT_FALSE(fs::exists(folder_ / "none")) << "nothing is written";
+  }
 }
 
 }  // namespace
