@@ -5,7 +5,6 @@
 #include "sim/dynamics/prescribed.hpp"
 #include "sim/guarded_steps.hpp"
 #include "sim/measurement.hpp"
-#include "sim/model.hpp"
 #include "sim/presence.hpp"
 #include "sim/resident_stepper.hpp"
 #include "sim/scene/courses.hpp"
@@ -76,14 +75,14 @@ Body body_at(const BodyTable& bodies, std::size_t k) {
 /// Free bodies from which on Device takes the steps unless told otherwise (docs/decisions/0022).
 constexpr std::int64_t few_for_device = 20000;
 
-/// The accurate mode, servos, rolling friction, general shapes, and few bodies are for Host; their PCS may
-/// come from Device all the same.
+/// The accurate mode, servos, general shapes, and few bodies are for Host; their PCS may come from Device all
+/// the same.
 std::unique_ptr<Stepper> make_stepper(const Scene& scene, const TimeGrid& grid, const Presence& presence,
                                       const SimulationOptions& options, const Vec3& origin) {
   const SpaceChoice space = options.space;
   const PathTable paths = paths_of(scene, grid, presence);
-  const bool only_host = scene.response.mode == ResponseMode::accurate || !scene.servos.empty() ||
-                         scene.geometry != nullptr || plan_model(scene).rolling_friction.on;
+  const bool only_host =
+      scene.response.mode == ResponseMode::accurate || !scene.servos.empty() || scene.geometry != nullptr;
   if (scene.geometry && scene.precision == Precision::mixed)
     throw InputError(
         "meshes, capsules, cylinders and polyhedra are stepped on the host, in double precision: leave out "

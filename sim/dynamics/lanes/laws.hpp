@@ -115,9 +115,10 @@ template <class A>
 SCREE_LAW Tangents<A> tangents_of(const V3<A>& n) {
   using V = typename A::V;
   const V zero{};
-  const V sign = n.z < 0 ? zero - 1.0 : zero + 1.0;
+  const V one = zero + 1.0;
+  const V sign = n.z < 0 ? -one : one;
   const V a = -1.0 / (sign + n.z);
-  const V3<A> t = {1.0 + sign * n.x * n.x * a, sign * n.x * n.y * a, -sign * n.x};
+  const V3<A> t = {one + sign * n.x * n.x * a, sign * n.x * n.y * a, -sign * n.x};
   return {t, cross(n, t)};
 }
 
