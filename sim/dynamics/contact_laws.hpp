@@ -13,7 +13,7 @@ namespace scree {
 struct PairLaw {
   double restitution;
   double friction;
-  double rolling_friction;
+  double rolling_friction = 0;
 };
 
 /// Radius on which a body rolls (m); infinite for flat faces, and for walls that others are in.
