@@ -177,7 +177,7 @@ TEST(BallPairs, CouplesAreThoseOfTheOtherContacts) {
         ASSERT_LE((lanes.memory.recall_couple(header) - couple).norm(), rounding * most);
       }
     }
-    EXPECT_GT(rolling, 100);
+    EXPECT_GT(rolling, 50);
     const double moved = std::abs(expected.restitution) + std::abs(expected.friction);
     EXPECT_NEAR(ledger.friction, expected.friction, 1e-9 * moved);
     EXPECT_NEAR(ledger.work, expected.work, 1e-9 * moved);
