@@ -3,6 +3,7 @@
 #include "broadphase/bounds.hpp"
 #include "broadphase/grid_plan.hpp"
 #include "core/tolerances.hpp"
+#include "sim/dynamics/contact_laws.hpp"
 #include "sim/scene/courses.hpp"
 
 #include <fmt/format.h>
@@ -62,6 +63,29 @@ Feature plan_levels(const Scene& scene) {
                       widths.back(), why)};
 }
 
+/// Of pairs of materials of which some have round bodies, which turn.
+Feature plan_rolling_friction(const Scene& scene, bool rotation) {
+  const BodyTable& bodies = scene.bodies;
+  const std::size_t materials = scene.materials.size();
+  std::vector<bool> round(materials);
+  for (std::size_t k = 0; k < bodies.shape.size(); ++k) {
+    if (std::isfinite(rolling_radius(bodies.shape[k], bodies.size[k])))
+      round[static_cast<std::size_t>(bodies.material[k])] = true;
+  }
+  bool any_law = false;
+  bool any_rolls = false;
+  for (std::size_t pair = 0; pair < scene.laws.size(); ++pair) {
+    if (!(scene.laws[pair].rolling_friction > 0)) continue;
+    any_law = true;
+    any_rolls = any_rolls || round[pair / materials] || round[pair % materials];
+  }
+  return choose("rolling_friction", scene.model.rolling_friction, any_rolls && rotation,
+                "some pair has rolling friction",
+                !any_law    ? "no pair has rolling friction"
+                : !rotation ? "nothing turns"
+                            : "nothing of the materials that have it is round");
+}
+
 /// The largest that brings a body back from a bounce (m/s^2): gravity, or a servo's drive.
 double pressing_acceleration(const Scene& scene) {
   double largest = largest_gravity(scene);
@@ -92,6 +116,7 @@ ModelPlan plan_model(const Scene& scene) {
   ModelPlan plan{
       .friction = choose("friction", scene.model.friction, any_law(&ContactLaw::friction),
                          "some pair has friction", "no pair has friction"),
+      .rolling_friction = {},
       .restitution = choose("restitution", scene.model.restitution, any_law(&ContactLaw::restitution),
                             "some pair bounces", "no pair bounces"),
       .rotation = {},
@@ -112,6 +137,7 @@ ModelPlan plan_model(const Scene& scene) {
                          : any_torque  ? "a torque acts"
                                        : "friction turns spheres",
                          "spheres without friction, spin or torque never turn");
+  plan.rolling_friction = plan_rolling_friction(scene, plan.rotation.on);
   plan.gyroscopic = {"gyroscopic", plan.rotation.on && any_unequal,
                      !any_unequal ? "only spheres and cubes move freely"
                      : plan.rotation.on

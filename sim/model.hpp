@@ -18,17 +18,18 @@ struct Feature {
 
 /// Leaving a feature out where its reason holds changes no result (docs/accuracy.md has what each saves).
 struct ModelPlan {
-  Feature friction;     ///< tangential impulses
-  Feature restitution;  ///< impacts that bounce
-  Feature rotation;     ///< orientations
-  Feature gyroscopic;   ///< free rotation of bodies with unequal moments of inertia
-  Feature continuous;   ///< impacts at their own time between bodies that would go deep in a substep
-  Feature gravity;      ///< weight, and potential energy
-  Feature levels;       ///< of the hierarchical grid: more than one
+  Feature friction;          ///< tangential impulses
+  Feature rolling_friction;  ///< couples against what rolls
+  Feature restitution;       ///< impacts that bounce
+  Feature rotation;          ///< orientations
+  Feature gyroscopic;        ///< free rotation of bodies with unequal moments of inertia
+  Feature continuous;        ///< impacts at their own time between bodies that would go deep in a substep
+  Feature gravity;           ///< weight, and potential energy
+  Feature levels;            ///< of the hierarchical grid: more than one
   RestitutionThreshold restitution_threshold;
 
   std::vector<Feature> features() const {
-    return {rotation, gyroscopic, friction, restitution, continuous, gravity, levels};
+    return {rotation, gyroscopic, friction, rolling_friction, restitution, continuous, gravity, levels};
   }
 };
 

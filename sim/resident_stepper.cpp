@@ -263,7 +263,7 @@ template <class Space, class Real>
 void ResidentStepper<Space, Real>::give_candidates(ConstView<Pair> pairs) {
   if (pairs_taken_ == kept_pairs_.times_made()) return;
   const timing::Region region("slots");
-  contacts_.take_candidates(pairs, view_of(std::as_const(bodies_)));
+  contacts_.take_candidates(pairs, view_of(std::as_const(bodies_)), parameters_.rolling_friction);
   pairs_taken_ = kept_pairs_.times_made();
 }
 

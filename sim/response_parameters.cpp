@@ -13,6 +13,7 @@ ResponseParameters response_parameters_of(const Scene& scene) {
           .guides = {},
           .prescribed_acceleration = prescribed_acceleration(scene),
           .friction = plan.friction.on,
+          .rolling_friction = plan.rolling_friction.on,
           .restitution = plan.restitution.on,
           .rotation = plan.rotation.on,
           .gyroscopic = plan.gyroscopic.on,
@@ -27,7 +28,8 @@ ResponseParameters response_parameters_of(const Scene& scene) {
 
 std::vector<PairLaw> pair_laws_of(const Scene& scene) {
   std::vector<PairLaw> table;
-  for (const ContactLaw& law : scene.laws) table.push_back({law.restitution, law.friction});
+  for (const ContactLaw& law : scene.laws)
+    table.push_back({law.restitution, law.friction, law.rolling_friction});
   return table;
 }
 

@@ -226,8 +226,7 @@ Manifolds Substepper::find_contacts(double h, double reach) {
   const ConstView<Pair> pairs = kept_pairs_.covering(bodies_, contact_margin_, reach, parameters_);
   const ConstBodyView views = view_of(std::as_const(bodies_));
   BallPairs& balls = memory_.balls;
-  if (counters.pcs_made != kept_pairs_.times_made())
-    balls.take(views, pairs, contact_laws(), parameters_.friction);
+  if (counters.pcs_made != kept_pairs_.times_made()) balls.take(views, pairs, contact_laws(), parameters_);
   counters.pcs_made = kept_pairs_.times_made();
   const timing::Region region("narrowphase");
   const LateBodies* late = impacts_.late_bodies(impact_problem(pairs, h, 0), parameters_, view_of(bodies_));

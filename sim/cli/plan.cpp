@@ -142,7 +142,7 @@ void print_difficulty(const Scene& scene) {
 void print_model(const ModelPlan& plan) {
   print_row("model", "");
   for (const Feature& f : plan.features())
-    print_row("", fmt::format("{:<12} {:<4} {}", f.name, f.on ? "on" : "off", f.reason));
+    print_row("", fmt::format("{:<16} {:<4} {}", f.name, f.on ? "on" : "off", f.reason));
   if (plan.restitution.on) {
     const RestitutionThreshold& threshold = plan.restitution_threshold;
     print_row("",

@@ -63,7 +63,7 @@ struct BallPairs::Look {
 };
 
 void BallPairs::take(const ConstBodyView& bodies, ConstView<Pair> candidates, const ContactLaws& laws,
-                     bool friction) {
+                     const ResponseParameters& parameters) {
   const auto is = [&](std::int32_t k, Shape shape) { return bodies.shape[k] == shape; };
   // 0 and 1: a pair of balls, and a ball with a plane.
   const auto kind_of = [&](const Pair& p) {
@@ -92,6 +92,8 @@ void BallPairs::take(const ConstBodyView& bodies, ConstView<Pair> candidates, co
   }
   last_impulse_.resize(n);
   friction_.resize(n);
+  rolling_reach_.resize(parameters.rolling_friction ? n : 0);
+  last_couple_.resize(rolling_reach_.size());
   // Both lists are in order: each kind is gone through once.
   std::int64_t old[2] = {0, first_plane_};
   for (std::int64_t k = 0; k < n; ++k) {
@@ -102,10 +104,14 @@ void BallPairs::take(const ConstBodyView& bodies, ConstView<Pair> candidates, co
     const bool known = old[kind] < end && place_of(pairs_.view()[old[kind]]) == place_of(pair);
     const bool nobody = pair.i == nobody_;
     last_impulse_.view()[k] = known && !nobody ? impulse_.view()[old[kind]] : none_remembered;
-    friction_.view()[k] = friction && !nobody ? laws.between(pair.i, pair.j).friction : 0.0;
+    friction_.view()[k] = parameters.friction && !nobody ? laws.between(pair.i, pair.j).friction : 0.0;
+    if (!rolls()) continue;
+    rolling_reach_.view()[k] = nobody ? 0.0 : laws.rolling_reach(pair.i, pair.j);
+    last_couple_.view()[k] = known && !nobody ? couple_.view()[old[kind]] : none_remembered;
   }
   pairs_.swap(last_pairs_);
   impulse_.swap(last_impulse_);
+  couple_.swap(last_couple_);
   first_plane_ = first[1];
   loaded_.resize(n);
   flying_.resize(n);
@@ -135,6 +141,8 @@ void BallPairs::archive(Archive& archive) {
   archive("pairs", pairs_);
   archive("friction", friction_);
   archive("impulse", impulse_);
+  archive("rolling_reach", rolling_reach_);
+  archive("couple", couple_);
   archive("loaded", loaded_);
   archive("flying", flying_);
   archive("carried", carried_);
@@ -181,6 +189,15 @@ Vec3 BallPairs::impulse(std::int64_t candidate) const {
   return {p.x, p.y, p.z};
 }
 
+Vec3 BallPairs::couple(std::int64_t candidate) const {
+  const lanes::Triple& couple = couple_.view()[candidate];
+  return {couple.x, couple.y, couple.z};
+}
+
+void BallPairs::remember_couple(std::int32_t candidate, const Vec3& couple) {
+  couple_.view()[candidate] = {couple.x(), couple.y(), couple.z()};
+}
+
 void BallPairs::remember(std::int32_t candidate, const Vec3& impulse) {
   impulse_.view()[candidate] = {impulse.x(), impulse.y(), impulse.z()};
   loaded_.view()[candidate] = impulse.isZero(0) ? 0 : 1;
@@ -194,6 +211,7 @@ struct BallPairs::Put {
   ConstView<std::int32_t> lane_of;
   View<lanes::BallBatch> batches;
   View<lanes::BallParting> partings;
+  View<lanes::Rolling> rolling;
   void operator()(std::int64_t place) const {
     const std::int32_t k = pairs->touching_[static_cast<std::size_t>(place)];
     const int l = lane_of[place] % lanes::width;
@@ -209,23 +227,38 @@ struct BallPairs::Put {
     batch.impulse.impulse.z.at[l] = warm_start * impulse.z;
     parting.loaded[l] = pairs->loaded_.view()[k];
     parting.flying[l] = parting.loaded[l] != 0 ? 0 : pairs->flying_.view()[k];
+    if (!pairs->rolls()) return;
+    lanes::Rolling& of = rolling[lane_of[place] / lanes::width];
+    const lanes::Triple& couple = pairs->couple_.view()[k];
+    of.reach.at[l] = pairs->rolling_reach_.view()[k];
+    of.couple.impulse.x.at[l] = warm_start * couple.x;
+    of.couple.impulse.y.at[l] = warm_start * couple.y;
+    of.couple.impulse.z.at[l] = warm_start * couple.z;
+    of.couple.last.x.at[l] = of.couple.impulse.x.at[l];
+    of.couple.last.y.at[l] = of.couple.impulse.y.at[l];
+    of.couple.last.z.at[l] = of.couple.impulse.z.at[l];
   }
 };
 
 void BallPairs::put_into(double warm_start, lanes::Batches& batches) const {
-  parallel::for_each<Host>(
-      "balls.put", batches.lane_of.size(),
-      Put{this, warm_start, batches.lane_of.view(), batches.balls.view(), batches.partings.view()});
+  parallel::for_each<Host>("balls.put", batches.lane_of.size(),
+                           Put{this, warm_start, batches.lane_of.view(), batches.balls.view(),
+                               batches.partings.view(), batches.ball_rolling.view()});
 }
 
 struct BallPairs::Remember {
   BallPairs* pairs;
   ConstView<std::int32_t> lane_of;
   ConstView<lanes::BallBatch> batches;
+  ConstView<lanes::Rolling> rolling;
   void operator()(std::int64_t place) const {
     const lanes::LaneVec& p = batches[lane_of[place] / lanes::width].impulse.impulse;
     const int l = lane_of[place] % lanes::width;
-    pairs->remember(pairs->touching_[static_cast<std::size_t>(place)], {p.x.at[l], p.y.at[l], p.z.at[l]});
+    const std::int32_t k = pairs->touching_[static_cast<std::size_t>(place)];
+    pairs->remember(k, {p.x.at[l], p.y.at[l], p.z.at[l]});
+    if (!pairs->rolls()) return;
+    const lanes::LaneVec& couple = rolling[lane_of[place] / lanes::width].couple.impulse;
+    pairs->remember_couple(k, {couple.x.at[l], couple.y.at[l], couple.z.at[l]});
   }
 };
 
@@ -233,13 +266,17 @@ void BallPairs::remember(const lanes::Batches& batches) {
   if (pairs_.empty()) return;
   for (std::int64_t look = 0; look < looks_.size(); ++look) {
     const std::uint64_t gone = carried_.view()[look] & ~looks_.view()[look];
-    for (std::uint64_t left = gone; left != 0; left &= left - 1)
-      remember(static_cast<std::int32_t>(look * lanes::look + std::countr_zero(left)), Vec3::Zero());
+    for (std::uint64_t left = gone; left != 0; left &= left - 1) {
+      const auto k = static_cast<std::int32_t>(look * lanes::look + std::countr_zero(left));
+      remember(k, Vec3::Zero());
+      if (rolls()) remember_couple(k, Vec3::Zero());
+    }
   }
   copy(carried_, looks_);
   if (touching_.empty()) return;
-  parallel::for_each<Host>("balls.remember", batches.lane_of.size(),
-                           Remember{this, batches.lane_of.view(), batches.balls.view()});
+  parallel::for_each<Host>(
+      "balls.remember", batches.lane_of.size(),
+      Remember{this, batches.lane_of.view(), batches.balls.view(), batches.ball_rolling.view()});
 }
 
 /// And nobody's.

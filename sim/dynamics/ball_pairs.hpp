@@ -21,7 +21,8 @@ class BallPairs {
   /// Takes those of the candidates, which are ordered by (i, j), that are pairs of balls, or a ball and a
   /// plane, of which one is free and the other, if it is not, does not turn. The rest is others(). Impulses
   /// stay with their pairs.
-  void take(const ConstBodyView& bodies, ConstView<Pair> candidates, const ContactLaws& laws, bool friction);
+  void take(const ConstBodyView& bodies, ConstView<Pair> candidates, const ContactLaws& laws,
+            const ResponseParameters& parameters);
   /// The candidates that are not balls; with pairs of balls of which one is late, if there are any.
   ConstView<Pair> others(ConstView<Pair> candidates, const LateBodies* late);
 
@@ -36,6 +37,8 @@ class BallPairs {
   /// Of a candidate.
   lanes::Two pair(std::int32_t candidate) const { return pairs_.view()[candidate]; }
   Vec3 impulse(std::int64_t candidate) const;
+  /// Against rolling, if anything rolls (N m s).
+  Vec3 couple(std::int64_t candidate) const;
   /// Where the candidates are, for functors.
   struct Index {
     const lanes::Two* pairs;
@@ -73,6 +76,7 @@ class BallPairs {
   void set_flying(std::int32_t candidate, bool flying) { flying_.view()[candidate] = flying ? 1 : 0; }
   /// Remembers what a candidate carried (N s).
   void remember(std::int32_t candidate, const Vec3& impulse);
+  void remember_couple(std::int32_t candidate, const Vec3& couple);
   /// And what the contacts in the lanes did; what does not touch carries nothing.
   void remember(const lanes::Batches& batches);
 
@@ -87,6 +91,8 @@ class BallPairs {
   struct Look;
   struct Put;
   struct Remember;
+
+  bool rolls() const { return rolling_reach_.size() > 0; }
 
   std::int64_t tested_ = 0;       // candidates that are somebody
   std::int64_t first_plane_ = 0;  // before it pairs of two balls, then of a ball and a plane
@@ -105,6 +111,8 @@ class BallPairs {
   Array<lanes::Two, Host> pairs_, last_pairs_;
   Array<double, Host> friction_;
   Array<lanes::Triple, Host> impulse_, last_impulse_;
+  Array<double, Host> rolling_reach_;  // empty, as the couples, if nothing rolls
+  Array<lanes::Triple, Host> couple_, last_couple_;
   Array<std::uint8_t, Host> loaded_, flying_;
 };
 

@@ -13,7 +13,13 @@ namespace scree {
 struct PairLaw {
   double restitution;
   double friction;
+  double rolling_friction = 0;
 };
+
+/// Radius on which a body rolls (m); infinite for flat faces, and for walls that others are in.
+SCREE_HD inline double rolling_radius(Shape shape, const Vec3& size) {
+  return shape == Shape::sphere || shape == Shape::capsule || shape == Shape::cylinder ? size.x() : HUGE_VAL;
+}
 
 /// Which law holds between two bodies, and what they are.
 struct ContactLaws {
@@ -39,6 +45,12 @@ struct ContactLaws {
   }
   SCREE_HD const PairLaw& between(std::int32_t i, std::int32_t j) const {
     return table[material[i] * materials + material[j]];
+  }
+  /// Couple against rolling for each normal impulse, at most (m): the coefficient times the radius of one, or
+  /// of two that are round r_i r_j / (r_i + r_j).
+  SCREE_HD double rolling_reach(std::int32_t i, std::int32_t j) const {
+    const double curvature = 1 / rolling_radius(shape[i], size[i]) + 1 / rolling_radius(shape[j], size[j]);
+    return curvature > 0 ? between(i, j).rolling_friction / curvature : 0.0;
   }
 };
 

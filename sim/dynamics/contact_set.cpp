@@ -27,6 +27,13 @@ bool ImpulseMemory::recall(const ManifoldHeader& manifold, const ContactPoint* p
   return loaded;
 }
 
+Vec3 ImpulseMemory::recall_couple(const ManifoldHeader& manifold) const {
+  const ConstView<Entry> entries = index().of(manifold.i, manifold.j, manifold.part);
+  if (entries.size() > 0) return couples_.view()[entries.data() - entries_.data()];
+  const std::int32_t candidate = balls.index().candidate_of(manifold.i, manifold.j);
+  return candidate == lanes::none ? Vec3(Vec3::Zero()) : balls.couple(candidate);
+}
+
 namespace {
 
 struct PrepareContact {
@@ -37,6 +44,7 @@ struct PrepareContact {
   ResponseParameters parameters;
   View<Contact> contacts;
   View<ContactRow> rows;
+  View<Vec3> couples;
 
   void operator()(std::int64_t c) const {
     const ManifoldHeader& manifold = manifolds.headers[c];
@@ -46,24 +54,28 @@ struct PrepareContact {
     const bool loaded = memory->recall(manifold, manifolds.points_of(manifold), remembered);
     const int free_ends =
         static_cast<int>(laws.is_free(manifold.i)) + static_cast<int>(laws.is_free(manifold.j));
-    contacts[c] = {.i = manifold.i,
-                   .j = manifold.j,
-                   .first_row = manifold.first_point,
-                   .count = manifold.count,
-                   .loaded = loaded,
-                   .flying = false,
-                   .balls = laws.acts_as_ball(manifold.i) && laws.acts_as_ball(manifold.j),
-                   .aligned = false,
-                   .free_ends = static_cast<std::int8_t>(free_ends),
-                   .normal = manifold.normal,
-                   .friction = friction,
-                   .lead = 0,
-                   .size = laws.smaller_size(manifold.i, manifold.j)};
+    contacts[c] = {
+        .i = manifold.i,
+        .j = manifold.j,
+        .first_row = manifold.first_point,
+        .count = manifold.count,
+        .loaded = loaded,
+        .flying = false,
+        .balls = laws.acts_as_ball(manifold.i) && laws.acts_as_ball(manifold.j),
+        .aligned = false,
+        .free_ends = static_cast<std::int8_t>(free_ends),
+        .normal = manifold.normal,
+        .friction = friction,
+        .rolling_reach = parameters.rolling_friction ? laws.rolling_reach(manifold.i, manifold.j) : 0.0,
+        .lead = 0,
+        .size = laws.smaller_size(manifold.i, manifold.j)};
     for (int k = 0; k < manifold.count; ++k) {
       rows[manifold.first_point + k].impulse =
           parameters.warm_start ? project_on_cone(scale * remembered[k], manifold.normal, friction)
                                 : Vec3(Vec3::Zero());
     }
+    if (couples.size() > 0)
+      couples[c] = parameters.warm_start ? Vec3(scale * memory->recall_couple(manifold)) : Vec3(Vec3::Zero());
   }
 };
 
@@ -102,6 +114,7 @@ struct ListPairs {
   std::int64_t first_contact, first_row;
   View<Contact> contacts;
   View<ContactRow> rows;
+  View<Vec3> couples;
   void operator()(std::int64_t place) const {
     const std::int32_t lane = batches->lane_of.view()[place];
     const std::int32_t b = lane / lanes::width;
@@ -134,8 +147,14 @@ struct ListPairs {
                                                          bodies[batch.ends.j[l]].is_free()),
                    .normal = normal,
                    .friction = batch.friction.at[l],
+                   .rolling_reach = 0,
                    .lead = 0,
                    .size = parting.cap.at[l] / tolerance::correction_cap};
+    if (couples.size() == 0) return;
+    const lanes::Rolling& rolling = batches->ball_rolling.view()[b];
+    const lanes::LaneVec& couple = rolling.couple.impulse;
+    contacts[c].rolling_reach = rolling.reach.at[l];
+    couples[c] = {couple.x.at[l], couple.y.at[l], couple.z.at[l]};
   }
 };
 
@@ -158,14 +177,18 @@ void ContactSet::list_all(ConstView<SolverBody> bodies) {
   const std::int64_t first_row = rows.size();
   extend(contacts, first_contact + pairs);
   extend(rows, first_row + pairs);
+  if (rolls) extend(couples, first_contact + pairs);
   parallel::for_each<Host>(
       "contacts.list", pairs,
-      ListPairs{&batches, bodies, first_contact, first_row, contacts.view(), rows.view()});
+      ListPairs{&batches, bodies, first_contact, first_row, contacts.view(), rows.view(), couples.view()});
 }
 
 void ImpulseMemory::remember(const Manifolds& manifolds, const ContactSet& set, std::int64_t bodies) {
   entries_.resize(manifolds.size());
   points_.resize(manifolds.points.size());
+  couples_.resize(set.rolls ? manifolds.size() : 0);
+  copy_bytes<Host, Host>(couples_.data(), set.couples.data(),
+                         static_cast<std::size_t>(couples_.size()) * sizeof(Vec3));
   begin_.resize(bodies + 1);
   parallel::for_each<Host>("contacts.remember", manifolds.size(),
                            StoreEntry{manifolds, set.rows.view(), entries_.view(), points_.view()});
@@ -176,7 +199,9 @@ void ImpulseMemory::remember(const Manifolds& manifolds, const ContactSet& set, 
   // Pairs of which one was struck late are among the manifolds.
   for (const ManifoldHeader& m : manifolds.headers) {
     const std::int32_t candidate = balls.index().candidate_of(m.i, m.j);
-    if (candidate != lanes::none) balls.remember(candidate, set.rows.view()[m.first_point].impulse);
+    if (candidate == lanes::none) continue;
+    balls.remember(candidate, set.rows.view()[m.first_point].impulse);
+    if (set.rolls) balls.remember_couple(candidate, set.couples.view()[&m - manifolds.headers.data()]);
   }
 }
 
@@ -187,9 +212,11 @@ void prepare_contacts(const Manifolds& manifolds, const ContactLaws& laws, const
   set.batches.clear();
   set.contacts.resize(manifolds.size());
   set.rows.resize(manifolds.points.size());
-  parallel::for_each<Host>(
-      "contacts.prepare", manifolds.size(),
-      PrepareContact{manifolds, laws, &memory, scale, parameters, set.contacts.view(), set.rows.view()});
+  set.rolls = parameters.rolling_friction;
+  set.couples.resize(set.rolls ? manifolds.size() : 0);
+  parallel::for_each<Host>("contacts.prepare", manifolds.size(),
+                           PrepareContact{manifolds, laws, &memory, scale, parameters, set.contacts.view(),
+                                          set.rows.view(), set.couples.view()});
 }
 
 }  // namespace scree

@@ -29,8 +29,9 @@ struct Contact {
   std::int8_t free_ends;  ///< how many of its two bodies are free
   Vec3 normal;
   double friction;
-  double lead;  ///< how long after the midpoint its geometry is of (s)
-  double size;  ///< the smaller smallest_size of the two (m)
+  double rolling_reach;  ///< couple against rolling for each normal impulse, at most (m)
+  double lead;           ///< how long after the midpoint its geometry is of (s)
+  double size;           ///< the smaller smallest_size of the two (m)
 };
 
 /// What the natural map changes in the impulses of a contact's rows, as they are.
@@ -66,7 +67,9 @@ struct ContactSet {
   Coloring coloring;
   Array<Contact, Host> contacts;
   Array<ContactRow, Host> rows;  ///< of one contact after the other
+  Array<Vec3, Host> couples;     ///< of each contact against rolling, on j (N m s); empty if nothing rolls
   lanes::Batches batches;        ///< the same for the kernels, colour by colour
+  bool rolls = false;            ///< rolling friction is computed
   std::int64_t pairs = 0;        ///< contacts of BallPairs: only in the batches, until all are listed
   bool all_are_listed = false;  ///< those too, after the others, and the masses of rows, which are made there
 
@@ -96,6 +99,8 @@ class ImpulseMemory {
   /// Finds the last impulses of a manifold's points (N s, world frame). False if none of the pair's points on
   /// that part carried any: where one corner rests, the others do not bounce.
   bool recall(const ManifoldHeader& manifold, const ContactPoint* points, Vec3* impulses) const;
+  /// The last couple of a manifold's pair on that part (N m s); of scenes in which bodies roll.
+  Vec3 recall_couple(const ManifoldHeader& manifold) const;
   /// Takes the impulses of the rows and of the batches; `bodies` is their number.
   void remember(const Manifolds& manifolds, const ContactSet& set, std::int64_t bodies);
 
@@ -103,6 +108,7 @@ class ImpulseMemory {
     archive.part("balls", balls);
     archive("entries", entries_);
     archive("points", points_);
+    archive("couples", couples_);
     archive("begin", begin_);
   }
 
@@ -159,6 +165,7 @@ class ImpulseMemory {
  private:
   Array<Entry, Host> entries_;
   Array<Point, Host> points_;
+  Array<Vec3, Host> couples_;        ///< of each entry; empty if nothing rolls
   Array<std::int64_t, Host> begin_;  ///< of the entries of each i; one more than bodies, empty at first
 };
 

@@ -3,6 +3,7 @@
 
 #include "core/tolerances.hpp"
 #include "sim/dynamics/flight_stage.hpp"
+#include "sim/dynamics/rolling.hpp"
 #include "sim/dynamics/rotation.hpp"
 
 #include <algorithm>
@@ -44,12 +45,24 @@ SCREE_HD inline void restore(const StruckBody& saved, const BodyView& bodies, Vi
   clock[saved.body] = saved.clock;
 }
 
+/// Rolling friction in an impact.
+struct RollingCouple {
+  double reach = 0;  ///< of the couple for each normal impulse, at most (m); 0: nothing rolls
+  Vec3 couple;       ///< on j, and reversed on i (N m s)
+  Vec3 before;       ///< spin of j relative to i before the impact (rad/s)
+
+  /// As Moved::square, of the couple. `i` and `j` are as after it.
+  SCREE_HD double square(const SolverBody& i, const SolverBody& j) const {
+    return 0.5 * couple.dot(j.spin - i.spin - before);
+  }
+};
+
 namespace detail {
 
 /// Without friction nothing turns a ball, and no rounding may.
 SCREE_HD inline SolverBody struck_body(const FlightStage& stage, std::int32_t body, const BodyInstant& at,
-                                       double friction) {
-  const bool turns = friction > 0 || stage.bodies.shape[body] != Shape::sphere;
+                                       bool rubs) {
+  const bool turns = rubs || stage.bodies.shape[body] != Shape::sphere;
   return {at.velocity, at.spin, stage.bodies.inverse_mass[body],
           turns ? world_inverse_inertia(at.solid.orientation, stage.bodies.inverse_inertia[body])
                 : Mat3(Mat3::Zero())};
@@ -80,10 +93,21 @@ struct PairGuides {
   }
 };
 
+/// Gives a contact the couple against rolling that its impulses allow.
+SCREE_HD inline void roll(const ContactRow* rows, int count, const Vec3& normal, RollingCouple& rolling,
+                          SolverBody& i, SolverBody& j) {
+  double pn = 0;
+  for (int k = 0; k < count; ++k) pn += rows[k].impulse.dot(normal);
+  const double mass = rolling_mass(i, j, normal);
+  const Vec3 couple = rolling_couple(rolling.couple, normal, rolling.reach * pn, mass, j.spin - i.spin);
+  turn(couple - rolling.couple, i, j);
+  rolling.couple = couple;
+}
+
 /// Goes on until only rounding changes, which does not fall.
 SCREE_HD inline void sweep_impact(ContactRow* rows, const RowCoupling* couplings, int count,
-                                  const Vec3& normal, double friction, const PairGuides& guides,
-                                  SolverBody& i, SolverBody& j) {
+                                  const Vec3& normal, double friction, RollingCouple& rolling,
+                                  const PairGuides& guides, SolverBody& i, SolverBody& j) {
   constexpr int most_sweeps = 200;
   double last_change = HUGE_VAL;
   for (int sweep = 0; sweep < most_sweeps; ++sweep) {
@@ -92,6 +116,7 @@ SCREE_HD inline void sweep_impact(ContactRow* rows, const RowCoupling* couplings
     Vec3 last[Manifold::max_points];
     for (int k = 0; k < count; ++k) last[k] = rows[k].impulse;
     sweep_rows(rows, couplings, count, normal, friction, i, j);
+    if (rolling.reach > 0) roll(rows, count, normal, rolling, i, j);
     guides.hold(i, j);
     for (int k = 0; k < count; ++k) {
       change += (rows[k].impulse - last[k]).norm();
@@ -106,14 +131,23 @@ SCREE_HD inline void sweep_impact(ContactRow* rows, const RowCoupling* couplings
 /// Newton's law with friction at several points, or at one whose Delassus matrix couples normal and
 /// tangents, can gain energy.
 SCREE_HD inline void keep_from_gaining(ContactRow* rows, const Vec3* before, int count,
-                                       const PairGuides& guides, SolverBody& i, SolverBody& j) {
+                                       RollingCouple& rolling, const PairGuides& guides, SolverBody& i,
+                                       SolverBody& j) {
   Moved moved;
   for (int k = 0; k < count; ++k) {
     moved.linear += rows[k].impulse.dot(before[k]);
     moved.square += 0.5 * rows[k].impulse.dot(rows[k].relative_velocity(i, j) - before[k]);
   }
+  if (rolling.reach > 0) {
+    moved.linear += rolling.couple.dot(rolling.before);
+    moved.square += rolling.square(i, j);
+  }
   if (!moved.gains(tolerance::impact_gain)) return;
   const double scale = moved.scale_without_gain();
+  if (rolling.reach > 0) {
+    turn((scale - 1) * rolling.couple, i, j);
+    rolling.couple *= scale;
+  }
   for (int k = 0; k < count; ++k) {
     rows[k].push((scale - 1) * rows[k].impulse, i, j);
     rows[k].impulse *= scale;
@@ -147,6 +181,7 @@ struct SolvedImpact {
   ContactRow rows[Manifold::max_points];  ///< of these
   Vec3 before[Manifold::max_points];      ///< their relative velocities (m/s)
   int count;
+  RollingCouple rolling;
   double restitution;
 
   SCREE_HD Vec3 impulse() const {
@@ -157,6 +192,7 @@ struct SolvedImpact {
   SCREE_HD Ledger moved() const {
     Ledger ledger;
     for (int k = 0; k < count; ++k) ledger = ledger + account(rows[k], normal, before[k], after_i, after_j);
+    if (rolling.reach > 0) ledger = ledger + account_couple(rolling.couple, rolling.before, after_i, after_j);
     return ledger;
   }
 };
@@ -187,9 +223,14 @@ SCREE_HD bool solve_impact(const FlightStage& stage, std::int32_t i, std::int32_
   out.normal = m.normal;
   SolverBody& a = out.after_i;
   SolverBody& b = out.after_j;
-  a = detail::struck_body(stage, i, out.at_i, friction);
-  b = detail::struck_body(stage, j, out.at_j, friction);
-  const bool of_balls = detail::is_of_balls(stage, i, j);
+  out.rolling.reach = stage.parameters.rolling_friction ? stage.terms.laws.rolling_reach(i, j) : 0.0;
+  const bool rolls = out.rolling.reach > 0;
+  a = detail::struck_body(stage, i, out.at_i, friction > 0 || rolls);
+  b = detail::struck_body(stage, j, out.at_j, friction > 0 || rolls);
+  out.rolling.couple.setZero();
+  out.rolling.before = b.spin - a.spin;
+  // With a couple the point of two balls couples, too.
+  const bool of_balls = !rolls && detail::is_of_balls(stage, i, j);
   RowCoupling couplings[Manifold::max_points];
   Vec3 middle = Vec3::Zero();
   double fastest = 0;
@@ -216,8 +257,8 @@ SCREE_HD bool solve_impact(const FlightStage& stage, std::int32_t i, std::int32_
     detail::strike_balls(out.rows[0], out.before[0], m.normal, friction, a, b);
   } else {
     const detail::PairGuides guides{stage.parameters.guides, i, j};
-    detail::sweep_impact(out.rows, couplings, count, m.normal, friction, guides, a, b);
-    detail::keep_from_gaining(out.rows, out.before, count, guides, a, b);
+    detail::sweep_impact(out.rows, couplings, count, m.normal, friction, out.rolling, guides, a, b);
+    detail::keep_from_gaining(out.rows, out.before, count, out.rolling, guides, a, b);
   }
   out.point = middle / count;
   out.count = count;

@@ -72,9 +72,22 @@ struct SolveIsland {
                                 .islands = *islands,
                                 .island = island,
                                 .guides = stage.guides};
-    outcome[island] = (accurate ? natural_residual(problem) : change_of(island)).within(tolerance)
-                          ? DirectOutcome::not_needed
-                          : solve_directly(problem, tolerance, limits);
+    const ImpulseChange left =
+        accurate ? natural_residual(problem) + rolling_residual(island) : change_of(island);
+    outcome[island] = left.within(tolerance) ? DirectOutcome::not_needed
+                      : rolls(island)        ? DirectOutcome::too_large
+                                             : solve_directly(problem, tolerance, limits);
+  }
+  /// Newton's method knows no couples.
+  bool rolls(std::int64_t island) const {
+    return stage.rolls && std::ranges::any_of(islands->contacts(island), [&](std::int32_t c) {
+             return stage.contacts[c].rolling_reach > 0;
+           });
+  }
+  ImpulseChange rolling_residual(std::int64_t island) const {
+    ImpulseChange residual;
+    for (const std::int32_t c : islands->contacts(island)) residual = residual + stage.rolling_residual(c);
+    return residual;
   }
   ImpulseChange change_of(std::int64_t island) const {
     ImpulseChange change;
@@ -87,7 +100,8 @@ struct LoadResidual {
   SolveStage stage;
   SCREE_HD ImpulseChange operator()(std::int64_t c) const {
     const Contact& contact = stage.contacts[c];
-    return natural_residual(contact, stage.rows_of(c), stage.solver[contact.i], stage.solver[contact.j]);
+    return natural_residual(contact, stage.rows_of(c), stage.solver[contact.i], stage.solver[contact.j]) +
+           stage.rolling_residual(c);
   }
 };
 
@@ -152,6 +166,7 @@ void ResponseSolver::list_all(ContactSet& set, SolveStage& stage) {
   set.list_all(stage.solver);
   stage.contacts = set.contacts.view();
   stage.rows = set.rows.view();
+  stage.couples = set.couples.view();
   sweeps_.look_at(stage);
 }
 
@@ -273,6 +288,8 @@ Ledger ResponseSolver::solve(const Manifolds& manifolds, double step, const Resp
                    .solver = solver.view(),
                    .contacts = set.contacts.view(),
                    .rows = set.rows.view(),
+                   .couples = set.couples.view(),
+                   .rolls = set.rolls,
                    .change = {},
                    .free_velocity = free_velocity_.view(),
                    .free_spin = free_spin_.view(),

@@ -5,6 +5,7 @@
 #include "core/bodies.hpp"
 #include "narrowphase/contact.hpp"
 #include "sim/dynamics/contact_set.hpp"
+#include "sim/dynamics/rolling.hpp"
 #include "sim/dynamics/state.hpp"
 
 #include <cstdint>
@@ -17,6 +18,8 @@ struct SolveStage {
   View<SolverBody> solver;
   View<Contact> contacts;
   View<ContactRow> rows;
+  View<Vec3> couples = {};  ///< of each contact, if anything rolls
+  bool rolls = false;
   View<ImpulseChange> change;  ///< of each contact, in the last sweep; empty if nobody asks
   View<Vec3> free_velocity;    ///< of each body without contacts
   View<Vec3> free_spin;
@@ -39,6 +42,20 @@ struct SolveStage {
   /// and with them.
   SCREE_HD Vec3 velocity_after(const Contact& c, const ContactRow& row) const {
     return row.relative_velocity(solver[c.i], solver[c.j]);
+  }
+  /// What the natural map changes in the couple of a contact, as it is.
+  SCREE_HD ImpulseChange rolling_residual(std::int64_t c) const {
+    const Contact& contact = contacts[c];
+    if (!(contact.rolling_reach > 0)) return {};
+    const SolverBody& i = solver[contact.i];
+    const SolverBody& j = solver[contact.j];
+    double pn = 0;
+    for (int k = 0; k < contact.count; ++k) pn += rows_of(c)[k].impulse.dot(contact.normal);
+    const double mass = rolling_mass(i, j, contact.normal);
+    if (mass == 0) return {};
+    const Vec3 couple =
+        rolling_couple(couples[c], contact.normal, contact.rolling_reach * pn, mass, j.spin - i.spin);
+    return {(couple - couples[c]).squaredNorm() / mass, couples[c].squaredNorm() / mass};
   }
   SCREE_HD ContactRow* rows_of(std::int64_t c) const { return &rows[contacts[c].first_row]; }
 };

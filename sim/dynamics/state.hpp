@@ -38,6 +38,7 @@ struct ResponseParameters {
   /// Bound on how fast velocities of prescribed bodies' surfaces change, but for constant spin (m/s^2).
   double prescribed_acceleration = 0;
   bool friction = true;
+  bool rolling_friction = false;
   bool restitution = true;
   bool rotation = true;
   bool gyroscopic = true;

@@ -10,41 +10,61 @@ namespace scree {
 
 namespace {
 
+// Of batches where nothing rolls, `rolling` is empty.
+
 struct PushBalls {
   ConstView<lanes::BallBatch> batches;
+  ConstView<lanes::Rolling> rolling;
   View<lanes::Body> bodies;
-  void operator()(std::int64_t b) const { lanes::kernels().push_balls(batches[b], bodies.data()); }
+  void operator()(std::int64_t b) const {
+    lanes::kernels().push_balls(batches[b], bodies.data());
+    if (rolling.size() > 0) lanes::kernels().push_rolling_balls(batches[b], rolling[b], bodies.data());
+  }
 };
 
 struct PushPoints {
   ConstView<lanes::PointBatch> batches;
   ConstView<lanes::PointRow> rows;
+  ConstView<lanes::Rolling> rolling;
   View<lanes::Body> bodies;
   void operator()(std::int64_t first, int count) const {
-    for (std::int64_t b = first; b < first + count; ++b)
+    for (std::int64_t b = first; b < first + count; ++b) {
       lanes::kernels().push_points(batches[b], &rows[batches[b].first_row], bodies.data());
+      if (rolling.size() > 0) lanes::kernels().push_rolling_points(batches[b], rolling[b], bodies.data());
+    }
   }
 };
 
 struct SweepBalls {
   decltype(lanes::SweepKernels::balls) kernel;
   View<lanes::BallBatch> batches;
+  View<lanes::Rolling> rolling;
   View<lanes::Body> bodies;
   double beta;
   lanes::Change* change;
-  void operator()(std::int64_t b) const { change[b] = kernel(batches[b], bodies.data(), beta); }
+  void operator()(std::int64_t b) const {
+    change[b] = kernel(batches[b], bodies.data(), beta);
+    if (rolling.size() > 0)
+      change[b] = change[b] + lanes::kernels().roll_balls(batches[b], rolling[b], bodies.data(), beta);
+  }
 };
 
 struct SweepPoints {
   decltype(lanes::SweepKernels::points) kernel;
   ConstView<lanes::PointBatch> batches;
   View<lanes::PointRow> rows;
+  View<lanes::Rolling> rolling;
   View<lanes::Body> bodies;
   double beta;
   int block_sweeps;
   lanes::Change* change;
-  void operator()(std::int64_t b, int count) const {
-    kernel(&batches[b], count, rows.data(), bodies.data(), beta, block_sweeps, change + b);
+  void operator()(std::int64_t first, int count) const {
+    kernel(&batches[first], count, rows.data(), bodies.data(), beta, block_sweeps, change + first);
+    if (rolling.size() == 0) return;
+    for (std::int64_t b = first; b < first + count; ++b) {
+      change[b] = change[b] + lanes::kernels().roll_points(batches[b], &rows[batches[b].first_row],
+                                                           rolling[b], bodies.data(), beta);
+    }
   }
 };
 
@@ -97,9 +117,9 @@ void Sweeps::load(const SolveStage& stage, const Coloring& coloring, lanes::Batc
   const auto nobody = static_cast<std::int32_t>(stage.solver.size());
   free_.resize(nobody + 1);
   parallel::for_each<Host>("response.release", free_.size(), Release{stage, free_.view()});
-  lanes::arrange(coloring, stage.contacts, nobody, batches);
+  lanes::arrange(coloring, stage.contacts, nobody, stage.rolls, batches);
   if (stage.balls != nullptr) stage.balls->put_into(stage.warm_start, batches);
-  lanes::load(stage.contacts, stage.rows, stage.solver, free_.data(), stage.pairs, batches);
+  lanes::load(stage.contacts, stage.rows, stage.couples, stage.solver, free_.data(), stage.pairs, batches);
   change_.resize(batches.balls.size() + batches.points.size());
 }
 
@@ -107,8 +127,10 @@ void Sweeps::take_impulses() { lanes::take_impulses(stage_->rows, *batches_); }
 
 void Sweeps::set_velocities() {
   copy(bodies_, free_);
-  lanes::for_each_color("response.push", *batches_, PushBalls{batches_->balls.view(), bodies_.view()},
-                        PushPoints{batches_->points.view(), batches_->rows.view(), bodies_.view()});
+  lanes::for_each_color("response.push", *batches_,
+                        PushBalls{batches_->balls.view(), batches_->ball_rolling.view(), bodies_.view()},
+                        PushPoints{batches_->points.view(), batches_->rows.view(),
+                                   batches_->point_rolling.view(), bodies_.view()});
   hold_to_guides();
 }
 
@@ -139,17 +161,23 @@ struct LoadMean {
 
 struct BookBalls {
   ConstView<lanes::BallBatch> batches;
+  ConstView<lanes::Rolling> rolling;
   const lanes::Body* mean;
   lanes::Losses* losses;
-  void operator()(std::int64_t b) const { lanes::kernels().book_balls(batches[b], mean, losses[b]); }
+  void operator()(std::int64_t b) const {
+    lanes::kernels().book_balls(batches[b], mean, losses[b]);
+    if (rolling.size() > 0) lanes::kernels().book_rolling(batches[b].ends, rolling[b], mean, losses[b]);
+  }
 };
 struct BookPoints {
   ConstView<lanes::PointBatch> batches;
   ConstView<lanes::PointRow> rows;
+  ConstView<lanes::Rolling> rolling;
   const lanes::Body* mean;
   lanes::Losses* losses;
   void operator()(std::int64_t b) const {
     lanes::kernels().book_points(batches[b], &rows[batches[b].first_row], mean, losses[b]);
+    if (rolling.size() > 0) lanes::kernels().book_rolling(batches[b].ends, rolling[b], mean, losses[b]);
   }
 };
 
@@ -165,10 +193,11 @@ lanes::Books Sweeps::book(Array<lanes::Losses, Host>& losses) {
   last_.resize(bodies_.size());
   parallel::for_each<Host>("response.mean", bodies_.size(),
                            LoadMean{*stage_, std::as_const(bodies_).view(), last_.view()});
-  lanes::for_each_batch("response.books", *batches_,
-                        BookBalls{batches_->balls.view(), last_.data(), losses.data()},
-                        BookPoints{batches_->points.view(), batches_->rows.view(), last_.data(),
-                                   losses.data() + batches_->balls.size()});
+  lanes::for_each_batch(
+      "response.books", *batches_,
+      BookBalls{batches_->balls.view(), batches_->ball_rolling.view(), last_.data(), losses.data()},
+      BookPoints{batches_->points.view(), batches_->rows.view(), batches_->point_rolling.view(), last_.data(),
+                 losses.data() + batches_->balls.size()});
   return parallel::sum<lanes::Books, Host>("response.books", losses.size(),
                                            LoadBooks{std::as_const(losses).view()});
 }
@@ -177,11 +206,18 @@ lanes::Lane Sweeps::square_of(std::int64_t batch) const {
   lanes::Lane square;
   const std::int64_t balls = batches_->balls.size();
   if (batch < balls) {
-    lanes::kernels().square_of_balls(batches_->balls.view()[batch], free_.data(), bodies_.data(), square);
+    const lanes::BallBatch& of = batches_->balls.view()[batch];
+    lanes::kernels().square_of_balls(of, free_.data(), bodies_.data(), square);
+    if (batches_->rolls())
+      lanes::kernels().square_of_rolling(of.ends, batches_->ball_rolling.view()[batch], free_.data(),
+                                         bodies_.data(), square);
   } else {
     const lanes::PointBatch& points = batches_->points.view()[batch - balls];
     lanes::kernels().square_of_points(points, &batches_->rows.view()[points.first_row], free_.data(),
                                       bodies_.data(), square);
+    if (batches_->rolls())
+      lanes::kernels().square_of_rolling(points.ends, batches_->point_rolling.view()[batch - balls],
+                                         free_.data(), bodies_.data(), square);
   }
   return square;
 }
@@ -199,11 +235,12 @@ bool Sweeps::run(const SweepPlan& plan, int most, std::int64_t& count) {
                                (bodies_.size() + Accelerate::chunk - 1) / Accelerate::chunk,
                                Accelerate{bodies_.view(), last_.data(), beta}, few_chunks);
     }
-    lanes::for_each_color(
-        "response.sweep", *batches_,
-        SweepBalls{kernels.balls, batches_->balls.view(), bodies_.view(), beta, change_.data()},
-        SweepPoints{kernels.points, batches_->points.view(), batches_->rows.view(), bodies_.view(), beta,
-                    plan.block_sweeps, change_.data() + batches_->balls.size()});
+    lanes::for_each_color("response.sweep", *batches_,
+                          SweepBalls{kernels.balls, batches_->balls.view(), batches_->ball_rolling.view(),
+                                     bodies_.view(), beta, change_.data()},
+                          SweepPoints{kernels.points, batches_->points.view(), batches_->rows.view(),
+                                      batches_->point_rolling.view(), bodies_.view(), beta, plan.block_sweeps,
+                                      change_.data() + batches_->balls.size()});
     hold_to_guides();
     ++count;
     const auto total =
@@ -214,6 +251,7 @@ bool Sweeps::run(const SweepPlan& plan, int most, std::int64_t& count) {
     last_step = total.step;
   }
   lanes::store_impulses(*batches_, stage_->rows, stage_->change);
+  lanes::store_couples(*batches_, stage_->couples);
   return converged;
 }
 

@@ -75,7 +75,10 @@ class Sweeps {
   void take_impulses();
 
   /// Gives the rows their impulses.
-  void store_impulses() const { lanes::store_impulses(*batches_, stage_->rows, {}); }
+  void store_impulses() const {
+    lanes::store_impulses(*batches_, stage_->rows, {});
+    lanes::store_couples(*batches_, stage_->couples);
+  }
 
   /// Sets the velocities to what the impulses taken, or found since, give.
   void set_velocities();

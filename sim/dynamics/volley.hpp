@@ -82,6 +82,7 @@ struct HeavySide {
       const ContactRow& row = solved.rows[k];
       angular += (is_i ? row.arm_i : row.arm_j).cross(sign * row.impulse);
     }
+    if (solved.rolling.reach > 0) angular += sign * solved.rolling.couple;
   }
 
   /// Energy that it gives to a body at rest (J).
@@ -105,6 +106,7 @@ SCREE_HD inline void add_to_volley(const FlightStage& stage, std::int32_t heavy,
     const ContactRow& row = solved.rows[k];
     square += 0.5 * row.impulse.dot(row.relative_velocity(solved.after_i, solved.after_j) - solved.before[k]);
   }
+  if (solved.rolling.reach > 0) square += solved.rolling.square(solved.after_i, solved.after_j);
   const double own = side.own_energy();
   for (int axis = 0; axis < 3; ++axis) {
     add_units(&volley.momentum[axis], side.momentum[axis], unit.momentum);

@@ -21,8 +21,9 @@ constexpr int tile = parallel::tile;
 }  // namespace
 
 template <class Space, class Real>
-void ContactSolver<Space, Real>::take_candidates(ConstView<Pair> candidates, const ConstBodyView& bodies) {
-  slots_.build(candidates, bodies);
+void ContactSolver<Space, Real>::take_candidates(ConstView<Pair> candidates, const ConstBodyView& bodies,
+                                                 bool rolls) {
+  slots_.build(candidates, bodies, rolls);
   make_places();
   const std::int64_t balls = store_.ball_places();
   for (auto* loads : {&loads_, &next_loads_}) {
@@ -140,10 +141,27 @@ void ContactSolver<Space, Real>::find(ConstView<double> margin, double scale, co
   ball_list_.make(store_.ball_tiles());
   point_list_.make(store_.point_tiles());
   counts_ = {ball_list_.size(), ball_list_.size()};
+  if (parameters.rolling_friction) start_rolling(stage);
   if (point_list_.size() == 0) return;
   counts_.contacts += point_list_.size();
   counts_.points += parallel::sum_by_tiles<std::int64_t, Space>(
       "contacts.count", point_list_.size(), on_contacts(point_list_, CountPoints<Real>{store_.points()}));
+}
+
+template <class Space, class Real>
+void ContactSolver<Space, Real>::start_rolling(const FindStage<Real>& stage) {
+  using R = RollingFields<Real>;
+  ball_rolling_.resize(store_.ball_places() * R::count);
+  point_rolling_.resize(store_.point_places() * R::count);
+  const ConstView<V3<Real>> couples = slots_.couples();
+  parallel::for_each<Space>(
+      "rolling.start", ball_list_.size(),
+      on_contacts(ball_list_, StartRolling<Real, BallContacts<Real>>{
+                                  stage, 0, store_.balls(), rolling_of_balls(), couples, solver_.view()}));
+  parallel::for_each<Space>("rolling.start", point_list_.size(),
+                            on_contacts(point_list_, StartRolling<Real, PointContacts<Real>>{
+                                                         stage, store_.ball_places(), store_.points(),
+                                                         rolling_of_points(), couples, solver_.view()}));
 }
 
 template <class Space, class Real>
@@ -165,6 +183,9 @@ SweepState ContactSolver<Space, Real>::run_impulse_rounds(const SweepPlan& plan)
                                       .point_colors = ColorPhases(point_list_),
                                       .balls = store_.balls(),
                                       .points = store_.points(),
+                                      .rolls = rolls(),
+                                      .ball_rolling = rolling_of_balls(),
+                                      .point_rolling = rolling_of_points(),
                                       .inertia = inertia_.data(),
                                       .bodies = solver_.data(),
                                       .last = last_.data(),
@@ -191,7 +212,8 @@ void ContactSolver<Space, Real>::find_impulses(const ResponseParameters& paramet
     if (parameters.iterations > 0) plan.least = std::min(plan.least, plan.most);
     plan.most = std::max(plan.most, plan.least);
   }
-  const bool few = plan.direct && slots_.places().size() <= few_places &&
+  // Newton's method knows no couples.
+  const bool few = plan.direct && !rolls() && slots_.places().size() <= few_places &&
                    slots_.solver_bodies().first_wall_point() <= few_bodies;
   const bool converged = few ? solve_few(plan, counters) : sweep(plan, counters);
   counters.unconverged += !converged;
@@ -241,7 +263,7 @@ Ledger ContactSolver<Space, Real>::book(const ConstBodyView& bodies, const Respo
   const BookStage<Real> stage{slots_.places(), bodies, free_.view(),      solver_.view(),
                               parameters,      step_,  next_loads_.view()};
   // Both kinds are waited for once, and one that is not there costs nothing.
-  books_totals_.resize(2);
+  books_totals_.resize(4);
   std::size_t kinds = 0;
   const auto add_up = [&](const char* label, const ContactList<Space>& list, const auto& book) {
     if (list.size() == 0) return;
@@ -251,9 +273,17 @@ Ledger ContactSolver<Space, Real>::book(const ConstBodyView& bodies, const Respo
   add_up("books.balls", ball_list_, BookBalls<Real>{stage, store_.balls(), slots_.ball_memory()});
   add_up("books.points", point_list_,
          BookPoints<Real>{stage, store_.ball_places(), store_.points(), slots_.point_memory()});
-  Books of_kind[2];
+  if (rolls()) {
+    add_up("books.rolling", ball_list_,
+           BookRolling<Real, BallContacts<Real>>{stage, 0, store_.balls(), rolling_of_balls(),
+                                                 slots_.couples()});
+    add_up("books.rolling", point_list_,
+           BookRolling<Real, PointContacts<Real>>{stage, store_.ball_places(), store_.points(),
+                                                  rolling_of_points(), slots_.couples()});
+  }
+  Books of_kind[4];
   copy_bytes<Host, Space>(of_kind, books_totals_.data(), kinds * sizeof(Books));
-  books_ = of_kind[0] + of_kind[1];
+  books_ = of_kind[0] + of_kind[1] + of_kind[2] + of_kind[3];
   Ledger ledger;
   ledger.restitution = books_.restitution;
   ledger.friction = books_.friction;

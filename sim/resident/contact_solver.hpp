@@ -17,6 +17,7 @@
 #include "sim/resident/hubs.hpp"
 #include "sim/resident/inspection.hpp"
 #include "sim/resident/patience.hpp"
+#include "sim/resident/rolling.hpp"
 #include "sim/resident/slots.hpp"
 #include "sim/resident/sweeps.hpp"
 
@@ -36,8 +37,8 @@ struct PartingPlan {
 template <class Space, class Real>
 class ContactSolver {
  public:
-  /// The candidates have been made anew; impulses are remembered.
-  void take_candidates(ConstView<Pair> candidates, const ConstBodyView& bodies);
+  /// The candidates have been made anew; impulses are remembered, and couples if anything `rolls`.
+  void take_candidates(ConstView<Pair> candidates, const ConstBodyView& bodies, bool rolls);
 
   /// Others of the bodies are free now; new candidates follow.
   void change_bodies() { slots_.forget_colors(); }
@@ -91,6 +92,10 @@ class ContactSolver {
   LoadSpread spread_of_loads();
   template <bool only_balls>
   SweepState run_impulse_rounds(const SweepPlan& plan);
+  void start_rolling(const FindStage<Real>& stage);
+  bool rolls() const { return ball_rolling_.size() + point_rolling_.size() > 0; }
+  RollingFields<Real> rolling_of_balls() { return {{ball_rolling_.data(), store_.ball_places()}}; }
+  RollingFields<Real> rolling_of_points() { return {{point_rolling_.data(), store_.point_places()}}; }
   PartingPlan plan_parting() const;
   template <bool only_balls>
   void run_parting_rounds(const PartingPlan& plan);
@@ -108,6 +113,7 @@ class ContactSolver {
   Array<PartsSum, Space> parts_sums_;
 
   ContactStore<Space, Real> store_;
+  Array<Real, Space> ball_rolling_, point_rolling_;  // RollingFields; empty if nothing rolls
   ContactList<Space> ball_list_, point_list_;
   ContactFinder<Space, Real> finder_;
 

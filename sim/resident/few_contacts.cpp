@@ -39,6 +39,7 @@ FewContacts<Real>::FewContacts(Inspection<Real>& seen) : seen_(seen) {
                         .free_ends = static_cast<std::int8_t>(i.is_free() + j.is_free()),
                         .normal = c.normal,
                         .friction = c.friction,
+                        .rolling_reach = 0,
                         .lead = 0,
                         .size = 0});
     place_.push_back(c.place);

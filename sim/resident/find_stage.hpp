@@ -42,8 +42,11 @@ struct FindStage {
   bool any_is_late;      ///< one was struck after the midpoint
 
   SCREE_HD SlotBodies<Real> load(const Slot& slot) const { return {slot, mid[slot.i], mid[slot.j]}; }
+  SCREE_HD const PairLaw& law_of(const SlotBodies<Real>& at) const {
+    return laws[at.a.material * materials + at.b.material];
+  }
   SCREE_HD double friction_of(const SlotBodies<Real>& at) const {
-    return parameters.friction ? laws[at.a.material * materials + at.b.material].friction : 0.0;
+    return parameters.friction ? law_of(at).friction : 0.0;
   }
   SCREE_HD BallMasses masses_of(const SlotBodies<Real>& at, double arm_i, double arm_j) const {
     const auto [mass_i, inertia_i] = inverses_of(at.a, at.slot.i, at.slot.end_i);

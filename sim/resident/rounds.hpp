@@ -5,6 +5,7 @@
 #include "sim/resident/contact_list.hpp"
 #include "sim/resident/hubs.hpp"
 #include "sim/resident/layout.hpp"
+#include "sim/resident/rolling.hpp"
 #include "sim/resident/slots.hpp"
 #include "sim/resident/sweeps.hpp"
 
@@ -35,7 +36,8 @@ struct ColorPhases {
 };
 
 /// Finds impulses. The first round gives the bodies what their contacts remember, each other one is a sweep:
-/// the bodies go on by beta (with momentum), then each colour, then the parts of hubs agree.
+/// the bodies go on by beta (with momentum), then each colour, then the couples of each colour if anything
+/// rolls, then the parts of hubs agree.
 /// only_balls: there are no other contacts, whose laws ask for many registers.
 template <class Real, bool only_balls>
 struct ImpulseRounds {
@@ -48,6 +50,8 @@ struct ImpulseRounds {
   ColorPhases ball_colors, point_colors;
   BallContacts<Real> balls;
   PointContacts<Real> points;
+  bool rolls;
+  RollingFields<Real> ball_rolling, point_rolling;
   const InertiaRecord<Real>* inertia;
   BodyRecord<Real>* bodies;
   BodyRecord<Real>* last;
@@ -60,14 +64,22 @@ struct ImpulseRounds {
   SCREE_HD bool goes_on(const State& state) const { return state.pushed && momentum; }
   SCREE_HD int phases(const State& state) const {
     if (state.converged || state.sweeps >= most) return 0;
-    return (goes_on(state) ? 1 : 0) + ball_colors.count + point_colors.count + hubs.phases();
+    return (goes_on(state) ? 1 : 0) + (rolls ? 2 : 1) * (ball_colors.count + point_colors.count) +
+           hubs.phases();
   }
   SCREE_HD std::int64_t items(const State& state, int phase) const {
     if (goes_on(state) && phase-- == 0) return body_count;
     if (phase < ball_colors.count) return ball_colors.items(phase);
     phase -= ball_colors.count;
     if (phase < point_colors.count) return point_colors.items(phase);
-    return hubs.items(phase - point_colors.count);
+    phase -= point_colors.count;
+    if (rolls) {
+      if (phase < ball_colors.count) return ball_colors.items(phase);
+      phase -= ball_colors.count;
+      if (phase < point_colors.count) return point_colors.items(phase);
+      phase -= point_colors.count;
+    }
+    return hubs.items(phase);
   }
   std::int64_t most_items() const {
     return std::max({body_count, ball_colors.most_items(), point_colors.most_items()});
@@ -93,7 +105,29 @@ struct ImpulseRounds {
         return {};
       }
     }
-    hubs(phase - point_colors.count, item);
+    phase -= point_colors.count;
+    if (rolls) {
+      if (phase < ball_colors.count)
+        return roll(
+            Roll<Real, BallContacts<Real>, TurnBalls<Real>>{balls, ball_rolling, {}, bodies, momentum}, state,
+            ball_colors.place(phase, item));
+      phase -= ball_colors.count;
+      if constexpr (!only_balls) {
+        if (phase < point_colors.count)
+          return roll(
+              Roll<Real, PointContacts<Real>, TurnPoints<Real>>{
+                  points, point_rolling, {inertia}, bodies, true},
+              state, point_colors.place(phase, item));
+      }
+      phase -= point_colors.count;
+    }
+    hubs(phase, item);
+    return {};
+  }
+  template <class Roll>
+  SCREE_HD static Sum roll(const Roll& contacts, const State& state, std::int64_t c) {
+    if (state.pushed) return contacts.sweep(c, static_cast<Real>(state.beta));
+    contacts.push(c);
     return {};
   }
   /// After a sweep: have the impulses converged, and by how much does the next one go on (Sweeps).

@@ -207,11 +207,17 @@ struct Recall {
   std::int64_t ball_places, old_ball_places;
   ConstView<BallMemory<Real>> old_balls;
   ConstView<PointMemory<Real>> old_points;
+  ConstView<V3<Real>> old_couples;
   View<BallMemory<Real>> balls;
   View<PointMemory<Real>> points;
+  View<V3<Real>> couples;
 
   SCREE_HD void operator()(std::int64_t place) const {
     const std::int64_t old = old_place_of(places[place]);
+    if (couples.size() > 0) {
+      const bool known = old >= 0 && old < old_couples.size();
+      couples[place] = known ? old_couples[old] : V3<Real>{};
+    }
     if (place < ball_places) {
       balls[place] = old >= 0 && old < old_ball_places ? old_balls[old] : BallMemory<Real>{};
     } else {
@@ -228,13 +234,14 @@ struct Recall {
 }  // namespace
 
 template <class Space, class Real>
-void Slots<Space, Real>::build(ConstView<Pair> candidates, const ConstBodyView& bodies) {
+void Slots<Space, Real>::build(ConstView<Pair> candidates, const ConstBodyView& bodies, bool rolls) {
   old_pairs_.swap(pairs_);
   old_first_.swap(first_);
   old_place_.swap(place_);
   old_color_.swap(color_);
   old_ball_memory_.swap(ball_memory_);
   old_point_memory_.swap(point_memory_);
+  old_couples_.swap(couples_);
   old_ball_places_ = balls_.tiles() * parallel::tile;
   pairs_.resize(candidates.size());
   copy_bytes<Space, Space>(pairs_.data(), candidates.data(),
@@ -247,7 +254,7 @@ void Slots<Space, Real>::build(ConstView<Pair> candidates, const ConstBodyView& 
   solver_bodies_.number(bodies, slots_.view());
   color_slots(bodies);
   place_slots(bodies);
-  recall();
+  recall(rolls);
 }
 
 template <class Space, class Real>
@@ -337,16 +344,18 @@ void Slots<Space, Real>::place_slots(const ConstBodyView& bodies) {
 }
 
 template <class Space, class Real>
-void Slots<Space, Real>::recall() {
+void Slots<Space, Real>::recall(bool rolls) {
   const std::int64_t ball_places = balls_.tiles() * parallel::tile;
   ball_memory_.resize(ball_places);
   point_memory_.resize(places_.size() - ball_places);
+  couples_.resize(rolls ? places_.size() : 0);
   parallel::for_each<Space>(
       "slots.recall", places_.size(),
       Recall<Real>{std::as_const(places_).view(), std::as_const(was_).view(),
                    std::as_const(old_place_).view(), ball_places, old_ball_places_,
                    std::as_const(old_ball_memory_).view(), std::as_const(old_point_memory_).view(),
-                   ball_memory_.view(), point_memory_.view()});
+                   std::as_const(old_couples_).view(), ball_memory_.view(), point_memory_.view(),
+                   couples_.view()});
 }
 
 /// What follows from the candidates and the bodies is made again. If bodies have come or gone since, so may
@@ -358,6 +367,7 @@ void Slots<Space, Real>::archive(Archive& archive, const ConstBodyView& bodies) 
   archive("place", place_);
   archive("ball_memory", ball_memory_);
   archive("point_memory", point_memory_);
+  archive("couples", couples_);
   archive("keeps_colors", keeps_colors_);
   archive("colors_at_first", colors_at_first_);
   archive.part("balls", balls_);

@@ -44,7 +44,8 @@ class Slots {
   /// Slots for the candidates (ordered by (i, j), each with a free body); those that were there before keep
   /// what they remember. Places are given in tiles of parallel::tile: first those of balls, colour by colour,
   /// then the others. Most keep their colours, too. The result does not depend on the order of threads.
-  void build(ConstView<Pair> candidates, const ConstBodyView& bodies);
+  /// `rolls`: couples are remembered, too.
+  void build(ConstView<Pair> candidates, const ConstBodyView& bodies, bool rolls);
   /// Others of the bodies are free now: colours are not to be kept.
   void forget_colors() { keeps_colors_ = false; }
   /// `bodies`: as they are saved.
@@ -55,6 +56,8 @@ class Slots {
   const ColorTiles& others() const { return others_; }
   View<BallMemory<Real>> ball_memory() { return ball_memory_.view(); }
   View<PointMemory<Real>> point_memory() { return point_memory_.view(); }
+  /// Against rolling (N m s), of all places; empty if nothing rolls.
+  View<V3<Real>> couples() { return couples_.view(); }
 
   /// Which the ends of slots are.
   const SolverBodies<Space>& solver_bodies() const { return solver_bodies_; }
@@ -64,7 +67,7 @@ class Slots {
   void list_slots(const ConstBodyView& bodies);
   void color_slots(const ConstBodyView& bodies);
   void place_slots(const ConstBodyView& bodies);
-  void recall();
+  void recall(bool rolls);
   int colors_used() const { return static_cast<int>(std::max(balls_.colors(), others_.colors())); }
 
   Array<Pair, Space> pairs_, old_pairs_;          // the candidates
@@ -79,6 +82,7 @@ class Slots {
   ColorTiles balls_{{0}}, others_{{0}};
   Array<BallMemory<Real>, Space> ball_memory_, old_ball_memory_;     // of each place
   Array<PointMemory<Real>, Space> point_memory_, old_point_memory_;  // of each place after those of balls
+  Array<V3<Real>, Space> couples_, old_couples_;                     // of each place, if anything rolls
   std::int64_t old_ball_places_ = 0;
   SolverBodies<Space> solver_bodies_;
 };

@@ -35,6 +35,11 @@ Codec<MaterialEntry> material_section() {
           key<T>("restitution", &T::restitution, number(between(0, 1)), optionally,
                  "share of the approach speed that an impact gives back"),
           key<T>("friction", &T::friction, number(not_negative), optionally, "Coulomb's coefficient"),
+          with_default(
+              key<T>("rolling_friction", &T::rolling_friction, optional(number(not_negative)), optionally,
+                     "what rolls is held back by a couple of up to so much of the normal force times "
+                     "the radius: a ball starts to roll on a slope with this tangent"),
+              "0"),
       });
 }
 
@@ -49,6 +54,8 @@ Codec<ContactEntry> contact_section() {
                  "the two materials, in any order"),
           key<T>("restitution", &T::restitution, optional(number(between(0, 1))), optionally, "of the pair"),
           key<T>("friction", &T::friction, optional(number(not_negative)), optionally, "of the pair"),
+          key<T>("rolling_friction", &T::rolling_friction, optional(number(not_negative)), optionally,
+                 "of the pair"),
       });
 }
 

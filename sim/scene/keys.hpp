@@ -14,6 +14,7 @@
 namespace scree {
 
 struct MaterialEntry : Material {
+  std::optional<double> rolling_friction;
   const Node* node = nullptr;
 };
 
@@ -21,6 +22,7 @@ struct ContactEntry {
   std::array<std::string, 2> between;
   std::optional<double> restitution;
   std::optional<double> friction;
+  std::optional<double> rolling_friction;
   const Node* node = nullptr;
 };
 

@@ -38,7 +38,9 @@ std::vector<ContactLaw> contact_laws(const std::vector<MaterialEntry>& materials
   for (std::size_t a = 0; a < n; ++a)
     for (std::size_t b = 0; b < n; ++b)
       laws[a * n + b] = {std::sqrt(materials[a].restitution) * std::sqrt(materials[b].restitution),
-                         std::sqrt(materials[a].friction) * std::sqrt(materials[b].friction)};
+                         std::sqrt(materials[a].friction) * std::sqrt(materials[b].friction),
+                         std::sqrt(materials[a].rolling_friction.value_or(0)) *
+                             std::sqrt(materials[b].rolling_friction.value_or(0))};
   const Reader::Step step(reader, "contacts");
   std::map<std::array<std::size_t, 2>, SourceMark> seen;
   for (std::size_t i = 0; i < listed.size(); ++i) {
@@ -53,7 +55,9 @@ std::vector<ContactLaw> contact_laws(const std::vector<MaterialEntry>& materials
     ContactLaw& law = laws[a * n + b];
     if (!contact.restitution) contact.restitution = law.restitution;
     if (!contact.friction) contact.friction = law.friction;
-    law = {*contact.restitution, *contact.friction};
+    if (!contact.rolling_friction && law.rolling_friction > 0)
+      contact.rolling_friction = law.rolling_friction;
+    law = {*contact.restitution, *contact.friction, contact.rolling_friction.value_or(0)};
     laws[b * n + a] = law;
   }
   return laws;

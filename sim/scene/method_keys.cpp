@@ -80,8 +80,8 @@ Codec<ModelSettings> model_section() {
   const auto feature = or_auto(word<bool>({{"on", true}, {"off", false}, {"true", true}, {"false", false}}));
   const Codec<T> automatic{word_type({"auto"}), [](T& model, const Node&, Reader&) { model = {}; },
                            [](const T& model) -> std::optional<Node> {
-                             const bool given =
-                                 model.rotation || model.friction || model.restitution || model.continuous;
+                             const bool given = model.rotation || model.friction || model.rolling_friction ||
+                                                model.restitution || model.continuous;
                              return given ? std::nullopt : std::optional(Node::scalar("auto"));
                            }};
   return any_of<T>(
@@ -90,6 +90,10 @@ Codec<ModelSettings> model_section() {
                   {
                       key<T>("rotation", &T::rotation, feature, optionally, "bodies turn"),
                       key<T>("friction", &T::friction, feature, optionally, "contacts rub"),
+                      with_default(key<T>("rolling_friction", &T::rolling_friction,
+                                          optional(word<bool>({{"on", true}, {"off", false}})), optionally,
+                                          "contacts hold back what rolls"),
+                                   "auto"),
                       key<T>("restitution", &T::restitution, feature, optionally, "impacts bounce"),
                       key<T>("continuous", &T::continuous, feature, optionally,
                              "fast bodies meet at their own time inside a step; auto: where they could pass "

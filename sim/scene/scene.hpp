@@ -31,6 +31,7 @@ struct Material {
 struct ContactLaw {
   double restitution = 0;
   double friction = 0;
+  double rolling_friction = 0;  ///< of a ball on a plane: tangent of the slope on which it starts to roll
 };
 
 /// Of impulses and of the velocities that they are found with; the state is in double.
@@ -160,6 +161,7 @@ struct ResponseSettings {
 struct ModelSettings {
   std::optional<bool> rotation;
   std::optional<bool> friction;
+  std::optional<bool> rolling_friction;
   std::optional<bool> restitution;
   std::optional<bool> continuous;
 };

@@ -40,6 +40,17 @@ bodies:
   - {sphere: {radius: 0.05}, at: [0, 0, 0.5], repeat: {count: [3, 3, 2], spacing: [0.12, 0.12, 0.12], jitter: 0.004}, material: a}
 )";
 
+/// With a coefficient that nothing of it is round for.
+const std::string rough_flat_boxes = R"(
+gravity: [0, 0, -9.81]
+time: {end: 0.4, step: 0.005}
+materials: {a: {density: 1000, friction: 0.5, rolling_friction: 0.2}, b: {density: 1000, friction: 0.3}}
+bodies:
+  - {plane: {normal: [0, 0, 1], offset: 0}, material: a}
+  - {box: {size: [0.1, 0.12, 0.14]}, at: [0, 0, 0.1], repeat: {count: [3, 3, 2], spacing: [0.17, 0.17, 0.17], jitter: 0.004}, rotate: {axis: [1, 1, 0], degrees: 20}, material: a}
+  - {sphere: {radius: 0.05}, at: [0, 0, 0.5], repeat: {count: [3, 3, 2], spacing: [0.12, 0.12, 0.12], jitter: 0.004}, material: b}
+)";
+
 struct Case {
   const char* feature;
   const std::string& scene;
@@ -79,18 +90,19 @@ bool is_seen(const Scene& lean, const Scene& full) try {
 
 /// The oracle can fail: where a feature matters, leaving it out is seen.
 TEST_P(Model, WhatMattersIsOnAndChangesBits) {
-  static const std::string rough_boxes = R"(
+  static const std::string rough_bodies = R"(
 gravity: [0, 0, -9.81]
 time: {end: 0.4, step: 0.005}
-materials: {a: {density: 1000, friction: 0.5, restitution: 0.4}}
+materials: {a: {density: 1000, friction: 0.5, restitution: 0.4, rolling_friction: 0.1}}
 bodies:
   - {plane: {normal: [0, 0, 1], offset: 0}, material: a}
+  - {sphere: {radius: 0.05}, at: [1, 0, 0.05], velocity: [1, 0, 0], material: a}
   - {box: {size: [0.1, 0.12, 0.14]}, at: [0, 0, 0.2], rotate: {axis: [1, 1, 0], degrees: 20}, spin: [1, 2, 3], velocity: [1, 0, 0], material: a}
 )";
   const std::string feature = GetParam().feature;
-  const Scene full = scene_of(rough_boxes);
+  const Scene full = scene_of(rough_bodies);
   EXPECT_TRUE(is_on(full, feature));
-  EXPECT_TRUE(is_seen(scene_of(rough_boxes + "model: {" + feature + ": off}\n"), full));
+  EXPECT_TRUE(is_seen(scene_of(rough_bodies + "model: {" + feature + ": off}\n"), full));
 }
 
 const std::string smooth_inelastic_spheres = [] {
@@ -101,6 +113,8 @@ const std::string smooth_inelastic_spheres = [] {
 
 INSTANTIATE_TEST_SUITE_P(Features, Model,
                          testing::Values(Case{"friction", smooth_spheres}, Case{"friction", smooth_boxes},
+                                         Case{"rolling_friction", rough_cubes_and_balls},
+                                         Case{"rolling_friction", rough_flat_boxes},
                                          Case{"rotation", smooth_spheres}, Case{"restitution", smooth_boxes},
                                          Case{"restitution", smooth_inelastic_spheres},
                                          Case{"restitution", rough_cubes_and_balls}));

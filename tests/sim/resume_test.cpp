@@ -63,7 +63,7 @@ void expect_same_after_resume(const Make& simulate, int every, std::int64_t& con
 
 constexpr const char* common =
     "gravity: [0, 0, -9.81]\n"
-    "materials: {stone: {density: 1000, restitution: 0.2, friction: 0.5}}\n";
+    "materials: {stone: {density: 1000, restitution: 0.2, friction: 0.5, rolling_friction: 0.1}}\n";
 
 /// All shapes, a drum that turns, a gate that goes, a ball that comes, one that leaves the world, an emitter
 /// that waits for room, a region where bodies end, a force for a time.

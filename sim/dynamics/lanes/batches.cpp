@@ -37,6 +37,7 @@ void start_from(LaneImpulse& lanes, int l, const Vec3& impulse) {
 struct Source {
   ConstView<Contact> contacts;
   ConstView<ContactRow> rows;
+  ConstView<Vec3> couples;
   ConstView<SolverBody> bodies;
   const Body* lane_bodies;
   std::int32_t nobody;
@@ -44,6 +45,12 @@ struct Source {
   void put_ends(Ends& ends, int l, std::int32_t c) const {
     ends.i[l] = c == none ? nobody : contacts[c].i;
     ends.j[l] = c == none ? nobody : contacts[c].j;
+  }
+  /// Of batches that have any.
+  void put_rolling(View<Rolling> rolling, std::int64_t b, int l, std::int32_t c) const {
+    if (rolling.size() == 0) return;
+    put(rolling[b].reach, l, contacts[c].rolling_reach);
+    start_from(rolling[b].couple, l, couples[c]);
   }
 };
 
@@ -53,6 +60,7 @@ struct LoadBalls {
   ConstView<Members> members;
   View<BallBatch> batches;
   View<BallParting> partings;
+  View<Rolling> rolling;
   void operator()(std::int64_t b) const {
     BallBatch& batch = batches[b];
     BallParting& parting = partings[b];
@@ -87,6 +95,7 @@ struct LoadBalls {
       put(batch.normal_mass, l, row.normal_mass);
       put(batch.tangent_mass, l, row.tangent_mass);
       start_from(batch.impulse, l, row.impulse);
+      from.put_rolling(rolling, b, l, c);
       put(parting.gap, l, row.gap);
       put(parting.bend, l, row.bend);
       put(parting.cap, l, tolerance::correction_cap * contact.size);
@@ -104,6 +113,7 @@ struct LoadPoints {
   View<PointBatch> batches;
   View<PointRow> rows;
   View<PointParting> partings;
+  View<Rolling> rolling;
   void operator()(std::int64_t b) const {
     PointBatch& batch = batches[b];
     batch.apart = 0;
@@ -124,6 +134,7 @@ struct LoadPoints {
       put(batch.normal, l, contact.normal);
       put(batch.cap, l, tolerance::correction_cap * contact.size);
       put(batch.friction, l, contact.friction);
+      from.put_rolling(rolling, b, l, c);
       put(batch.inertia_i, l, from.bodies[contact.i].inverse_inertia);
       put(batch.inertia_j, l, from.bodies[contact.j].inverse_inertia);
       bool apart = contact.flying || contact.lead != 0;
@@ -215,6 +226,24 @@ struct StorePointImpulses {
   }
 };
 
+struct StoreCouples {
+  ConstView<Members> members;
+  ConstView<Rolling> rolling;
+  View<Vec3> couples;
+  void operator()(std::int64_t b) const {
+    for (int l = 0; l < width; ++l) {
+      const std::int32_t c = members[b].contact[l];
+      if (c != none) couples[c] = take(rolling[b].couple.impulse, l);
+    }
+  }
+};
+
+/// Directions start anew.
+struct StopRolling {
+  View<Rolling> rolling;
+  void operator()(std::int64_t b) const { rolling[b].couple.last = rolling[b].couple.impulse; }
+};
+
 struct StoreMasses {
   ConstView<Members> members;
   ConstView<PointBatch> batches;
@@ -243,7 +272,8 @@ void leave(BallBatch& batch, BallParting& parting, int first, std::int32_t nobod
 
 }  // namespace
 
-void arrange(const Coloring& coloring, ConstView<Contact> contacts, std::int32_t nobody, Batches& batches) {
+void arrange(const Coloring& coloring, ConstView<Contact> contacts, std::int32_t nobody, bool rolls,
+             Batches& batches) {
   const auto colors = static_cast<std::size_t>(coloring.colors());
   batches.nobody = nobody;
   batches.lane_of.resize(std::ssize(coloring.order) - contacts.size());
@@ -277,6 +307,10 @@ void arrange(const Coloring& coloring, ConstView<Contact> contacts, std::int32_t
   batches.point_members.resize(batches.points.size());
   batches.rows.resize(rows);
   batches.point_partings.resize(rows);
+  batches.ball_rolling.resize(rolls ? balls : 0);
+  batches.point_rolling.resize(rolls ? points : 0);
+  parallel::fill("lanes.reset", batches.ball_rolling, Rolling{});
+  parallel::fill("lanes.reset", batches.point_rolling, Rolling{});
   parallel::fill("lanes.reset", batches.ball_members, nothing);
   parallel::fill("lanes.reset", batches.point_members, nothing);
   // Of the contacts given, and of the pairs of balls after them, each in its own order.
@@ -324,14 +358,14 @@ void arrange(const Coloring& coloring, ConstView<Contact> contacts, std::int32_t
   }
 }
 
-void load(ConstView<Contact> contacts, ConstView<ContactRow> rows, ConstView<SolverBody> bodies,
-          const Body* lane_bodies, const BallSource& balls, Batches& batches) {
-  const Source from{contacts, rows, bodies, lane_bodies, batches.nobody};
-  for_each_batch(
-      "lanes.load", batches,
-      LoadBalls{from, balls, batches.ball_members.view(), batches.balls.view(), batches.partings.view()},
-      LoadPoints{from, batches.point_members.view(), batches.points.view(), batches.rows.view(),
-                 batches.point_partings.view()});
+void load(ConstView<Contact> contacts, ConstView<ContactRow> rows, ConstView<Vec3> couples,
+          ConstView<SolverBody> bodies, const Body* lane_bodies, const BallSource& balls, Batches& batches) {
+  const Source from{contacts, rows, couples, bodies, lane_bodies, batches.nobody};
+  for_each_batch("lanes.load", batches,
+                 LoadBalls{from, balls, batches.ball_members.view(), batches.balls.view(),
+                           batches.partings.view(), batches.ball_rolling.view()},
+                 LoadPoints{from, batches.point_members.view(), batches.points.view(), batches.rows.view(),
+                            batches.point_partings.view(), batches.point_rolling.view()});
 }
 
 void store_masses(const Batches& batches, View<ContactRow> rows) {
@@ -346,6 +380,8 @@ void take_impulses(ConstView<ContactRow> rows, Batches& batches) {
   parallel::for_each<Host>(
       "lanes.impulses", batches.points.size(),
       TakePointImpulses{rows, batches.point_members.view(), batches.points.view(), batches.rows.view()});
+  for (Array<Rolling, Host>* rolling : {&batches.ball_rolling, &batches.point_rolling})
+    parallel::for_each<Host>("lanes.impulses", rolling->size(), StopRolling{rolling->view()});
 }
 
 void scale_impulse(Batches& batches, std::int64_t batch, int l, double scale) {
@@ -353,9 +389,11 @@ void scale_impulse(Batches& batches, std::int64_t batch, int l, double scale) {
   const std::int64_t balls = batches.balls.size();
   if (batch < balls) {
     scale_lane(batches.balls.view()[batch].impulse);
+    if (batches.rolls()) scale_lane(batches.ball_rolling.view()[batch].couple);
     return;
   }
   const PointBatch& points = batches.points.view()[batch - balls];
+  if (batches.rolls()) scale_lane(batches.point_rolling.view()[batch - balls].couple);
   for (int k = 0; k < points.count; ++k) scale_lane(batches.rows.view()[points.first_row + k].impulse);
 }
 
@@ -366,6 +404,13 @@ void store_impulses(const Batches& batches, View<ContactRow> rows, View<ImpulseC
   parallel::for_each<Host>(
       "lanes.store", batches.points.size(),
       StorePointImpulses{to, batches.point_members.view(), batches.points.view(), batches.rows.view()});
+}
+
+void store_couples(const Batches& batches, View<Vec3> couples) {
+  parallel::for_each<Host>("lanes.store", batches.ball_rolling.size(),
+                           StoreCouples{batches.ball_members.view(), batches.ball_rolling.view(), couples});
+  parallel::for_each<Host>("lanes.store", batches.point_rolling.size(),
+                           StoreCouples{batches.point_members.view(), batches.point_rolling.view(), couples});
 }
 
 }  // namespace scree::lanes

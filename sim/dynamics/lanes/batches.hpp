@@ -45,6 +45,7 @@ struct Batches {
   Array<Members, Host> point_members;
   Array<PointRow, Host> rows;
   Array<PointParting, Host> point_partings;               ///< of the rows
+  Array<Rolling, Host> ball_rolling, point_rolling;       ///< of each batch; empty where nothing rolls
   std::vector<std::array<SlabBegins, kinds>> slab_begin;  ///< of each colour, among the balls or the points
   bool last_is_serial = false;                            ///< of the colours
   Array<std::int32_t, Host> lane_of;  ///< of each candidate of BallPairs that touches, in their order
@@ -60,7 +61,11 @@ struct Batches {
     rows.resize(0);
     point_partings.resize(0);
     lane_of.resize(0);
+    ball_rolling.resize(0);
+    point_rolling.resize(0);
   }
+
+  bool rolls() const { return ball_rolling.size() + point_rolling.size() > 0; }
 
   /// Calls act(i, j, impulse on j) for each contact of BallPairs with a body that is not free.
   template <class F>
@@ -79,19 +84,23 @@ struct Batches {
 
 /// Says which contact is in which lane: the contacts given, and the rest that was coloured, which are those
 /// of BallPairs. The batches keep their storage from call to call. `nobody`: the body that lanes without
-/// contact name.
-void arrange(const Coloring& coloring, ConstView<Contact> contacts, std::int32_t nobody, Batches& batches);
+/// contact name. `rolls`: some contacts have rolling friction.
+void arrange(const Coloring& coloring, ConstView<Contact> contacts, std::int32_t nobody, bool rolls,
+             Batches& batches);
 /// Fills the batches, but for what BallPairs puts into its own; directions start anew. Of rows in batches of
-/// points the masses are made here. `lane_bodies`: the bodies and nobody, of which only the masses count.
-void load(ConstView<Contact> contacts, ConstView<ContactRow> rows, ConstView<SolverBody> bodies,
-          const Body* lane_bodies, const BallSource& balls, Batches& batches);
+/// points the masses are made here. `couples`: of each contact, if anything rolls. `lane_bodies`: the bodies
+/// and nobody, of which only the masses count.
+void load(ConstView<Contact> contacts, ConstView<ContactRow> rows, ConstView<Vec3> couples,
+          ConstView<SolverBody> bodies, const Body* lane_bodies, const BallSource& balls, Batches& batches);
 /// Gives the rows the masses that were made here.
 void store_masses(const Batches& batches, View<ContactRow> rows);
-/// Takes the impulses of the rows again; directions start anew.
+/// Takes the impulses of the rows again; directions start anew. Couples are nobody else's to change.
 void take_impulses(ConstView<ContactRow> rows, Batches& batches);
-/// Of the contact in lane l of a batch: the balls', then those of points.
+/// Of the contact in lane l of a batch, with its couple: the balls', then those of points.
 void scale_impulse(Batches& batches, std::int64_t batch, int l, double scale);
 /// Gives the rows their impulses, and, unless `change` is empty, what the last sweep changed of each contact.
 void store_impulses(const Batches& batches, View<ContactRow> rows, View<ImpulseChange> change);
+/// Gives the contacts their couples.
+void store_couples(const Batches& batches, View<Vec3> couples);
 
 }  // namespace scree::lanes

@@ -96,6 +96,12 @@ struct PointRow {
   LaneImpulse impulse;
 };
 
+/// Rolling friction of the contacts of a batch of either kind.
+struct Rolling {
+  Lane reach;          ///< couple for each normal impulse, at most (m)
+  LaneImpulse couple;  ///< on j, and reversed on i, across the normal (N m s)
+};
+
 /// What the position correction knows of a BallBatch, side by side: it is gone over again and again.
 struct BallParting {
   Ends ends;
@@ -130,6 +136,9 @@ struct alignas(64) InertiaRoot {
 /// Of a batch: ImpulseChange.
 struct Change {
   double step, size;
+  SCREE_HD friend Change operator+(const Change& a, const Change& b) {
+    return {a.step + b.step, a.size + b.size};
+  }
 };
 
 /// Of a batch: what its impulses move (J), of Ledger.
@@ -190,6 +199,9 @@ struct Kernels {
   std::uint64_t (*touch_planes)(const Reach*, const Triple* up, const Two* pairs);
   /// Prepares contacts that know their bodies, friction, and the impulses that they start from.
   void (*prepare_balls)(const BallSource&, BallBatch&, BallParting&);
+  /// Of the couples of contacts that a visit has just given their impulses.
+  Change (*roll_balls)(const BallBatch&, Rolling&, Body* bodies, double beta);
+  Change (*roll_points)(const PointBatch&, const PointRow* rows, Rolling&, Body* bodies, double beta);
   /// Sets the masses of points that know their arms, their bodies' inertia, and their bodies.
   void (*prepare_points)(const PointBatch&, PointRow* rows, PointParting* points, const Body* bodies);
   /// `mean`: velocities halfway between those before and after the substep.
@@ -199,6 +211,9 @@ struct Kernels {
   void (*square_of_balls)(const BallBatch&, const Body* kicked, const Body* after, Lane&);
   void (*square_of_points)(const PointBatch&, const PointRow* rows, const Body* kicked, const Body* after,
                            Lane&);
+  /// The same of couples, added to what the contacts have.
+  void (*book_rolling)(const Ends&, const Rolling&, const Body* mean, Losses&);
+  void (*square_of_rolling)(const Ends&, const Rolling&, const Body* kicked, const Body* after, Lane&);
   /// Flies the gaps on to the end of the substep, half a step after the midpoint. Returns the deepest overlap
   /// (m).
   double (*fly_balls)(const BallBatch&, BallParting&, const Body* velocities, double step);
@@ -212,6 +227,8 @@ struct Kernels {
   /// Gives the bodies what the impulses are.
   void (*push_balls)(const BallBatch&, Body* bodies);
   void (*push_points)(const PointBatch&, const PointRow* rows, Body* bodies);
+  void (*push_rolling_balls)(const BallBatch&, const Rolling&, Body* bodies);
+  void (*push_rolling_points)(const PointBatch&, const Rolling&, Body* bodies);
   /// Parts what overlaps: by a share of the overlap, but at most by the cap (m). Returns the deepest overlap
   /// met, in units of the cap.
   double (*part_balls)(BallParting&, double share, Body* bodies);

@@ -106,21 +106,41 @@ SCREE_LAW Symmetric<A> delassus_share(const typename A::V& inverse_mass, const S
           dot(y, turn_z)};
 }
 
+/// Two directions in the plane across a normal: of tangent_of(), and at right angles to it.
+template <class A>
+struct Tangents {
+  V3<A> t, b;
+};
+template <class A>
+SCREE_LAW Tangents<A> tangents_of(const V3<A>& n) {
+  using V = typename A::V;
+  const V zero{};
+  const V one = zero + 1.0;
+  const V sign = n.z < 0 ? -one : one;
+  const V a = -1.0 / (sign + n.z);
+  const V3<A> t = {one + sign * n.x * n.x * a, sign * n.x * n.y * a, -sign * n.x};
+  return {t, cross(n, t)};
+}
+
+/// The largest eigenvalue of a matrix in the plane across a normal.
+template <class A>
+SCREE_LAW typename A::V largest_across(const Symmetric<A>& w, const V3<A>& n) {
+  using V = typename A::V;
+  const auto [t, b] = tangents_of<A>(n);
+  const V3<A> wt = w * t, wb = w * b;
+  const V tt = dot(t, wt), bb = dot(b, wb), tb = dot(t, wb);
+  const V half_difference = 0.5 * (tt - bb);
+  return 0.5 * (tt + bb) + A::root(half_difference * half_difference + tb * tb);
+}
+
 /// The law with the masses of make_row(), by the Delassus matrix of the point. Where it is 0, nothing moves.
 template <class A>
 SCREE_LAW PointLaw<A> law_of(const Symmetric<A>& w, const V3<A>& n, const typename A::V& target) {
   using V = typename A::V;
   const V zero{};
   const auto moves = w.xx + w.yy + w.zz > 0;
-  // tangent_of()
-  const V sign = n.z < 0 ? zero - 1.0 : zero + 1.0;
-  const V a = -1.0 / (sign + n.z);
-  const V3<A> t = {1.0 + sign * n.x * n.x * a, sign * n.x * n.y * a, -sign * n.x};
-  const V3<A> b = cross(n, t);
-  const V3<A> wn = w * n, wt = w * t, wb = w * b;
-  const V tt = dot(t, wt), bb = dot(b, wb), tb = dot(t, wb);
-  const V half_difference = 0.5 * (tt - bb);
-  const V largest = 0.5 * (tt + bb) + A::root(half_difference * half_difference + tb * tb);
+  const V3<A> wn = w * n;
+  const V largest = largest_across(w, n);
   // Cofactors over the determinant.
   const V xx = w.yy * w.zz - w.yz * w.yz, xy = w.xz * w.yz - w.xy * w.zz, xz = w.xy * w.yz - w.xz * w.yy;
   const V determinant = w.xx * xx + w.xy * xy + w.xz * xz;
@@ -347,6 +367,31 @@ SCREE_LAW V3<A> impulse_of(const PointLaw<A>& law, const V3<A>& n, const typenam
   const auto stuck = sticking(law, n, friction, p, u);
   return where(stuck.holds, stuck.impulse,
                sliding_impulse(law, n, friction, p, u, normal_impulse_of(law, n, p, u)));
+}
+
+/// How much a couple must be to change the spin with which two bodies roll, by their inverse inertia (kg
+/// m^2): of balls,
+template <class A>
+SCREE_LAW typename A::V rolling_mass(const typename A::V& inverse_inertia) {
+  return inverse_inertia > 0 ? 1.0 / inverse_inertia : typename A::V{};
+}
+/// and of any, at least. Where it is 0, nothing turns.
+template <class A>
+SCREE_LAW typename A::V rolling_mass(const Symmetric<A>& inverse_inertia, const V3<A>& n) {
+  return rolling_mass<A>(largest_across(inverse_inertia, n));
+}
+
+/// The couple on j of a contact that carries `last`, against the spin of j relative to i with which they
+/// roll, and none about the normal: a projected step, on the disc of radius `most`. For balls it is the exact
+/// solution at this impulse.
+template <class A>
+SCREE_LAW V3<A> couple_of(const V3<A>& n, const typename A::V& most, const typename A::V& mass,
+                          const V3<A>& last, const V3<A>& spin) {
+  using V = typename A::V;
+  const V3<A> step = last - mass * spin;
+  const V3<A> couple = step - dot(step, n) * n;
+  const V square = dot(couple, couple);
+  return where(square <= most * most, couple, (most / A::root(square)) * couple);
 }
 
 /// What more a point pushes that has pushed so much (kg m), to close in on a gap of 0 by a share. Where

@@ -66,7 +66,7 @@ std::vector<Pair> all_pairs(const BodyTable& table) {
 /// One substep's response, with balls in lanes or without.
 struct Substep {
   Bodies<Host> bodies;
-  std::vector<PairLaw> table{{0, 0.3}, {0, 0}, {0, 0}, {0, 0.6}};
+  std::vector<PairLaw> table{{0, 0.3, 0.1}, {0, 0, 0}, {0, 0, 0.2}, {0, 0.6, 0.4}};
   std::vector<Pair> pairs;
   Array<double, Host> margin;
   ResponseParameters parameters;
@@ -90,7 +90,7 @@ struct Substep {
     const ConstBodyView views = view_of(std::as_const(bodies));
     const ConstView<Pair> candidates(pairs.data(), std::ssize(pairs));
     BallPairs& balls = memory.balls;
-    if (in_lanes) balls.take(views, candidates, laws(), true);
+    if (in_lanes) balls.take(views, candidates, laws(), parameters);
     balls.find(views, std::as_const(margin).view(), nullptr);
     const Manifolds manifolds = narrow_phase.find(
         views, in_lanes ? balls.others(candidates, nullptr) : candidates, std::as_const(margin).view());
@@ -142,6 +142,50 @@ TEST(BallPairs, MakeTheSameContacts) {
   }
 }
 
+/// Against rolling, in and out of the lanes: within their discs, across their normals, with what they take
+/// from the bodies' spins booked; and remembered for the next substep.
+TEST(BallPairs, CouplesAreThoseOfTheOtherContacts) {
+  for (std::uint64_t seed = 0; seed < 5; ++seed) {
+    const BodyTable start = crowd(seed);
+    Substep lanes(start);
+    Substep rows(start);
+    lanes.parameters.rolling_friction = rows.parameters.rolling_friction = true;
+    lanes.parameters.iterations = rows.parameters.iterations = 400;
+    lanes.parameters.tolerance = rows.parameters.tolerance = 1e-12;
+    const Ledger ledger = lanes.respond(true);
+    rows.respond(false);
+    Ledger expected;
+    int rolling = 0;
+    for (const Contact& c : std::as_const(lanes.set.contacts).view()) {
+      const std::int64_t place = &c - lanes.set.contacts.data();
+      const Vec3 couple = lanes.set.couples.view()[place];
+      const ContactRow& row = lanes.set.rows.view()[c.first_row];
+      const double most = c.rolling_reach * row.impulse.dot(c.normal);
+      ASSERT_LE(couple.norm(), most * (1 + rounding));
+      ASSERT_NEAR(couple.dot(c.normal), 0, rounding * most);
+      rolling += couple.norm() > 0;
+      const auto i = static_cast<std::size_t>(c.i);
+      const auto j = static_cast<std::size_t>(c.j);
+      const Vec3 before =
+          row.relative_velocity(start.velocity[i], start.spin[i], start.velocity[j], start.spin[j]);
+      const SolverBody& body_i = lanes.solver.view()[c.i];
+      const SolverBody& body_j = lanes.solver.view()[c.j];
+      expected = expected + account(row, c.normal, before, body_i, body_j) +
+                 account_couple(couple, start.spin[j] - start.spin[i], body_i, body_j);
+      if (c.rolling_reach > 0) {
+        const ManifoldHeader header{c.i, c.j, 0, 1, 0, c.normal};
+        ASSERT_LE((lanes.memory.recall_couple(header) - couple).norm(), rounding * most);
+      }
+    }
+    EXPECT_GT(rolling, 50);
+    const double moved = std::abs(expected.restitution) + std::abs(expected.friction);
+    EXPECT_NEAR(ledger.friction, expected.friction, 1e-9 * moved);
+    EXPECT_NEAR(ledger.work, expected.work, 1e-9 * moved);
+    for (std::int64_t k = 0; k < start.count(); ++k)
+      ASSERT_LT((lanes.bodies.spin.view()[k] - rows.bodies.spin.view()[k]).norm(), 1e-6) << k;
+  }
+}
+
 TEST(BallPairs, BooksAreThoseOfTheirImpulses) {
   for (std::uint64_t seed = 0; seed < 5; ++seed) {
     const BodyTable start = crowd(seed);
@@ -180,7 +224,7 @@ TEST(BallPairs, RememberByPairWhateverTheCandidates) {
   for (const Pair& pair : s.pairs) {
     if (pair.i % 3 != 0) fewer.push_back(pair);
   }
-  s.memory.balls.take(views, {fewer.data(), std::ssize(fewer)}, s.laws(), true);
+  s.memory.balls.take(views, {fewer.data(), std::ssize(fewer)}, s.laws(), s.parameters);
   int loaded = 0;
   for (const Contact& c : std::as_const(s.set.contacts).view()) {
     if (!c.aligned) continue;

@@ -4,6 +4,7 @@
 #include "core/rng.hpp"
 #include "sim/dynamics/contact_set.hpp"
 #include "sim/dynamics/lanes/batches.hpp"
+#include "sim/dynamics/rolling.hpp"
 #include "sim/dynamics/rotation.hpp"
 #include "sim/dynamics/state.hpp"
 
@@ -30,6 +31,7 @@ struct Problem {
   std::vector<Contact> contacts;
   std::vector<ContactRow> rows;
   std::vector<RowCoupling> couplings;
+  std::vector<Vec3> couples;
   std::vector<SolverBody> bodies;
   Coloring coloring;
   lanes::Batches batches;
@@ -39,8 +41,9 @@ struct Problem {
     coloring.color_begin = {0, count};
     coloring.order.resize(static_cast<std::size_t>(count));
     std::iota(coloring.order.begin(), coloring.order.end(), 0);
-    lanes::arrange(coloring, contact_view(), static_cast<std::int32_t>(bodies.size()), batches);
-    lanes::load(contact_view(), row_view(), {bodies.data(), size(bodies)}, lane_bodies().data(), {}, batches);
+    lanes::arrange(coloring, contact_view(), static_cast<std::int32_t>(bodies.size()), true, batches);
+    lanes::load(contact_view(), row_view(), {couples.data(), size(couples)}, {bodies.data(), size(bodies)},
+                lane_bodies().data(), {}, batches);
   }
 
   template <class T>
@@ -63,6 +66,10 @@ struct Problem {
     contact.first_row = size(rows);
     contact.normal = random_vector(random, 1).normalized();
     contact.friction = smooth || c % 7 == 0 ? 0.0 : random.uniform(0, 1.2);
+    contact.rolling_reach = c % 4 == 0 ? 0.0 : random.uniform(0, 0.5);
+    Random rolling(41, static_cast<std::uint64_t>(c));
+    const Vec3 couple = contact.rolling_reach * random_vector(rolling, 0.3);
+    couples.push_back(couple - couple.dot(contact.normal) * contact.normal);
     for (int side = 0; side < 2; ++side) {
       const bool fixed = side == 0 && c % 5 == 0;
       SolverBody body{random_vector(random, 2), random_vector(random, 3), random.uniform(0.2, 3), {}};
@@ -118,9 +125,30 @@ struct Problem {
     return total;
   }
 
+  /// A visit to the couples of all contacts.
+  lanes::Change roll(const lanes::Kernels& kernels, std::vector<lanes::Body>& all, double beta) {
+    lanes::Change total{0, 0};
+    for (std::int64_t b = 0; b < batches.balls.size(); ++b)
+      total = total +
+              kernels.roll_balls(batches.balls.view()[b], batches.ball_rolling.view()[b], all.data(), beta);
+    for (std::int64_t b = 0; b < batches.points.size(); ++b) {
+      const lanes::PointBatch& batch = batches.points.view()[b];
+      total = total + kernels.roll_points(batch, &batches.rows.view()[batch.first_row],
+                                          batches.point_rolling.view()[b], all.data(), beta);
+    }
+    return total;
+  }
+  void push_couples(const lanes::Kernels& kernels, std::vector<lanes::Body>& all) const {
+    for (std::int64_t b = 0; b < batches.balls.size(); ++b)
+      kernels.push_rolling_balls(batches.balls.view()[b], batches.ball_rolling.view()[b], all.data());
+    for (std::int64_t b = 0; b < batches.points.size(); ++b)
+      kernels.push_rolling_points(batches.points.view()[b], batches.point_rolling.view()[b], all.data());
+  }
+
   void take_impulses_back() {
     std::vector<ImpulseChange> change(contacts.size());
     lanes::store_impulses(batches, row_view(), {change.data(), size(change)});
+    lanes::store_couples(batches, {couples.data(), size(couples)});
   }
 };
 
@@ -162,6 +190,82 @@ TEST(Lanes, SweepAsTheScalarLawDoes) {
     }
     EXPECT_NEAR(change.step, expected.step, rounding * expected.step) << name;
     EXPECT_NEAR(change.size, expected.size, rounding * expected.size) << name;
+  }
+}
+
+TEST(Lanes, RollAsTheScalarLawDoes) {
+  for (const auto& [name, kernels] : lanes::supported_kernels()) {
+    Problem p(odd_count);
+    const std::vector<Vec3> last = p.couples;
+    std::vector<lanes::Body> bodies = p.lane_bodies();
+    const lanes::Change change = p.roll(*kernels, bodies, 0.0);
+    p.take_impulses_back();
+    ImpulseChange expected;
+    int at_most = 0, inside = 0;
+    for (std::size_t k = 0; k < p.contacts.size(); ++k) {
+      const Contact& c = p.contacts[k];
+      SolverBody i = p.bodies[static_cast<std::size_t>(c.i)];
+      SolverBody j = p.bodies[static_cast<std::size_t>(c.j)];
+      double pn = 0;
+      for (int r = 0; r < c.count; ++r)
+        pn += p.rows[static_cast<std::size_t>(c.first_row + r)].impulse.dot(c.normal);
+      const double most = c.rolling_reach * pn;
+      const double mass = rolling_mass(i, j, c.normal);
+      const Vec3 couple = rolling_couple(last[k], c.normal, most, mass, j.spin - i.spin);
+      turn(couple - last[k], i, j);
+      expected =
+          expected + ImpulseChange{(couple - last[k]).squaredNorm() / mass, couple.squaredNorm() / mass};
+      (couple.norm() > (1 - rounding) * most ? at_most : inside) += most > 0;
+      ASSERT_LT((p.couples[k] - couple).norm(), rounding) << name << k;
+      ASSERT_LT((bodies[static_cast<std::size_t>(c.i)].spin - i.spin).norm(), 10 * rounding) << name << k;
+      ASSERT_LT((bodies[static_cast<std::size_t>(c.j)].spin - j.spin).norm(), 10 * rounding) << name << k;
+    }
+    EXPECT_GT(at_most, 10);
+    EXPECT_GT(inside, 10);
+    EXPECT_NEAR(change.step, expected.step, rounding * expected.step) << name;
+    EXPECT_NEAR(change.size, expected.size, rounding * expected.size) << name;
+  }
+}
+
+TEST(Lanes, BooksAndPushesWhatCouplesMove) {
+  for (const auto& [name, kernels] : lanes::supported_kernels()) {
+    Problem p(odd_count);
+    const std::vector<lanes::Body> before = p.lane_bodies();
+    std::vector<lanes::Body> after = before;
+    p.push_couples(*kernels, after);
+    const auto check = [&, &name = name](const lanes::Members& members, const lanes::Ends& ends,
+                                         const lanes::Rolling& rolling) {
+      lanes::Losses losses{};
+      lanes::Lane square{};
+      // As if nothing had turned yet, and with all of it.
+      kernels->book_rolling(ends, rolling, before.data(), losses);
+      kernels->square_of_rolling(ends, rolling, before.data(), after.data(), square);
+      Ledger all;
+      for (int l = 0; l < lanes::width; ++l) {
+        if (members.contact[l] < 0) continue;
+        const Contact& c = p.contacts[static_cast<std::size_t>(members.contact[l])];
+        const Vec3& couple = p.couples[static_cast<std::size_t>(members.contact[l])];
+        const SolverBody& i = p.bodies[static_cast<std::size_t>(c.i)];
+        const SolverBody& j = p.bodies[static_cast<std::size_t>(c.j)];
+        const Ledger ledger = account_couple(couple, j.spin - i.spin, i, j);
+        SolverBody turned_i = i, turned_j = j;
+        turn(couple, turned_i, turned_j);
+        const Vec3 turned = turned_j.spin - turned_i.spin - (j.spin - i.spin);
+        ASSERT_NEAR(losses.of.at[l], ledger.friction, 10 * rounding) << name;
+        ASSERT_NEAR(square.at[l], 0.5 * couple.dot(turned), 10 * rounding) << name;
+        ASSERT_LT((after[static_cast<std::size_t>(c.i)].spin - turned_i.spin).norm(), 10 * rounding) << name;
+        ASSERT_LT((after[static_cast<std::size_t>(c.j)].spin - turned_j.spin).norm(), 10 * rounding) << name;
+        all = all + ledger;
+      }
+      ASSERT_NEAR(losses.books.friction, all.friction, 100 * rounding) << name;
+      ASSERT_NEAR(losses.books.work, all.work, 100 * rounding) << name;
+    };
+    for (std::int64_t b = 0; b < p.batches.balls.size(); ++b)
+      check(p.batches.ball_members.view()[b], p.batches.balls.view()[b].ends,
+            p.batches.ball_rolling.view()[b]);
+    for (std::int64_t b = 0; b < p.batches.points.size(); ++b)
+      check(p.batches.point_members.view()[b], p.batches.points.view()[b].ends,
+            p.batches.point_rolling.view()[b]);
   }
 }
 
@@ -351,6 +455,7 @@ TEST(Lanes, EveryInstructionSetGivesTheSameBits) {
       const double beta = 0.15 * sweep;
       kernels->accelerate(bodies.data(), last.data(), std::ssize(bodies), beta);
       p.sweep(kernels->rough, bodies, beta);
+      p.roll(*kernels, bodies, beta);
     }
     if (first.empty()) {
       first = bodies;
@@ -385,7 +490,7 @@ TEST(Lanes, SmoothKernelsDoWhatRoughOnesDoWithoutFriction) {
 TEST(Lanes, TheSerialColourSharesNoBatch) {
   Problem p(odd_count);
   p.coloring.last_is_serial = true;
-  lanes::arrange(p.coloring, p.contact_view(), static_cast<std::int32_t>(p.bodies.size()), p.batches);
+  lanes::arrange(p.coloring, p.contact_view(), static_cast<std::int32_t>(p.bodies.size()), false, p.batches);
   std::int64_t alone = 0;
   const auto count = [&alone](const lanes::Members& members) {
     alone += members.contact[0] >= 0 ? 1 : 0;

@@ -19,8 +19,8 @@ namespace {
 Scene scene_of(const std::string& bodies, const std::string& more = "") {
   return parse_scene(
       "format: 1\ntime: {end: 1, step: 0.1}\nmaterials:\n"
-      "  glass: {density: 2500, restitution: 0.64, friction: 0.09}\n"
-      "  steel: {density: 8000, restitution: 0.25, friction: 0.36}\n" +
+      "  glass: {density: 2500, restitution: 0.64, friction: 0.09, rolling_friction: 0.04}\n"
+      "  steel: {density: 8000, restitution: 0.25, friction: 0.36, rolling_friction: 0.01}\n" +
           more + "bodies:\n" + bodies,
       "test.yaml");
 }
@@ -289,7 +289,12 @@ TEST(SceneBodies, LawsAreGeometricMeansUnlessListed) {
   EXPECT_NEAR(scene.law(0, 1).friction, 0.18, 1e-15);
   EXPECT_NEAR(scene.law(1, 0).restitution, 0.4, 1e-15);
   EXPECT_NEAR(scene.law(1, 1).restitution, 0.25, 1e-15);
+  EXPECT_NEAR(scene.law(0, 1).rolling_friction, 0.02, 1e-15);
+  const Scene rolling = scene_of(body, "contacts: [{between: [steel, glass], rolling_friction: 0.3}]\n");
+  EXPECT_EQ(rolling.law(1, 0).rolling_friction, 0.3);
+  EXPECT_NEAR(rolling.law(1, 0).friction, 0.18, 1e-15);
   const Scene listed = scene_of(body, "contacts: [{between: [steel, glass], friction: 0.7}]\n");
+  EXPECT_NEAR(listed.law(0, 1).rolling_friction, 0.02, 1e-15);
   EXPECT_EQ(listed.law(0, 1).friction, 0.7);
   EXPECT_EQ(listed.law(1, 0).friction, 0.7);
   EXPECT_NEAR(listed.law(0, 1).restitution, 0.4, 1e-15);
