@@ -407,10 +407,27 @@ DirectOutcome solve_directly(const IslandProblem& problem, double tolerance, con
   return solver.is_cheap() ? solver.solve(tolerance) : DirectOutcome::too_large;
 }
 
-bool pays_patience(const Counters& counters) {
+namespace {
+
+/// So few solutions have failed that more are worth their time.
+bool mostly_succeed(std::int64_t solved, std::int64_t failed) {
   constexpr std::int64_t failures_to_start = 2;
   constexpr std::int64_t solved_per_failure = 4;
-  return counters.patient_failed <= failures_to_start + counters.patient / solved_per_failure;
+  return failed <= failures_to_start + solved / solved_per_failure;
+}
+
+}  // namespace
+
+bool pays_patience(const Counters& counters) {
+  return mostly_succeed(counters.patient, counters.patient_failed);
+}
+
+int sweeps_before_direct(int most, const Counters& counters) {
+  constexpr int many_sweeps = 200;
+  const int sweeps = mostly_succeed(counters.direct, counters.direct_failed)
+                         ? few_sweeps
+                         : std::clamp(most / 2, few_sweeps, many_sweeps);
+  return std::min(most, sweeps);
 }
 
 }  // namespace scree

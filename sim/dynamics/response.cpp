@@ -190,7 +190,7 @@ bool ResponseSolver::find_impulses(SolveStage stage, const ResponseParameters& p
     sweeps_.take_impulses();
     return count_outcomes(solved, failed);
   };
-  const int first = plan.direct ? std::min(plan.most, sweeps_before_direct) : plan.most;
+  const int first = plan.direct ? sweeps_before_direct(plan.most, counters) : plan.most;
   bool converged = sweep(first);
   if (parameters.accurate || (!converged && first < plan.most) ||
       (converged && spread_of_loads().is_wide(plan.tolerance))) {
@@ -200,7 +200,7 @@ bool ResponseSolver::find_impulses(SolveStage stage, const ResponseParameters& p
                               counters.direct_failed);
     if (!converged) {
       sweeps_.set_velocities();
-      converged = sweep(std::max(plan.most - first, sweeps_before_direct));
+      converged = sweep(std::max(plan.most - first, few_sweeps));
       if (!converged && !parameters.accurate && pays_patience(counters))
         converged = solve_islands(patient_limits, counters.patient, counters.patient_failed);
     }

@@ -240,8 +240,8 @@ LoadSpread ContactSolver<Space, Real>::spread_of_loads() {
 template <class Space, class Real>
 bool ContactSolver<Space, Real>::solve_few(const SweepPlan& plan, Counters& counters) {
   SweepPlan first = plan, rest = plan;
-  first.most = std::min(plan.most, sweeps_before_direct);
-  rest.most = std::max(plan.most - first.most, sweeps_before_direct);
+  first.most = sweeps_before_direct(plan.most, counters);
+  rest.most = std::max(plan.most - first.most, few_sweeps);
   const auto solve_islands = [&](const DirectLimits& limits, std::int64_t& solved, std::int64_t& failed) {
     Inspection<Real> seen = inspect();
     FewContacts<Real> contacts(seen);
