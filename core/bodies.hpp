@@ -153,6 +153,11 @@ SCREE_HD inline double smallest_size(Shape shape, const Vec3& size) {
   return shape == Shape::sphere ? size.x() : size.minCoeff();
 }
 
+/// Radius on which a body rolls (m); infinite for flat faces, and for walls that others are in.
+SCREE_HD inline double rolling_radius(Shape shape, const Vec3& size) {
+  return shape == Shape::sphere || shape == Shape::capsule || shape == Shape::cylinder ? size.x() : HUGE_VAL;
+}
+
 /// Of a body that can be free (m^3); of a polyhedron, of the box around it: its own is Hull::volume.
 SCREE_HD inline double volume_of(Shape shape, const Vec3& size) {
   const double disc = pi * size.x() * size.x();

@@ -3,7 +3,6 @@
 #include "broadphase/bounds.hpp"
 #include "broadphase/grid_plan.hpp"
 #include "core/tolerances.hpp"
-#include "sim/dynamics/contact_laws.hpp"
 #include "sim/scene/courses.hpp"
 
 #include <fmt/format.h>

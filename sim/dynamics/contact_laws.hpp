@@ -16,11 +16,6 @@ struct PairLaw {
   double rolling_friction = 0;
 };
 
-/// Radius on which a body rolls (m); infinite for flat faces, and for walls that others are in.
-SCREE_HD inline double rolling_radius(Shape shape, const Vec3& size) {
-  return shape == Shape::sphere || shape == Shape::capsule || shape == Shape::cylinder ? size.x() : HUGE_VAL;
-}
-
 /// Which law holds between two bodies, and what they are.
 struct ContactLaws {
   ConstView<Shape> shape;            ///< of each body

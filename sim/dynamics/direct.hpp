@@ -25,9 +25,9 @@ inline constexpr DirectLimits thorough_limits{.passes = 300, .products = 1e8, .p
 /// Sweeps after which what has not converged creeps. Warm-started contacts take one or two.
 inline constexpr int few_sweeps = 10;
 
-/// Of at most so many sweeps those after which islands that creep go to the direct solver: few; where solutions
-/// often fail, as in stirred heaps, half of them or 200, in which nearly all converge for a twentieth of the
-/// time (docs/decisions/0011).
+/// Of at most so many sweeps those after which islands that creep go to the direct solver: few; where
+/// solutions often fail, as in stirred heaps, half of them or 200, in which nearly all converge for a
+/// twentieth of the time (docs/decisions/0011).
 int sweeps_before_direct(int most, const Counters& counters);
 
 /// Large islands that creep are worth a long direct solution, if nearly all succeed in the scene: then warm
