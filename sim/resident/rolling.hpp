@@ -109,7 +109,9 @@ struct Roll {
 
   SCREE_HD void push(std::int64_t c) const {
     const V3<Real> couple = rolling.fields.vector(RollingFields<Real>::couple, c);
-    if (!is_zero<Real>(couple)) give(contacts.ends[c], couple);
+    if (is_zero<Real>(couple)) return;
+    const Ends ends = contacts.ends[c];
+    give(ends, couple, bodies[ends.i], bodies[ends.j]);
   }
 
   SCREE_HD SweepChange<Real> sweep(std::int64_t c, Real beta) const {
@@ -128,7 +130,7 @@ struct Roll {
     const V3<Real> couple = lanes::couple_of<Scalar<Real>>(n, reach * normal_impulse_of(contacts, c), mass,
                                                            ahead, j.spin - i.spin);
     const V3<Real> change = couple - ahead;
-    give(ends, change);
+    give(ends, change, i, j);
     if (momentum) f.set(R::last, c, before);
     f.set(R::couple, c, couple);
     const Real inverse = mass > 0 ? 1 / mass : Real{};
@@ -136,9 +138,7 @@ struct Roll {
   }
 
  private:
-  SCREE_HD void give(const Ends& ends, const V3<Real>& couple) const {
-    BodyRecord<Real> i = bodies[ends.i];
-    BodyRecord<Real> j = bodies[ends.j];
+  SCREE_HD void give(const Ends& ends, const V3<Real>& couple, BodyRecord<Real> i, BodyRecord<Real> j) const {
     i.spin = i.spin - turn.of(ends.i, i) * couple;
     j.spin = j.spin + turn.of(ends.j, j) * couple;
     store_free(bodies, ends.i, i);
