@@ -20,9 +20,10 @@ bool visit_radial(const ConvexBody& a, const ConvexBody& b, Visit& visit) {
   for (const ConvexBody* body : {&a, &b}) {
     const Vec3 axis = body->axes().col(2);
     const Vec3 across = offset - axis.dot(offset) * axis;
-    if (across.isZero(0)) continue;
+    // Where the offset is along the axis, all are alike.
+    const Vec3 outward = across.isZero(0) ? tangent_of(axis) : Vec3(across.stableNormalized());
     for (const double side : {-1.0, 1.0}) {
-      const Vec3 direction = side * across.stableNormalized();
+      const Vec3 direction = side * outward;
       if (!visit(ConvexAxis{direction, separation_along(a, b, direction)})) return false;
     }
   }
