@@ -72,7 +72,13 @@ bool best_axes(const ConvexBody& a, const ConvexBody& b, double margin, double s
   if (out.best.separation == -HUGE_VAL || round) take(centre_axis(a, b));
   const double rounding = tolerance::touching_gap * size;
   if (round) {
-    const ConvexAxis first = ascend(a, b, out.best, size);
+    ConvexAxis first = ascend(a, b, out.best, size);
+    if (near.apart) {
+      // So near, its direction has few digits, but the climb may have ended on another top.
+      const ConvexAxis seen{near.normal, separation_along(a, b, near.normal)};
+      if (seen.separation > first.separation + tolerance::same_feature * size)
+        first = ascend(a, b, seen, size);
+    }
     if (!take(first)) return false;
     if (first.separation > -tolerance::shallow_overlap * size) return true;
     // Deep in one another, there are several ways out that are the best of those around them.
