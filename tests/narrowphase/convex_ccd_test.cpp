@@ -89,6 +89,26 @@ TEST(ConvexAxes, ACylinderLetsWhatIsOnItsAxisOutSideways) {
   EXPECT_NEAR(m.normal.z(), 0, 1e-12);
 }
 
+// A climb from the best face and edge ended 1e-3 of the size inside, though the bodies are 1e-4 of it apart.
+TEST(ConvexAxes, ABoxNextToApartFromACylinderIsApart) {
+  const ShapedSolid box{
+      Shape::box,
+      {Vec3::Zero(), Quat(0.3116862855290285, 0.37801167500118699, -0.84435673888934704, 0.21684217871083336),
+       Vec3(0.36877981853682895, 0.52607123531984934, 0.43927262832135971)}};
+  const ShapedSolid cylinder{
+      Shape::cylinder,
+      {Vec3(0.83889546004035509, -0.6774361653595069, -0.74953987939320266),
+       Quat(0.98444044375384865, -0.14485036985184574, -0.05827987745861473, 0.080615376566246955),
+       Vec3(0.40050163088355734, 0.40050163088355734, 0.36949541954909737)}};
+  const double truth = static_cast<double>(oracle::separation(
+      oracle::Convex(box, nullptr, Vec3::Zero()), oracle::Convex(cylinder, nullptr, Vec3::Zero())));
+  EXPECT_NEAR(truth, 3.6878e-5, 1e-8);
+  const ConvexBody a(box, nullptr, Vec3::Zero()), b(cylinder, nullptr, Vec3::Zero());
+  ConvexAxes axes;
+  ASSERT_TRUE(best_axes(a, b, HUGE_VAL, std::min(a.size(), b.size()), axes));
+  EXPECT_NEAR(axes.best.separation, truth, 1e-8);
+}
+
 // ---- By libccd ----
 
 class ConvexByCcd : public testing::TestWithParam<ccd::Method> {};
