@@ -38,7 +38,7 @@ inline constexpr int support_budget = 64;
 inline constexpr int round_support_budget = 128;
 
 struct Answer {
-  /// Unit; moving the second box along it parts them soonest, as libccd sees it. None if it sees no overlap
+  /// Unit; moving the second body along it parts them soonest, as libccd sees it. None if it sees no overlap
   /// or has no usable answer.
   std::optional<Vec3> direction;
   int supports = 0;  ///< points of the Minkowski difference that it asked for: over the budget if stopped

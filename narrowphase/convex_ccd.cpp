@@ -14,8 +14,8 @@ namespace detail {
 
 namespace {
 
-/// A body in units of the pair and in the frame of its first body, as boxes are: what is aligned with it is so
-/// exactly. Cylinders and hulls are refused a quarter less often for it.
+/// A body in units of the pair and in the frame of its first body, as boxes are: what is aligned with it is
+/// so exactly. Cylinders and hulls are refused a quarter less often for it.
 struct Shown {
   const ConvexBody& body;
   const Mat3& frame;
