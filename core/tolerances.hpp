@@ -207,7 +207,7 @@ inline constexpr double axis_preference_length = 1e-4;
 /// face that it has left: noise in aligned stacks does not change the features.
 inline constexpr double same_feature = 1e-6;
 
-/// Overlap that libccd's direction may have beyond the smallest of the 15 axes before it is refused.
+/// Overlap that libccd's direction may have beyond the least that is known before it is refused.
 inline constexpr double ccd_excess = 1e-6;
 
 /// By how much a unit normal may leave the cone of a mesh's edge or vertex: rounding, where neither of two

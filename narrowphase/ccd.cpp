@@ -7,50 +7,68 @@ namespace scree::ccd {
 
 namespace {
 
+Vec3 vector_of(const ccd_vec3_t& v) { return Vec3(v.v[0], v.v[1], v.v[2]); }
+void set(ccd_vec3_t* to, const Vec3& v) { ccdVec3Set(to, v.x(), v.y(), v.z()); }
+
 struct Box {
   Vec3 centre;
   Mat3 axes;
   Vec3 half;
   int* supports_left;
+
+  /// A component that is exactly 0 picks the positive side: the middle of a face would be no vertex, and
+  /// makes EPA return NaN for aligned boxes.
+  Vec3 support(const Vec3& along) const {
+    const Vec3 local = axes.transpose() * along;
+    const Vec3 vertex = (local.array() < 0.0).select(-half, half);
+    return centre + axes * vertex;
+  }
 };
 
-const Box& box_of(const void* object) { return *static_cast<const Box*>(object); }
-Vec3 vector_of(const ccd_vec3_t& v) { return Vec3(v.v[0], v.v[1], v.v[2]); }
-void set(ccd_vec3_t* to, const Vec3& v) { ccdVec3Set(to, v.x(), v.y(), v.z()); }
+struct Body {
+  Convex convex;
+  Vec3 centre;
+  int* supports_left;
 
-void centre(const void* object, ccd_vec3_t* out) { set(out, box_of(object).centre); }
+  Vec3 support(const Vec3& along) const { return convex.support(convex.body, along); }
+};
 
-/// The vertex farthest along a direction. A component that is exactly 0 picks the positive side: the middle
-/// of a face would be no vertex, and makes EPA return NaN for aligned boxes.
+template <class Shape>
+void centre(const void* object, ccd_vec3_t* out) {
+  set(out, static_cast<const Shape*>(object)->centre);
+}
+
+/// The vertex farthest along a direction.
 ///
 /// When the budget is spent, the answer lies behind instead. Every loop of libccd 2.1 takes a support that
 /// is behind its direction for the sign that nothing is left to find, and ends. Leaving by exception or
 /// longjmp would leak the polytope.
+template <class Shape>
 void support(const void* object, const ccd_vec3_t* direction, ccd_vec3_t* out) {
-  const Box& box = box_of(object);
+  const Shape& shape = *static_cast<const Shape*>(object);
   const Vec3 along = vector_of(*direction);
-  if (--*box.supports_left < 0) {
+  if (--*shape.supports_left < 0) {
     set(out, -along);
     return;
   }
-  const Vec3 local = box.axes.transpose() * along;
-  const Vec3 vertex = (local.array() < 0.0).select(-box.half, box.half);
-  set(out, box.centre + box.axes * vertex);
+  set(out, shape.support(along));
 }
 
-}  // namespace
+// EPA compares them with squares: 1e-5 and 1e-7 of a length. On a round body it ends when its polytope is
+// that near to the surface; with the first, half of the directions are worse than the best by more than
+// ccd_excess.
+constexpr double box_tolerance = 1e-10, convex_tolerance = 1e-14;
 
-Answer parting_direction(const Boxes& boxes, Method method, int budget) {
-  int supports_left = 2 * budget;  // each is asked of both boxes
-  const Box a{Vec3::Zero(), Mat3::Identity(), boxes.half[0], &supports_left};
-  const Box b{boxes.offset, boxes.turn, boxes.half[1], &supports_left};
-
+template <class Shape>
+Answer search(const Shape& a, const Shape& b, Method method, double tolerance, int budget,
+              int& supports_left) {
   ccd_t ccd;
   CCD_INIT(&ccd);
-  ccd.support1 = ccd.support2 = support;
-  ccd.center1 = ccd.center2 = centre;
+  ccd.support1 = ccd.support2 = support<Shape>;
+  ccd.center1 = ccd.center2 = centre<Shape>;
   ccd.max_iterations = 100;
-  ccd.epa_tolerance = ccd.mpr_tolerance = 1e-10;  // EPA compares it with squares: 1e-5 of a length
+  ccd.epa_tolerance = tolerance;
+  ccd.mpr_tolerance = 1e-10;
 
   ccd_real_t depth;
   ccd_vec3_t direction{}, position;  // EPA leaves the direction as it is if it has none, and says success
@@ -61,6 +79,21 @@ Answer parting_direction(const Boxes& boxes, Method method, int budget) {
   const double length = vector_of(direction).norm();
   if (overlap && length > 0.5 && length < 2.0) answer.direction = vector_of(direction) / length;
   return answer;
+}
+
+}  // namespace
+
+Answer parting_direction(const Boxes& boxes, Method method, int budget) {
+  int supports_left = 2 * budget;  // each is asked of both bodies
+  const Box a{Vec3::Zero(), Mat3::Identity(), boxes.half[0], &supports_left};
+  const Box b{boxes.offset, boxes.turn, boxes.half[1], &supports_left};
+  return search(a, b, method, box_tolerance, budget, supports_left);
+}
+
+Answer parting_direction(const Convex& a, const Convex& b, Method method, int budget) {
+  int supports_left = 2 * budget;
+  const Body body_a{a, a.centre, &supports_left}, body_b{b, b.centre, &supports_left};
+  return search(body_a, body_b, method, convex_tolerance, budget, supports_left);
 }
 
 }  // namespace scree::ccd

@@ -20,9 +20,10 @@ bool visit_radial(const ConvexBody& a, const ConvexBody& b, Visit& visit) {
   for (const ConvexBody* body : {&a, &b}) {
     const Vec3 axis = body->axes().col(2);
     const Vec3 across = offset - axis.dot(offset) * axis;
-    if (across.isZero(0)) continue;
+    // Where the offset is along the axis, all are alike.
+    const Vec3 outward = across.isZero(0) ? tangent_of(axis) : Vec3(across.stableNormalized());
     for (const double side : {-1.0, 1.0}) {
-      const Vec3 direction = side * across.stableNormalized();
+      const Vec3 direction = side * outward;
       if (!visit(ConvexAxis{direction, separation_along(a, b, direction)})) return false;
     }
   }
@@ -71,7 +72,13 @@ bool best_axes(const ConvexBody& a, const ConvexBody& b, double margin, double s
   if (out.best.separation == -HUGE_VAL || round) take(centre_axis(a, b));
   const double rounding = tolerance::touching_gap * size;
   if (round) {
-    const ConvexAxis first = ascend(a, b, out.best, size);
+    ConvexAxis first = ascend(a, b, out.best, size);
+    if (near.apart) {
+      // So near, its direction has few digits, but the climb may have ended on another top.
+      const ConvexAxis seen{near.normal, separation_along(a, b, near.normal)};
+      if (seen.separation > first.separation + tolerance::same_feature * size)
+        first = ascend(a, b, seen, size);
+    }
     if (!take(first)) return false;
     if (first.separation > -tolerance::shallow_overlap * size) return true;
     // Deep in one another, there are several ways out that are the best of those around them.

@@ -36,7 +36,8 @@ bool is_across(const Vec3& edge, const Vec3& direction) {
 ConvexBody::ConvexBody(const ShapedSolid& body, const ShapeData* data, const Vec3& origin)
     : centre_(body.solid.position - origin),
       axes_(body.solid.orientation.toRotationMatrix()),
-      size_(smallest_size(body.shape, body.solid.size)) {
+      size_(smallest_size(body.shape, body.solid.size)),
+      extent_(body.solid.size.maxCoeff()) {
   const Vec3& size = body.solid.size;
   switch (body.shape) {
     case Shape::sphere:
@@ -85,14 +86,18 @@ void ConvexBody::take(const Hull& hull, const Vec3& scale) {
   for (int f = 0; f < face_count_; ++f) normals_[f] = axes_ * hull.faces[static_cast<std::size_t>(f)].normal;
 }
 
+/// The farthest point of a cylinder; `middle`: of a cap that is farthest as a whole, as a share of its
+/// radius.
+Vec3 ConvexBody::of_cylinder(const Vec3& along, double middle) const {
+  const Vec3 local = axes_.transpose() * along;
+  const double across = std::sqrt(local.x() * local.x() + local.y() * local.y());
+  const Vec3 rim = across > 0 ? Vec3(disc_ / across * local.x(), disc_ / across * local.y(), 0)
+                              : Vec3(middle * disc_, 0, 0);
+  return centre_ + axes_ * (rim + (local.z() < 0 ? -half_ : half_) * Vec3::UnitZ());
+}
+
 Vec3 ConvexBody::support(const Vec3& along) const {
-  if (kind_ == Kind::cylinder) {
-    const Vec3 local = axes_.transpose() * along;
-    const double across = std::sqrt(local.x() * local.x() + local.y() * local.y());
-    const Vec3 rim =
-        across > 0 ? Vec3(disc_ / across * local.x(), disc_ / across * local.y(), 0) : Vec3(Vec3::Zero());
-    return centre_ + axes_ * (rim + (local.z() < 0 ? -half_ : half_) * Vec3::UnitZ());
-  }
+  if (is_cylinder()) return of_cylinder(along, 0);
   int best = 0;
   double farthest = vertices_[0].dot(along);
   for (int k = 1; k < vertex_count_; ++k) {
@@ -103,6 +108,10 @@ Vec3 ConvexBody::support(const Vec3& along) const {
     }
   }
   return vertices_[best];
+}
+
+Vec3 ConvexBody::corner(const Vec3& along) const {
+  return is_cylinder() ? of_cylinder(along, 1) : support(along);
 }
 
 Vec3 ConvexBody::edge(int e) const {

@@ -36,11 +36,14 @@ class ConvexBody {
   const Mat3& axes() const { return axes_; }
   double radius() const { return radius_; }  ///< around the core
   double size() const { return size_; }      ///< what its tolerances are relative to; infinite: it sets none
+  double extent() const { return extent_; }  ///< the largest half extent (m)
   bool is_cylinder() const { return kind_ == Kind::cylinder; }
   bool is_polytope() const { return kind_ == Kind::polytope; }
 
   /// The point of the core that is farthest along a direction.
   Vec3 support(const Vec3& along) const;
+  /// The same, but of a cap that is farthest as a whole, a point of its rim and not the middle.
+  Vec3 corner(const Vec3& along) const;
   static constexpr int most_faces = 2 * Hull::most_vertices - 4;
 
   /// How far along a unit direction the body reaches.
@@ -67,13 +70,14 @@ class ConvexBody {
   enum class Kind { point, segment, polytope, triangle, cylinder };
 
   void take(const Hull& hull, const Vec3& scale);
+  Vec3 of_cylinder(const Vec3& along, double middle) const;
   Facing cap_toward(const Vec3& along) const;
 
   Kind kind_;
   Vec3 centre_;
   Mat3 axes_;
   double radius_ = 0;
-  double size_;
+  double size_, extent_;
   const Hull* hull_ = nullptr;
   int vertex_count_ = 0, face_count_ = 0, edge_count_ = 0;
   double disc_ = 0, half_ = 0;  // of a cylinder

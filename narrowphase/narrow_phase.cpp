@@ -7,6 +7,7 @@
 #include "narrowphase/any_contacts.hpp"
 #include "narrowphase/box_box_ccd.hpp"
 #include "narrowphase/box_box_crosscheck.hpp"
+#include "narrowphase/convex_ccd.hpp"
 #include "narrowphase/far_apart.hpp"
 
 #include <algorithm>
@@ -64,6 +65,14 @@ constexpr PairTable tables[] = {
     table_with(by_ccd<ccd::Method::mpr>),
 };
 
+/// As the table for boxes, `automatic` is the search along axes.
+constexpr bool asks_ccd(ConvexMethod method) {
+  return method == ConvexMethod::ccd_gjk || method == ConvexMethod::ccd_mpr;
+}
+constexpr ccd::Method method_of(ConvexMethod method) {
+  return method == ConvexMethod::ccd_gjk ? ccd::Method::gjk : ccd::Method::mpr;
+}
+
 /// How near to its centre a body touches others (m); infinite for boundaries.
 struct SetExtent {
   ConstBodyView bodies;
@@ -83,6 +92,7 @@ struct FindContacts {
   ConstView<double> extent;
   ConstView<ShapeData> shapes;
   const PairTable* table;
+  ConvexMethod convex;
   double crosscheck_share;
   std::uint64_t search;
   const LateBodies* late;
@@ -106,15 +116,15 @@ struct FindContacts {
   int test(std::int32_t i, std::int32_t j, Manifold* out, NarrowPhaseStats& stats) const {
     ++stats.tested;
     const bool later = is_late(i, j);
-    const bool boxes = bodies.shape[i] == Shape::box && bodies.shape[j] == Shape::box;
-    const bool checked = boxes && is_crosschecked(crosscheck_share, search, i, j);
+    const bool checked =
+        crosscheck_share > 0.0 && ccd_knows(i, j) && is_crosschecked(crosscheck_share, search, i, j);
     if (!later && !checked && are_far(i, j)) return 0;
     const double time = later ? late->time_of(i, j) : 0.0;
     const Solid a = later ? late->solid_at(i, time) : solid(i);
     Solid b = later ? late->solid_at(j, time) : solid(j);
     bodies.period.bring_near(a.position, b.position);
     const int count = contacts_of(i, a, j, b, out, stats);
-    if (checked) crosscheck(a, b, stats.crosscheck);
+    if (checked) check(i, a, j, b, stats.crosscheck);
     for (int m = 0; m < count; ++m) {
       out[m].i = i;
       out[m].j = j;
@@ -126,10 +136,26 @@ struct FindContacts {
                   NarrowPhaseStats& stats) const {
     const Shape shape_i = bodies.shape[i], shape_j = bodies.shape[j];
     const double reach = margin[i] + margin[j];
-    if (is_general(shape_i) || is_general(shape_j))
+    if (is_general(shape_i) || is_general(shape_j)) {
+      if (asks_ccd(convex) && is_convex_pair(shape_i, shape_j))
+        return find_contacts_by_ccd({shape_i, a}, {shape_j, b}, {&shapes[i], &shapes[j]}, reach,
+                                    method_of(convex), out, stats);
       return find_general_contacts({shape_i, a}, {shape_j, b}, {&shapes[i], &shapes[j]}, {.margin = reach},
                                    out);
+    }
     return table->of[static_cast<int>(shape_i)][static_cast<int>(shape_j)](a, b, reach, out, stats);
+  }
+
+  /// Whether the pair is one that libccd can be asked about.
+  bool ccd_knows(std::int32_t i, std::int32_t j) const {
+    const Shape shape_i = bodies.shape[i], shape_j = bodies.shape[j];
+    return (shape_i == Shape::box && shape_j == Shape::box) || is_convex_pair(shape_i, shape_j);
+  }
+
+  void check(std::int32_t i, const Solid& a, std::int32_t j, const Solid& b, CrosscheckStats& stats) const {
+    if (is_general(bodies.shape[i]) || is_general(bodies.shape[j]))
+      return crosscheck({bodies.shape[i], a}, {bodies.shape[j], b}, {&shapes[i], &shapes[j]}, stats);
+    crosscheck(a, b, stats);
   }
 
   /// True if the spheres around two bodies are too far apart for a contact.
@@ -175,8 +201,8 @@ Manifolds NarrowPhase::find(const ConstBodyView& bodies, ConstView<Pair> pairs, 
   parallel::for_each<Host>("find contacts", bodies.count(), SetExtent{bodies, margin, extent_.view()});
   parallel::for_each<Host>("find contacts", count,
                            FindContacts{bodies, pairs, margin, std::as_const(extent_).view(), shapes_,
-                                        &tables[static_cast<int>(settings_.box_box)], settings_.crosscheck,
-                                        searches_++, late, chunk_size, chunks_.data()},
+                                        &tables[static_cast<int>(settings_.box_box)], settings_.convex,
+                                        settings_.crosscheck, searches_++, late, chunk_size, chunks_.data()},
                            few_chunks);
   stats_ = {};
   std::int64_t headers = 0;

@@ -31,12 +31,12 @@ struct Disagreements {
   }
 };
 
-/// The 15 axes against libccd's MPR, for the pairs of boxes that `narrowphase.crosscheck` chose.
+/// The search along axes against libccd, for the pairs that `narrowphase.crosscheck` chose.
 struct CrosscheckStats {
-  std::int64_t asked = 0;  ///< pairs
-  Disagreements touching;  ///< only one of the two sees an overlap: the depth or the distance by the 15 axes
-  Disagreements ccd_deeper;  ///< overlap along libccd's direction beyond the least of the 15: libccd's error
-  Disagreements ccd_shallower;  ///< overlap short of the least of the 15, which nothing can be: theirs
+  std::int64_t asked = 0;       ///< pairs
+  Disagreements touching;       ///< only one of the two sees an overlap: the depth or the distance by axes
+  Disagreements ccd_deeper;     ///< overlap along libccd's direction beyond the least known: libccd's error
+  Disagreements ccd_shallower;  ///< overlap short of the least known: the error of the axes
 
   CrosscheckStats& operator+=(const CrosscheckStats& other) {
     asked += other.asked;
@@ -49,8 +49,8 @@ struct CrosscheckStats {
 
 struct NarrowPhaseStats {
   std::int64_t tested = 0;        ///< pairs tested, planes included
-  std::int64_t ccd_calls = 0;     ///< box-box pairs given to libccd
-  std::int64_t ccd_rejected = 0;  ///< of these, answers that the certificate refused (SAT then decided)
+  std::int64_t ccd_calls = 0;     ///< pairs given to libccd
+  std::int64_t ccd_rejected = 0;  ///< of these, answers that the certificate refused (axes then decided)
   std::int64_t ccd_stopped = 0;   ///< of these, searches that used up their budget of support points
   CrosscheckStats crosscheck;
 

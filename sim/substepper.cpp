@@ -42,7 +42,8 @@ Substepper::Substepper(const Scene& scene, const TimeGrid& grid, const PathTable
       gravity_(scene),
       kept_pairs_(scene.broadphase, on_device, origin),
       narrow_phase_(scene.narrowphase, shapes()),
-      end_narrow_phase_({.box_box = scene.narrowphase.box_box}, shapes()) {
+      end_narrow_phase_({.box_box = scene.narrowphase.box_box, .convex = scene.narrowphase.convex},
+                        shapes()) {
   copy_bodies(bodies_, scene.bodies);
   std::vector<Guide> guides;
   for (const Servo& servo : scene.servos) guides.push_back({servo.body, servo.axis});

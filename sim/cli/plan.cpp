@@ -174,6 +174,19 @@ std::string broad_phase_words(const BroadPhaseSettings& settings) {
   return "hierarchical grid, " + levels;
 }
 
+const char* convex_words(ConvexMethod method) {
+  switch (method) {
+    case ConvexMethod::automatic:
+    case ConvexMethod::axes:
+      break;
+    case ConvexMethod::ccd_gjk:
+      return "libccd's GJK and EPA where they overlap";
+    case ConvexMethod::ccd_mpr:
+      return "libccd's MPR where they overlap";
+  }
+  return "separating axes and GJK";
+}
+
 /// Triangles, and the ways of contacts that boxes and spheres do not take; both on Host.
 std::string general_words(const Scene& scene) {
   std::string words;
@@ -186,7 +199,7 @@ std::string general_words(const Scene& scene) {
   if (count_shape(scene, Shape::capsule) + count_shape(scene, Shape::cylinder) +
           count_shape(scene, Shape::polyhedron) >
       0)
-    words += "; capsules, cylinders and polyhedra by separating axes and GJK";
+    words += fmt::format("; capsules, cylinders and polyhedra by {}", convex_words(scene.narrowphase.convex));
   return words.empty() ? words : words + "; on the host";
 }
 

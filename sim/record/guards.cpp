@@ -13,7 +13,8 @@ std::vector<GuardCount> guards_of(const Observation& now) {
        "a smaller time.step"},
       {"newton", c.patient_failed, "groups of contacts that no method has solved",
        "a smaller time.step or more response.iterations"},
-      {"gjk", c.narrowphase.ccd_stopped, "calls of libccd that hit their bound", "narrowphase.box_box: sat"},
+      {"gjk", c.narrowphase.ccd_stopped, "calls of libccd that hit their bound",
+       "narrowphase.box_box: sat, convex: axes"},
   };
 }
 

@@ -25,6 +25,17 @@ Codec<BoxBoxMethod> box_box_word() {
   return word<BoxBoxMethod>({{"auto", automatic}, {"sat", sat}, {"ccd_gjk", ccd_gjk}, {"ccd_mpr", ccd_mpr}});
 }
 
+/// Left out of the resolved scene where it is left to scree, as in scenes from before there was a choice.
+Codec<ConvexMethod> convex_word() {
+  using enum ConvexMethod;
+  Codec<ConvexMethod> codec =
+      word<ConvexMethod>({{"auto", automatic}, {"axes", axes}, {"ccd_gjk", ccd_gjk}, {"ccd_mpr", ccd_mpr}});
+  codec.write = [write = codec.write](const ConvexMethod& method) -> std::optional<Node> {
+    return method == automatic ? std::nullopt : write(method);
+  };
+  return codec;
+}
+
 }  // namespace
 
 Codec<ResponseSettings> response_section() {
@@ -65,14 +76,19 @@ Codec<BroadPhaseSettings> broadphase_section() {
 
 Codec<NarrowPhaseSettings> narrowphase_section() {
   using T = NarrowPhaseSettings;
-  return section<T>("narrowphase", "How contact points are found.",
-                    {
-                        key<T>("box_box", &T::box_box, box_box_word(), optionally,
-                               "for pairs of boxes; auto: the measured best"),
-                        key<T>("crosscheck", &T::crosscheck, number(between(0, 1)), optionally,
-                               "share of the pairs of boxes, chosen anew each substep, that libccd is asked "
-                               "about too; where it differs is counted in the manifest"),
-                    });
+  return section<T>(
+      "narrowphase", "How contact points are found.",
+      {
+          key<T>("box_box", &T::box_box, box_box_word(), optionally,
+                 "for pairs of boxes; auto: the measured best"),
+          with_default(key<T>("convex", &T::convex, convex_word(), optionally,
+                              "for pairs of capsules, cylinders and polyhedra, with each other "
+                              "and with spheres and boxes; auto: the measured best"),
+                       "auto"),
+          key<T>("crosscheck", &T::crosscheck, number(between(0, 1)), optionally,
+                 "share of the pairs for which there is such a choice, chosen anew each substep, "
+                 "that libccd is asked about too; where it differs is counted in the manifest"),
+      });
 }
 
 Codec<ModelSettings> model_section() {

@@ -1,6 +1,7 @@
 // The narrow phase as a whole against a double loop over all pairs.
 #include "narrowphase/narrow_phase.hpp"
 
+#include "core/geometry.hpp"
 #include "core/parallel.hpp"
 #include "core/rng.hpp"
 #include "narrowphase/box_box.hpp"
@@ -16,6 +17,7 @@
 #include <tbb/global_control.h>
 
 #include <algorithm>
+#include <array>
 #include <tuple>
 
 namespace scree {
@@ -227,6 +229,85 @@ TEST(NarrowPhase, EveryMethodFindsTheSamePairs) {
     EXPECT_EQ(narrow.stats().ccd_calls > 0, method != BoxBoxMethod::automatic);
     EXPECT_LE(narrow.stats().ccd_rejected, narrow.stats().ccd_calls);
   }
+}
+
+/// Every shape but surfaces, in a crowd.
+struct Particles {
+  Scene scene;
+  Hull hull;
+  std::vector<ShapeData> data;
+
+  explicit Particles(int count) {
+    const std::array<Vec3, 5> corners = {Vec3(0.5, 0, 0), Vec3(-0.4, 0.3, 0), Vec3(-0.4, -0.4, 0.1),
+                                         Vec3(0, 0, 0.5), Vec3(0.1, 0.1, -0.4)};
+    hull = make_hull(corners);
+    BodyTable table;
+    const double extent = 0.8 * std::cbrt(static_cast<double>(count));
+    for (int n = 0; n < count; ++n) {
+      Random random(12, static_cast<std::uint64_t>(n));
+      const auto uniform = [&random](double low, double high) {
+        const double x = random.uniform(low, high), y = random.uniform(low, high);
+        return Vec3(x, y, random.uniform(low, high));
+      };
+      const std::array<std::pair<Shape, Vec3>, 5> kinds = {{{Shape::sphere, Vec3::Constant(0.4)},
+                                                            {Shape::box, Vec3(0.3, 0.4, 0.5)},
+                                                            {Shape::capsule, Vec3(0.2, 0.2, 0.5)},
+                                                            {Shape::cylinder, Vec3(0.4, 0.4, 0.2)},
+                                                            {Shape::polyhedron, hull.half_extent()}}};
+      const auto& [shape, size] = kinds[static_cast<std::size_t>(n % 5)];
+      add(table, shape, Mobility::free, uniform(0, extent), rotation_of(uniform(-2, 2)), size);
+      data.push_back({.hull = shape == Shape::polyhedron ? &hull : nullptr});
+    }
+    copy_bodies(scene.bodies, table);
+    scene.margin.resize(count);
+    parallel::fill("margin", scene.margin, 0.01);
+  }
+
+  NarrowPhase by(const NarrowPhaseSettings& settings) const {
+    return NarrowPhase(settings, {data.data(), static_cast<std::int64_t>(data.size())});
+  }
+};
+
+TEST(NarrowPhase, EveryMethodOfConvexParticlesFindsTheSamePairs) {
+  const Particles particles(300);
+  const Scene& scene = particles.scene;
+  const std::vector<Pair> pairs = all_pairs(scene.bodies);
+  NarrowPhase axes = particles.by({.convex = ConvexMethod::axes});
+  const auto expected = in_full(axes.find(view_of(scene.bodies), view_of(pairs), scene.margin.view()));
+  EXPECT_GT(expected.size(), 300);
+  EXPECT_EQ(axes.stats().ccd_calls, 0);
+  for (const ConvexMethod method : {ConvexMethod::automatic, ConvexMethod::ccd_gjk, ConvexMethod::ccd_mpr}) {
+    NarrowPhase narrow = particles.by({.convex = method});
+    const auto found = in_full(narrow.find(view_of(scene.bodies), view_of(pairs), scene.margin.view()));
+    ASSERT_EQ(found.size(), expected.size());
+    for (std::size_t k = 0; k < found.size(); ++k) {
+      ASSERT_EQ(found[k].i, expected[k].i);
+      ASSERT_EQ(found[k].j, expected[k].j);
+      if (method == ConvexMethod::automatic) expect_same(found[k], expected[k]);
+    }
+    EXPECT_EQ(narrow.stats().ccd_calls > 100, method != ConvexMethod::automatic);
+    EXPECT_LT(narrow.stats().ccd_rejected, std::max<std::int64_t>(1, narrow.stats().ccd_calls));
+  }
+}
+
+TEST(NarrowPhase, ACrosscheckAsksAboutConvexParticlesTooAndChangesNothing) {
+  const Particles particles(300);
+  const Scene& scene = particles.scene;
+  const std::vector<Pair> pairs = all_pairs(scene.bodies);
+  NarrowPhase unchecked = particles.by({}), checked = particles.by({.crosscheck = 1});
+  const auto expected = in_full(unchecked.find(view_of(scene.bodies), view_of(pairs), scene.margin.view()));
+  const auto found = in_full(checked.find(view_of(scene.bodies), view_of(pairs), scene.margin.view()));
+  ASSERT_EQ(found.size(), expected.size());
+  for (std::size_t k = 0; k < found.size(); ++k) expect_same(found[k], expected[k]);
+  // All but spheres with spheres, boxes and capsules, which are closed forms.
+  const ConstBodyView b = view_of(scene.bodies);
+  const auto asked = std::count_if(pairs.begin(), pairs.end(), [&](const Pair& pair) {
+    const auto [low, high] = std::minmax(b.shape[pair.i], b.shape[pair.j]);
+    return low != Shape::sphere || high > Shape::capsule;
+  });
+  EXPECT_EQ(checked.stats().crosscheck.asked, asked);
+  EXPECT_EQ(checked.stats().crosscheck.ccd_shallower.total(), 0);
+  EXPECT_EQ(unchecked.stats().crosscheck.asked, 0);
 }
 
 TEST(NarrowPhase, ACrosscheckAsksTheSameShareWhateverTheThreadsAndChangesNothing) {

@@ -103,6 +103,29 @@ TEST(Shapes, GiveTheSameBitsForAnyNumberOfThreadsAndAfterAStop) {
   EXPECT_EQ(resumed.state_hash(), one.state_hash());
 }
 
+// Which way finds the contacts changes no more of a heap than its chaos does; the way that is the default,
+// nothing.
+TEST(Shapes, MoveAlikeWithContactsByLibccd) {
+  const auto with = [](const std::string& way) {
+    return scene_of(all_shapes + "narrowphase: {convex: " + way + ", crosscheck: 0.5}\n");
+  };
+  Simulation plain(scene_of(all_shapes), one_thread), axes(with("axes"), one_thread);
+  while (plain.steps() < 140) plain.step(), axes.step();
+  EXPECT_EQ(plain.state_hash(), axes.state_hash());
+  EXPECT_EQ(axes.observe().counters.narrowphase.ccd_calls, 0);
+  EXPECT_GT(axes.observe().counters.narrowphase.crosscheck.asked, 100);
+  for (const char* way : {"ccd_gjk", "ccd_mpr"}) {
+    Simulation one(with(way), one_thread), many(with(way), {SpaceChoice::host, 3});
+    while (one.steps() < 140) one.step(), many.step();
+    EXPECT_EQ(one.state_hash(), many.state_hash());
+    const Observation now = one.observe();
+    EXPECT_GT(now.counters.narrowphase.ccd_calls, 100);
+    EXPECT_LT(now.counters.narrowphase.ccd_rejected, now.counters.narrowphase.ccd_calls);
+    EXPECT_LT(now.unexplained, 1e-9);
+    EXPECT_NEAR(now.total(), plain.observe().total(), 0.05 * now.energy_scale);
+  }
+}
+
 TEST(Shapes, StepsAreHostsInDouble) {
   Simulation plain(scene_of(all_shapes), {.space = SpaceChoice::host});
   Simulation resident(scene_of(all_shapes), {.space = SpaceChoice::host, .resident = true});

@@ -141,6 +141,7 @@ constexpr BadScene bad_scenes[] = {
     {"mass_zero", 6, 33, "bodies[0].mass: must be a number > 0 (kg), not 0"},
     {"mass_underflow", 6, 5, "bodies[0]: its mass and inertia are beyond what numbers can hold"},
     {"restitution_large", 4, 49, "materials.glass.restitution: must be a number from 0 to 1, not 1.1"},
+    {"convex_word", 7, 23, "narrowphase.convex: must be one of auto, axes, ccd_gjk, ccd_mpr, not ccd_gkj (did you mean ccd_gjk?)"},
     {"crosscheck_share", 7, 27, "narrowphase.crosscheck: must be a number from 0 to 1, not 1.5"},
     {"friction_negative", 4, 46, "materials.glass.friction: must be a number >= 0, not -0.4"},
     {"no_shape", 6, 5, "bodies[0]: must have exactly one shape (plane, sphere, box, tube, capsule, cylinder, polyhedron or mesh), not none"},

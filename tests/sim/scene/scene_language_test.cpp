@@ -61,7 +61,7 @@ regions:
   exit: {from: [-1, -1, -1], to: [1, 1, 0]}
 response: {mode: default, iterations: 20, tolerance: 1e-6, warm_start: false, restitution_threshold: 0.25}
 broadphase: {method: uniform_grid, levels: 4}
-narrowphase: {box_box: ccd_gjk, crosscheck: 0.25}
+narrowphase: {box_box: ccd_gjk, convex: ccd_mpr, crosscheck: 0.25}
 precision: double
 model: {rotation: on, friction: off}
 render: {size: [640, 480], fps: 60, camera: {from: [1, 2, 3], to: [0, 0, 0.5], fov: 50, orbit: {degrees: 90}}, color: speed, range: [0, 3],
@@ -105,6 +105,7 @@ TEST(SceneLanguage, EveryKeyReachesTheScene) {
   EXPECT_EQ(scene.broadphase.method, BroadPhaseMethod::uniform_grid);
   EXPECT_EQ(scene.broadphase.levels, 4);
   EXPECT_EQ(scene.narrowphase.box_box, BoxBoxMethod::ccd_gjk);
+  EXPECT_EQ(scene.narrowphase.convex, ConvexMethod::ccd_mpr);
   EXPECT_EQ(scene.narrowphase.crosscheck, 0.25);
   EXPECT_EQ(scene.model.rotation, true);
   EXPECT_EQ(scene.model.friction, false);
