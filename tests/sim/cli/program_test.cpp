@@ -371,7 +371,7 @@ TEST_F(ProgramTest, PlanSaysWhatWillBeModelledAndRunsNothing) {
   const Finished plan = scree_in(folder_, {"plan", "fall.yaml"});
   EXPECT_EQ(plan.status, 0) << plan.error;
   EXPECT_TRUE(contains(plan.out, "free spheres: 1")) << plan.out;
-  EXPECT_TRUE(contains(plan.out, "friction     off")) << plan.out;
+  EXPECT_TRUE(contains(plan.out, "friction         off")) << plan.out;
   EXPECT_TRUE(contains(plan.out, "in 10 steps")) << plan.out;
   EXPECT_TRUE(contains(plan.out, "6 rows of metrics, 4 frames of 1280 x 720")) << plan.out;
   EXPECT_FALSE(fs::exists(folder_ / "output"));
