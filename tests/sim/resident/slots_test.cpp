@@ -66,7 +66,8 @@ struct Built {
   explicit Built(const BodyTable& table) { copy_bodies(bodies, table); }
   void build(const std::vector<Pair>& list) {
     copy(pairs, list);
-    slots.build(std::as_const(pairs).view(), view_of(std::as_const(bodies)));
+    constexpr bool rolls = true;
+    slots.build(std::as_const(pairs).view(), view_of(std::as_const(bodies)), rolls);
   }
   std::vector<Slot> places() const {
     std::vector<Slot> all(static_cast<std::size_t>(slots.places().size()));
@@ -185,8 +186,10 @@ template <class Real>
 struct Remember {
   ConstView<Slot> places;
   View<BallMemory<Real>> memory;
+  View<V3<Real>> couples;
   SCREE_HD void operator()(std::int64_t p) const {
     memory[p].impulse = {static_cast<Real>(places[p].i), static_cast<Real>(places[p].j), Real(1)};
+    couples[p] = {Real(2), static_cast<Real>(places[p].j), static_cast<Real>(places[p].i)};
   }
 };
 
@@ -195,24 +198,29 @@ TYPED_TEST(SlotsTest, MemoryOutlivesTheCandidates) {
   const std::vector<Pair> before = random_pairs(200, 700, 2);
   const std::vector<Pair> after = random_pairs(200, 900, 3);
   built.build(before);
-  parallel::for_each<TypeParam>("test", built.slots.places().size(),
-                                Remember<double>{built.slots.places(), built.slots.ball_memory()});
+  parallel::for_each<TypeParam>(
+      "test", built.slots.places().size(),
+      Remember<double>{built.slots.places(), built.slots.ball_memory(), built.slots.couples()});
   built.build(after);
   const std::vector<Slot> places = built.places();
   std::vector<BallMemory<double>> memory(places.size());
   copy_bytes<Host, TypeParam>(memory.data(), built.slots.ball_memory().data(),
                               memory.size() * sizeof(BallMemory<double>));
+  std::vector<V3<double>> couples(places.size());
+  copy_bytes<Host, TypeParam>(couples.data(), built.slots.couples().data(),
+                              couples.size() * sizeof(V3<double>));
   int kept = 0;
   for (std::size_t p = 0; p < places.size(); ++p) {
     if (places[p].i == Slot::empty) continue;
     const bool known = std::ranges::any_of(
         before, [&](const Pair& pair) { return pair.i == places[p].i && pair.j == places[p].j; });
     EXPECT_EQ(memory[p].is_loaded(), known);
+    EXPECT_EQ(couples[p].x, known ? 2 : 0);
     if (known) {
       EXPECT_EQ(memory[p].impulse.x, places[p].i);
-    }
-    if (known) {
       EXPECT_EQ(memory[p].impulse.y, places[p].j);
+      EXPECT_EQ(couples[p].y, places[p].j);
+      EXPECT_EQ(couples[p].z, places[p].i);
     }
     kept += known;
   }
