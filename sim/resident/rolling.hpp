@@ -138,7 +138,10 @@ struct Roll {
   }
 
  private:
-  SCREE_HD void give(const Ends& ends, const V3<Real>& couple, BodyRecord<Real> i, BodyRecord<Real> j) const {
+  SCREE_HD void give(const Ends& ends, const V3<Real>& couple, const BodyRecord<Real>& from_i,
+                     const BodyRecord<Real>& from_j) const {
+    BodyRecord<Real> i = from_i;
+    BodyRecord<Real> j = from_j;
     i.spin = i.spin - turn.of(ends.i, i) * couple;
     j.spin = j.spin + turn.of(ends.j, j) * couple;
     store_free(bodies, ends.i, i);

@@ -226,6 +226,11 @@ struct StorePointImpulses {
   }
 };
 
+struct ClearRolling {
+  View<Rolling> rolling;
+  void operator()(std::int64_t b) const { rolling[b] = {}; }
+};
+
 struct StoreCouples {
   ConstView<Members> members;
   ConstView<Rolling> rolling;
@@ -309,8 +314,8 @@ void arrange(const Coloring& coloring, ConstView<Contact> contacts, std::int32_t
   batches.point_partings.resize(rows);
   batches.ball_rolling.resize(rolls ? balls : 0);
   batches.point_rolling.resize(rolls ? points : 0);
-  parallel::fill("lanes.reset", batches.ball_rolling, Rolling{});
-  parallel::fill("lanes.reset", batches.point_rolling, Rolling{});
+  for (Array<Rolling, Host>* rolling : {&batches.ball_rolling, &batches.point_rolling})
+    parallel::for_each<Host>("lanes.reset", rolling->size(), ClearRolling{rolling->view()});
   parallel::fill("lanes.reset", batches.ball_members, nothing);
   parallel::fill("lanes.reset", batches.point_members, nothing);
   // Of the contacts given, and of the pairs of balls after them, each in its own order.
