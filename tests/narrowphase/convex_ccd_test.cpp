@@ -118,7 +118,7 @@ INSTANTIATE_TEST_SUITE_P(Each, ConvexByCcd, testing::Values(ccd::Method::gjk, cc
 TEST_P(ConvexByCcd, NothingIsMissedAndTheDepthIsRight) {
   for (const ConvexFamily family : all_convex_families()) {
     NarrowPhaseStats stats;
-    for (std::uint64_t n = 0; n < 77; ++n) {
+    for (std::uint64_t n = 0; n < 22; ++n) {
       const ConvexPair p = oracle::make_pair(family, n);
       const double margin = 0.05 * p.smallest, slack = rounding * p.length;
       Manifold by_ccd, by_axes;
@@ -155,7 +155,7 @@ TEST_P(ConvexByCcd, NothingIsMissedAndTheDepthIsRight) {
 
 TEST_P(ConvexByCcd, BodiesThatAreApartAreFoundByAxes) {
   int found = 0;
-  for (std::uint64_t n = 0; n < 330; ++n) {
+  for (std::uint64_t n = 0; n < 110; ++n) {
     ConvexPair p = oracle::make_pair(ConvexFamily::any, n);
     const Vec3 offset = p.b.solid.position - p.a.solid.position;
     p.b.solid.position += (0.2 + 0.1 * static_cast<double>(n % 7)) * p.length * offset.normalized();
@@ -179,7 +179,7 @@ TEST_P(ConvexByCcd, BodiesThatAreApartAreFoundByAxes) {
 TEST_P(ConvexByCcd, ACertificateRefusesAWrongDirection) {
   NarrowPhaseStats stats;
   for (const ConvexFamily family : {ConvexFamily::deep, ConvexFamily::slender, ConvexFamily::size_ratio}) {
-    for (std::uint64_t n = 0; n < 220; ++n) {
+    for (std::uint64_t n = 0; n < 66; ++n) {
       const ConvexPair p = oracle::make_pair(family, n);
       const ConvexBody a(p.a, &p.data_a, p.a.solid.position), b(p.b, &p.data_b, p.a.solid.position);
       ConvexAxes axes;
@@ -199,7 +199,7 @@ TEST_P(ConvexByCcd, ACertificateRefusesAWrongDirection) {
 TEST_P(ConvexByCcd, EveryCallEnds) {
   double worst = 0;
   for (const ConvexFamily family : all_convex_families()) {
-    for (std::uint64_t n = 0; n < 55; ++n) {
+    for (std::uint64_t n = 0; n < 22; ++n) {
       const ConvexPair p = oracle::make_pair(family, n);
       const ConvexBody a(p.a, &p.data_a, p.a.solid.position), b(p.b, &p.data_b, p.a.solid.position);
       // With the budget that is used, and with budgets that run out in every phase of the search.
@@ -220,7 +220,7 @@ TEST_P(ConvexByCcd, EveryCallEnds) {
 
 TEST(ConvexCrosscheck, AgreesOnShallowPairsAndFindsLibccdAtFaultElsewhere) {
   CrosscheckStats shallow, all;
-  for (std::uint64_t n = 0; n < 330; ++n) {
+  for (std::uint64_t n = 0; n < 110; ++n) {
     const ConvexPair p = oracle::make_pair(ConvexFamily::shallow, n);
     crosscheck(p.a, p.b, p.shapes(), shallow);
     const ConvexPair q = oracle::make_pair(all_convex_families()[n % 11], n / 11);
