@@ -146,7 +146,7 @@ TEST_P(ConvexByCcd, NothingIsMissedAndTheDepthIsRight) {
       ASSERT_NEAR(least_gap(swapped), truth, allowed) << oracle::name_of(family) << " " << n;
       ASSERT_GE(exact.along(-swapped.normal), truth - allowed) << oracle::name_of(family) << " " << n;
     }
-    EXPECT_GT(stats.ccd_calls, 100) << oracle::name_of(family);
+    EXPECT_GT(stats.ccd_calls, 20) << oracle::name_of(family);
     if (GetParam() == ccd::Method::gjk && (family == ConvexFamily::shallow || family == ConvexFamily::far)) {
       EXPECT_LT(stats.ccd_rejected, stats.ccd_calls / 50);  // else libccd is not asked properly
     }
@@ -173,7 +173,7 @@ TEST_P(ConvexByCcd, BodiesThatAreApartAreFoundByAxes) {
       ASSERT_EQ(by_ccd.points[k].feature, by_axes.points[k].feature);
     }
   }
-  EXPECT_GT(found, 200);
+  EXPECT_GT(found, 50);
 }
 
 TEST_P(ConvexByCcd, ACertificateRefusesAWrongDirection) {
@@ -192,7 +192,7 @@ TEST_P(ConvexByCcd, ACertificateRefusesAWrongDirection) {
       ASSERT_GE(along, axes.best.separation - tolerance::ccd_excess * p.smallest - rounding * p.length);
     }
   }
-  EXPECT_GT(stats.ccd_rejected, 50);
+  EXPECT_GT(stats.ccd_rejected, 12);
   EXPECT_LT(stats.ccd_rejected, stats.ccd_calls);
 }
 
@@ -229,7 +229,7 @@ TEST(ConvexCrosscheck, AgreesOnShallowPairsAndFindsLibccdAtFaultElsewhere) {
   EXPECT_EQ(shallow.asked, 330);
   EXPECT_LT(shallow.ccd_deeper.total() + shallow.touching.total(), 7);
   EXPECT_EQ(shallow.ccd_shallower.total(), 0);
-  EXPECT_GT(all.ccd_deeper.total(), 10);
+  EXPECT_GT(all.ccd_deeper.total(), 2);
   EXPECT_LT(all.ccd_shallower.total(), 5);  // cylinders deep in one another
 }
 
