@@ -118,7 +118,7 @@ INSTANTIATE_TEST_SUITE_P(Each, ConvexByCcd, testing::Values(ccd::Method::gjk, cc
 TEST_P(ConvexByCcd, NothingIsMissedAndTheDepthIsRight) {
   for (const ConvexFamily family : all_convex_families()) {
     NarrowPhaseStats stats;
-    for (std::uint64_t n = 0; n < 22; ++n) {
+    for (std::uint64_t n = 0; n < 77; ++n) {
       const ConvexPair p = oracle::make_pair(family, n);
       const double margin = 0.05 * p.smallest, slack = rounding * p.length;
       Manifold by_ccd, by_axes;
@@ -146,7 +146,7 @@ TEST_P(ConvexByCcd, NothingIsMissedAndTheDepthIsRight) {
       ASSERT_NEAR(least_gap(swapped), truth, allowed) << oracle::name_of(family) << " " << n;
       ASSERT_GE(exact.along(-swapped.normal), truth - allowed) << oracle::name_of(family) << " " << n;
     }
-    EXPECT_GT(stats.ccd_calls, 20) << oracle::name_of(family);
+    EXPECT_GT(stats.ccd_calls, 100) << oracle::name_of(family);
     if (GetParam() == ccd::Method::gjk && (family == ConvexFamily::shallow || family == ConvexFamily::far)) {
       EXPECT_LT(stats.ccd_rejected, stats.ccd_calls / 50);  // else libccd is not asked properly
     }
@@ -155,7 +155,7 @@ TEST_P(ConvexByCcd, NothingIsMissedAndTheDepthIsRight) {
 
 TEST_P(ConvexByCcd, BodiesThatAreApartAreFoundByAxes) {
   int found = 0;
-  for (std::uint64_t n = 0; n < 110; ++n) {
+  for (std::uint64_t n = 0; n < 330; ++n) {
     ConvexPair p = oracle::make_pair(ConvexFamily::any, n);
     const Vec3 offset = p.b.solid.position - p.a.solid.position;
     p.b.solid.position += (0.2 + 0.1 * static_cast<double>(n % 7)) * p.length * offset.normalized();
@@ -173,13 +173,13 @@ TEST_P(ConvexByCcd, BodiesThatAreApartAreFoundByAxes) {
       ASSERT_EQ(by_ccd.points[k].feature, by_axes.points[k].feature);
     }
   }
-  EXPECT_GT(found, 50);
+  EXPECT_GT(found, 200);
 }
 
 TEST_P(ConvexByCcd, ACertificateRefusesAWrongDirection) {
   NarrowPhaseStats stats;
   for (const ConvexFamily family : {ConvexFamily::deep, ConvexFamily::slender, ConvexFamily::size_ratio}) {
-    for (std::uint64_t n = 0; n < 66; ++n) {
+    for (std::uint64_t n = 0; n < 220; ++n) {
       const ConvexPair p = oracle::make_pair(family, n);
       const ConvexBody a(p.a, &p.data_a, p.a.solid.position), b(p.b, &p.data_b, p.a.solid.position);
       ConvexAxes axes;
@@ -192,14 +192,14 @@ TEST_P(ConvexByCcd, ACertificateRefusesAWrongDirection) {
       ASSERT_GE(along, axes.best.separation - tolerance::ccd_excess * p.smallest - rounding * p.length);
     }
   }
-  EXPECT_GT(stats.ccd_rejected, 12);
+  EXPECT_GT(stats.ccd_rejected, 50);
   EXPECT_LT(stats.ccd_rejected, stats.ccd_calls);
 }
 
 TEST_P(ConvexByCcd, EveryCallEnds) {
   double worst = 0;
   for (const ConvexFamily family : all_convex_families()) {
-    for (std::uint64_t n = 0; n < 22; ++n) {
+    for (std::uint64_t n = 0; n < 55; ++n) {
       const ConvexPair p = oracle::make_pair(family, n);
       const ConvexBody a(p.a, &p.data_a, p.a.solid.position), b(p.b, &p.data_b, p.a.solid.position);
       // With the budget that is used, and with budgets that run out in every phase of the search.
@@ -220,7 +220,7 @@ TEST_P(ConvexByCcd, EveryCallEnds) {
 
 TEST(ConvexCrosscheck, AgreesOnShallowPairsAndFindsLibccdAtFaultElsewhere) {
   CrosscheckStats shallow, all;
-  for (std::uint64_t n = 0; n < 110; ++n) {
+  for (std::uint64_t n = 0; n < 330; ++n) {
     const ConvexPair p = oracle::make_pair(ConvexFamily::shallow, n);
     crosscheck(p.a, p.b, p.shapes(), shallow);
     const ConvexPair q = oracle::make_pair(all_convex_families()[n % 11], n / 11);
@@ -229,7 +229,7 @@ TEST(ConvexCrosscheck, AgreesOnShallowPairsAndFindsLibccdAtFaultElsewhere) {
   EXPECT_EQ(shallow.asked, 330);
   EXPECT_LT(shallow.ccd_deeper.total() + shallow.touching.total(), 7);
   EXPECT_EQ(shallow.ccd_shallower.total(), 0);
-  EXPECT_GT(all.ccd_deeper.total(), 2);
+  EXPECT_GT(all.ccd_deeper.total(), 10);
   EXPECT_LT(all.ccd_shallower.total(), 5);  // cylinders deep in one another
 }
 
