@@ -88,21 +88,26 @@ SCREE_HD inline ContactRow row_at(const Vec3& arm_i, const Vec3& arm_j, double g
   return row;
 }
 
-/// Prepares a row with zero impulse and target. At least one of the bodies is free.
-SCREE_HD inline ContactRow make_row(const Vec3& normal, const Vec3& arm_i, const Vec3& arm_j, double gap,
-                                    const SolverBody& i, const SolverBody& j, RowCoupling& coupling) {
-  const Mat3 w = delassus_share(i, arm_i) + delassus_share(j, arm_j);
+/// The largest eigenvalue of a symmetric matrix in the plane across a normal.
+SCREE_HD inline double largest_across(const Mat3& w, const Vec3& normal) {
   const Vec3 t = tangent_of(normal);
   const Vec3 b = normal.cross(t);
   const double tt = t.dot(w * t);
   const double bb = b.dot(w * b);
   const double tb = t.dot(w * b);
   const double half_difference = 0.5 * (tt - bb);
+  return 0.5 * (tt + bb) + sqrt(half_difference * half_difference + tb * tb);
+}
+
+/// Prepares a row with zero impulse and target. At least one of the bodies is free.
+SCREE_HD inline ContactRow make_row(const Vec3& normal, const Vec3& arm_i, const Vec3& arm_j, double gap,
+                                    const SolverBody& i, const SolverBody& j, RowCoupling& coupling) {
+  const Mat3 w = delassus_share(i, arm_i) + delassus_share(j, arm_j);
   coupling.stick = w.inverse();
   coupling.normal = w * normal;
   ContactRow row = row_at(arm_i, arm_j, gap);
   row.normal_mass = 1.0 / normal.dot(coupling.normal);
-  row.tangent_mass = 1.0 / (0.5 * (tt + bb) + sqrt(half_difference * half_difference + tb * tb));
+  row.tangent_mass = 1.0 / largest_across(w, normal);
   return row;
 }
 

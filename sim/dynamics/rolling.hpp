@@ -11,14 +11,7 @@ namespace scree {
 /// How much a couple must be, at least, to change the spin with which two bodies roll (kg m^2); 0 where
 /// neither turns.
 SCREE_HD inline double rolling_mass(const SolverBody& i, const SolverBody& j, const Vec3& normal) {
-  const Mat3 w = i.inverse_inertia + j.inverse_inertia;
-  const Vec3 t = tangent_of(normal);
-  const Vec3 b = normal.cross(t);
-  const double tt = t.dot(w * t);
-  const double bb = b.dot(w * b);
-  const double tb = t.dot(w * b);
-  const double half_difference = 0.5 * (tt - bb);
-  const double largest = 0.5 * (tt + bb) + sqrt(half_difference * half_difference + tb * tb);
+  const double largest = largest_across(i.inverse_inertia + j.inverse_inertia, normal);
   return largest > 0 ? 1.0 / largest : 0.0;
 }
 
