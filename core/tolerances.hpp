@@ -146,6 +146,8 @@ inline constexpr double touching_gap = 1e-12;
 /// a brief touch in between may be missed; smaller: more looks.
 inline constexpr double search_advance = 0.1;
 
+/// Turn of a body in a flight (rad) from which on nothing is told of the flight from its ends.
+inline constexpr double far_turn = 1.0;
 /// Turn of a free body in one step of its splitting (rad); what turns further goes in several. Larger: less
 /// accurate, faster.
 inline constexpr double split_turn = 0.5;

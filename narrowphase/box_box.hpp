@@ -15,18 +15,17 @@ SCREE_HD inline double smallest_gap(const Manifold& manifold) {
   return gap;
 }
 
-}  // namespace detail
+/// Whether the boxes overlap by less than the margin along two faces' normals, as at an edge or a corner.
+SCREE_HD inline bool is_at_edge(const BoxPair& pair, const BoxAxes& axes, double margin) {
+  if (axes.next_face >= -margin) return true;
+  const double cosine = fabs(pair.turn(axes.face[0].index[0], axes.face[1].index[0]));
+  return fmin(axes.face[0].separation, axes.face[1].separation) >= -margin &&
+         cosine < 1.0 - tolerance::face_cosine;
+}
 
-/// The contact of two boxes with a choice of reference face: the face, or the edges if they are clearly
-/// better. No state is kept from step to step: the preferences of clearly_better() hold the choice steady
-/// instead.
-///
-/// A face must have a point as close as the axes say the boxes are; if the other box's lowest vertex is
-/// beside it, an edge or a vertex is closer, and takes its place. For boxes that are apart that is one point
-/// with the true distance and direction: the separation along an axis would be a lower bound only, and its
-/// normal would stop boxes that pass beside each other.
-SCREE_HD inline bool contact_along(const BoxPair& pair, const BoxAxes& axes, const BoxAxis& face,
-                                   double margin, Manifold& out) {
+/// As contact_along(), but for Manifold::at_edge.
+SCREE_HD inline bool feature_contact(const BoxPair& pair, const BoxAxes& axes, const BoxAxis& face,
+                                     double margin, Manifold& out) {
   // Nearly parallel edges are no choice beside a face, but they can show that no other edges are close
   // either.
   if (clearly_better(axes.edges.separation, face.separation, pair.smallest) &&
@@ -42,6 +41,23 @@ SCREE_HD inline bool contact_along(const BoxPair& pair, const BoxAxes& axes, con
   if (axes.separation > 0.0) return closest_edges(pair, axes, margin, out);
   if (axes.any_edges.separation > -HUGE_VAL) return edge_contact(pair, axes.any_edges, out);
   return face_contact(pair, face, margin, out);
+}
+
+}  // namespace detail
+
+/// The contact of two boxes with a choice of reference face: the face, or the edges if they are clearly
+/// better. No state is kept from step to step: the preferences of clearly_better() hold the choice steady
+/// instead.
+///
+/// A face must have a point as close as the axes say the boxes are; if the other box's lowest vertex is
+/// beside it, an edge or a vertex is closer, and takes its place. For boxes that are apart that is one point
+/// with the true distance and direction: the separation along an axis would be a lower bound only, and its
+/// normal would stop boxes that pass beside each other.
+SCREE_HD inline bool contact_along(const BoxPair& pair, const BoxAxes& axes, const BoxAxis& face,
+                                   double margin, Manifold& out) {
+  const bool found = detail::feature_contact(pair, axes, face, margin, out);
+  out.at_edge = detail::is_at_edge(pair, axes, margin);
+  return found;
 }
 
 SCREE_HD inline const BoxAxis& preferred_face(const BoxPair& pair, const BoxAxes& axes) {

@@ -40,6 +40,7 @@ struct BoxAxis {
 /// The axes that part two boxes most, of each kind. Where several do equally, the first.
 struct BoxAxes {
   BoxAxis face[2];    ///< of the faces of the first and the second box
+  double next_face;   ///< largest separation along the other axes of faces (m)
   BoxAxis edges;      ///< of the pairs of edges that are not nearly parallel
   BoxAxis any_edges;  ///< of all that are not parallel
   double separation;  ///< largest of all 15; negative: minus the penetration depth
@@ -47,7 +48,8 @@ struct BoxAxes {
 
 namespace detail {
 
-SCREE_HD inline void face_axis(const BoxPair& pair, int box, BoxAxis& best) {
+/// `next`: raised to the separation along the second best of them.
+SCREE_HD inline void face_axis(const BoxPair& pair, int box, BoxAxis& best, double& next) {
   const Vec3 offset = pair.axes[box].transpose() * pair.offset;
   best.separation = -HUGE_VAL;
   for (int k = 0; k < 3; ++k) {
@@ -56,6 +58,7 @@ SCREE_HD inline void face_axis(const BoxPair& pair, int box, BoxAxis& best) {
       reach += pair.half[1 - box][m] * fabs(box == 0 ? pair.turn(k, m) : pair.turn(m, k));
     }
     const double separation = fabs(offset[k]) - reach;
+    next = fmax(next, fmin(separation, best.separation));
     if (separation > best.separation) best = {box, {k, k}, separation};
   }
 }
@@ -87,8 +90,9 @@ SCREE_HD inline void edge_axis(const BoxPair& pair, const Vec3& offset, int i, i
 /// `separation` > margin and nothing else is meant.
 SCREE_HD inline BoxAxes separating_axes(const BoxPair& pair, double margin) {
   BoxAxes best;
-  detail::face_axis(pair, 0, best.face[0]);
-  detail::face_axis(pair, 1, best.face[1]);
+  best.next_face = -HUGE_VAL;
+  detail::face_axis(pair, 0, best.face[0], best.next_face);
+  detail::face_axis(pair, 1, best.face[1], best.next_face);
   best.separation = fmax(best.face[0].separation, best.face[1].separation);
   best.edges = best.any_edges = {-1, {0, 0}, -HUGE_VAL};
   const Vec3 offset = pair.axes[0].transpose() * pair.offset;

@@ -28,6 +28,7 @@ SCREE_HD inline bool box_plane(const Solid& box, const Solid& plane, double marg
   }
   const int side = slope[down] > 0.0 ? 0 : 1;
 
+  out.at_edge = false;
   out.normal = -up;
   out.count = 0;
   for (int c = 0; c < 8; ++c) {

@@ -22,8 +22,10 @@ struct Manifold {
   std::int32_t i;  ///< first body, i < j
   std::int32_t j;
   std::int32_t part = 0;  ///< surface of the pair that it belongs to: of a tube, wall or cap; else 0
-  Vec3 normal;            ///< unit, from i to j
-  int count = 0;          ///< points in use
+  /// Whether the plane of another face may separate the two as well, so that the normal is a choice.
+  bool at_edge = false;
+  Vec3 normal;    ///< unit, from i to j
+  int count = 0;  ///< points in use
   ContactPoint points[max_points];
 };
 
@@ -33,6 +35,7 @@ struct ManifoldHeader {
   std::int32_t j;
   std::int32_t part;
   std::int32_t count;
+  bool at_edge;
   std::int64_t first_point;
   Vec3 normal;
 };

@@ -246,6 +246,7 @@ bool take_points(const SharedPoints& shared, const Vec3& normal, const Vec3& ori
   if (points.empty()) return false;
   reduce(points, normal, slack);
   out.part = 0;
+  out.at_edge = true;
   out.normal = normal;
   out.count = static_cast<int>(points.size());
   for (int k = 0; k < out.count; ++k) {

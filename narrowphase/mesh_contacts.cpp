@@ -119,6 +119,7 @@ bool sphere_triangle(const Solid& sphere, const Solid& triangle, const Surroundi
   if (!touches && !reach.hidden) return false;
   out.part = touches ? 0 : hidden_part;
   set_single(out, -up, {sphere.position - 0.5 * (radius + distance) * up, gap, only_feature});
+  out.at_edge = part.kind != Part::Kind::face;
   return true;
 }
 

@@ -28,6 +28,7 @@ struct alignas(64) ManifoldChunk {
                        .j = m.j,
                        .part = m.part,
                        .count = m.count,
+                       .at_edge = m.at_edge,
                        .first_point = static_cast<std::int64_t>(points.size()),
                        .normal = m.normal});
     points.insert(points.end(), m.points, m.points + m.count);
@@ -59,6 +60,9 @@ class NarrowPhase {
 
   /// Of the last search.
   const NarrowPhaseStats& stats() const { return stats_; }
+  /// What the last search has found, for those who know more of the bodies: theirs to change.
+  View<ManifoldHeader> headers() { return headers_.view(); }
+  View<ContactPoint> points() { return points_.view(); }
 
  private:
   NarrowPhaseSettings settings_;

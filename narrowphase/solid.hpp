@@ -58,6 +58,7 @@ SCREE_HD inline BoxCorner box_corner(const Solid& box, const Mat3& axes, int c) 
 inline constexpr std::uint32_t only_feature = 0;
 
 SCREE_HD inline void set_single(Manifold& out, const Vec3& normal, const ContactPoint& point) {
+  out.at_edge = false;
   out.normal = normal;
   out.count = 1;
   out.points[0] = point;

@@ -37,6 +37,7 @@ SCREE_HD inline bool sphere_box(const Solid& sphere, const Solid& box, double ma
   const double gap = distance - radius;
   const Vec3 normal = -(axes * outward);
   set_single(out, normal, {sphere.position + 0.5 * (radius + distance) * normal, gap, only_feature});
+  out.at_edge = (centre.array() != nearest.array()).count() > 1;
   return true;
 }
 

@@ -235,6 +235,8 @@ Manifolds Substepper::find_contacts(double h, double reach) {
   balls.find(views, contact_margin_.view(), late);
   const Manifolds manifolds =
       narrow_phase_.find(views, balls.others(pairs, late), contact_margin_.view(), late);
+  impacts_.take_normals_of_faces(impact_problem(pairs, h, 0), parameters_, view_of(bodies_),
+                                 narrow_phase_.headers(), narrow_phase_.points());
   counters.narrowphase += narrow_phase_.stats();
   counters.narrowphase.tested += balls.tested();
   return manifolds;

@@ -4,6 +4,7 @@
 #include "core/tolerances.hpp"
 #include "narrowphase/contact.hpp"
 #include "sim/dynamics/flight_stage.hpp"
+#include "sim/dynamics/separated_flight.hpp"
 
 #include <algorithm>
 
@@ -25,6 +26,55 @@ struct StruckFlights {
     return instant_of(flight, time);
   }
 };
+
+/// Gives a contact at an edge the normal of a plane along a face that separates its bodies all the while, if
+/// there is one: where a flat surface goes on in other bodies, their edges are no features of it. A contact
+/// whose rows would not hold the flights apart is left as it is, and so is one of a face that the bodies
+/// approach no faster than that plane.
+[[gnu::noinline]] SCREE_HD inline void take_normal_of_face(const StruckFlights& struck, std::int32_t i,
+                                                           std::int32_t j, int count, ContactPoint* points,
+                                                           Vec3& normal) {
+  const FlightStage& stage = struck.stage;
+  const double begin = struck.time_of(i, j);
+  const double seen = std::max(0.5 * stage.terms.step, begin);
+  const double left = 1.5 * stage.terms.step - seen;
+  BodyInstant at_i = struck.at(i, seen);
+  BodyInstant at_j = struck.at(j, seen);
+  stage.bodies.period.bring_near(points[0].position, at_i.solid.position);
+  stage.bodies.period.bring_near(points[0].position, at_j.solid.position);
+  bool pushes = false;
+  for (int k = 0; k < count; ++k) {
+    const double closing = closing_speed(normal, points[k].position, at_i, at_j);
+    pushes = pushes || (closing > 0 && closing * left > tolerance::likely_closing * points[k].gap);
+  }
+  if (!pushes) return;
+  PairFlight pair = stage.pair_of(i, j, 1.5 * stage.terms.step);
+  stage.bodies.period.bring_near(points[0].position, pair.i.position);
+  stage.bodies.period.bring_near(points[0].position, pair.j.position);
+  const SeparatingFace face = separating_face(pair, begin, pair.until, at_i.solid, at_j.solid);
+  if (!face.exists()) return;
+  double least = points[0].gap;
+  double approach = 0;
+  const BodyInstant from_i{at_i.solid, pair.i.velocity, at_i.spin};
+  const BodyInstant from_j{at_j.solid, pair.j.velocity, at_j.spin};
+  for (int k = 0; k < count; ++k) {
+    least = std::min(least, points[k].gap);
+    const double closing = closing_speed(normal, points[k].position, from_i, from_j);
+    approach = std::max(approach, (pair.until - begin) * closing);
+  }
+  const double rounding = tolerance::touching_gap * pair.smaller_size();
+  if (count > 1 &&
+      ((face.normal - normal).norm() <= tolerance::same_feature || approach <= face.approach + rounding))
+    return;
+  normal = face.normal;
+  for (int k = 0; k < count; ++k) points[k].gap += face.separation - least;
+  // A ball has its contact on the normal.
+  const auto place = [&](const BodyFlight& ball, const Vec3& centre, double side) {
+    if (ball.is_ball()) points[0].position = centre + side * (ball.size.x() + 0.5 * face.separation) * normal;
+  };
+  place(pair.i, at_i.solid.position, 1.0);
+  place(pair.j, at_j.solid.position, -1.0);
+}
 
 /// How the response is to see a contact.
 struct ContactFlight {

@@ -6,6 +6,7 @@
 #include "core/tolerances.hpp"
 #include "sim/dynamics/contact_laws.hpp"
 #include "sim/dynamics/meeting.hpp"
+#include "sim/dynamics/separated_flight.hpp"
 #include "sim/dynamics/state.hpp"
 
 #include <algorithm>
@@ -120,27 +121,17 @@ struct FlightStage {
             .midpoint = 0.5 * terms.step};
   }
 
-  /// The slowest approach that bounces on a part without load (m/s).
+  /// The slowest approach that bounces on a part without load, but for sinking_velocity() (m/s).
   SCREE_HD double slowest_bounce(std::int32_t i, std::int32_t j) const {
     const double restitution = terms.laws.between(i, j).restitution;
     if (!parameters.restitution || restitution == 0) return HUGE_VAL;
     const double rounding =
         tolerance::closing_speed * (bodies.velocity[i].norm() + bodies.velocity[j].norm());
-    double slowest = std::max(parameters.restitution_threshold.of(restitution), rounding);
-    SCREE_ON_HOST(slowest += sinking_speed(i, j);)
-    return slowest;
+    return std::max(parameters.restitution_threshold.of(restitution), rounding);
   }
 
   SCREE_HD PairShapes shapes_of(std::int32_t i, std::int32_t j) const {
     return {terms.laws.shape_data(i), terms.laws.shape_data(j)};
-  }
-
-  /// How fast a body that rests on a mesh falls in the flight of a substep, and so meets the next triangle
-  /// that it comes over (m/s); 0 for all other pairs.
-  double sinking_speed(std::int32_t i, std::int32_t j) const {
-    if (terms.laws.shapes.size() == 0) return 0;
-    if (bodies.shape[i] != Shape::triangle && bodies.shape[j] != Shape::triangle) return 0;
-    return terms.step * parameters.acceleration_of(is_free(i) ? i : j).norm();
   }
 
   /// Two bodies until the end of the substep; no meeting of theirs counts yet.
@@ -211,7 +202,9 @@ struct FlightStage {
       }
     }
     if (limits.may_go_deep(speed)) pair.farthest = limits.farthest;
-    return next_meeting(pair, limits.earliest);
+    pair.sinking = sinking_velocity(pair.i, pair.j);
+    const Meeting meeting = next_meeting(pair, limits.earliest);
+    return meeting.time < HUGE_VAL && pass_by(pair, limits.earliest, meeting.time) ? Meeting{} : meeting;
   }
 
  private:

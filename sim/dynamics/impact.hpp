@@ -249,7 +249,9 @@ SCREE_HD bool solve_impact(const FlightStage& stage, std::int32_t i, std::int32_
     ++count;
   }
   if (count == 0) return false;
-  const bool bounces = fastest > stage.slowest_bounce(i, j) && !loads.is_loaded(meeting.part) &&
+  const double slowest =
+      stage.slowest_bounce(i, j) + fabs(m.normal.dot(sinking_velocity(out.flight_i, out.flight_j)));
+  const bool bounces = fastest > slowest && !loads.is_loaded(meeting.part) &&
                        std::max(stage.weary[i], stage.weary[j]) < bounces_end;
   out.restitution = bounces ? law.restitution : 0.0;
   for (int k = 0; k < count; ++k) out.rows[k].target = -out.restitution * out.before[k].dot(m.normal);

@@ -168,6 +168,12 @@ const LateBodies* ImpactSolver::late_bodies(const ImpactProblem& problem,
   return &late_.emplace(stage);
 }
 
+void ImpactSolver::take_normals_of_faces(const ImpactProblem& problem, const ResponseParameters& parameters,
+                                         BodyView bodies, View<ManifoldHeader> headers,
+                                         View<ContactPoint> points) {
+  scree::take_normals_of_faces(FlightStage(problem.terms, parameters, bodies, log_), headers, points);
+}
+
 void ImpactSolver::mark_flights(const ImpactProblem& problem, const ResponseParameters& parameters,
                                 const Manifolds& manifolds, BodyView bodies, ContactSet& set,
                                 BallPairs& balls) {

@@ -37,6 +37,9 @@ class ImpactSolver {
   /// substep. Valid until the next call.
   const LateBodies* late_bodies(const ImpactProblem& problem, const ResponseParameters& parameters,
                                 BodyView bodies);
+  /// As take_normal_of_face(), of all manifolds, after resolve().
+  void take_normals_of_faces(const ImpactProblem& problem, const ResponseParameters& parameters,
+                             BodyView bodies, View<ManifoldHeader> headers, View<ContactPoint> points);
   /// As the function of this name, after resolve().
   void mark_flights(const ImpactProblem& problem, const ResponseParameters& parameters,
                     const Manifolds& manifolds, BodyView bodies, ContactSet& set, BallPairs& balls);

@@ -9,6 +9,16 @@ namespace scree {
 
 namespace {
 
+struct TakeNormals {
+  StruckFlights struck;
+  View<ManifoldHeader> headers;
+  View<ContactPoint> points;
+  void operator()(std::int64_t index) const {
+    ManifoldHeader& m = headers[index];
+    if (m.at_edge) take_normal_of_face(struck, m.i, m.j, m.count, &points[m.first_point], m.normal);
+  }
+};
+
 struct MarkFlights {
   StruckFlights struck;
   Manifolds manifolds;
@@ -65,6 +75,12 @@ struct MarkPairs {
 bool any_is_late(const FlightStage& stage, const std::vector<StruckBody>& struck) {
   return std::any_of(struck.begin(), struck.end(),
                      [&](const StruckBody& body) { return stage.is_late(body.body); });
+}
+
+void take_normals_of_faces(const FlightStage& stage, View<ManifoldHeader> headers,
+                           View<ContactPoint> points) {
+  parallel::for_each<Host>("contacts.faces", headers.size(),
+                           TakeNormals{StruckFlights{stage}, headers, points});
 }
 
 void mark_flights(const FlightStage& stage, const Manifolds& manifolds, ContactSet& set, BallPairs& balls) {

@@ -26,6 +26,9 @@ class StruckBodies final : public LateBodies {
 /// Whether one of them was struck after the midpoint.
 bool any_is_late(const FlightStage& stage, const std::vector<StruckBody>& struck);
 
+/// As take_normal_of_face(), of all that are at an edge.
+void take_normals_of_faces(const FlightStage& stage, View<ManifoldHeader> headers, View<ContactPoint> points);
+
 /// Sets Contact::flying and Contact::lead, and which of the pairs that touch fly.
 void mark_flights(const FlightStage& stage, const Manifolds& manifolds, ContactSet& set, BallPairs& balls);
 

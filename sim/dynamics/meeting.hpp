@@ -20,7 +20,7 @@ SCREE_HD inline Meeting next_of_balls(const PairFlight& pair, double earliest) {
                                             .velocity = pair.j.velocity - pair.i.velocity,
                                             .touching = pair.i.size.x() + pair.j.size.x()},
                                            step, earliest);
-  if (!(next.time <= pair.until) || !pair.counts(0, -next.speed, next.time)) return {};
+  if (!(next.time <= pair.until) || !pair.counts(0, next.normal, -next.speed, next.time)) return {};
   return {.time = next.time, .part = 0};
 }
 
@@ -37,7 +37,7 @@ SCREE_HD inline Meeting next_of_ball_and_plane(const PairFlight& pair, int part,
   const double gap = normal.dot(offset) - ball.size.x();
   // A ball that leaves is at the surface at the latest now, whatever rounding says: it may come back.
   const double s = earliest + time_of_impact(u > 0 ? std::max(gap, DBL_MIN) : gap, u, a);
-  if (!(s <= pair.until) || !pair.counts(part, -(u + a * (s - earliest)), s)) return {};
+  if (!(s <= pair.until) || !pair.counts(part, normal, -(u + a * (s - earliest)), s)) return {};
   return {.time = s, .part = part};
 }
 
@@ -57,7 +57,7 @@ SCREE_HD inline Meeting next_of_ball_in_tube(const PairFlight& pair, const BodyF
                                             .velocity = across(velocity),
                                             .reach = tube.size.x() - ball.size.x()},
                                            step, earliest);
-  if (wall.time <= pair.until && pair.counts(tube_wall, wall.speed, wall.time))
+  if (wall.time <= pair.until && pair.counts(tube_wall, wall.outward, wall.speed, wall.time))
     first = {.time = wall.time, .part = tube_wall};
   for (const TubePart cap : {tube_cap_below, tube_cap_above}) {
     const double side = cap == tube_cap_below ? -1.0 : 1.0;

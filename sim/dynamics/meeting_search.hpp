@@ -98,11 +98,12 @@ class MeetingSearch {
           look.closing = closing;
         }
         if (gap > touching()) continue;
-        if (!look.hit && pair_.counts(part, closing, s)) {
+        if (!look.hit && pair_.counts(part, manifolds[m].normal, closing, s)) {
           look.hit = true;
           look.part = part;
         }
-        look.rests[part] = look.rests[part] || (closing > 0 && !pair_.counts(part, closing, s));
+        look.rests[part] =
+            look.rests[part] || (closing > 0 && !pair_.counts(part, manifolds[m].normal, closing, s));
       }
     }
     return look;

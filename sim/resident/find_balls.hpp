@@ -37,6 +37,11 @@ SCREE_HD inline bool meet(const FindStage<Real>& stage, const SlotBodies<Real>& 
   } else if constexpr (rare) {
     if (shape == Shape::box) {
       found = sphere_box(of_ball, other, at.margin(), out);
+      if (found && out.at_edge) {
+        if (!ball_a) out.normal = -out.normal;
+        take_normal_of_face(stage.struck, at.slot.i, at.slot.j, 1, out.points, out.normal);
+        return true;
+      }
     } else {
       Manifold all[3];
       const Manifold* on =

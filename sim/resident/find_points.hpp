@@ -34,9 +34,9 @@ template <class Real>
   return on != nullptr;
 }
 
-/// The contact of a slot that is not of balls.
+/// The contact of a slot that is not of balls, as the narrow phase finds it.
 template <class Real>
-SCREE_HD inline bool meet_points(const FindStage<Real>& stage, const SlotBodies<Real>& at, double lead,
+SCREE_HD inline bool find_points(const FindStage<Real>& stage, const SlotBodies<Real>& at, double lead,
                                  Manifold& out) {
   if (lead == 0 && are_far(stage, at)) return false;
   const bool box_a = at.a.shape == Shape::box;
@@ -51,6 +51,15 @@ SCREE_HD inline bool meet_points(const FindStage<Real>& stage, const SlotBodies<
   const bool found = box_plane(box_a ? a : b, box_a ? b : a, at.margin(), out);
   if (found && !box_a) out.normal = -out.normal;
   return found;
+}
+
+/// The contact of a slot that is not of balls.
+template <class Real>
+SCREE_HD inline bool meet_points(const FindStage<Real>& stage, const SlotBodies<Real>& at, double lead,
+                                 Manifold& out) {
+  if (!find_points(stage, at, lead, out)) return false;
+  if (out.at_edge) take_normal_of_face(stage.struck, at.slot.i, at.slot.j, out.count, out.points, out.normal);
+  return true;
 }
 
 /// Contacts that are not of balls alone, all as if they met. Those that may fly past are listed.

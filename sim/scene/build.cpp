@@ -48,6 +48,7 @@ class Builder {
     find_lifetimes(scene);
     find_motions(scene);
     find_servos(scene);
+    if (scene.model.rotation == false) keep_from_turning(scene.bodies);
     require_numbers(scene);
     find_forces(scene);
     find_checks(scene);
@@ -70,6 +71,15 @@ class Builder {
       scene.bodies.material[static_cast<std::size_t>(id)] = slot.material;
       if (!make_body(entry, k, id, scene.seed, material.density, slot.hull.get(), scene.bodies))
         reader_.fail(entry.node->mark, beyond_numbers);
+    }
+  }
+
+  /// Without rotation no impulse turns a free body, and none starts with a spin.
+  static void keep_from_turning(BodyTable& bodies) {
+    for (std::size_t b = 0; b < bodies.mobility.size(); ++b) {
+      if (bodies.mobility[b] != Mobility::free) continue;
+      bodies.spin[b].setZero();
+      bodies.inverse_inertia[b].setZero();
     }
   }
 

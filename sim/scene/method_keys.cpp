@@ -104,7 +104,8 @@ Codec<ModelSettings> model_section() {
       {automatic,
        section<T>("model", "Features to compute; auto: only if the scene needs them.",
                   {
-                      key<T>("rotation", &T::rotation, feature, optionally, "bodies turn"),
+                      key<T>("rotation", &T::rotation, feature, optionally,
+                         "free bodies turn; off: they keep their orientation, and friction slides"),
                       key<T>("friction", &T::friction, feature, optionally, "contacts rub"),
                       with_default(key<T>("rolling_friction", &T::rolling_friction,
                                           optional(word<bool>({{"on", true}, {"off", false}})), optionally,

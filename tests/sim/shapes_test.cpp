@@ -63,7 +63,7 @@ TEST(Shapes, ABallRollsOverAMeshAsOverAPlane) {
   const std::string time = "time: {end: 3, step: 0.004}\nbodies:\n";
   const std::string plane = "  - {plane: {normal: [0, 0, 1], offset: 0}, material: stone}\n";
   const std::string mesh = "  - {mesh: {file: " + floor_file + "}, fixed: true, material: stone}\n";
-  // With e = 0, since slow approaches to a mesh bounce a little less (FlightStage::sinking_speed).
+  // With e = 0, since slow approaches to a mesh bounce a little less (FlightStage::slowest_bounce).
   const std::string law = "contacts: [{between: [stone, stone], restitution: 0, friction: 0.5}]\n";
   EXPECT_LT(largest_difference(law + time + plane + ball, law + time + mesh + ball, 750), 1e-9);
 }
