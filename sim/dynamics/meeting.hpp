@@ -35,6 +35,9 @@ SCREE_HD inline Meeting next_of_ball_and_plane(const PairFlight& pair, int part,
   const Vec3 offset = ball.position - point + (earliest - ball.midpoint) * velocity +
                       (0.5 * earliest * earliest) * flight.acceleration;
   const double gap = normal.dot(offset) - ball.size.x();
+  // What touches at rest bears load from then on, and does not bounce.
+  const bool rests = u == 0 && gap <= tolerance::touching_gap * ball.size.x();
+  if (rests && pair.slowest[part] > 0 && pair.farthest == HUGE_VAL) return {};
   // A ball that leaves is at the surface at the latest now, whatever rounding says: it may come back.
   const double s = earliest + time_of_impact(u > 0 ? std::max(gap, DBL_MIN) : gap, u, a);
   if (!(s <= pair.until) || !pair.counts(part, normal, -(u + a * (s - earliest)), s)) return {};

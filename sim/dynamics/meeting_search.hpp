@@ -65,7 +65,7 @@ class MeetingSearch {
 
   SCREE_HD double touching() const { return tolerance::touching_gap * size_; }
 
-  /// A part that has touched slowly bears load from then on, and does not bounce.
+  /// A part that has touched slowly, or touches at rest, bears load from then on, and does not bounce.
   SCREE_HD void settle(const Look& now) {
     for (int part = 0; part < PairFlight::parts; ++part) {
       if (now.rests[part]) pair_.slowest[part] = HUGE_VAL;
@@ -102,8 +102,9 @@ class MeetingSearch {
           look.hit = true;
           look.part = part;
         }
+        const bool bears = closing > 0 || (closing == 0 && pair_.slowest[part] > 0);
         look.rests[part] =
-            look.rests[part] || (closing > 0 && !pair_.counts(part, manifolds[m].normal, closing, s));
+            look.rests[part] || (bears && !pair_.counts(part, manifolds[m].normal, closing, s));
       }
     }
     return look;
