@@ -4,11 +4,11 @@
 
 namespace scree::detail {
 
-SeparatingFace find_general_separating_face(const Motion3<ShapedSolid>& i, const Motion3<ShapedSolid>& j,
+SeparatingFace find_general_separating_face(const Instants<ShapedSolid>& i, const Instants<ShapedSolid>& j,
                                             const PairShapes& shapes, double slack, const Vec3& crossing) {
   const Vec3 origin = i.begin.solid.position;
-  const auto placed = [&origin](const Motion3<ShapedSolid>& body, const ShapeData* data) {
-    return Motion3<ConvexBody>{
+  const auto placed = [&origin](const Instants<ShapedSolid>& body, const ShapeData* data) {
+    return Instants<ConvexBody>{
         {body.begin, data, origin}, {body.seen, data, origin}, {body.end, data, origin}};
   };
   return best_face(placed(i, shapes.a), placed(j, shapes.b), slack, crossing);

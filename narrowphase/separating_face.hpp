@@ -7,7 +7,7 @@ namespace scree {
 
 /// Something at the beginning of a motion, when a contact is seen, and at the end.
 template <class T>
-struct Motion3 {
+struct Instants {
   T begin, seen, end;
 };
 
@@ -49,7 +49,7 @@ class BallOrBox {
 
 /// Takes the best of the faces of the first body, if it is better than `best`.
 template <class Body>
-SCREE_HD void look_at_faces(const Motion3<Body>& first, const Motion3<Body>& second, double slack,
+SCREE_HD void look_at_faces(const Instants<Body>& first, const Instants<Body>& second, double slack,
                             const Vec3& crossing, SeparatingFace& best) {
   const auto separation = [](const Body& a, const Body& b, const Vec3& n) {
     return -b.reach(-n) - a.reach(n);
@@ -68,7 +68,7 @@ SCREE_HD void look_at_faces(const Motion3<Body>& first, const Motion3<Body>& sec
 }
 
 template <class Body>
-SCREE_HD SeparatingFace best_face(const Motion3<Body>& i, const Motion3<Body>& j, double slack,
+SCREE_HD SeparatingFace best_face(const Instants<Body>& i, const Instants<Body>& j, double slack,
                                   const Vec3& crossing) {
   SeparatingFace of_i, of_j;
   look_at_faces(i, j, slack, crossing, of_i);
@@ -80,7 +80,7 @@ SCREE_HD SeparatingFace best_face(const Motion3<Body>& i, const Motion3<Body>& j
 }
 
 /// As find_separating_face(), of any convex shapes, on Host.
-SeparatingFace find_general_separating_face(const Motion3<ShapedSolid>& i, const Motion3<ShapedSolid>& j,
+SeparatingFace find_general_separating_face(const Instants<ShapedSolid>& i, const Instants<ShapedSolid>& j,
                                             const PairShapes& shapes, double slack, const Vec3& crossing);
 
 }  // namespace detail
@@ -88,15 +88,15 @@ SeparatingFace find_general_separating_face(const Motion3<ShapedSolid>& i, const
 /// Of the planes along the faces of two convex bodies that separate them by at least -slack (m) at the
 /// beginning of their motion, and that they approach after that by no more than slack and their normal's part
 /// of `crossing` (m), the one that they approach least.
-SCREE_HD inline SeparatingFace find_separating_face(const Motion3<ShapedSolid>& i,
-                                                    const Motion3<ShapedSolid>& j, const PairShapes& shapes,
+SCREE_HD inline SeparatingFace find_separating_face(const Instants<ShapedSolid>& i,
+                                                    const Instants<ShapedSolid>& j, const PairShapes& shapes,
                                                     double slack, const Vec3& crossing) {
   SCREE_ON_HOST(
       if (is_general(i.begin.shape) || is_general(j.begin.shape)) return detail::find_general_separating_face(
           i, j, shapes, slack, crossing);)
   const Vec3 origin = i.begin.solid.position;
-  const auto placed = [&origin](const Motion3<ShapedSolid>& body) {
-    return Motion3<detail::BallOrBox>{{body.begin, origin}, {body.seen, origin}, {body.end, origin}};
+  const auto placed = [&origin](const Instants<ShapedSolid>& body) {
+    return Instants<detail::BallOrBox>{{body.begin, origin}, {body.seen, origin}, {body.end, origin}};
   };
   return detail::best_face(placed(i), placed(j), slack, crossing);
 }

@@ -29,7 +29,7 @@ namespace scree {
                     (faster ? pair.i.acceleration : pair.j.acceleration);
   const auto motion = [begin, end](BodyFlight& flight, const Solid& seen) {
     flight.acceleration.setZero();
-    return Motion3<ShapedSolid>{{flight.shape, instant_of(flight, begin).solid},
+    return Instants<ShapedSolid>{{flight.shape, instant_of(flight, begin).solid},
                                 {flight.shape, seen},
                                 {flight.shape, instant_of(flight, end).solid}};
   };
