@@ -8,9 +8,14 @@ if(NOT CMAKE_BUILD_TYPE)
   set(CMAKE_BUILD_TYPE Release)
 endif()
 
+# Objects of one clone, preset or branch serve all others: paths in this tree are looked up from the build folder, and
+# the folder itself counts for nothing (a debugger may be shown the source of another clone). What a file includes is
+# read from the compiler's own list, so that a miss costs no second run of the preprocessor.
 find_program(SCREE_CCACHE ccache)
 if(SCREE_CCACHE)
-  set(CMAKE_CXX_COMPILER_LAUNCHER ${SCREE_CCACHE})
+  set(launcher env CCACHE_BASEDIR=${CMAKE_SOURCE_DIR} CCACHE_NOHASHDIR=1 CCACHE_DEPEND=1 ${SCREE_CCACHE})
+  set(CMAKE_CXX_COMPILER_LAUNCHER ${launcher})
+  set(CMAKE_CUDA_COMPILER_LAUNCHER ${launcher})
 endif()
 
 # All code may become part of the shared library (ScreeLibrary.cmake); calls inside it are still inlined, because
