@@ -45,8 +45,7 @@ add_library(scree_options INTERFACE)
 target_include_directories(scree_options INTERFACE ${CMAKE_SOURCE_DIR})
 target_compile_definitions(scree_options INTERFACE
   EIGEN_MAX_STATIC_ALIGN_BYTES=0
-  EIGEN_DONT_VECTORIZE
-  SCREE_WITH_CUDA=$<BOOL:${SCREE_CUDA}>)
+  EIGEN_DONT_VECTORIZE)
 set(warnings -Wall -Wextra -Wpedantic -Wshadow -Werror)
 target_compile_options(scree_options INTERFACE
   $<$<COMPILE_LANGUAGE:CXX>:${warnings} -ffp-contract=off -fno-math-errno -fno-semantic-interposition>)
@@ -72,30 +71,29 @@ if(SCREE_FUZZ)
   target_link_options(scree_options INTERFACE -fsanitize=float-cast-overflow)
 endif()
 
-# What a library or program needs to reach Thrust: its sources are compiled as CUDA where the build has nvcc and
-# as C++ where it has not, unchanged.
-add_library(scree_parallel_options INTERFACE)
-target_link_libraries(scree_parallel_options INTERFACE scree_options)
-if(SCREE_CUDA)
-  target_compile_options(scree_parallel_options INTERFACE
-    $<$<COMPILE_LANGUAGE:CUDA>:-std=c++20 --expt-relaxed-constexpr -diag-suppress=20012 --fmad=false -t2
-      -Xcompiler=-Wall,-Wextra,-Wshadow,-Werror,-ffp-contract=off,-fno-math-errno,-fno-semantic-interposition>)
-  target_link_libraries(scree_parallel_options INTERFACE CUDA::cudart_static)
-else()
-  target_compile_definitions(scree_parallel_options INTERFACE
-    THRUST_DEVICE_SYSTEM=THRUST_DEVICE_SYSTEM_TBB)
-endif()
+# Sources by what they need of the build. All but those that these two functions name are compiled by the same command
+# with and without nvcc, so that the compiler cache serves them to both builds; core/parallel_loops.hpp says what Host
+# can do without Thrust.
 
-function(scree_parallel_target target)
-  if(SCREE_CUDA)
-    get_target_property(sources ${target} SOURCES)
-    set_source_files_properties(${sources} PROPERTIES LANGUAGE CUDA)
-  endif()
-  target_link_libraries(${target} PUBLIC scree_parallel_options TBB::tbb)
+# scree_space_sources(FILE...): sources of this folder that name every space of the build (SCREE_SPACES,
+# SCREE_FOR_EACH_SPACE).
+function(scree_space_sources)
+  set_property(SOURCE ${ARGN} APPEND PROPERTY COMPILE_DEFINITIONS SCREE_WITH_CUDA=$<BOOL:${SCREE_CUDA}>)
 endfunction()
 
-# A library whose sources may include core/parallel.hpp.
-function(add_parallel_library target)
-  add_library(${target} STATIC ${ARGN})
-  scree_parallel_target(${target})
+# scree_parallel_sources(FILE...): sources of this folder that reach Thrust (core/parallel.hpp). They are compiled as
+# CUDA where the build has nvcc and as C++ where it has not, unchanged.
+function(scree_parallel_sources)
+  scree_space_sources(${ARGN})
+  if(SCREE_CUDA)
+    set_property(SOURCE ${ARGN} PROPERTY LANGUAGE CUDA)
+    set(options -std=c++20 --expt-relaxed-constexpr -diag-suppress=20012 --fmad=false -t2
+      -Xcompiler=-Wall,-Wextra,-Wshadow,-Werror,-ffp-contract=off,-fno-math-errno,-fno-semantic-interposition)
+  else()
+    set(options -DTHRUST_DEVICE_SYSTEM=THRUST_DEVICE_SYSTEM_TBB)
+    if(NOT SCREE_THRUST_INCLUDE IN_LIST CMAKE_CXX_IMPLICIT_INCLUDE_DIRECTORIES)
+      list(APPEND options -isystem${SCREE_THRUST_INCLUDE})
+    endif()
+  endif()
+  set_property(SOURCE ${ARGN} APPEND PROPERTY COMPILE_OPTIONS ${options})
 endfunction()
