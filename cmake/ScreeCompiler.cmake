@@ -71,6 +71,19 @@ if(SCREE_FUZZ)
   target_link_options(scree_options INTERFACE -fsanitize=float-cast-overflow)
 endif()
 
+# scree_unite(TARGET...): a plain target whose sources are compiled eight at once in optimised builds, because g++ spends
+# more than half of its time on their headers. Builds with sanitizers and for a debugger compile each source by itself,
+# which shows that each includes what it needs.
+function(scree_unite)
+  if(CMAKE_BUILD_TYPE STREQUAL Release)
+    set_target_properties(${ARGN} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 8)
+  endif()
+endfunction()
+
+# What runs once in a run, such as the keys of the scene language and the command line: a third of the compiler's time is
+# saved, and no time of the run is lost.
+set(scree_run_once $<$<NOT:$<CONFIG:Debug>>:-O1>)
+
 # Sources by what they need of the build. All but those that these two functions name are compiled by the same command
 # with and without nvcc, so that the compiler cache serves them to both builds; core/parallel_loops.hpp says what Host
 # can do without Thrust.
