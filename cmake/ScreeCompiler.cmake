@@ -8,9 +8,14 @@ if(NOT CMAKE_BUILD_TYPE)
   set(CMAKE_BUILD_TYPE Release)
 endif()
 
+# Objects of one clone, preset or branch serve all others: paths in this tree are looked up from the build folder, and
+# the folder itself counts for nothing (a debugger may be shown the source of another clone). What a file includes is
+# read from the compiler's own list, so that a miss costs no second run of the preprocessor.
 find_program(SCREE_CCACHE ccache)
 if(SCREE_CCACHE)
-  set(CMAKE_CXX_COMPILER_LAUNCHER ${SCREE_CCACHE})
+  set(launcher env CCACHE_BASEDIR=${CMAKE_SOURCE_DIR} CCACHE_NOHASHDIR=1 CCACHE_DEPEND=1 ${SCREE_CCACHE})
+  set(CMAKE_CXX_COMPILER_LAUNCHER ${launcher})
+  set(CMAKE_CUDA_COMPILER_LAUNCHER ${launcher})
 endif()
 
 # All code may become part of the shared library (ScreeLibrary.cmake); calls inside it are still inlined, because
@@ -40,17 +45,17 @@ add_library(scree_options INTERFACE)
 target_include_directories(scree_options INTERFACE ${CMAKE_SOURCE_DIR})
 target_compile_definitions(scree_options INTERFACE
   EIGEN_MAX_STATIC_ALIGN_BYTES=0
-  EIGEN_DONT_VECTORIZE
-  SCREE_WITH_CUDA=$<BOOL:${SCREE_CUDA}>)
+  EIGEN_DONT_VECTORIZE)
 set(warnings -Wall -Wextra -Wpedantic -Wshadow -Werror)
 target_compile_options(scree_options INTERFACE
   $<$<COMPILE_LANGUAGE:CXX>:${warnings} -ffp-contract=off -fno-math-errno -fno-semantic-interposition>)
 if(SCREE_SANITIZE)
+  # Lines are all that a report names: the rest of what a debugger reads costs a third of the compiler's time.
   # Not `null`: Debian's Thrust 1.17 binds a reference to *nullptr for empty ranges (reference.h:330). Nor the warning:
   # with sanitizers g++ gives it for initialised variables too, as its manual says.
   target_compile_options(scree_options INTERFACE
     $<$<COMPILE_LANGUAGE:CXX>:-fsanitize=address,undefined -fno-sanitize=null -fno-sanitize-recover=all
-      -fno-omit-frame-pointer $<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized>>)
+      -fno-omit-frame-pointer -g1 $<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized>>)
   target_link_options(scree_options INTERFACE -fsanitize=address,undefined)
 endif()
 if(SCREE_TSAN)
@@ -67,30 +72,42 @@ if(SCREE_FUZZ)
   target_link_options(scree_options INTERFACE -fsanitize=float-cast-overflow)
 endif()
 
-# What a library or program needs to reach Thrust: its sources are compiled as CUDA where the build has nvcc and
-# as C++ where it has not, unchanged.
-add_library(scree_parallel_options INTERFACE)
-target_link_libraries(scree_parallel_options INTERFACE scree_options)
-if(SCREE_CUDA)
-  target_compile_options(scree_parallel_options INTERFACE
-    $<$<COMPILE_LANGUAGE:CUDA>:-std=c++20 --expt-relaxed-constexpr -diag-suppress=20012 --fmad=false -t2
-      -Xcompiler=-Wall,-Wextra,-Wshadow,-Werror,-ffp-contract=off,-fno-math-errno,-fno-semantic-interposition>)
-  target_link_libraries(scree_parallel_options INTERFACE CUDA::cudart_static)
-else()
-  target_compile_definitions(scree_parallel_options INTERFACE
-    THRUST_DEVICE_SYSTEM=THRUST_DEVICE_SYSTEM_TBB)
-endif()
-
-function(scree_parallel_target target)
-  if(SCREE_CUDA)
-    get_target_property(sources ${target} SOURCES)
-    set_source_files_properties(${sources} PROPERTIES LANGUAGE CUDA)
+# scree_unite(TARGET...): a plain target whose sources are compiled eight at once in optimised builds, because g++ spends
+# more than half of its time on their headers. Builds with sanitizers and for a debugger compile each source by itself,
+# which shows that each includes what it needs.
+function(scree_unite)
+  if(CMAKE_BUILD_TYPE STREQUAL Release)
+    set_target_properties(${ARGN} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 8)
   endif()
-  target_link_libraries(${target} PUBLIC scree_parallel_options TBB::tbb)
 endfunction()
 
-# A library whose sources may include core/parallel.hpp.
-function(add_parallel_library target)
-  add_library(${target} STATIC ${ARGN})
-  scree_parallel_target(${target})
+# What runs once in a run, such as the keys of the scene language and the command line: a third of the compiler's time is
+# saved, and no time of the run is lost.
+set(scree_run_once $<$<NOT:$<CONFIG:Debug>>:-O1>)
+
+# Sources by what they need of the build. All but those that these two functions name are compiled by the same command
+# with and without nvcc, so that the compiler cache serves them to both builds; core/parallel_loops.hpp says what Host
+# can do without Thrust.
+
+# scree_space_sources(FILE...): sources of this folder that name every space of the build (SCREE_SPACES,
+# SCREE_FOR_EACH_SPACE).
+function(scree_space_sources)
+  set_property(SOURCE ${ARGN} APPEND PROPERTY COMPILE_DEFINITIONS SCREE_WITH_CUDA=$<BOOL:${SCREE_CUDA}>)
+endfunction()
+
+# scree_parallel_sources(FILE...): sources of this folder that reach Thrust (core/parallel.hpp). They are compiled as
+# CUDA where the build has nvcc and as C++ where it has not, unchanged.
+function(scree_parallel_sources)
+  scree_space_sources(${ARGN})
+  if(SCREE_CUDA)
+    set_property(SOURCE ${ARGN} PROPERTY LANGUAGE CUDA)
+    set(options -std=c++20 --expt-relaxed-constexpr -diag-suppress=20012 --fmad=false -t2
+      -Xcompiler=-Wall,-Wextra,-Wshadow,-Werror,-ffp-contract=off,-fno-math-errno,-fno-semantic-interposition)
+  else()
+    set(options -DTHRUST_DEVICE_SYSTEM=THRUST_DEVICE_SYSTEM_TBB)
+    if(NOT SCREE_THRUST_INCLUDE IN_LIST CMAKE_CXX_IMPLICIT_INCLUDE_DIRECTORIES)
+      list(APPEND options -isystem${SCREE_THRUST_INCLUDE})
+    endif()
+  endif()
+  set_property(SOURCE ${ARGN} APPEND PROPERTY COMPILE_OPTIONS ${options})
 endfunction()

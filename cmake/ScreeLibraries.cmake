@@ -14,7 +14,6 @@ if(NOT SCREE_CUDA)
   if(NOT EXISTS ${SCREE_THRUST_INCLUDE}/thrust/version.h)
     message(FATAL_ERROR "SCREE_THRUST_INCLUDE: no thrust/version.h in ${SCREE_THRUST_INCLUDE} (libthrust-dev)")
   endif()
-  target_include_directories(scree_parallel_options SYSTEM INTERFACE ${SCREE_THRUST_INCLUDE})
 endif()
 
 find_package(yaml-cpp REQUIRED)

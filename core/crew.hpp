@@ -1,5 +1,5 @@
 // Threads of Host that stand by between short calls: to wake one that sleeps takes longer than most calls
-// do. For parallel libraries alone.
+// do.
 #pragma once
 
 #include <atomic>
@@ -88,5 +88,13 @@ class Crew {
   alignas(64) std::atomic<int> inside_{0};             // helpers that may look at it
   alignas(64) std::atomic<std::int64_t> done_{0};      // chunks of the job, over all phases
 };
+
+/// Calls work(b, begin, end) for each of `blocks` runs of like length among n items, at once.
+template <class Work>
+void for_each_block(std::int64_t n, std::int64_t blocks, const Work& work) {
+  Crew::get().share(blocks, [&](std::int64_t b, std::int64_t end) {
+    for (; b < end; ++b) work(b, n * b / blocks, n * (b + 1) / blocks);
+  });
+}
 
 }  // namespace scree::detail

@@ -39,8 +39,8 @@ struct Host {
   static void forget_peak();
 };
 
-#if SCREE_WITH_CUDA
-/// One NVIDIA GPU, driven by Thrust's CUDA system on the default stream.
+/// One NVIDIA GPU, driven by Thrust's CUDA system on the default stream. Every build declares it, and only
+/// one with nvcc has what it declares.
 struct Device {
   static constexpr const char* name = "cuda";
   /// Uninitialised storage from the driver's stream-ordered pool. Throws std::bad_alloc.
@@ -54,12 +54,18 @@ struct Device {
   static MemoryUse memory_use();
   static void forget_peak();
 };
+
+// Which spaces a build has is known to the sources that ask for it (scree_space_sources in
+// cmake/ScreeCompiler.cmake), so that the objects of all others are the same in builds with and without nvcc.
+#if defined(SCREE_WITH_CUDA)
 /// Applies the macro M to each space that this build has; used for explicit instantiation.
+#if SCREE_WITH_CUDA
 #define SCREE_FOR_EACH_SPACE(M) M(::scree::Host) M(::scree::Device)
 #define SCREE_SPACES ::scree::Host, ::scree::Device
 #else
 #define SCREE_FOR_EACH_SPACE(M) M(::scree::Host)
 #define SCREE_SPACES ::scree::Host
+#endif
 #endif
 
 /// Byte copy between any two spaces, ordered with the work launched before it; a copy to Host is complete

@@ -1,4 +1,4 @@
-// MatchFinder for the spaces of this build. For parallel libraries alone.
+// MatchFinder for the spaces of this build. For parallel sources alone.
 #pragma once
 
 #include "core/space_matches_device.hpp"

@@ -1,5 +1,5 @@
 // Matches on Device: warps deal the tests of 32 items to their lanes, and blocks learn from those before them
-// where what they find belongs. For parallel libraries alone.
+// where what they find belongs. For parallel sources alone.
 #pragma once
 
 #include "core/array.hpp"

@@ -1,5 +1,5 @@
 // Matches on Host: threads search chunks of items at once, and put what they find in its place.
-// For parallel libraries alone.
+// For parallel sources alone.
 #pragma once
 
 #include "core/array.hpp"

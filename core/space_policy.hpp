@@ -1,4 +1,4 @@
-// How Thrust is asked to run in each space, and the primitives that Thrust cannot say. For parallel libraries
+// How Thrust is asked to run in each space, and the primitives that Thrust cannot say. For parallel sources
 // alone: include parallel.hpp instead.
 #pragma once
 
@@ -19,7 +19,10 @@
 
 #if SCREE_WITH_CUDA
 #include <cub/device/device_radix_sort.cuh>
+#include <thrust/for_each.h>
+#include <thrust/iterator/counting_iterator.h>
 #include <thrust/system/cuda/execution_policy.h>
+#include <thrust/transform_reduce.h>
 
 #include <cuda_runtime_api.h>
 #endif
@@ -29,14 +32,6 @@ namespace scree::detail {
 inline auto policy(Host) {
   Crew::get().dismiss();
   return thrust::tbb::par;
-}
-
-/// Calls work(b, begin, end) for each of `blocks` runs of like length among n items, at once.
-template <class Work>
-void for_each_block(std::int64_t n, std::int64_t blocks, const Work& work) {
-  Crew::get().share(blocks, [&](std::int64_t b, std::int64_t end) {
-    for (; b < end; ++b) work(b, n * b / blocks, n * (b + 1) / blocks);
-  });
 }
 
 /// Stable radix sort of n unsigned keys by their lowest `bits` bits, from the lowest digit: each block of
@@ -149,6 +144,25 @@ inline auto policy(Device) {
   static PoolAllocator pool;
   return thrust::cuda::par_nosync(pool);
 }
+
+}  // namespace scree::detail
+
+namespace scree {
+
+/// What loops and reductions (core/parallel_loops.hpp) do on Device, where they find it by their argument.
+template <class F>
+void launch_for_each(Device, std::int64_t n, const F& f) {
+  thrust::for_each_n(detail::policy(Device{}), thrust::counting_iterator<std::int64_t>(0), n, f);
+}
+template <class T, class F, class Join>
+T launch_reduce(Device, std::int64_t n, const F& f, const T& neutral, const Join& join) {
+  const thrust::counting_iterator<std::int64_t> first(0);
+  return thrust::transform_reduce(detail::policy(Device{}), first, first + n, f, neutral, join);
+}
+
+}  // namespace scree
+
+namespace scree::detail {
 
 template <class Key, class Value>
 void sort_pairs(Device, Key*& keys, Value*& values, Key*& spare_keys, Value*& spare_values, std::int64_t n,

@@ -1,5 +1,5 @@
 // Rounds of phases: work of many phases that wait for one another, and of which nobody knows beforehand how
-// often it is done, without the host between. For parallel libraries alone.
+// often it is done, without the host between. For parallel sources alone.
 #pragma once
 
 #include "core/array.hpp"

@@ -1,5 +1,5 @@
 // Work in tiles of consecutive items: what a tile finds is put side by side at its front, and sums over many
-// tiles are found without waiting for the host. For parallel libraries alone.
+// tiles are found without waiting for the host. For parallel sources alone.
 #pragma once
 
 #include "core/array.hpp"

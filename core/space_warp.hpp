@@ -1,5 +1,5 @@
 // What the lanes of a warp, the warps of a block and the blocks of a launch sum up, on Device.
-// For parallel libraries alone.
+// For parallel sources alone.
 #pragma once
 
 #include "core/space.hpp"

@@ -2,7 +2,7 @@
 // order.
 #include "narrowphase/narrow_phase.hpp"
 
-#include "core/parallel.hpp"
+#include "core/parallel_loops.hpp"
 #include "core/tolerances.hpp"
 #include "narrowphase/any_contacts.hpp"
 #include "narrowphase/box_box_ccd.hpp"

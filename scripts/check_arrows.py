@@ -3,7 +3,8 @@
 
     check_arrows.py                     checks the tree; prints one line per breach; exit status 1 if there is any
     check_arrows.py --self-test         the same, after showing that each rule refuses a breach of it
-    check_arrows.py --parallel-headers  the headers that reach Thrust
+    check_arrows.py --headers           the headers that no source includes first, each with a word: `parallel` where it
+                                        reaches Thrust, or `plain`
 """
 import re
 import sys
@@ -71,12 +72,12 @@ LIBRARIES = {
 }
 THRUST_HEADERS = ["core/parallel.hpp", "core/space_matches.hpp", "core/space_matches_device.hpp", "core/space_matches_host.hpp",
                   "core/space_policy.hpp", "core/space_warp.hpp", "core/space_rounds.hpp", "core/space_tiles.hpp"]
+DRIVERS = ["core/space.cpp"]  # calls the GPU's driver, and no Thrust
 THRUST = re.compile(r"(thrust|cub|cuda)/|cooperative_groups\.h")
 
 INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]', re.M)
 CONDITIONAL = re.compile(r"^\s*#\s*(if|ifdef|ifndef|elif)\b", re.M)
-TARGET = re.compile(r"\b(add_(?:parallel_)?library|add_executable|scree_(?:parallel_)?test|scree_parallel_target)"
-                    r"\s*\(\s*([^\s()]+)([^)]*)\)")
+PARALLEL = re.compile(r"\bscree_parallel_sources\s*\(([^)]*)\)")
 
 
 class Tree:
@@ -94,17 +95,21 @@ class Tree:
             self.reach[name] |= any(self.reaches_thrust(to) for _, to in self.includes.get(name, []))
         return self.reach[name]
 
-    def sources_by_kind(self):
-        """The sources that the CMake files give to parallel targets, and those that they give to plain ones."""
-        parallel, plain = set(), set()
-        for lists in sorted(f for folder in FOLDERS for f in (self.root / folder).rglob("CMakeLists.txt")):
-            targets = TARGET.findall(re.sub(r"#.*", "", lists.read_text()))
-            made_parallel = {name for command, name, _ in targets if command == "scree_parallel_target"}
-            for command, name, arguments in targets:
-                kind = parallel if "parallel" in command or name in made_parallel else plain
-                for source in re.findall(r"(?<=\s)[\w./-]+\.cpp", arguments):
-                    kind.add((lists.parent / source).resolve().relative_to(self.root.resolve()).as_posix())
-        return parallel, plain
+    def parallel_sources(self):
+        """The sources that the CMake files name parallel."""
+        return {(lists.parent / source).resolve().relative_to(self.root.resolve()).as_posix()
+                for folder in FOLDERS for lists in (self.root / folder).rglob("CMakeLists.txt")
+                for arguments in PARALLEL.findall(re.sub(r"#.*", "", lists.read_text()))
+                for source in re.findall(r"[\w./-]+\.cpp", arguments)}
+
+    def headers_alone(self):
+        """The headers that no source of every build includes first, which would show that they stand alone; without those
+        that are parts of one source, which is compiled for several instruction sets."""
+        left_out = ("tests/", "sim/dynamics/lanes/kernels/")
+        first = {includes[0][1] for name, includes in self.includes.items()
+                 if name.endswith(".cpp") and not name.startswith(("tests/", "bench/peers/")) and includes}
+        return [name for name in self.text
+                if name.endswith(".hpp") and not name.startswith(left_out) and name not in first]
 
     def breaches(self):
         yield from self.bad_arrows()
@@ -112,10 +117,14 @@ class Tree:
         for name, text in self.text.items():
             if not name.startswith("core/space") and (found := CONDITIONAL.search(text)):
                 yield f"{name}: #{found[1]}: preprocessor conditionals stand in core/space* alone"
-        parallel, plain = self.sources_by_kind()
-        for name in self.text:
-            if name.endswith(".cpp") and self.reaches_thrust(name) and (name in plain or name not in parallel):
-                yield f"{name} reaches core/parallel.hpp: its target must be parallel (add_parallel_library)"
+        parallel = self.parallel_sources()
+        for name, text in self.text.items():
+            if name.endswith(".hpp") and not re.search("^#pragma once$", text, re.M):
+                yield f"{name} has no #pragma once"
+            if name.endswith(".cpp") and self.reaches_thrust(name) and name not in parallel:
+                yield f"{name} reaches core/parallel.hpp: it must be named in scree_parallel_sources"
+            if name in parallel and not self.reaches_thrust(name) and name not in DRIVERS:
+                yield f"{name} is named in scree_parallel_sources and does not reach core/parallel.hpp: nvcc takes long"
 
     def bad_arrows(self):
         for name, includes in self.includes.items():
@@ -144,24 +153,26 @@ def self_test():
     """Each small tree breaks one rule, and the words show that it is that rule which refuses it."""
     lib = {"core/CMakeLists.txt": "add_library(a core.cpp)"}
     trees = [
-        ("not along an arrow", {"core/a.hpp": '#include "sim/simulation.hpp"'}),
-        ("not along an arrow", {"scree/a.hpp": '#include "core/math.hpp"'}),
-        ("the standard library alone", {"scree/a.hpp": "#include <vector>\n#include <Eigen/Core>"}),
+        ("not along an arrow", {"core/a.hpp": '#pragma once\n#include "sim/simulation.hpp"'}),
+        ("not along an arrow", {"scree/a.hpp": '#pragma once\n#include "core/math.hpp"'}),
+        ("the standard library alone", {"scree/a.hpp": "#pragma once\n#include <vector>\n#include <Eigen/Core>"}),
         ("not along an arrow", {"broadphase/a.cpp": '#include "narrowphase/contact.hpp"'}),
         ("not along an arrow", {"render/a.cpp": '#include "sim/scene/scene.hpp"'}),
         ("not along an arrow", {"sim/dynamics/a.cpp": '  #  include "sim/record/metrics.hpp"'}),
-        ("not along an arrow", {"sim/scene/a.hpp": '#include "narrowphase/narrow_phase.hpp"'}),
-        ("the path from the root", {"core/a.hpp": '#include "b.hpp"', "core/b.hpp": ""}),
+        ("not along an arrow", {"sim/scene/a.hpp": '#pragma once\n#include "narrowphase/narrow_phase.hpp"'}),
+        ("the path from the root", {"core/a.hpp": '#pragma once\n#include "b.hpp"', "core/b.hpp": "#pragma once"}),
         ("no row of ARROWS", {"sim/other.cpp": ""}),
         ("<thrust/sort.h>", {"broadphase/a.cpp": "#include <thrust/sort.h>"}),
         ("yaml-cpp is included in 3", {f"sim/scene/{n}.cpp": "#include <yaml-cpp/yaml.h>" for n in "abc"}),
         ("#ifdef", {"render/a.cpp": "int x;\n# ifdef NDEBUG\n"}),
-        ("must be parallel", {"core/core.cpp": '#include "core/a.hpp"', "core/a.hpp": '#include "core/b.hpp"',
-                              "core/b.hpp": '#include "core/parallel.hpp"', **lib}),
-        ("must be parallel", {"core/lost.cpp": '#include "core/parallel.hpp"', **lib}),
+        ("must be named in", {"core/core.cpp": '#include "core/a.hpp"', "core/a.hpp": '#pragma once\n#include "core/b.hpp"',
+                              "core/b.hpp": '#pragma once\n#include "core/parallel.hpp"', **lib}),
+        ("must be named in", {"core/lost.cpp": '#include "core/parallel.hpp"', **lib}),
+        ("has no #pragma once", {"core/a.hpp": "#include <vector>"}),
+        ("nvcc takes long", {"core/core.cpp": "#include <vector>", "core/CMakeLists.txt": "scree_parallel_sources(core.cpp)"}),
         ("", {"core/core.cpp": '#include "core/parallel.hpp"\n#include <vector>',
               "core/space.cpp": "#if X\n#endif", "tests/a.cpp": '#include "sim/cli/run.hpp"',
-              "core/CMakeLists.txt": "add_library(a ${D}/made.cpp core.cpp) # b.cpp\nscree_parallel_target(a)\nf(a)"}),
+              "core/CMakeLists.txt": "add_library(a core.cpp) # b.cpp\nscree_parallel_sources(\n  core.cpp)\nf(a)"}),
     ]
     for expected, files in trees:
         with tempfile.TemporaryDirectory() as root:
@@ -175,8 +186,9 @@ def self_test():
 
 if __name__ == "__main__":
     tree = Tree(Path(__file__).resolve().parent.parent)
-    if "--parallel-headers" in sys.argv:
-        print("\n".join(name for name in tree.text if name.endswith(".hpp") and tree.reaches_thrust(name)))
+    if "--headers" in sys.argv:
+        for header in tree.headers_alone():
+            print(header, "parallel" if tree.reaches_thrust(header) else "plain")
         sys.exit()
     if "--self-test" in sys.argv:
         self_test()

@@ -67,6 +67,8 @@ install_packages() {
 }
 
 have_nvcc() { PATH="$PATH:/usr/local/cuda/bin" command -v nvcc >/dev/null; }
+# A GPU that a program here could run on: its driver has made a device of it, and answers.
+have_gpu() { compgen -G '/dev/nvidia[0-9]*' >/dev/null || nvidia-smi -L 2>/dev/null | grep -q '^GPU '; }
 
 # Compilations at once: as many as there are cores, and as the free memory holds at 2 GB for nvcc on Thrust.
 build_jobs() {

@@ -10,14 +10,14 @@
 namespace scree::cli {
 
 namespace {
-constexpr std::size_t most_waiting = 2;
+constexpr std::size_t most_moments = 2;
 }  // namespace
 
 MotionRecorder::MotionRecorder(const Scene& scene, const RunFolder& folder, AtomicFile::Opening opening,
                                int threads)
     : due_(TimeGrid(scene.time), trajectory_period(scene)),
       writer_(scene, folder / trajectory_name, opening, threads),
-      worker_(most_waiting, [this](Moment& moment) {
+      worker_(most_moments, [this](Moment& moment) {
         const Stopwatch watch(seconds_);
         writer_.append(moment.snapshot);
         if (contacts_) contacts_->append(moment.snapshot, moment.contacts);

@@ -1,6 +1,6 @@
 #include "sim/dynamics/ball_pairs.hpp"
 
-#include "core/parallel.hpp"
+#include "core/parallel_loops.hpp"
 #include "sim/dynamics/contact_set.hpp"
 
 #include <algorithm>

@@ -1,6 +1,6 @@
 #include "sim/dynamics/contact_set.hpp"
 
-#include "core/parallel.hpp"
+#include "core/parallel_loops.hpp"
 #include "core/tolerances.hpp"
 
 namespace scree {

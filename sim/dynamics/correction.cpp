@@ -1,6 +1,6 @@
 #include "sim/dynamics/correction.hpp"
 
-#include "core/parallel.hpp"
+#include "core/parallel_loops.hpp"
 #include "core/tolerances.hpp"
 #include "sim/dynamics/displace.hpp"
 #include "sim/dynamics/lanes/colored.hpp"

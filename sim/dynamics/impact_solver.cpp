@@ -1,6 +1,6 @@
 #include "sim/dynamics/impact_solver.hpp"
 
-#include "core/parallel.hpp"
+#include "core/parallel_loops.hpp"
 #include "core/tolerances.hpp"
 
 #include <algorithm>

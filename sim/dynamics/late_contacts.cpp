@@ -1,6 +1,6 @@
 #include "sim/dynamics/late_contacts.hpp"
 
-#include "core/parallel.hpp"
+#include "core/parallel_loops.hpp"
 
 #include <algorithm>
 #include <iterator>

@@ -1,6 +1,6 @@
 #include "sim/dynamics/response.hpp"
 
-#include "core/parallel.hpp"
+#include "core/parallel_loops.hpp"
 #include "core/tolerances.hpp"
 #include "sim/dynamics/contact_rows.hpp"
 #include "sim/dynamics/direct.hpp"

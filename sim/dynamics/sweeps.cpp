@@ -1,6 +1,6 @@
 #include "sim/dynamics/sweeps.hpp"
 
-#include "core/parallel.hpp"
+#include "core/parallel_loops.hpp"
 #include "sim/dynamics/lanes/colored.hpp"
 
 #include <algorithm>

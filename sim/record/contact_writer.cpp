@@ -14,8 +14,6 @@ namespace scree {
 
 namespace {
 
-using Kind = FieldType::Kind;
-
 /// One row: a contact as one of its bodies feels it.
 struct ContactEnd {
   Vec3 position, force, point;
@@ -31,8 +29,8 @@ ColumnNumbers of(const Vec3& v) { return {v.x(), v.y(), v.z()}; }
 
 std::vector<ContactColumnSource> contact_columns(bool in_double) {
   const int real = in_double ? sizeof(double) : sizeof(float);
-  const FieldType vector{Kind::real, real, 3};
-  const FieldType number{Kind::integer, sizeof(std::int32_t), 1};
+  const FieldType vector{FieldType::Kind::real, real, 3};
+  const FieldType number{FieldType::Kind::integer, sizeof(std::int32_t), 1};
   return {{{"position", vector}, [](const ContactEnd& end) { return of(end.position); }},
           {{"force", vector}, [](const ContactEnd& end) { return of(end.force); }},
           {{"point", vector}, [](const ContactEnd& end) { return of(end.point); }},

@@ -7,8 +7,6 @@ namespace scree {
 namespace {
 
 using Numbers = ColumnNumbers;
-using Kind = FieldType::Kind;
-
 Numbers of(const Vec3& v) { return {v.x(), v.y(), v.z()}; }
 Numbers of(double x) { return {x}; }
 
@@ -26,8 +24,8 @@ void append(double number, std::byte*& to) {
 
 /// Adds a number in the type of a column.
 void append(double number, const FieldType& type, std::byte*& to) {
-  if (type.kind == Kind::natural) return append<std::uint8_t>(number, to);
-  if (type.kind == Kind::integer) return append<std::int32_t>(number, to);
+  if (type.kind == FieldType::Kind::natural) return append<std::uint8_t>(number, to);
+  if (type.kind == FieldType::Kind::integer) return append<std::int32_t>(number, to);
   if (type.width == sizeof(float)) return append<float>(number, to);
   append<double>(number, to);
 }
@@ -40,10 +38,10 @@ double trajectory_period(const Scene& scene) {
 
 std::vector<BodyColumnSource> body_columns_of(const TrajectorySettings& settings) {
   const int real = settings.in_double ? sizeof(double) : sizeof(float);
-  const FieldType vector{Kind::real, real, 3};
-  const FieldType quaternion{Kind::real, real, 4};
-  const FieldType number{Kind::integer, sizeof(std::int32_t), 1};
-  const FieldType small_number{Kind::natural, sizeof(std::uint8_t), 1};
+  const FieldType vector{FieldType::Kind::real, real, 3};
+  const FieldType quaternion{FieldType::Kind::real, real, 4};
+  const FieldType number{FieldType::Kind::integer, sizeof(std::int32_t), 1};
+  const FieldType small_number{FieldType::Kind::natural, sizeof(std::uint8_t), 1};
   std::vector<BodyColumnSource> columns;
   const auto add = [&columns](const char* name, const FieldType& type, bool is_constant, auto numbers) {
     columns.push_back({{name, type}, is_constant, numbers});

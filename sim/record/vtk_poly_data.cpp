@@ -60,7 +60,7 @@ class Writer {
   std::string text_, block_;
 };
 
-constexpr FieldType whole_number{FieldType::Kind::integer, sizeof(std::int64_t), 1};
+constexpr FieldType index_type{FieldType::Kind::integer, sizeof(std::int64_t), 1};
 
 }  // namespace
 
@@ -84,8 +84,8 @@ std::string VtkPolyData::text() const {
   out.close("Points");
   const char* cells = kind == Kind::vertices ? "Verts" : kind == Kind::lines ? "Lines" : "Polys";
   out.open(cells);
-  out.add("connectivity", whole_number, connectivity);
-  out.add("offsets", whole_number, offsets);
+  out.add("connectivity", index_type, connectivity);
+  out.add("offsets", index_type, offsets);
   out.close(cells);
   return out.finish();
 }

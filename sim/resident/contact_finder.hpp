@@ -19,6 +19,10 @@ class ContactFinder {
             View<BodyRecord<Real>> solver, ContactStore<Space, Real>& store);
 
  private:
+  void find_balls(const FindStage<Real>& stage, Slots<Space, Real>& slots, View<BodyRecord<Real>> solver,
+                  ContactStore<Space, Real>& store);
+  void find_points(const FindStage<Real>& stage, Slots<Space, Real>& slots, ConstView<LoadedParts> loads,
+                   ContactStore<Space, Real>& store);
   PassingList clear_passing(std::int64_t places);
   template <class Judge>
   void judge(const PassingList& passing, const Judge& judge);

@@ -1,7 +1,7 @@
 // The candidates against a double loop, in each space.
 #include "narrowphase/candidates.hpp"
 
-#include "core/parallel.hpp"
+#include "core/parallel_loops.hpp"
 #include "core/rng.hpp"
 #include "tests/core/spaces.hpp"
 

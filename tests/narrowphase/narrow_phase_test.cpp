@@ -2,7 +2,7 @@
 #include "narrowphase/narrow_phase.hpp"
 
 #include "core/geometry.hpp"
-#include "core/parallel.hpp"
+#include "core/parallel_loops.hpp"
 #include "core/rng.hpp"
 #include "narrowphase/box_box.hpp"
 #include "narrowphase/box_plane.hpp"

@@ -1,4 +1,4 @@
-// Launches work on batches, colour by colour or all at once. For parallel libraries.
+// Launches work on batches, colour by colour or all at once.
 #pragma once
 
 #include "core/crew.hpp"

@@ -17,7 +17,7 @@ namespace {
 
 constexpr std::size_t most_rows = 1200;  // a curve; the picture is 560 pixels wide
 
-constexpr const char* style =
+constexpr const char* plot_style =
     "set grid lc rgb '#e6e6e6'\n"
     "set border lc rgb '#555555'\n"
     "set key above left horizontal noenhanced samplen 1.5\n"
@@ -44,7 +44,7 @@ std::string script_of(const Plot& plot, std::size_t number) {
       "reset\n{}set terminal svg size 560,340 dynamic font 'DejaVu Sans,13' background 'white' name "
       "'plot{}'\n"
       "set output\n",
-      style, number);
+      plot_style, number);
   const auto out = std::back_inserter(script);
   fmt::format_to(out, "set ylabel {} noenhanced\n", in_quotes(plot.unit));
   if (plot.is_logarithmic) script += "set logscale y\nset format y '10^{%L}'\n";
