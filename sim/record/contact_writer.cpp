@@ -25,15 +25,15 @@ struct ContactColumnSource {
   ColumnNumbers (*numbers)(const ContactEnd& end);
 };
 
-ColumnNumbers of(const Vec3& v) { return {v.x(), v.y(), v.z()}; }
+ColumnNumbers numbers_of(const Vec3& v) { return {v.x(), v.y(), v.z()}; }
 
 std::vector<ContactColumnSource> contact_columns(bool in_double) {
   const int real = in_double ? sizeof(double) : sizeof(float);
   const FieldType vector{FieldType::Kind::real, real, 3};
   const FieldType number{FieldType::Kind::integer, sizeof(std::int32_t), 1};
-  return {{{"position", vector}, [](const ContactEnd& end) { return of(end.position); }},
-          {{"force", vector}, [](const ContactEnd& end) { return of(end.force); }},
-          {{"point", vector}, [](const ContactEnd& end) { return of(end.point); }},
+  return {{{"position", vector}, [](const ContactEnd& end) { return numbers_of(end.position); }},
+          {{"force", vector}, [](const ContactEnd& end) { return numbers_of(end.force); }},
+          {{"point", vector}, [](const ContactEnd& end) { return numbers_of(end.point); }},
           {{"id", number}, [](const ContactEnd& end) { return ColumnNumbers{double(end.id)}; }},
           {{"other", number}, [](const ContactEnd& end) { return ColumnNumbers{double(end.other)}; }}};
 }

@@ -14,14 +14,14 @@ namespace scree {
 
 namespace {
 
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+constexpr double no_number = std::numeric_limits<double>::quiet_NaN();
 /// Errors under this are rounding: they say nothing of the order, and are drawn at it.
 constexpr double rounding = 1e-12;
 
 double number_of(const std::string& text) {
-  double value = nan;
+  double value = no_number;
   const auto [end, problem] = std::from_chars(text.data(), text.data() + text.size(), value);
-  return problem == std::errc() && end == text.data() + text.size() ? value : nan;
+  return problem == std::errc() && end == text.data() + text.size() ? value : no_number;
 }
 
 /// Errors that are rounding are equal.
@@ -92,7 +92,7 @@ double fitted_order(const Study& study, const Curve& curve, std::size_t check) {
   double n = 0, x = 0, y = 0, xx = 0, xy = 0;
   for (const std::size_t k : curve.points) {
     const StudyPoint& point = study.points[k];
-    const double value = point.settings.empty() ? nan : number_of(point.settings.front().value);
+    const double value = point.settings.empty() ? no_number : number_of(point.settings.front().value);
     const double error = point.error(check);
     if (!(value > 0) || !(error > rounding) || !std::isfinite(error)) continue;
     const double lx = std::log(value);
@@ -104,7 +104,7 @@ double fitted_order(const Study& study, const Curve& curve, std::size_t check) {
     xy += lx * ly;
   }
   const double spread = n * xx - x * x;
-  return n >= 3 && spread > 0 ? (n * xy - x * y) / spread : nan;
+  return n >= 3 && spread > 0 ? (n * xy - x * y) / spread : no_number;
 }
 
 std::vector<Reached> cheapest_to(const Study& study, std::size_t check) {

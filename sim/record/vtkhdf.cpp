@@ -26,7 +26,7 @@ namespace {
 using hdf5::check;
 using hdf5::Handle;
 namespace fs = std::filesystem;
-using Numbers = std::vector<std::int64_t>;
+using WholeNumbers = std::vector<std::int64_t>;
 
 constexpr FieldType whole_number{FieldType::Kind::integer, sizeof(std::int64_t), 1};
 
@@ -83,7 +83,7 @@ Handle make_dataset(hid_t in, const std::string& name, const FieldType& type, st
 }
 
 /// As they are needed once, whole; `columns` to a row.
-void write_numbers(hid_t in, const char* name, const Numbers& numbers, int columns = 1) {
+void write_numbers(hid_t in, const char* name, const WholeNumbers& numbers, int columns = 1) {
   constexpr std::int64_t chunk_rows = 1 << 16;
   FieldType type = whole_number;
   type.columns = columns;
@@ -100,8 +100,8 @@ void write_reals(hid_t in, const char* name, const std::vector<double>& numbers)
 
 /// Of what a column's dataset consists, in its order: frames that share their chunks share their rows.
 struct Placing {
-  Numbers first_rows;  ///< of each frame
-  Numbers chunks;      ///< by their numbers in the index
+  WholeNumbers first_rows;  ///< of each frame
+  WholeNumbers chunks;      ///< by their numbers in the index
 };
 
 Placing place(const TrajectoryIndex& index, std::size_t column) {
@@ -162,8 +162,8 @@ class ChunkCopier {
 
 /// A part is what frames with as many points share: their cells.
 struct Parts {
-  Numbers points;    ///< of each part
-  Numbers of_frame;  ///< its part
+  WholeNumbers points;    ///< of each part
+  WholeNumbers of_frame;  ///< its part
 };
 
 Parts parts_of(const TrajectoryIndex& index) {
@@ -191,7 +191,7 @@ CellKinds kinds_of(Cells cells) {
 
 /// Every point is in one cell, in order; or there are none.
 void write_cells(hid_t root, const CellKind& kind, const Parts& parts) {
-  Numbers cells, ids, offsets, connectivity;
+  WholeNumbers cells, ids, offsets, connectivity;
   for (const std::int64_t points : parts.points) {
     const std::int64_t count = kind.points > 0 ? points / kind.points : 0;
     cells.push_back(count);
@@ -208,9 +208,9 @@ void write_cells(hid_t root, const CellKind& kind, const Parts& parts) {
 
 void write_steps(hid_t root, const TrajectoryIndex& index, const CellKinds& kinds, const Parts& parts,
                  const std::vector<Placing>& placings) {
-  Numbers first_point(parts.points.size(), 0);
+  WholeNumbers first_point(parts.points.size(), 0);
   std::exclusive_scan(parts.points.begin(), parts.points.end(), first_point.begin(), std::int64_t{0});
-  Numbers first_cells, first_ids;
+  WholeNumbers first_cells, first_ids;
   std::vector<double> times;
   for (std::size_t f = 0; f < index.frames().size(); ++f) {
     times.push_back(index.frames()[f].time);
@@ -225,7 +225,7 @@ void write_steps(hid_t root, const TrajectoryIndex& index, const CellKinds& kind
   write_attribute(group, "NSteps", {&frames, 1});
   write_reals(group, "Values", times);
   write_numbers(group, "PartOffsets", parts.of_frame);
-  write_numbers(group, "NumberOfParts", Numbers(index.frames().size(), 1));
+  write_numbers(group, "NumberOfParts", WholeNumbers(index.frames().size(), 1));
   write_numbers(group, "PointOffsets", placings[0].first_rows);
   write_numbers(group, "CellOffsets", first_cells, static_cast<int>(kinds.size()));
   write_numbers(group, "ConnectivityIdOffsets", first_ids, static_cast<int>(kinds.size()));
