@@ -58,7 +58,7 @@ What is not free, such as a mesh, is for the next scene to give again. `name` na
 | `wx`, `wy`, `wz` | spin, world frame (rad/s); empty: 0 |
 | `mass` | kg; empty: from the material's density |
 | `material` | one of `materials`; `material` in the scene goes before it |
-| `hull` | of a polyhedron: an OBJ or STL file, relative to this one, whose vertices' hull it is; else empty |
+| `hull` | of a polyhedron: an OBJ, STL or PLY file, relative to this one, whose vertices' hull it is; else empty |
 | `servo_x`, `servo_y`, `servo_z`, `servo_force` | of a box that is a servo: its axis, and its force (N); else empty |
 
 Cells are separated by commas and not quoted; columns that are left out count as empty. Blank lines are skipped.
