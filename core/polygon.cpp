@@ -45,26 +45,37 @@ class EarCutter {
   }
 
   bool cut() {
-    std::size_t left = points_.size(), at = 0;
-    // A corner that is no ear may become one when one beside it is cut: until none of all is.
-    for (std::size_t in_vain = 0; left > 2; at = next_[at]) {
-      const bool ear = is_ear(at);
-      if (ear)
-        out_.push_back({static_cast<int>(previous_[at]), static_cast<int>(at), static_cast<int>(next_[at])});
-      if (!ear && !is_spike(at)) {
-        if (++in_vain > left) return false;
-        continue;
-      }
-      next_[previous_[at]] = next_[at];
-      previous_[next_[at]] = previous_[at];
-      at = previous_[at];
-      in_vain = 0;
-      --left;
-    }
-    return true;
+    // Spikes first: beside one what is no ear looks like one.
+    if (!visit([this](std::size_t k) { return is_spike(k); })) return true;
+    return !visit([this](std::size_t k) {
+      if (is_spike(k)) return true;
+      if (!is_ear(k)) return false;
+      out_.push_back({static_cast<int>(previous_[k]), static_cast<int>(k), static_cast<int>(next_[k])});
+      return true;
+    });
   }
 
  private:
+  /// Takes out corners of which `goes` is true until it is of none, or less than three are left: then false.
+  template <class Goes>
+  bool visit(Goes&& goes) {
+    // One that stays may go when one beside it is gone.
+    for (std::size_t in_vain = 0; left_ > 2 && in_vain < left_;) {
+      const std::size_t before = previous_[at_], after = next_[at_];
+      if (goes(at_)) {
+        next_[before] = after;
+        previous_[after] = before;
+        --left_;
+        in_vain = 0;
+        at_ = before;
+      } else {
+        ++in_vain;
+        at_ = after;
+      }
+    }
+    return left_ > 2;
+  }
+
   double turn_at(std::size_t k) const { return turn(points_[previous_[k]], points_[k], points_[next_[k]]); }
 
   /// Twice there, or on the way back: it has no area to cut.
@@ -80,7 +91,8 @@ class EarCutter {
     for (std::size_t p = next_[next_[k]]; p != previous_[k]; p = next_[p]) {
       const Vec2& point = points_[p];
       if (point == a || point == b || point == c) continue;
-      if (turn(a, b, point) >= 0 && turn(b, c, point) >= 0 && turn(c, a, point) >= 0) return false;
+      if (turn(a, b, point) >= -least_ && turn(b, c, point) >= -least_ && turn(c, a, point) >= -least_)
+        return false;
     }
     return true;
   }
@@ -89,6 +101,7 @@ class EarCutter {
   double least_;
   std::vector<std::array<int, 3>>& out_;
   std::vector<std::size_t> next_, previous_;
+  std::size_t left_ = points_.size(), at_ = 0;
 };
 
 void fan(std::size_t corners, std::vector<std::array<int, 3>>& out) {

@@ -145,7 +145,8 @@ class Welder {
     whole.reserve(mesh_.triangles.size());
     for (const Corners& t : mesh_.triangles) {
       const std::size_t before = whole.size();
-      cut(t, whole);
+      cut(t, {true, true, true}, whole);
+      if (whole.size() > most_on_edges * (used_.size() + mesh_.triangles.size())) fail();
       if (whole.size() == before) ++report_.left_out;
       if (whole.size() > before && whole.back() != t) ++report_.split;
     }
@@ -164,9 +165,7 @@ class Welder {
     for (const auto& [a, b, count] : edges) {
       const double edge = length(a, b);
       tree.near_segment(at(a), at(b), reach_beside(edge), near);
-      if (near.size() > room)
-        throw InputError(
-            "has corners on edges at far more places than a surface has; give `weld: off`, or a shorter one");
+      if (near.size() > room) fail();
       room -= near.size();
       if (near.size() == 2) continue;
       std::vector<std::pair<double, int>> between;
@@ -187,25 +186,31 @@ class Welder {
     }
   }
 
-  /// The triangle, or the parts of it between the corners on its edges. Those beside an edge take the same
-  /// corners, so that they still share what they have of it.
-  void cut(const Corners& t, std::vector<Corners>& out) const {
+  /// The triangle, or the parts of it between the corners on those of its edges that are whole. Triangles
+  /// beside an edge take the same corners, so that they still share what they have of it.
+  void cut(const Corners& t, const std::array<bool, 3>& is_whole, std::vector<Corners>& out) const {
     if (!has_area(t)) return;
     for (std::size_t k = 0; k < 3; ++k) {
       const int a = t[k], b = t[(k + 1) % 3], apex = t[(k + 2) % 3];
       const auto found = on_edge_.find({std::min(a, b), std::max(a, b)});
-      if (found == on_edge_.end()) continue;
+      if (!is_whole[k] || found == on_edge_.end()) continue;
       std::vector<int> way = found->second;
       if (a > b) std::ranges::reverse(way);
       way.push_back(b);
       int from = a;
       for (const int to : way) {
-        cut({from, to, apex}, out);
+        cut({from, to, apex}, {false, to == b && is_whole[(k + 1) % 3], from == a && is_whole[(k + 2) % 3]},
+            out);
         from = to;
       }
       return;
     }
     out.push_back(t);
+  }
+
+  [[noreturn]] static void fail() {
+    throw InputError(
+        "has corners on edges at far more places than a surface has; give `weld: off`, or a shorter one");
   }
 
   TriangleMesh& mesh_;
