@@ -33,8 +33,12 @@ class Incidence {
       for (const int v : placed[t].corners) at_vertex_[next[static_cast<std::size_t>(v)]++] = t;
   }
 
-  auto at_edge(const Edge& edge) const {
-    return std::ranges::equal_range(at_edge_, edge, {}, &std::pair<Edge, std::size_t>::first);
+  /// Each beside the edge.
+  std::span<const std::pair<Edge, std::size_t>> at_edge(const Edge& edge) const {
+    const auto first = std::ranges::lower_bound(at_edge_, edge, {}, &std::pair<Edge, std::size_t>::first);
+    const auto end =
+        std::find_if(first, at_edge_.end(), [&](const auto& other) { return other.first != edge; });
+    return {first, end};
   }
   std::span<const std::size_t> at_vertex(int v) const {
     const std::size_t first = first_at_vertex_[static_cast<std::size_t>(v)];
