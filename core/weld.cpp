@@ -41,14 +41,16 @@ class Welder {
     if (!std::isfinite(size_)) return;
     find_reaches();
     join_corners();
+    room_ = most_for_each * (used_.size() + mesh_.triangles.size());
     // What was split may have corners on its new edges: those that were on edges of it as well as in it.
     constexpr int most_rounds = 4;
     for (int round = 0; round < most_rounds && split_edges(); ++round) continue;
   }
 
  private:
-  /// On edges there are a few corners for each that there is.
-  static constexpr std::size_t most_on_edges = 64;
+  /// A surface has few corners near its edges, and parts to be cut, for each corner and triangle that there
+  /// is.
+  static constexpr std::size_t most_for_each = 100;
 
   static std::vector<int> vertices_of(const std::vector<Corners>& triangles) {
     std::vector<int> used;
@@ -146,7 +148,6 @@ class Welder {
     for (const Corners& t : mesh_.triangles) {
       const std::size_t before = whole.size();
       cut(t, {true, true, true}, whole);
-      if (whole.size() > most_on_edges * (used_.size() + mesh_.triangles.size())) fail();
       if (whole.size() == before) ++report_.left_out;
       if (whole.size() > before && whole.back() != t) ++report_.split;
     }
@@ -160,13 +161,12 @@ class Welder {
     for (const int v : used_) places.push_back(at(v));
     const PointTree tree(places);
     const std::vector<MeshEdge> edges = edges_of(mesh_.triangles);
-    std::size_t room = most_on_edges * (used_.size() + edges.size());
     std::vector<std::int32_t> near;
     for (const auto& [a, b, count] : edges) {
       const double edge = length(a, b);
       tree.near_segment(at(a), at(b), reach_beside(edge), near);
-      if (near.size() > room) fail();
-      room -= near.size();
+      if (near.size() > room_) fail();
+      room_ -= near.size();
       if (near.size() == 2) continue;
       std::vector<std::pair<double, int>> between;
       for (const std::int32_t k : near) {
@@ -188,8 +188,9 @@ class Welder {
 
   /// The triangle, or the parts of it between the corners on those of its edges that are whole. Triangles
   /// beside an edge take the same corners, so that they still share what they have of it.
-  void cut(const Corners& t, const std::array<bool, 3>& is_whole, std::vector<Corners>& out) const {
+  void cut(const Corners& t, const std::array<bool, 3>& is_whole, std::vector<Corners>& out) {
     if (!has_area(t)) return;
+    if (room_-- == 0) fail();
     for (std::size_t k = 0; k < 3; ++k) {
       const int a = t[k], b = t[(k + 1) % 3], apex = t[(k + 2) % 3];
       const auto found = on_edge_.find({std::min(a, b), std::max(a, b)});
@@ -218,6 +219,7 @@ class Welder {
   MeshReport& report_;
   std::vector<int> used_;  ///< vertices of triangles, ascending
   double size_ = 0;        ///< m
+  std::size_t room_ = 0;   ///< for corners near edges and parts of triangles, of all rounds
   std::vector<double> reach_;
   std::map<std::pair<int, int>, std::vector<int>> on_edge_;  ///< from its lower to its higher vertex
 };
