@@ -39,7 +39,7 @@ int corner(std::string_view word, const std::vector<int>& vertices, const MeshSo
   const auto count = static_cast<std::int64_t>(vertices.size());
   if (digits.empty() || error != std::errc{} || end != digits.data() + digits.size() || index == 0 ||
       index > count || index < -count)
-    source.fail_in_line(fmt::format("`{}` is none of the {} vertices so far", printable(word), count));
+    source.fail_in_line(fmt::format("`{}` is none of the {} vertices so far", excerpt(word), count));
   return vertices[static_cast<std::size_t>(index > 0 ? index - 1 : count + index)];
 }
 
@@ -71,7 +71,7 @@ void read_obj(MeshSource& source, MeshMaker& mesh) {
         corners.push_back(corner(word, vertices, source));
       mesh.polygon(corners);
     } else if (!kind.empty() && std::ranges::find(harmless, kind) == harmless.end()) {
-      const std::string word = printable(kind);
+      const std::string word = excerpt(kind);
       ++skipped[skipped.size() < most_kinds || skipped.contains(word) ? word : "..."];
     }
   }

@@ -71,7 +71,7 @@ class HeaderReader {
       else if (kind == "property")
         read_property(words);
       else if (!kind.empty() && kind != "comment" && kind != "obj_info")
-        source_.fail_in_line(fmt::format("`{}` is no word of a PLY header", printable(kind)));
+        source_.fail_in_line(fmt::format("`{}` is no word of a PLY header", excerpt(kind)));
     }
     source_.fail("ends within its header");
   }
@@ -82,9 +82,8 @@ class HeaderReader {
     if (word == "ascii") return Form::text;
     if (word == "binary_little_endian") return Form::little_endian;
     if (word == "binary_big_endian") return Form::big_endian;
-    source_.fail_in_line(
-        fmt::format("the format must be one of ascii, binary_little_endian, binary_big_endian, not `{}`",
-                    printable(word)));
+    source_.fail_in_line(fmt::format(
+        "the format must be one of ascii, binary_little_endian, binary_big_endian, not `{}`", excerpt(word)));
   }
 
   void read_element(Words& words) {
@@ -92,7 +91,7 @@ class HeaderReader {
     std::int64_t count = 0;
     const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), count);
     if (digits.empty() || error != std::errc{} || end != digits.data() + digits.size() || count < 0)
-      source_.fail_in_line(fmt::format("an element needs a name and a number, not `{}`", printable(digits)));
+      source_.fail_in_line(fmt::format("an element needs a name and a number, not `{}`", excerpt(digits)));
     elements_.push_back({std::string(name), count, {}});
   }
 
@@ -112,7 +111,7 @@ class HeaderReader {
 
   Number type_called(std::string_view name) const {
     const std::optional<Number> number = number_called(name);
-    if (!number) source_.fail_in_line(fmt::format("`{}` is no type of PLY", printable(name)));
+    if (!number) source_.fail_in_line(fmt::format("`{}` is no type of PLY", excerpt(name)));
     return *number;
   }
 
@@ -193,7 +192,7 @@ class BodyReader {
       for (const Property& property : element.properties) skip(property);
     if (element.count > 0)
       mesh_.warn(fmt::format("its {} elements `{}` are skipped, which are neither vertices nor faces",
-                             element.count, printable(element.name)));
+                             element.count, excerpt(element.name)));
   }
 
  private:

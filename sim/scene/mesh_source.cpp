@@ -60,7 +60,7 @@ double MeshSource::number(std::string_view word) const {
   if (error == std::errc::result_out_of_range && std::abs(value) < 1) value = 0;
   const bool whole = end == word.data() + word.size() && (error == std::errc{} || value == 0);
   if (word.empty() || !whole || !std::isfinite(value))
-    fail_in_line(fmt::format("needs three finite numbers, not `{}`", printable(word)));
+    fail_in_line(fmt::format("needs three finite numbers, not `{}`", excerpt(word)));
   return value;
 }
 
@@ -70,7 +70,7 @@ Vec3 MeshSource::place(Words& words) const {
   return at;
 }
 
-std::string printable(std::string_view word) {
+std::string excerpt(std::string_view word) {
   std::string text;
   for (const char c : word.substr(0, 40)) text += c >= ' ' && c <= '~' ? c : '?';
   return text;

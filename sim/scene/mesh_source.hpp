@@ -57,8 +57,8 @@ class MeshSource {
 /// What ends the first line of a text; empty if nothing does.
 std::string_view line_end(std::string_view text);
 
-/// For messages: without what a terminal would not show.
-std::string printable(std::string_view word);
+/// The start of a word, for messages: without what a terminal would not show.
+std::string excerpt(std::string_view word);
 
 /// Collects vertices, of which those of equal place are one, and triangles.
 class MeshMaker {

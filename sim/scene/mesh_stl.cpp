@@ -92,7 +92,7 @@ void read_text(MeshSource& source, MeshMaker& mesh) {
     if (!is_keyword(word)) {
       if (within || facets == 0 || has_more_facets(source))
         source.fail_in_line(fmt::format(
-            "`{}` is no word of an STL file, and its size is not that of a binary one", printable(word)));
+            "`{}` is no word of an STL file, and its size is not that of a binary one", excerpt(word)));
       mesh.warn(
           fmt::format("{} bytes after its last facet, from line {} on, are skipped", left, source.line()));
       break;
