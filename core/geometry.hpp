@@ -8,6 +8,7 @@
 #include <array>
 #include <cstdint>
 #include <deque>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -87,11 +88,41 @@ inline Vec3 triangle_corner(const Vec3& size, int k) {
 struct TriangleMesh {
   std::vector<Vec3> vertices;                 ///< m
   std::vector<std::array<int, 3>> triangles;  ///< counterclockwise from the front
-  std::int64_t left_out = 0;                  ///< triangles of the file that have no area or are there twice
 };
+
+/// Which corners of a mesh count as one.
+struct Weld {
+  bool on = true;                ///< false: those of equal place alone
+  std::optional<double> length;  ///< those nearer than this (m); absent: by the mesh (tolerance::weld_size)
+};
+
+/// What was done to a mesh as it was read, and what it is.
+struct MeshReport {
+  std::int64_t welded = 0;    ///< corners that became one with another
+  double farthest = 0;        ///< most that one of them was moved (m)
+  std::int64_t split = 0;     ///< triangles that were split where corners lie on their edges
+  std::int64_t left_out = 0;  ///< triangles that have no area, or have none now, or are there twice
+  std::int64_t open = 0;      ///< edges of one triangle alone
+  std::int64_t crowded = 0;   ///< edges of three triangles or more
+};
+
+/// Makes the mesh whole: corners that nearly meet become one, at the mean of their places, and triangles are
+/// split where corners of others lie on their edges, so that triangles that touch share edges. Triangles that
+/// lose their area go. Nothing of it depends on the order of vertices or triangles. A mesh of which nothing
+/// nearly meets is as it was, to the bit. Throws InputError, without a place, if corners lie on edges at far
+/// more places than a surface has.
+void weld(TriangleMesh& mesh, const Weld& how, MeshReport& report);
 
 /// False if the triangle has no area worth the name.
 bool place_triangle(const TriangleMesh& mesh, std::size_t triangle, PlacedTriangle& out);
+
+/// The edges of triangles, each once: its vertices, the lower one first, and how many triangles have it.
+struct MeshEdge {
+  int from, to;
+  int count;
+};
+/// By ascending vertices.
+std::vector<MeshEdge> edges_of(std::span<const std::array<int, 3>> triangles);
 
 /// Of each triangle.
 std::vector<Surroundings> surroundings_of(const TriangleMesh& mesh,
@@ -102,7 +133,6 @@ struct Geometry {
   std::deque<Hull> hulls;
   std::deque<Surroundings> surroundings;
   std::vector<ShapeData> of_body;  ///< by the body's number in the scene
-  std::int64_t left_out = 0;       ///< triangles of the scene's meshes that have no area or are there twice
 };
 
 }  // namespace scree

@@ -3,7 +3,7 @@
 #include "core/tolerances.hpp"
 
 #include <algorithm>
-#include <map>
+#include <numeric>
 #include <utility>
 
 namespace scree {
@@ -14,20 +14,64 @@ using Edge = std::pair<int, int>;
 
 Edge edge_of(int a, int b) { return {std::min(a, b), std::max(a, b)}; }
 
-/// The triangles at each edge and at each vertex, by number.
-struct Incidence {
-  std::map<Edge, std::vector<std::size_t>> at_edge;
-  std::vector<std::vector<std::size_t>> at_vertex;
-
+/// The triangles at each edge and at each vertex, by ascending number.
+class Incidence {
+ public:
   Incidence(const TriangleMesh& mesh, const std::vector<PlacedTriangle>& placed)
-      : at_vertex(mesh.vertices.size()) {
+      : first_at_vertex_(mesh.vertices.size() + 1), at_vertex_(3 * placed.size()) {
+    at_edge_.reserve(3 * placed.size());
     for (std::size_t t = 0; t < placed.size(); ++t) {
       for (std::size_t k = 0; k < 3; ++k) {
-        at_edge[edge_of(placed[t].corners[k], placed[t].corners[(k + 1) % 3])].push_back(t);
-        at_vertex[static_cast<std::size_t>(placed[t].corners[k])].push_back(t);
+        at_edge_.emplace_back(edge_of(placed[t].corners[k], placed[t].corners[(k + 1) % 3]), t);
+        ++first_at_vertex_[static_cast<std::size_t>(placed[t].corners[k]) + 1];
       }
     }
+    std::ranges::sort(at_edge_);
+    std::partial_sum(first_at_vertex_.begin(), first_at_vertex_.end(), first_at_vertex_.begin());
+    std::vector<std::size_t> next = first_at_vertex_;
+    for (std::size_t t = 0; t < placed.size(); ++t)
+      for (const int v : placed[t].corners) at_vertex_[next[static_cast<std::size_t>(v)]++] = t;
   }
+
+  /// Each beside the edge.
+  std::span<const std::pair<Edge, std::size_t>> at_edge(const Edge& edge) const {
+    const auto first = std::ranges::lower_bound(at_edge_, edge, {}, &std::pair<Edge, std::size_t>::first);
+    const auto end =
+        std::find_if(first, at_edge_.end(), [&](const auto& other) { return other.first != edge; });
+    return {first, end};
+  }
+  std::span<const std::size_t> at_vertex(int v) const {
+    const std::size_t first = first_at_vertex_[static_cast<std::size_t>(v)];
+    return {at_vertex_.data() + first, first_at_vertex_[static_cast<std::size_t>(v) + 1] - first};
+  }
+
+ private:
+  std::vector<std::pair<Edge, std::size_t>> at_edge_;
+  std::vector<std::size_t> first_at_vertex_, at_vertex_;
+};
+
+/// The vertices at the other ends of a vertex's edges, each once, in the order of the triangles.
+class Neighbours {
+ public:
+  Neighbours(const Incidence& incidence, const std::vector<PlacedTriangle>& placed, std::size_t vertices)
+      : incidence_(incidence), placed_(placed), seen_by_(vertices, none) {}
+
+  const std::vector<int>& of(int vertex) {
+    ends_.clear();
+    seen_by_[static_cast<std::size_t>(vertex)] = ++asked_;
+    for (const std::size_t t : incidence_.at_vertex(vertex))
+      for (const int v : placed_[t].corners)
+        if (std::exchange(seen_by_[static_cast<std::size_t>(v)], asked_) != asked_) ends_.push_back(v);
+    return ends_;
+  }
+
+ private:
+  static constexpr std::int64_t none = 0;
+  const Incidence& incidence_;
+  const std::vector<PlacedTriangle>& placed_;
+  std::vector<std::int64_t> seen_by_;  ///< the last asking that has met the vertex
+  std::int64_t asked_ = none;
+  std::vector<int> ends_;
 };
 
 /// At right angles to the edge a b, in the triangle, towards its third corner.
@@ -71,9 +115,24 @@ bool place_triangle(const TriangleMesh& mesh, std::size_t triangle, PlacedTriang
   return true;
 }
 
+std::vector<MeshEdge> edges_of(std::span<const std::array<int, 3>> triangles) {
+  std::vector<Edge> all;
+  all.reserve(3 * triangles.size());
+  for (const std::array<int, 3>& t : triangles)
+    for (std::size_t k = 0; k < 3; ++k) all.push_back(edge_of(t[k], t[(k + 1) % 3]));
+  std::ranges::sort(all);
+  std::vector<MeshEdge> edges;
+  for (const auto& [from, to] : all) {
+    if (edges.empty() || edges.back().from != from || edges.back().to != to) edges.push_back({from, to, 0});
+    ++edges.back().count;
+  }
+  return edges;
+}
+
 std::vector<Surroundings> surroundings_of(const TriangleMesh& mesh,
                                           const std::vector<PlacedTriangle>& placed) {
   const Incidence incidence(mesh, placed);
+  Neighbours neighbours(incidence, placed, mesh.vertices.size());
   std::vector<Surroundings> all(placed.size());
   const auto at = [&](int v) -> const Vec3& { return mesh.vertices[static_cast<std::size_t>(v)]; };
   for (std::size_t t = 0; t < placed.size(); ++t) {
@@ -88,21 +147,17 @@ std::vector<Surroundings> surroundings_of(const TriangleMesh& mesh,
     };
     for (std::size_t k = 0; k < 3; ++k) {
       const Edge edge = edge_of(triangle.corners[k], triangle.corners[(k + 1) % 3]);
-      const auto& sharing = incidence.at_edge.at(edge);
-      s.edges[k] = begin(sharing.front());
-      for (const std::size_t other : sharing)
+      const auto sharing = incidence.at_edge(edge);
+      s.edges[k] = begin(sharing.front().second);
+      for (const auto& [shared, other] : sharing)
         s.directions.push_back(to_frame * inward(mesh, placed[other], edge));
       end(s.edges[k]);
     }
     for (std::size_t k = 0; k < 3; ++k) {
       const int corner = triangle.corners[k];
-      const auto& around = incidence.at_vertex[static_cast<std::size_t>(corner)];
-      s.vertices[k] = begin(around.front());
-      std::vector<int> ends;
-      for (const std::size_t other : around)
-        for (const int v : placed[other].corners)
-          if (v != corner && std::ranges::find(ends, v) == ends.end()) ends.push_back(v);
-      for (const int v : ends) s.directions.push_back(to_frame * (at(v) - at(corner)).normalized());
+      s.vertices[k] = begin(incidence.at_vertex(corner).front());
+      for (const int v : neighbours.of(corner))
+        s.directions.push_back(to_frame * (at(v) - at(corner)).normalized());
       end(s.vertices[k]);
     }
   }

@@ -241,6 +241,15 @@ inline constexpr double same_direction = 1e-9;
 /// Thickness of a triangle or a polyhedron (of its longest extent) under which it is none, and distance from
 /// a face under which a point is in it.
 inline constexpr double flat = 1e-10;
+/// Distance under which corners of a mesh count as one, and a corner as on an edge: the smaller of a share of
+/// the mesh's size (the diagonal of its box) and a share of the shortest edge at the corners, so that nothing
+/// is joined that edges tell apart. The first covers two copies of a corner that are each 1e-5 of the size
+/// off along every axis. Larger: slits and thin sheets close; smaller: cracks stay.
+inline constexpr double weld_size = 4e-5;
+inline constexpr double weld_edge = 1e-2;
+/// But at least this (of the size): shorter edges are rounding.
+inline constexpr double weld_least = 1e-9;
+static_assert(flat < weld_least && weld_least < weld_size);
 /// Difference of two principal moments, and products of inertia, that are rounding (of the largest moment).
 inline constexpr double equal_moments = 1e-12;
 

@@ -136,11 +136,12 @@ struct BodyState {
   Quat start_orientation = Quat::Identity();
   Vec3 acceleration = Vec3::Zero();  ///< change of velocity over the last step / step
   Vec3 force = Vec3::Zero();         ///< contact impulse on it over the last step / step (N)
+  Vec3 torque = Vec3::Zero();        ///< of a triangle: of these impulses about its centre (N m)
 
   static BodyState absent() {
     const Vec3 none = Vec3::Constant(std::numeric_limits<double>::quiet_NaN());
     const Quat no_orientation(none.x(), none.x(), none.x(), none.x());
-    return {none, none, none, no_orientation, no_orientation, none, none};
+    return {none, none, none, no_orientation, no_orientation, none, none, none};
   }
 };
 

@@ -343,7 +343,8 @@ SteppedBody ResidentStepper<Space, Real>::body(std::int32_t id) const {
       .spin = at(bodies_.spin),
       .velocity_before = at(start_.velocity),
       .acceleration = parameters_.gravity + gravity_.excess_of_mean(grid_.length(step_ + 1), parameters_),
-      .contact_impulse = Vec3::Zero()};
+      .contact_impulse = Vec3::Zero(),
+      .contact_moment = Vec3::Zero()};
   if (parameters_.acceleration.size() > 0) {
     Vec3 more;
     copy_bytes<Host, Space>(&more, parameters_.acceleration.data() + id, sizeof(more));

@@ -300,7 +300,8 @@ BodyState Simulation::body(std::int32_t id) const {
                   .orientation = body.orientation,
                   .start_orientation = p.first_orientation[static_cast<std::size_t>(id)],
                   .acceleration = Vec3::Zero(),
-                  .force = Vec3::Zero()};
+                  .force = Vec3::Zero(),
+                  .torque = Vec3::Zero()};
   if (p.step == 0 || !p.presence.holds(id, p.step - 1)) return state;
   state.acceleration = (body.velocity - body.velocity_before) / p.last_step;
   // On a free body the contact impulse is what gravity and applied forces do not explain of the change of its
@@ -308,6 +309,7 @@ BodyState Simulation::body(std::int32_t id) const {
   state.force = body.mobility == Mobility::free
                     ? Vec3((state.acceleration - body.acceleration) / body.inverse_mass)
                     : Vec3(body.contact_impulse / p.last_step);
+  state.torque = body.contact_moment / p.last_step;
   return state;
 }
 

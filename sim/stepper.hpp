@@ -27,6 +27,7 @@ struct SteppedBody {
   Vec3 velocity_before;  ///< at the start of the step (m/s)
   Vec3 acceleration;     ///< by gravity and applied forces over the step, of a free body (m/s^2)
   Vec3 contact_impulse;  ///< over the step, on a body that is not free (N s)
+  Vec3 contact_moment;   ///< of these impulses about its centre, on a triangle (N m s)
 };
 
 /// The bodies, and the stages that move them. Bodies are known by their ids.

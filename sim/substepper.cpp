@@ -20,6 +20,7 @@ void Substepper::Restart::save(const Substepper& now) {
   impacts = now.counters.impacts;
   unfinished_impacts = now.counters.unfinished_impacts;
   contact_impulse = now.contact_impulse_;
+  contact_moment = now.contact_moment_;
 }
 
 void Substepper::Restart::restore(Substepper& now) const {
@@ -29,6 +30,7 @@ void Substepper::Restart::restore(Substepper& now) const {
   now.counters.impacts = impacts;
   now.counters.unfinished_impacts = unfinished_impacts;
   now.contact_impulse_ = contact_impulse;
+  now.contact_moment_ = contact_moment;
 }
 
 Substepper::Substepper(const Scene& scene, const TimeGrid& grid, const PathTable& paths, bool on_device,
@@ -51,6 +53,7 @@ Substepper::Substepper(const Scene& scene, const TimeGrid& grid, const PathTable
   parameters_.guides = std::as_const(guides_).view();
   copy(laws_, pair_laws_of(scene));
   contact_impulse_.assign(scene.bodies.position.size(), Vec3::Zero());
+  if (!scene.meshes.empty()) contact_moment_.assign(scene.bodies.position.size(), Vec3::Zero());
   start_.save(bodies_);
 }
 
@@ -61,6 +64,7 @@ void Substepper::start_step(std::int64_t step) {
   start_gravity_ = parameters_.gravity;
   gravity_.start_step();
   std::fill(contact_impulse_.begin(), contact_impulse_.end(), Vec3(Vec3::Zero()));
+  std::fill(contact_moment_.begin(), contact_moment_.end(), Vec3(Vec3::Zero()));
   forces_.act(step, bodies_, parameters_);
 }
 
@@ -104,6 +108,9 @@ void Substepper::archive(Archive& archive) {
   archive.expect(start_.velocity.size() == bodies_.count(), "velocity_before");
   archive("contact_impulse", contact_impulse_);
   archive.expect(std::ssize(contact_impulse_) == bodies_.count(), "contact_impulse");
+  const std::size_t moments = contact_moment_.size();
+  archive("contact_moment", contact_moment_);
+  archive.expect(contact_moment_.size() == moments, "contact_moment");
   archive.part("kept_pairs", kept_pairs_);
   archive.part("memory", memory_);
   gravity_.archive(archive, parameters_);
@@ -166,7 +173,13 @@ void Substepper::fly_on(const Manifolds& manifolds, double h, double done) {
   memory_.remember(manifolds, contacts_, bodies_.count());
   for (std::int64_t k = 0; k < contacts_.others(); ++k) {
     const Contact& c = std::as_const(contacts_.contacts).view()[k];
-    if (c.free_ends < 2) add_impulse_on_driven_bodies(c.i, c.j, contacts_.impulse_of(c));
+    if (c.free_ends == 2) continue;
+    add_impulse_on_driven_bodies(c.i, c.j, contacts_.impulse_of(c));
+    for (int r = 0; r < c.count; ++r) {
+      const ContactRow& row = std::as_const(contacts_.rows).view()[c.first_row + r];
+      add_moment_on_triangle(c.i, -row.arm_i.cross(row.impulse));
+      add_moment_on_triangle(c.j, row.arm_j.cross(row.impulse));
+    }
   }
   contacts_.batches.for_each_driven_pair([this](std::int32_t i, std::int32_t j, const Vec3& impulse) {
     add_impulse_on_driven_bodies(i, j, impulse);
@@ -217,6 +230,9 @@ void Substepper::resolve_impacts(double h, double from, double reach) {
   if (impacts_.hit_bound()) ++counters.unfinished_impacts;
   for (const Impact& impact : impacts_.impacts()) {
     add_impulse_on_driven_bodies(impact.i, impact.j, impact.impulse);
+    const ConstView<Vec3> centres = std::as_const(bodies_.position).view();
+    add_moment_on_triangle(impact.i, -(impact.point - centres[impact.i]).cross(impact.impulse));
+    add_moment_on_triangle(impact.j, (impact.point - centres[impact.j]).cross(impact.impulse));
     struck_.push_back(impact);
   }
 }
@@ -293,6 +309,12 @@ void Substepper::add_impulse_on_driven_bodies(std::int32_t i, std::int32_t j, co
   if (mobility[j] != Mobility::free) contact_impulse_[static_cast<std::size_t>(j)] += impulse;
 }
 
+/// About its centre.
+void Substepper::add_moment_on_triangle(std::int32_t id, const Vec3& moment) {
+  if (!contact_moment_.empty() && std::as_const(bodies_.shape).view()[id] == Shape::triangle)
+    contact_moment_[static_cast<std::size_t>(id)] += moment;
+}
+
 SteppedBody Substepper::body(std::int32_t id) const {
   const ConstBodyView views = view_of(bodies_);
   const bool guided =
@@ -308,7 +330,9 @@ SteppedBody Substepper::body(std::int32_t id) const {
           .spin = views.spin[id],
           .velocity_before = start_.velocity.view()[id],
           .acceleration = parameters_.acceleration_of(id) + excess,
-          .contact_impulse = contact_impulse_[static_cast<std::size_t>(id)]};
+          .contact_impulse = contact_impulse_[static_cast<std::size_t>(id)],
+          .contact_moment =
+              contact_moment_.empty() ? Vec3(Vec3::Zero()) : contact_moment_[static_cast<std::size_t>(id)]};
 }
 
 /// The volume of polyhedra is not told by their sizes.

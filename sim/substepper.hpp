@@ -81,7 +81,7 @@ class Substepper final : public Stepper {
     Vec3 gravity;
     Ledger ledger;
     std::int64_t impacts = 0, unfinished_impacts = 0;
-    std::vector<Vec3> contact_impulse;
+    std::vector<Vec3> contact_impulse, contact_moment;
 
     void save(const Substepper& now);
     void restore(Substepper& now) const;
@@ -102,6 +102,7 @@ class Substepper final : public Stepper {
   ConstView<Pair> pairs_now();
   const ContactSet& listed_contacts() const;
   void add_impulse_on_driven_bodies(std::int32_t i, std::int32_t j, const Vec3& impulse);
+  void add_moment_on_triangle(std::int32_t id, const Vec3& moment);
 
   TimeGrid grid_;
   std::shared_ptr<const Geometry> geometry_;
@@ -127,6 +128,7 @@ class Substepper final : public Stepper {
   Vec3 start_gravity_ = Vec3::Zero();
   Restart before_;  // of the last substep, in the accurate mode
   std::vector<Vec3> contact_impulse_;
+  std::vector<Vec3> contact_moment_;  // empty where there are no meshes
   Array<double, Host> contact_margin_;
   Array<SolverBody, Host> solver_;
   std::vector<Impact> struck_;   // in the last substep

@@ -15,6 +15,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -190,17 +191,33 @@ const char* convex_words(ConvexMethod method) {
 /// Triangles, and the ways of contacts that boxes and spheres do not take; both on Host.
 std::string general_words(const Scene& scene) {
   std::string words;
-  if (const std::int64_t triangles = count_shape(scene, Shape::triangle)) {
+  if (const std::int64_t triangles = count_shape(scene, Shape::triangle))
     words += fmt::format("; {} triangles of meshes", triangles);
-    if (scene.geometry->left_out > 0)
-      words +=
-          fmt::format(" ({} triangles without area or given twice are left out)", scene.geometry->left_out);
-  }
   if (count_shape(scene, Shape::capsule) + count_shape(scene, Shape::cylinder) +
           count_shape(scene, Shape::polyhedron) >
       0)
     words += fmt::format("; capsules, cylinders and polyhedra by {}", convex_words(scene.narrowphase.convex));
   return words.empty() ? words : words + "; on the host";
+}
+
+std::string mesh_words(const MeshBodies& mesh) {
+  const MeshReport& report = mesh.report;
+  const std::string name =
+      mesh.name.empty() ? std::filesystem::path(mesh.file).filename().string() : mesh.name;
+  std::string words = fmt::format("{}: {} triangles", name, mesh.bodies.count);
+  if (report.left_out > 0)
+    words += fmt::format(" ({} triangles without area or given twice are left out)", report.left_out);
+  words += report.welded > 0 ? fmt::format("; {} corners welded to others, by up to {:.2g} m", report.welded,
+                                           report.farthest)
+                             : "; no corners to weld";
+  if (report.split > 0) words += fmt::format("; {} triangles split at corners on their edges", report.split);
+  words += fmt::format("; open edges: {}", report.open);
+  if (report.crowded > 0) words += fmt::format("; edges of three triangles or more: {}", report.crowded);
+  return words;
+}
+
+void print_meshes(const Scene& scene) {
+  for (const MeshBodies& mesh : scene.meshes) print_row("mesh", mesh_words(mesh));
 }
 
 std::string box_words(const Scene& scene) {
@@ -306,7 +323,9 @@ int plan(const PlanArguments& arguments) {
   const TimeGrid grid(scene.time);
   const OutputPlan output = plan_output(scene, grid);
   print_row("scene", fmt::format("{} ({}), seed {}", scene.name, scene.source.string(), scene.seed));
+  for (const std::string& warning : scene.warnings) print_row("warning", warning);
   print_bodies(scene);
+  print_meshes(scene);
   print_emitters(scene);
   print_period(scene);
   const std::string substeps = scene.time.substeps

@@ -214,6 +214,7 @@ int run(const RunArguments& arguments) {
   if (arguments.resume && !resumes) folder.clear();
   const auto opening = resumes ? AtomicFile::Opening::again : AtomicFile::Opening::anew;
   Console console(folder / "log.txt", opening);
+  for (const std::string& warning : scene.warnings) console.warn(warning);
   for (const std::string& warning : warnings) console.warn(warning);
   write_file(folder / "scene.yaml", scene.resolved);
   Recorder recorder(scene, folder, console, draws, helpers_of(simulation, arguments), opening);

@@ -70,6 +70,7 @@ SceneOutcome verify_scene(const Job& job, const VerifyArguments& arguments) {
     const Scene scene = read_scene(job.file, overrides);
     outcome.left_out = reason_to_leave_out(scene, arguments);
     if (!outcome.left_out.empty()) return outcome;
+    for (const std::string& warning : scene.warnings) print_error("warning: " + warning);
     outcome.checks = run_checks(scene, overrides, arguments.simulation);
     outcome.status = status_of(outcome.checks);
   } catch (const InputError& error) {

@@ -245,7 +245,7 @@ void BodyFile::require_hull(const Cells& cells, Shape shape) {
   if ((shape == Shape::polyhedron) == !cells[BodyColumn::hull].empty()) return;
   fail(BodyColumn::hull, cells.mark_of(BodyColumn::hull),
        shape == Shape::polyhedron
-           ? std::string("a polyhedron needs it, an OBJ or STL file whose vertices' hull it is")
+           ? std::string("a polyhedron needs it, an OBJ, STL or PLY file whose vertices' hull it is")
            : fmt::format("does not go with a {}; leave it empty", cells[BodyColumn::shape]));
 }
 

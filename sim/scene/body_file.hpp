@@ -36,7 +36,7 @@ enum class BodyColumn {
   wz,
   mass,      ///< kg; empty: from the material's density
   material,  ///< a name of the scene's materials
-  hull,      ///< of a polyhedron: the OBJ or STL file whose vertices' hull it is, relative to the body file
+  hull,      ///< of a polyhedron: the OBJ, STL or PLY file whose vertices' hull it is, relative to the body file
   servo_x,   ///< of a servo: the axis along which it moves; with servo_force all four or none
   servo_y,
   servo_z,

@@ -30,18 +30,22 @@ Codec<Distribution<T>> distribution(std::string name, const Codec<T>& value) {
            check_distribution<T>)});
 }
 
-/// Edge lengths, or one number for a cube.
-Codec<Vec3> edges() {
-  const Codec<double> edge = number(above_zero, "m");
-  const Codec<Vec3> cube{edge.type,
-                         [edge](Vec3& size, const Node& node, Reader& reader) {
-                           double length = 0;
-                           edge.read(length, node, reader);
-                           size.setConstant(length);
-                         },
-                         [](const Vec3&) { return std::optional<Node>(); }};
-  return any_of<Vec3>({cube, vector("m", above_zero)});
+/// One number for all three axes, or one for each. `is_short`: three equal ones are written as one.
+Codec<Vec3> one_or_three(const Codec<double>& number, bool is_short) {
+  const Codec<Vec3> one{number.type,
+                        [number](Vec3& v, const Node& node, Reader& reader) {
+                          double value = 0;
+                          number.read(value, node, reader);
+                          v.setConstant(value);
+                        },
+                        [number, is_short](const Vec3& v) {
+                          return is_short && (v.array() == v.x()).all() ? number.write(v.x()) : std::nullopt;
+                        }};
+  return any_of<Vec3>({one, fixed_list<Vec3, 3>(number)});
 }
+
+/// Edge lengths, or one number for a cube.
+Codec<Vec3> edges() { return one_or_three(number(above_zero, "m"), false); }
 
 Codec<PlaneEntry> plane_section() {
   using T = PlaneEntry;
@@ -117,24 +121,58 @@ Codec<PolyhedronEntry> polyhedron_section() {
           key<T>("points", &T::points, optional(list_of(vector("m"), 4)), optionally,
                  "[[x, y, z], ...], not all in a plane"),
           key<T>("file", &T::file, text(), optionally,
-                 "instead: the vertices of an OBJ or STL file, whether its surface is convex or not"),
+                 "instead: the vertices of an OBJ, STL or PLY file, whether its surface is convex or not"),
           key<T>("scale", &T::scale, number(above_zero), optionally, "the points are multiplied by it"),
       },
       check_polyhedron);
+}
+
+Codec<Weld> weld() {
+  const auto named = [](const char* name, bool on) {
+    return Codec<Weld>{word_type({name}),
+                       [on](Weld& weld, const Node&, Reader&) {
+                         weld = {on, {}};
+                       },
+                       [name, on](const Weld& weld) {
+                         return weld.on == on && !weld.length ? std::optional(Node::scalar(name))
+                                                              : std::nullopt;
+                       }};
+  };
+  const Codec<std::optional<double>> length = optional(number(above_zero, "m"));
+  const Codec<Weld> given{length.type,
+                          [length](Weld& weld, const Node& node, Reader& reader) {
+                            weld.on = true;
+                            length.read(weld.length, node, reader);
+                          },
+                          [length](const Weld& weld) { return length.write(weld.length); }};
+  return any_of<Weld>({named("auto", true), named("off", false), given});
 }
 
 Codec<MeshEntry> mesh_section() {
   using T = MeshEntry;
   return section<T>(
       "bodies[].mesh",
-      "A surface of triangles from a file. Each triangle is a body, called `name[k]`. Bodies may touch both "
-      "sides: a body is on the side of a triangle on which its centre is. Edges between triangles in one "
-      "plane, and hollow ones, are not felt. It never moves freely.",
+      "A surface of triangles from a file. Each triangle is a body, called `name[k]`; `name` is all of them. "
+      "Bodies may touch both sides: a body is on the side of a triangle on which its centre is. Edges "
+      "between "
+      "triangles in one plane, and hollow ones, are not felt, nor are cracks that are welded. It never moves "
+      "freely. `scree plan` says how many corners were welded, how far they moved, how many triangles were "
+      "split, and how many edges are open. What of the file is not read is said as a warning.",
       {
           key<T>("file", &T::file, text(), required,
-                 "Wavefront OBJ (polygons as fans), or STL, as text or binary"),
-          key<T>("scale", &T::scale, number(above_zero), optionally, "vertices are multiplied by it"),
-      });
+                 "Wavefront OBJ, STL (text or binary) or PLY (likewise); polygons are cut into triangles"),
+          key<T>(
+              "scale", &T::scale, one_or_three(number(), true), optionally,
+              "vertices are multiplied by it: a number for all axes, or [x, y, z]; not 0. Where it mirrors, "
+              "triangles are turned round"),
+          key<T>(
+              "weld", &T::weld, weld(), optionally,
+              "corners nearer than this count as one, and a corner nearer than this to an edge splits its "
+              "triangles. `auto`: the smaller of 4e-5 of the mesh's size (the diagonal of its box) and 0.01 "
+              "of the shortest edge at the corners, but at least 1e-9 of the size. `off`: only corners of "
+              "equal place are one"),
+      },
+      check_mesh);
 }
 
 Codec<RotationEntry> rotate_section() {

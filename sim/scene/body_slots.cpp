@@ -75,7 +75,9 @@ std::filesystem::path find_mesh(std::string& file, const std::filesystem::path& 
 std::unique_ptr<SceneMesh> open_mesh(BodyEntry& body, const std::filesystem::path& scene, Reader& reader) {
   if (!body.mesh) return nullptr;
   try {
-    return std::make_unique<SceneMesh>(read_scene_mesh(find_mesh(body.mesh->file, scene), body.mesh->scale));
+    const std::filesystem::path file = find_mesh(body.mesh->file, scene);
+    return std::make_unique<SceneMesh>(
+        scene_mesh(read_mesh_file(file, body.mesh->scale), file, body.mesh->weld));
   } catch (const InputError& error) {
     reader.fail_at("mesh", *body.node, error.what());
   }
@@ -87,7 +89,7 @@ std::unique_ptr<Hull> open_hull(BodyEntry& body, const std::filesystem::path& sc
   try {
     if (!entry.file.empty())
       return std::make_unique<Hull>(
-          make_hull(read_mesh_file(find_mesh(entry.file, scene), entry.scale).vertices));
+          make_hull(read_mesh_file(find_mesh(entry.file, scene), Vec3::Constant(entry.scale)).vertices));
     std::vector<Vec3> points;
     for (const Vec3& point : *entry.points) points.push_back(entry.scale * point);
     return std::make_unique<Hull>(make_hull(points));

@@ -99,7 +99,7 @@ class Builder {
     geometry->of_body.resize(shapes.size());
     for (BodySlot& slot : slots_) {
       require_no_tube(slot);
-      if (slot.mesh) add_mesh(*slot.mesh, slot.bodies, *geometry);
+      if (slot.mesh) add_mesh(slot, *geometry, scene);
       if (!slot.hull) continue;
       geometry->hulls.push_back(std::move(*slot.hull));
       for (std::int32_t k = 0; k < slot.bodies.count; ++k)
@@ -125,9 +125,13 @@ class Builder {
         "polyhedra; a mesh of its wall can");
   }
 
-  static void add_mesh(const SceneMesh& mesh, const BodyRange& bodies, Geometry& geometry) {
-    geometry.left_out += mesh.mesh.left_out;
-    std::int32_t id = bodies.first;
+  static void add_mesh(const BodySlot& slot, Geometry& geometry, Scene& scene) {
+    const SceneMesh& mesh = *slot.mesh;
+    scene.meshes.push_back({slot.entry->name, slot.entry->mesh->file, slot.bodies,
+                            slot.entry->at.value_or(Vec3::Zero()), mesh.report});
+    for (const std::string& warning : mesh.warnings)
+      scene.warnings.push_back(fmt::format("{}: {}", slot.entry->mesh->file, warning));
+    std::int32_t id = slot.bodies.first;
     for (Surroundings& around : surroundings_of(mesh.mesh, mesh.triangles)) {
       geometry.surroundings.push_back(std::move(around));
       geometry.of_body[static_cast<std::size_t>(id++)].surroundings = &geometry.surroundings.back();
@@ -156,7 +160,7 @@ class Builder {
     const auto [found, fresh] = hulls_.try_emplace(name);
     if (fresh) {
       try {
-        found->second = make_hull(read_mesh_file(name, 1).vertices);
+        found->second = make_hull(read_mesh_file(name, Vec3::Ones()).vertices);
       } catch (const InputError& error) {
         file.fail(BodyColumn::hull, row.hull_mark, error.what());
       }

@@ -62,7 +62,8 @@ struct PolyhedronEntry {
 
 struct MeshEntry {
   std::string file;
-  double scale = 1;
+  Vec3 scale = Vec3::Ones();
+  Weld weld;
 };
 
 struct RotationEntry {

@@ -42,6 +42,20 @@ double value_of_body(const Measure& measure, const BodyState& body) {
   }
 }
 
+/// Of the mesh that the measure is of, about its place for the torque.
+double value_of_mesh(const Measure& measure, const std::function<BodyState(std::int32_t)>& body) {
+  const BodyState first = body(measure.body);
+  const Quat turned = first.orientation * first.start_orientation.conjugate();
+  const Vec3 place = first.position + turned * measure.to_place;
+  Vec3 force = Vec3::Zero(), torque = Vec3::Zero();
+  for (std::int32_t k = 0; k < measure.triangles; ++k) {
+    const BodyState triangle = k == 0 ? first : body(measure.body + k);
+    force += triangle.force;
+    torque += triangle.torque + (triangle.position - place).cross(triangle.force);
+  }
+  return part_of(measure.kind == MeasureKind::mesh_force ? force : torque, measure.component);
+}
+
 std::string_view first_word(std::string_view name) { return name.substr(0, name.find('.')); }
 
 [[noreturn]] void fail(std::string_view text, std::string_view what) {
@@ -86,9 +100,18 @@ std::string_view after_name(std::string_view text, std::string_view name, const 
 Measure parse_of_body(std::string_view text, const Scene& scene) {
   const std::string_view name = first_word(text);
   const auto body = scene.body_names.find(std::string(name));
+  const auto mesh = std::ranges::find(scene.meshes, name, &MeshBodies::name);
+  if (mesh != scene.meshes.end()) {
+    Measure measure = parse_name(text, after_name(text, name, ".force.z"), MeasureSubject::mesh);
+    measure.body = mesh->bodies.first;
+    measure.triangles = mesh->bodies.count;
+    measure.to_place = mesh->place - scene.bodies.position[static_cast<std::size_t>(measure.body)];
+    return measure;
+  }
   if (body == scene.body_names.end()) {
     std::vector<std::string_view> known;
     for (const auto& [other, id] : scene.body_names) known.push_back(other);
+    for (const MeshBodies& other : scene.meshes) known.push_back(other.name);
     for (const MeasureInfo& info : measure_table())
       if (info.of == MeasureSubject::run) known.push_back(first_word(info.name));
     fail(text, fmt::format("there is no body called {}{}", name, suggestion(name, known)));
@@ -126,6 +149,9 @@ const std::vector<MeasureInfo>& measure_table() {
        "change of velocity over the last step / step"},
       {K::force, "force", S::body, true, "N", "contact impulse on the body over the last step / step"},
       {K::tilt, "tilt", S::body, false, "rad", "angle of the body's z axis from its start"},
+      {K::mesh_force, "force", S::mesh, true, "N", "contact impulse on all of it over the last step / step"},
+      {K::mesh_torque, "torque", S::mesh, true, "N m",
+       "of these impulses about its place, which is its `at`"},
       {K::energy_total, "energy.total", S::run, false, "J", "kinetic + potential, of the free bodies"},
       {K::energy_kinetic, "energy.kinetic", S::run, false, "J", "linear + angular"},
       {K::energy_linear, "energy.linear", S::run, false, "J", "of the motion of the centres"},
@@ -229,6 +255,9 @@ double evaluate(const Measure& measure, const Observation& observation,
     case MeasureKind::force:
     case MeasureKind::tilt:
       return value_of_body(measure, body(measure.body));
+    case MeasureKind::mesh_force:
+    case MeasureKind::mesh_torque:
+      return value_of_mesh(measure, body);
     case MeasureKind::energy_total:
       return o.total();
     case MeasureKind::energy_kinetic:

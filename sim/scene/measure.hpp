@@ -19,6 +19,9 @@ enum class MeasureKind {
   acceleration,
   force,
   tilt,
+  // Of a mesh: sums over its triangles.
+  mesh_force,
+  mesh_torque,
   // Of the whole run; see Observation.
   energy_total,
   energy_kinetic,
@@ -70,11 +73,13 @@ enum class Component { x, y, z, norm };
 struct Measure {
   MeasureKind kind = MeasureKind::energy_total;
   std::int32_t body = -1;                 ///< its number in the scene; -1 for other measures
+  std::int32_t triangles = 0;             ///< of a mesh: bodies from that one on
+  Vec3 to_place = Vec3::Zero();           ///< of a mesh: from the first triangle's centre, at the start (m)
   std::int32_t region = -1;               ///< likewise
   Component component = Component::norm;  ///< of a vector
 };
 
-enum class MeasureSubject { body, run, region };
+enum class MeasureSubject { body, mesh, run, region };
 
 /// What there is to measure, for the parser and for the reference.
 struct MeasureInfo {
@@ -93,11 +98,13 @@ bool is_of_overlaps(const Measure& measure);
 /// True for the first words of measures that are of no body (energy, region ...): no body may be called so.
 bool is_measure_word(std::string_view name);
 
-/// Parses energy.total, momentum.x, puck.velocity.norm, bed[3].tilt, region.exit.flux; the names are those of
-/// the scene. Throws InputError, without a place, that names what is unknown and the nearest known word.
+/// Parses energy.total, momentum.x, puck.velocity.norm, bed[3].tilt, floor.torque.y, region.exit.flux; the
+/// names are those of the scene. Throws InputError, without a place, that names what is unknown and the
+/// nearest known word.
 Measure parse_measure(std::string_view text, const Scene& scene);
 
-/// The measure's value in SI units. `body` is asked for the state of the body only for measures of one.
+/// The measure's value in SI units. `body` is asked for the state of a body only for measures of it, or of
+/// its mesh.
 double evaluate(const Measure& measure, const Observation& observation,
                 const std::function<BodyState(std::int32_t)>& body);
 

@@ -58,7 +58,7 @@ What is not free, such as a mesh, is for the next scene to give again. `name` na
 | `wx`, `wy`, `wz` | spin, world frame (rad/s); empty: 0 |
 | `mass` | kg; empty: from the material's density |
 | `material` | one of `materials`; `material` in the scene goes before it |
-| `hull` | of a polyhedron: an OBJ or STL file, relative to this one, whose vertices' hull it is; else empty |
+| `hull` | of a polyhedron: an OBJ, STL or PLY file, relative to this one, whose vertices' hull it is; else empty |
 | `servo_x`, `servo_y`, `servo_z`, `servo_force` | of a box that is a servo: its axis, and its force (N); else empty |
 
 Cells are separated by commas and not quoted; columns that are left out count as empty. Blank lines are skipped.
@@ -116,6 +116,7 @@ void append_section(std::string& page, const SectionType& section) {
 
 void append_measures(std::string& page, MeasureSubject of) {
   const char* prefix = of == MeasureSubject::body     ? "<body>."
+                       : of == MeasureSubject::mesh   ? "<mesh>."
                        : of == MeasureSubject::region ? "region.<name>."
                                                       : "";
   page += "\n| measure | unit | meaning |\n|---|---|---|\n";
@@ -134,6 +135,8 @@ std::string scene_reference() {
   page +=
       "\n## Measures\n\nOf one body, by its name; `bed[3]` is a body of a repeat or scatter. World frame.\n";
   append_measures(page, MeasureSubject::body);
+  page += "\nOf a mesh as a whole, by its name; of its triangles as of any body, by `floor[3]`.\n";
+  append_measures(page, MeasureSubject::mesh);
   page += "\nOf the whole run.\n";
   append_measures(page, MeasureSubject::run);
   page += "\nOf one of the `regions`, at the end of a step.\n";

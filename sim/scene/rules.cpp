@@ -132,6 +132,11 @@ void check_plane(const PlaneEntry& plane, const Node& node, Reader& reader) {
   if (!is_direction(plane.normal)) reader.fail_at("normal", node, "must not be zero");
 }
 
+void check_mesh(const MeshEntry& mesh, const Node& node, Reader& reader) {
+  if ((mesh.scale.array() == 0).any())
+    reader.fail_at("scale", node, "must not be 0: nothing would be left of the mesh");
+}
+
 void check_polyhedron(const PolyhedronEntry&, const Node& node, Reader& reader) {
   exclude("points", "file", node, reader);
   if (given({"points", "file"}, node) == 0) reader.fail(node.mark, "needs points or file");

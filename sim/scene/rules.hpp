@@ -10,6 +10,7 @@ namespace scree {
 
 void check_time(const TimeSettings& time, const Node& node, Reader& reader);
 void check_plane(const PlaneEntry& plane, const Node& node, Reader& reader);
+void check_mesh(const MeshEntry& mesh, const Node& node, Reader& reader);
 void check_polyhedron(const PolyhedronEntry& polyhedron, const Node& node, Reader& reader);
 void check_rotation(const RotationEntry& rotation, const Node& node, Reader& reader);
 void check_oscillation(const Oscillation& oscillation, const Node& node, Reader& reader);

@@ -244,6 +244,15 @@ struct Check {
   SourceMark mark;
 };
 
+/// A mesh: its triangles are bodies that follow one another.
+struct MeshBodies {
+  std::string name;  ///< of the entry; may be empty
+  std::string file;
+  BodyRange bodies;
+  Vec3 place;  ///< of the origin of its file (m), when it appears
+  MeshReport report;
+};
+
 struct Scene {
   std::string name;
   std::string label;             ///< `long` scenes are left out of verify unless asked
@@ -260,6 +269,7 @@ struct Scene {
   std::vector<Lifetime> lifetimes;           ///< of those that are not there all the time, by ascending body
   std::vector<Emitter> emitters;             ///< of those that appear when there is room, by ascending body
   std::map<std::string, std::int32_t> body_names;  ///< named bodies, name[k] of a repeat included
+  std::vector<MeshBodies> meshes;                  ///< by ascending bodies
   std::vector<Motion> motions;                     ///< of the prescribed bodies, by ascending body
   std::vector<Servo> servos;                       ///< by ascending body
   std::optional<World> world;                      ///< absent: without end
@@ -273,7 +283,8 @@ struct Scene {
   RenderSettings render;
   RecordSettings record;
   std::vector<Check> checks;
-  std::string resolved;  ///< the scene as YAML with every default written out
+  std::vector<std::string> warnings;  ///< of its files: what is not read, and may have been meant
+  std::string resolved;               ///< the scene as YAML with every default written out
 
   const ContactLaw& law(std::int32_t a, std::int32_t b) const {
     return laws[static_cast<std::size_t>(a) * materials.size() + static_cast<std::size_t>(b)];

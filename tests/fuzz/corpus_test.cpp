@@ -27,6 +27,12 @@ TEST(HostileInput, ScenesLoadOrAreRefused) { read_all("scene", read_hostile_scen
 
 TEST(HostileInput, BodyFilesLoadOrAreRefused) { read_all("body_file", read_hostile_body_file); }
 
+TEST(HostileInput, MeshesLoadOrAreRefused) {
+  read_all("obj", read_hostile_obj);
+  read_all("stl", read_hostile_stl);
+  read_all("ply", read_hostile_ply);
+}
+
 TEST(HostileInput, CheckpointsAreReadOrRefused) { read_all("checkpoint", read_hostile_checkpoint); }
 
 TEST(HostileInput, TrajectoriesAreReadOrRefused) { read_all("trajectory", read_hostile_trajectory); }

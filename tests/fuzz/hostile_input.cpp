@@ -4,6 +4,7 @@
 #include "sim/scene/body_file.hpp"
 #include "sim/scene/codec.hpp"
 #include "sim/scene/document.hpp"
+#include "sim/scene/mesh_file.hpp"
 #include "sim/scene/scene.hpp"
 #include "tests/fuzz/breach.hpp"
 
@@ -125,7 +126,38 @@ void require_row(const BodyRow& row) {
   if (!(std::abs(row.orientation.norm() - 1) < 1e-6)) breach("a row without orientation");
 }
 
+void require_mesh(const SceneMesh& scene) {
+  const auto vertices = static_cast<int>(scene.mesh.vertices.size());
+  for (const Vec3& vertex : scene.mesh.vertices)
+    if (!vertex.allFinite()) breach("a vertex is not finite");
+  for (const PlacedTriangle& t : scene.triangles) {
+    if (!t.position.allFinite() || !(t.size.x() > 0 && t.size.z() > 0)) breach("a triangle has no area");
+    for (const int corner : t.corners)
+      if (corner < 0 || corner >= vertices) breach(fmt::format("there is no vertex {}", corner));
+  }
+  for (const std::string& warning : scene.warnings) require_message("mesh: " + warning);
+  const MeshReport& r = scene.report;
+  if (r.welded < 0 || r.split < 0 || r.left_out < 0 || !std::isfinite(r.farthest))
+    breach("a count that is none");
+  if (surroundings_of(scene.mesh, scene.triangles).size() != scene.triangles.size())
+    breach("a triangle without surroundings");
+}
+
+void require_mesh_or_refusal(std::string_view bytes, const std::filesystem::path& name) {
+  for (const Weld& how : {Weld{}, Weld{.on = true, .length = 0.1}}) {
+    try {
+      require_mesh(scene_mesh(parse_mesh_file(bytes, name, Vec3(1, -2, 1)), name, how));
+    } catch (const InputError& error) {
+      require_message(error.what());
+    }
+  }
+}
+
 }  // namespace
+
+void read_hostile_obj(std::string_view bytes) { require_mesh_or_refusal(bytes, "mesh.obj"); }
+void read_hostile_stl(std::string_view bytes) { require_mesh_or_refusal(bytes, "mesh.stl"); }
+void read_hostile_ply(std::string_view bytes) { require_mesh_or_refusal(bytes, "mesh.ply"); }
 
 void read_hostile_scene(std::string_view bytes) {
   const ScenePart part = split(bytes);

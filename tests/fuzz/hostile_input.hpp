@@ -14,6 +14,12 @@ void read_hostile_scene(std::string_view bytes);
 /// Reads the bytes as a body file, by itself and for a scene. Throws std::logic_error likewise.
 void read_hostile_body_file(std::string_view bytes);
 
+/// Reads the bytes as a mesh's file, and welds it. Throws std::logic_error if what came is neither an
+/// InputError nor triangles in order: of finite places, each with an area, and edges that are counted.
+void read_hostile_obj(std::string_view bytes);
+void read_hostile_stl(std::string_view bytes);
+void read_hostile_ply(std::string_view bytes);
+
 /// Reads the bytes as what follows the first line of a checkpoint, which is given the right checksum: so that
 /// it stops nobody. Throws std::logic_error if what came is neither a RunError nor a state of no more bytes
 /// than the file, which is the same when it is written and read again.

@@ -15,6 +15,8 @@ Scene named_scene() {
   Scene scene;
   scene.body_names = {{"puck", 4}, {"bed[0]", 7}, {"bed[12]", 19}};
   scene.regions = {{.name = "entry"}, {.name = "exit"}};
+  scene.bodies.position.resize(22, Vec3(20, 2, 3));
+  scene.meshes = {{.name = "floor", .file = {}, .bodies = {20, 2}, .place = {20, 2, 3}, .report = {}}};
   return scene;
 }
 const Scene names = named_scene();
@@ -60,6 +62,7 @@ BodyState state_of(std::int32_t body) {
   state.spin = {7, 8, 9};
   state.acceleration = {10, 11, 12};
   state.force = {6, 8, 24};
+  state.torque = {100, 0, 0};
   state.start_orientation = Quat(Eigen::AngleAxisd(0.3, Vec3::UnitX()));
   state.orientation = Quat(Eigen::AngleAxisd(0.3 + 1e-9, Vec3::UnitX()));
   return state;
@@ -124,6 +127,12 @@ TEST(Measure, EachNameHasItsValue) {
       {"puck.spin.z", 9},
       {"puck.acceleration.x", 10},
       {"puck.force.norm", 26},
+      {"floor.force.x", 12},
+      {"floor.force.norm", 52},
+      // The second triangle is 1 m along x from the place of the mesh.
+      {"floor.torque.x", 200},
+      {"floor.torque.y", -24},
+      {"floor.torque.z", 8},
   };
   std::set<MeasureKind> seen{MeasureKind::tilt};
   for (const auto& [name, worth] : expected) {
@@ -150,6 +159,8 @@ TEST(Measure, UnknownNamesAreErrors) {
     }
     return std::string("no error");
   };
+  EXPECT_EQ(message("flor.force.x"),
+            "flor.force.x is no measure: there is no body called flor (did you mean floor?)");
   EXPECT_EQ(message("pucks.tilt"),
             "pucks.tilt is no measure: there is no body called pucks (did you mean puck?)");
   EXPECT_EQ(message("enrgy.total"),
