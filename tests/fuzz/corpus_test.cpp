@@ -27,6 +27,8 @@ TEST(HostileInput, ScenesLoadOrAreRefused) { read_all("scene", read_hostile_scen
 
 TEST(HostileInput, BodyFilesLoadOrAreRefused) { read_all("body_file", read_hostile_body_file); }
 
+TEST(HostileInput, PointsAreAHullOrAreRefused) { read_all("points", read_hostile_points); }
+
 TEST(HostileInput, CheckpointsAreReadOrRefused) { read_all("checkpoint", read_hostile_checkpoint); }
 
 TEST(HostileInput, TrajectoriesAreReadOrRefused) { read_all("trajectory", read_hostile_trajectory); }
