@@ -29,5 +29,6 @@ find_file(SCREE_FONT DejaVuSans.ttf PATHS /usr/share/fonts/truetype/dejavu NO_DE
 pkg_check_modules(ccd REQUIRED IMPORTED_TARGET ccd)
 pkg_check_modules(egl REQUIRED IMPORTED_TARGET egl)
 pkg_check_modules(osmesa REQUIRED IMPORTED_TARGET osmesa)
+pkg_check_modules(qhull REQUIRED IMPORTED_TARGET qhull_r)
 pkg_check_modules(xxhash REQUIRED IMPORTED_TARGET libxxhash)
 pkg_check_modules(hdf5 REQUIRED IMPORTED_TARGET hdf5-serial)

@@ -238,9 +238,20 @@ inline constexpr double shallow_overlap = 1e-3;
 /// Directions in a scene that differ by no more (rad) are one.
 inline constexpr double same_direction = 1e-9;
 
-/// Thickness of a triangle or a polyhedron (of its longest extent) under which it is none, and distance from
-/// a face under which a point is in it.
+/// Thickness of a triangle (of its longest extent) under which it is none, and distance from a face under
+/// which a point is in it.
 inline constexpr double flat = 1e-10;
+/// The same of a hull's points. Coordinates in single precision, or with six digits, do not tell thinner ones
+/// from a plane; hulls of a millionth stay.
+inline constexpr double thin_hull = 2e-7;
+/// Distance of two points of a hull, and of a point from a plane, that counts as none (of its longest extent,
+/// but of so many times its thickness at most). It must exceed the noise of points in single precision, 1e-7,
+/// and should that of six digits: or a face falls into several, and the body rests on one of them. Larger:
+/// facets of fine hulls are lost.
+inline constexpr double coplanar = 1e-6;
+inline constexpr double coplanar_thicknesses = 5;
+// A face's corners touch all at once: the smallest size is half the thickness.
+static_assert(2 * coplanar * coplanar_thicknesses <= closed_gap);
 /// Distance under which corners of a mesh count as one, and a corner as on an edge: the smaller of a share of
 /// the mesh's size (the diagonal of its box) and a share of the shortest edge at the corners, so that nothing
 /// is joined that edges tell apart. The first covers two copies of a corner that are each 1e-5 of the size

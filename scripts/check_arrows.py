@@ -66,7 +66,7 @@ FOLDERS = ["scree", "core", "broadphase", "narrowphase", "sim", "render", "bench
 
 # Each library has one or two files that know it, so that it can be replaced.
 LIBRARIES = {
-    "yaml-cpp": r"yaml-cpp/", "libccd": r"ccd/", "OpenGL and OSMesa": r"GL/", "EGL": r"EGL/", "libpng": r"png\.h",
+    "yaml-cpp": r"yaml-cpp/", "libccd": r"ccd/", "Qhull": r"libqhull", "OpenGL and OSMesa": r"GL/", "EGL": r"EGL/", "libpng": r"png\.h",
     "FreeType": r"ft2build\.h", "HDF5": r"hdf5\.h",
     "CLI11": r"CLI/", "Boost": r"boost/", "nlohmann-json": r"nlohmann/", "xxHash": r"xxhash\.h", "zlib": r"zlib\.h",
 }

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# scripts/fuzz.sh [SECONDS]: gives hostile input to the readers of scenes, body files, meshes (OBJ, STL, PLY), checkpoints,
+# scripts/fuzz.sh [SECONDS]: gives hostile input to the readers of scenes, body files, meshes (OBJ, STL, PLY), points (of hulls), checkpoints,
 # trajectories, tables (of `scree compare`) and manifests, each for so long (60), and prints how many inputs it tried, how many edges of the
 # program they took, and where those lie that broke it. Starts from tests/fuzz/corpus, and from the scenes of configs
 # and tests/data; what it finds worth keeping stays in build/fuzz, and the next call goes on from there. Exit status 1
@@ -14,7 +14,7 @@ set -euo pipefail
 # shellcheck source=scripts/setup.sh
 source "$(dirname "${BASH_SOURCE[0]}")/setup.sh"
 
-inputs=(scene body_file obj stl ply checkpoint trajectory tables manifest)
+inputs=(scene body_file obj stl ply points checkpoint trajectory tables manifest)
 programs="$root/build/host-fuzz/tests/fuzz"
 found="$root/build/fuzz"
 corpus="$root/tests/fuzz/corpus"

@@ -116,7 +116,12 @@ Codec<PolyhedronEntry> polyhedron_section() {
       "bodies[].polyhedron",
       "The convex hull of points. `at`, `orientation` and `rotate` place the frame in which the points are "
       "given; the body's own place is its centre of mass, and its axes are the principal ones. Of `scatter` "
-      "and `emit` the centre of mass is at the random place.",
+      "and `emit` the centre of mass is at the random place. A face may be bent, and points apart, by a "
+      "millionth of the longest extent (at most of five times the thickness): more points than the 128 "
+      "vertices "
+      "that a hull may have can lie within its faces and edges. Points thinner than 2e-7 of their longest "
+      "extent "
+      "lie in a plane.",
       {
           key<T>("points", &T::points, optional(list_of(vector("m"), 4)), optionally,
                  "[[x, y, z], ...], not all in a plane"),

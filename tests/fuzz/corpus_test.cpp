@@ -33,6 +33,8 @@ TEST(HostileInput, MeshesLoadOrAreRefused) {
   read_all("ply", read_hostile_ply);
 }
 
+TEST(HostileInput, PointsAreAHullOrAreRefused) { read_all("points", read_hostile_points); }
+
 TEST(HostileInput, CheckpointsAreReadOrRefused) { read_all("checkpoint", read_hostile_checkpoint); }
 
 TEST(HostileInput, TrajectoriesAreReadOrRefused) { read_all("trajectory", read_hostile_trajectory); }

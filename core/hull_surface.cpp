@@ -1,0 +1,212 @@
+#include "core/hull_surface.hpp"
+
+#include "core/error.hpp"
+#include "core/qhull.hpp"
+#include "core/tolerances.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numeric>
+#include <utility>
+
+namespace scree {
+namespace {
+
+using Polygon = std::vector<int>;
+
+[[noreturn]] void fail_flat() {
+  throw InputError("the points lie in a plane, or nearly: they have no volume");
+}
+
+Vec3 extent_of(std::span<const Vec3> points) {
+  Vec3 low = points.front(), high = points.front();
+  for (const Vec3& p : points) {
+    low = low.cwiseMin(p);
+    high = high.cwiseMax(p);
+  }
+  return high - low;
+}
+
+/// About the first, and scaled to a longest extent of 1, wherever and however large they were.
+std::vector<Vec3> scaled(std::span<const Vec3> points) {
+  if (points.size() < 4) throw InputError("needs four points at least");
+  if (!std::all_of(points.begin(), points.end(), [](const Vec3& p) { return p.allFinite(); }))
+    throw InputError("a coordinate is no finite number");
+  const double longest = extent_of(points).maxCoeff();
+  if (!std::isfinite(longest)) throw InputError("the points are too far apart");
+  if (!(longest > 0)) fail_flat();
+  std::vector<Vec3> at;
+  at.reserve(points.size());
+  for (const Vec3& p : points) at.push_back((p - points.front()) / longest);
+  return at;
+}
+
+template <class Value>
+Vec3 farthest(const std::vector<Vec3>& points, Value value) {
+  return *std::max_element(points.begin(), points.end(),
+                           [&](const Vec3& a, const Vec3& b) { return value(a) < value(b); });
+}
+
+/// The extent across the plane of two points that are far apart and the one farthest from their line: at
+/// least the least extent along any direction, and a few times that at most.
+double thickness_of(const std::vector<Vec3>& points) {
+  const Vec3 a = farthest(points, [](const Vec3& x) { return -x.x(); });
+  const Vec3 b = farthest(points, [&](const Vec3& x) { return (x - a).squaredNorm(); });
+  const Vec3 along = (b - a).normalized();
+  const auto aside = [&](const Vec3& x) -> Vec3 { return x - a - along.dot(x - a) * along; };
+  const Vec3 way = aside(farthest(points, [&](const Vec3& x) { return aside(x).squaredNorm(); }));
+  if (!(way.norm() > tolerance::thin_hull)) fail_flat();
+  const Vec3 across = along.cross(way).normalized();
+  const auto height = [&](const Vec3& x) { return across.dot(x - a); };
+  return height(farthest(points, height)) -
+         height(farthest(points, [&](const Vec3& x) { return -height(x); }));
+}
+
+/// Finds the surface of points that have been scaled. Lengths are relative to their longest extent.
+class Surface {
+ public:
+  explicit Surface(std::vector<Vec3> points) : points_(std::move(points)) {
+    const double thickness = thickness_of(points_);
+    if (!(thickness > tolerance::thin_hull)) fail_flat();
+    width_ = tolerance::coplanar * std::min(1.0, tolerance::coplanar_thicknesses * thickness);
+  }
+
+  /// Qhull fails, in rare cases, on points that are only just not equal, so these are taken as equal then.
+  std::vector<Polygon> find() {
+    for (double apart = width_; !find_of_points(apart); apart *= 4)
+      if (used_.size() <= 4)
+        throw InputError("no hull was found: too many of the points are nearly in one plane");
+    for (Polygon& face : faces_)
+      std::rotate(face.begin(), std::min_element(face.begin(), face.end()), face.end());
+    std::sort(faces_.begin(), faces_.end());
+    return std::move(faces_);
+  }
+
+ private:
+  const Vec3& at(int p) const { return points_[static_cast<std::size_t>(p)]; }
+
+  /// Of points that are so far apart. False if there is none.
+  bool find_of_points(double apart) {
+    leave_out_nearer(apart);
+    for (;;) {
+      find_faces();
+      const Polygon dents = find_dents();
+      if (dents.empty()) return is_closed();
+      std::erase_if(used_, [&](int p) { return std::binary_search(dents.begin(), dents.end(), p); });
+    }
+  }
+
+  /// Uses of points that are nearer to each other the first along a direction.
+  void leave_out_nearer(double apart) {
+    // One in which few points of a lattice are alike.
+    const Vec3 along(1, 0.618033988749895, 0.414213562373095);
+    std::vector<std::pair<double, int>> order;
+    for (int p = 0; p < static_cast<int>(points_.size()); ++p) order.emplace_back(along.dot(at(p)), p);
+    std::sort(order.begin(), order.end());
+    std::vector<std::pair<double, int>> kept;
+    for (const auto& [place, p] : order) {
+      const auto near =
+          std::lower_bound(kept.begin(), kept.end(), std::pair{place - along.norm() * apart, 0});
+      const bool is_new = std::none_of(
+          near, kept.end(), [&](const auto& other) { return (at(p) - at(other.second)).norm() <= apart; });
+      if (is_new) kept.emplace_back(place, p);
+    }
+    used_.clear();
+    for (const auto& [place, p] : kept) used_.push_back(p);
+    std::sort(used_.begin(), used_.end());
+  }
+
+  /// Of the points that are used, counterclockwise from outside; none if Qhull finds none.
+  void find_faces() {
+    std::vector<Vec3> given;
+    for (const int p : used_) given.push_back(at(p));
+    faces_ = faces_by_qhull(given, width_);
+    const Vec3 inside =
+        std::accumulate(given.begin(), given.end(), Vec3(Vec3::Zero())) / double(given.size());
+    for (Polygon& face : faces_) {
+      for (int& corner : face) corner = used_[static_cast<std::size_t>(corner)];
+      if (normal_of(face).dot(at(face.front()) - inside) < 0) std::reverse(face.begin(), face.end());
+    }
+  }
+
+  /// Of the triangles from its first corner on, and of any length.
+  Vec3 normal_of(const Polygon& face) const {
+    Vec3 normal = Vec3::Zero();
+    for (std::size_t k = 1; k + 1 < face.size(); ++k)
+      normal += (at(face[k]) - at(face[0])).cross(at(face[k + 1]) - at(face[0]));
+    return normal;
+  }
+
+  Vec3 side_of(const Polygon& face, std::size_t k) const {
+    return at(face[(k + 1) % face.size()]) - at(face[k]);
+  }
+
+  /// A corner of each face that is concave by more than the width: facets have been merged that bend by as
+  /// much as one of its sides is long. In the order of points.
+  Polygon find_dents() const {
+    Polygon dents;
+    for (const Polygon& face : faces_)
+      if (is_concave(face)) dents.push_back(least_dent(face));
+    std::sort(dents.begin(), dents.end());
+    return dents;
+  }
+
+  bool is_concave(const Polygon& face) const {
+    const Vec3 normal = normal_of(face);
+    for (std::size_t k = 0; face.size() > 3 && k < face.size(); ++k) {
+      const Vec3 outward = side_of(face, k).cross(normal).normalized();
+      for (const int corner : face)
+        if (outward.dot(at(corner) - at(face[k])) > width_) return true;
+    }
+    return false;
+  }
+
+  /// Of the corners at which the border turns inward the one nearest to the line past it.
+  int least_dent(const Polygon& face) const {
+    const Vec3 normal = normal_of(face).normalized();
+    double least = HUGE_VAL;
+    int dent = face.front();
+    for (std::size_t k = 0; k < face.size(); ++k) {
+      const std::size_t next = (k + 1) % face.size();
+      const Vec3 in = side_of(face, k), out = side_of(face, next);
+      const double depth = -in.cross(out).dot(normal) / (in + out).norm();
+      if (!(depth > 0 && depth < least)) continue;
+      least = depth;
+      dent = face[next];
+    }
+    return dent;
+  }
+
+  /// Whether there are faces, each edge has two and each corner three of them, and there is no hole (Euler's
+  /// formula).
+  bool is_closed() const {
+    std::map<std::pair<int, int>, int> edges;
+    std::map<int, int> corners;
+    for (const Polygon& face : faces_)
+      for (std::size_t k = 0; k < face.size(); ++k) {
+        ++corners[face[k]];
+        ++edges[{face[k], face[(k + 1) % face.size()]}];
+      }
+    return std::all_of(edges.begin(), edges.end(),
+                       [&](const auto& edge) {
+                         return edge.second == 1 && edges.contains({edge.first.second, edge.first.first});
+                       }) &&
+           std::all_of(corners.begin(), corners.end(),
+                       [](const auto& corner) { return corner.second >= 3; }) &&
+           2 * (corners.size() + faces_.size()) == edges.size() + 4;
+  }
+
+  std::vector<Vec3> points_;
+  double width_;  ///< of what counts as nothing
+  Polygon used_;  ///< points, in their order
+  std::vector<Polygon> faces_;
+};
+
+}  // namespace
+
+std::vector<std::vector<int>> hull_surface(std::span<const Vec3> points) {
+  return Surface(scaled(points)).find();
+}
+
+}  // namespace scree
