@@ -149,6 +149,9 @@ void read_hostile_body_file(std::string_view bytes) {
   const std::string scene = "format: 1\ntime: {end: 1, step: 1}\nmaterials: {glass: {}}\nbodies:\n";
   require_scene_or_refusal(fmt::format("{}  - {{file: {}, name: b}}\n", scene, path));
   require_scene_or_refusal(fmt::format("{}  - {{file: {}, material: glass, fixed: true}}\n", scene, path));
+  require_scene_or_refusal(
+      fmt::format("{}  - {{file: {}, material: glass, sphere: {{radius: 0.1}}}}\n", scene, path));
+  require_scene_or_refusal(fmt::format("{}  - {{file: {}, material: glass, frame: 1}}\n", scene, path));
 }
 
 }  // namespace scree
