@@ -99,7 +99,9 @@ void measure_penetration(const Manifolds& manifolds, const ConstBodyView& bodies
     depths.push_back(depth);
     sum += depth;
     relative_sum += relative;
-    out.relative_max = std::max(out.relative_max, relative);
+    if (relative <= out.relative_max) continue;
+    out.relative_max = relative;
+    out.deepest = {bodies.id[i], bodies.id[j]};
   }
   if (depths.empty()) return;
   const auto n = static_cast<double>(depths.size());

@@ -4,6 +4,7 @@
 #include "core/math.hpp"
 #include "narrowphase/stats.hpp"
 
+#include <array>
 #include <cstdint>
 #include <limits>
 #include <vector>
@@ -48,10 +49,11 @@ struct Penetration {
   double p99 = 0;
   double relative_max = 0;
   double relative_mean = 0;
+  std::array<std::int32_t, 2> deepest{-1, -1};  ///< the bodies of relative_max, by id; -1: there are none
 
   static Penetration unknown() {
     constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-    return {nan, nan, nan, nan, nan};
+    return {nan, nan, nan, nan, nan, {-1, -1}};
   }
 };
 

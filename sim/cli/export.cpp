@@ -6,6 +6,7 @@
 #include "sim/record/exports.hpp"
 #include "sim/record/outcome.hpp"
 #include "sim/record/trajectory_reader.hpp"
+#include "sim/scene/particle_kinds.hpp"
 #include "sim/scene/read_period.hpp"
 #include "sim/scene/scene.hpp"
 

@@ -34,6 +34,10 @@ std::int64_t count_shape(const Scene& scene, Shape shape) {
   return std::ranges::count(scene.bodies.shape, shape);
 }
 
+void print_notes(const Scene& scene) {
+  for (const std::string& note : scene.notes) print_row("note", note);
+}
+
 void print_bodies(const Scene& scene) {
   std::array<std::array<std::int64_t, mobility_words.size()>, shape_words.size()> counts = {};
   for (std::size_t k = 0; k < scene.bodies.shape.size(); ++k) {
@@ -323,7 +327,7 @@ int plan(const PlanArguments& arguments) {
   const TimeGrid grid(scene.time);
   const OutputPlan output = plan_output(scene, grid);
   print_row("scene", fmt::format("{} ({}), seed {}", scene.name, scene.source.string(), scene.seed));
-  for (const std::string& warning : scene.warnings) print_row("warning", warning);
+  print_notes(scene);
   print_bodies(scene);
   print_meshes(scene);
   print_emitters(scene);

@@ -34,6 +34,7 @@ void Recorder::write_rows(Simulation& simulation) {
   newest_ = probe.observe(true);
   last_row_ = newest_.step;
   worst_penetration_ = std::max(worst_penetration_, newest_.penetration.max);
+  worst_overlap_.include(newest_);
 }
 
 void Recorder::record(Simulation& simulation) {
@@ -59,6 +60,10 @@ void Recorder::archive(Archive& archive) {
   archive("states", states_);
   archive("last_row", last_row_);
   archive("worst_penetration", worst_penetration_);
+  archive("worst_overlap", worst_overlap_.relative);
+  archive("worst_overlap_time", worst_overlap_.time);
+  archive("worst_overlap_first", worst_overlap_.bodies[0]);
+  archive("worst_overlap_second", worst_overlap_.bodies[1]);
   archive.part("metrics", metrics_);
   archive.part("timing", timing_);
   if (film_) archive.part("film", *film_);

@@ -43,6 +43,7 @@ class Recorder {
   /// The newest observation made: at most one row of the metrics old.
   const Observation& newest() const { return newest_; }
   double worst_penetration() const { return worst_penetration_; }  ///< of all rows so far (m)
+  const WorstOverlap& worst_overlap() const { return worst_overlap_; }
   std::vector<CheckResult> check_results() const { return checks_.results(newest_.energy_scale); }
   const std::vector<StateMark>& states() const { return states_; }  ///< some, all over the run
   double wall() const { return timing_.wall(); }  ///< of the whole run, whatever stopped it (s)
@@ -63,6 +64,7 @@ class Recorder {
   std::int64_t recorded_ = -1;
   std::int64_t last_row_ = -1;  ///< its step
   double worst_penetration_ = 0;
+  WorstOverlap worst_overlap_;
   std::vector<StateMark> states_;
 };
 

@@ -9,7 +9,6 @@
 #include "sim/cli/picture_context.hpp"
 #include "sim/cli/recorder.hpp"
 #include "sim/record/final_state.hpp"
-#include "sim/record/guards.hpp"
 #include "sim/record/manifest.hpp"
 #include "sim/record/outcome.hpp"
 #include "sim/record/report/report.hpp"
@@ -145,11 +144,20 @@ void say_failure(const StepFailure& failure, const Scene& scene, Simulation& sim
   }
 }
 
-/// What guards and bounds have counted, where that is anything.
-void say_guards(const Observation& last, Console& console) {
-  for (const GuardCount& guard : guards_of(last))
-    if (guard.count > 0)
-      console.say(fmt::format("guard: {} {}; fewer by {}", guard.count, guard.what, guard.setting));
+GuardedRun about_guards(const Scene& scene, const WorstOverlap& worst) {
+  GuardedRun run{.worst = worst,
+                 .bodies = words_for({worst.bodies[0], worst.bodies[1]}, scene),
+                 .accurate = scene.response.mode == ResponseMode::accurate};
+  for (const ContactLaw& law : scene.laws) run.restitution = std::max(run.restitution, law.restitution);
+  return run;
+}
+
+/// What guards and bounds have counted, where that changes whether to trust the run. The report has the rest.
+void say_guards(const RunSummary& summary, Console& console) {
+  for (const GuardCount& guard : summary.guards)
+    if (guard.count > 0 && guard.matters)
+      console.say(
+          fmt::format("guard: {} {}: {}; fewer by {}", guard.count, guard.what, guard.effect, guard.setting));
 }
 
 /// Whether the present state is one to go on from: no row or frame of it is missing, and it is that of the
@@ -214,8 +222,8 @@ int run(const RunArguments& arguments) {
   if (arguments.resume && !resumes) folder.clear();
   const auto opening = resumes ? AtomicFile::Opening::again : AtomicFile::Opening::anew;
   Console console(folder / "log.txt", opening);
-  for (const std::string& warning : scene.warnings) console.warn(warning);
   for (const std::string& warning : warnings) console.warn(warning);
+  for (const std::string& note : scene.notes) console.warn(note);
   write_file(folder / "scene.yaml", scene.resolved);
   Recorder recorder(scene, folder, console, draws, helpers_of(simulation, arguments), opening);
   if (resumes) {
@@ -251,6 +259,7 @@ int run(const RunArguments& arguments) {
   summary.steps = simulation.steps();
   summary.time = simulation.time();
   summary.last = recorder.newest();
+  summary.guards = guards_of(summary.last, about_guards(scene, recorder.worst_overlap()));
   summary.checks = recorder.check_results();
   attempt(summary, console, [&] { summary.state_hash = simulation.state_hash(); });
   if (failure)
@@ -266,7 +275,7 @@ int run(const RunArguments& arguments) {
   summary.wall = recorder.wall();
   summary.resumed_at = checkpoints.resumed_at();
   say_summary(scene, summary, folder, console);
-  say_guards(summary.last, console);
+  say_guards(summary, console);
   console.close();
   summary.warnings = console.warnings();
   write_file(folder / "manifest.json", manifest_of(scene, summary));

@@ -70,7 +70,7 @@ SceneOutcome verify_scene(const Job& job, const VerifyArguments& arguments) {
     const Scene scene = read_scene(job.file, overrides);
     outcome.left_out = reason_to_leave_out(scene, arguments);
     if (!outcome.left_out.empty()) return outcome;
-    for (const std::string& warning : scene.warnings) print_error("warning: " + warning);
+    outcome.notes = scene.notes;
     outcome.checks = run_checks(scene, overrides, arguments.simulation);
     outcome.status = status_of(outcome.checks);
   } catch (const InputError& error) {
@@ -104,6 +104,7 @@ void print_outcome(const SceneOutcome& outcome) {
   } else {
     fmt::print("{}  {:.3g} s\n", title(outcome), outcome.wall);
   }
+  for (const std::string& note : outcome.notes) fmt::print("  note: {}\n", note);
   for (const std::string& line : check_lines(outcome.checks)) fmt::print("{}\n", line);
   std::fflush(stdout);
 }

@@ -4,7 +4,6 @@
 #include "core/hash.hpp"
 #include "core/timing.hpp"
 #include "sim/record/build_info.hpp"
-#include "sim/record/guards.hpp"
 #include "sim/record/json.hpp"
 #include "sim/scene/reader.hpp"
 
@@ -98,8 +97,11 @@ Json json_of(const Counters& c) {
 Json json_of(const std::vector<GuardCount>& guards) {
   Json json = Json::object();
   for (const GuardCount& guard : guards)
-    json[std::string(guard.name)] = {
-        {"count", guard.count}, {"what", guard.what}, {"setting", guard.setting}};
+    json[std::string(guard.name)] = {{"count", guard.count},
+                                     {"what", guard.what},
+                                     {"setting", guard.setting},
+                                     {"effect", guard.effect},
+                                     {"matters", guard.matters}};
   return json;
 }
 
@@ -213,7 +215,7 @@ std::string manifest_of(const Scene& scene, const RunSummary& run) {
   json["warnings"] = run.warnings;
   json["wall_s"] = run.wall;
   if (!run.resumed_at.empty()) json["resumed_at"] = run.resumed_at;
-  json["guards"] = json_of(guards_of(run.last));
+  json["guards"] = json_of(run.guards);
   json["counters"] = json_of(run.last.counters);
   json["stages"] = times(timing::entries());
   if (!timing::calls().empty()) json["calls"] = times(timing::calls());

@@ -3,6 +3,7 @@
 
 #include "sim/model.hpp"
 #include "sim/record/checks.hpp"
+#include "sim/record/guards.hpp"
 
 #include <cstdint>
 #include <filesystem>
@@ -46,6 +47,7 @@ struct RunSummary {
   std::int64_t trajectory_frames = 0;
   std::vector<CheckResult> checks = {};
   std::vector<std::string> warnings = {};
+  std::vector<GuardCount> guards = {};
 };
 
 /// The text of manifest.json; the wall times by stage are those of core/timing.hpp.

@@ -14,6 +14,7 @@ Json json_of(const SceneOutcome& outcome) {
   if (!outcome.settings.empty()) json["settings"] = outcome.settings;
   if (!outcome.message.empty()) json["message"] = outcome.message;
   if (!outcome.left_out.empty()) json["left_out"] = outcome.left_out;
+  if (!outcome.notes.empty()) json["notes"] = outcome.notes;
   json["checks"] = Json::array();
   for (const CheckResult& check : outcome.checks) json["checks"].push_back(json_of(check));
   return json;
@@ -35,6 +36,7 @@ SceneOutcome outcome_from_json(const std::string& text) try {
                        .status = json.at("status"),
                        .message = json.value("message", ""),
                        .left_out = json.value("left_out", ""),
+                       .notes = json.value("notes", std::vector<std::string>()),
                        .wall = json.at("wall_s"),
                        .checks = {}};
   for (const Json& check : json.at("checks")) outcome.checks.push_back(check_result_from(check));

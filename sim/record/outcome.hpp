@@ -21,9 +21,10 @@ struct SceneOutcome {
   std::string scene;          ///< path, as found
   std::string settings = {};  ///< that this run varied, in words
   int status = status_done;
-  std::string message = {};   ///< of the error, if one ended it
-  std::string left_out = {};  ///< why it was not run; empty if it was
-  double wall = 0;            ///< s
+  std::string message = {};             ///< of the error, if one ended it
+  std::string left_out = {};            ///< why it was not run; empty if it was
+  std::vector<std::string> notes = {};  ///< of the scene's reader
+  double wall = 0;                      ///< s
   std::vector<CheckResult> checks = {};
 };
 

@@ -1,6 +1,7 @@
 #include "sim/record/particle_text.hpp"
 
 #include "core/error.hpp"
+#include "sim/scene/particle_kinds.hpp"
 
 #include <fmt/format.h>
 
@@ -16,7 +17,7 @@ namespace {
 struct Particles {
   const ExportFrame& frame;
   std::vector<std::size_t> rows;
-  std::size_t id, shape, size, material;
+  std::size_t id, shape, size, material, mobility;
   std::optional<std::size_t> orientation, velocity, spin;
   LeftOut left_out;
 
@@ -31,6 +32,7 @@ Particles particles_of(const ExportFrame& frame) {
                       frame.require("shape"),
                       frame.require("size"),
                       frame.require("material"),
+                      frame.require("mobility"),
                       frame.find("orientation"),
                       frame.find("velocity"),
                       frame.find("spin"),
@@ -43,21 +45,6 @@ Particles particles_of(const ExportFrame& frame) {
     if (!is_surface(shape)) particles.rows.push_back(row);
   }
   return particles;
-}
-
-int kind_of(Shape shape) {
-  switch (shape) {
-    case Shape::sphere:
-      return 1;
-    case Shape::capsule:
-      return 3;
-    case Shape::cylinder:
-      return 4;
-    case Shape::polyhedron:
-      return 5;
-    default:
-      return 2;
-  }
 }
 
 /// As OVITO takes the two (manual, "Particles"; its kinds sphere, box, spherocylinder and cylinder): a sphere
@@ -143,6 +130,7 @@ std::string xyz_of(const ExportFrame& frame, const Period& period, LeftOut& left
   if (particles.orientation) text += ":orientation:R:4";
   if (particles.velocity) text += ":velo:R:3";
   if (particles.spin) text += ":angular_velocity:R:3";
+  text += ":mobility:I:1";
   const auto out = std::back_inserter(text);
   fmt::format_to(out, " Time={} Timestep={}", frame.frame.time, frame.frame.step);
   if (period.exists) {
@@ -172,6 +160,7 @@ std::string xyz_of(const ExportFrame& frame, const Period& period, LeftOut& left
     }
     if (particles.velocity) append_row(text, frame, *particles.velocity, row, ' ');
     if (particles.spin) append_row(text, frame, *particles.spin, row, ' ');
+    append_row(text, frame, particles.mobility, row, ' ');
     text += '\n';
   }
   return text;
@@ -195,7 +184,7 @@ std::string lammps_of(const ExportFrame& frame, const Period& period, LeftOut& l
   if (particles.orientation) text += " quatw quati quatj quatk";
   if (particles.velocity) text += " vx vy vz";
   if (particles.spin) text += " omegax omegay omegaz";
-  text += '\n';
+  text += " mobility\n";
   for (const std::size_t row : particles.rows) {
     const Shape shape = frame.shape(particles.shape, row);
     // Numbers of atoms and of types begin at 1 there.
@@ -210,6 +199,7 @@ std::string lammps_of(const ExportFrame& frame, const Period& period, LeftOut& l
     if (particles.orientation) append_row(text, frame, *particles.orientation, row, ' ');
     if (particles.velocity) append_row(text, frame, *particles.velocity, row, ' ');
     if (particles.spin) append_row(text, frame, *particles.spin, row, ' ');
+    append_row(text, frame, particles.mobility, row, ' ');
     text += '\n';
   }
   return text;

@@ -11,11 +11,6 @@
 
 namespace scree {
 
-/// Kinds of particles, from 1 on: what a format says of their shape. In a comment of each frame, where the
-/// format has comments.
-inline constexpr const char* particle_kinds =
-    "1 sphere, 2 box, 3 capsule, 4 cylinder, 5 polyhedron as the box around it";
-
 /// How many rows of a frame are no particles: planes, tubes and triangles.
 struct LeftOut {
   std::int64_t planes = 0, tubes = 0, triangles = 0;

@@ -16,9 +16,12 @@ struct Depths {
   double sum = 0, relative_sum = 0;
   double max = 0, relative_max = 0;
   std::int64_t count = 0;
+  std::int64_t deepest = -1;  ///< the first pair of relative_max
   SCREE_HD friend Depths operator+(const Depths& a, const Depths& b) {
-    return {a.sum + b.sum, a.relative_sum + b.relative_sum, fmax(a.max, b.max),
-            fmax(a.relative_max, b.relative_max), a.count + b.count};
+    const Depths& deeper = b.relative_max > a.relative_max ? b : a;
+    return {a.sum + b.sum,      a.relative_sum + b.relative_sum,
+            fmax(a.max, b.max), deeper.relative_max,
+            a.count + b.count,  deeper.deepest};
   }
 };
 
@@ -35,7 +38,7 @@ struct MeasurePair {
     if (!(depth > 0)) return {};
     const double size = fmin(smallest_size(bodies.shape[pair.i], bodies.size[pair.i]),
                              smallest_size(bodies.shape[pair.j], bodies.size[pair.j]));
-    return {depth, depth / size, depth, depth / size, 1};
+    return {depth, depth / size, depth, depth / size, 1, k};
   }
   SCREE_HD double depth_of(const Pair& pair) const {
     const Shape a = bodies.shape[pair.i], b = bodies.shape[pair.j];
@@ -78,6 +81,10 @@ Penetration measure_overlaps(const ConstBodyView& bodies, ConstView<Pair> candid
   out.relative_max = depths.relative_max;
   out.mean = depths.sum / n;
   out.relative_mean = depths.relative_sum / n;
+  Pair pair;
+  copy_bytes<Host, Space>(&pair, candidates.data() + depths.deepest, sizeof(pair));
+  copy_bytes<Host, Space>(&out.deepest[0], bodies.id.data() + pair.i, sizeof(std::int32_t));
+  copy_bytes<Host, Space>(&out.deepest[1], bodies.id.data() + pair.j, sizeof(std::int32_t));
   // The smallest depth that at least 99 % of the pairs do not exceed; pairs without come first.
   Array<std::uint8_t, Space> nothing(candidates.size());
   parallel::sort_by_key("overlaps.sort", bits, nothing);

@@ -183,12 +183,17 @@ void make_body(const BodyEntry& entry, const PlacedTriangle& triangle, std::int3
   bodies.inverse_inertia[b] = Vec3::Zero();
 }
 
-bool make_body(const BodyRow& row, bool fixed, std::int32_t id, double density, const Hull* hull,
-               BodyTable& bodies) {
+bool make_body(const BodyEntry& entry, const BodyRow& row, std::int32_t id, std::uint64_t seed,
+               double density, const Hull* hull, BodyTable& bodies) {
   const auto b = static_cast<std::size_t>(id);
+  const bool fixed = entry.fixed.value_or(false);
   bodies.id[b] = id;
   bodies.shape[b] = row.shape;
   bodies.size[b] = hull ? hull->half_extent() : row.size;
+  if (row.has_shape_of_entry) {
+    Random random(seed, b);
+    make_shape(entry, hull, random, bodies.shape[b], bodies.size[b]);
+  }
   bodies.position[b] = row.position;
   bodies.orientation[b] = row.orientation;
   if (hull) place_hull(*hull, b, bodies);

@@ -21,9 +21,10 @@ bool make_body(const BodyEntry& entry, std::int64_t k, std::int32_t id, std::uin
 /// The same of a mesh's triangle.
 void make_body(const BodyEntry& entry, const PlacedTriangle& triangle, std::int32_t id, BodyTable& bodies);
 
-/// The same of a row of a body file. A fixed body has no velocity, whatever the row says, and is no servo.
-bool make_body(const BodyRow& row, bool fixed, std::int32_t id, double density, const Hull* hull,
-               BodyTable& bodies);
+/// The same of a row of the entry's file. A shape of the entry is that of each row, its size drawn likewise.
+/// A fixed body has no velocity, whatever the row says, and is no servo.
+bool make_body(const BodyEntry& entry, const BodyRow& row, std::int32_t id, std::uint64_t seed,
+               double density, const Hull* hull, BodyTable& bodies);
 
 /// The motion of one of the entry's bodies.
 Motion motion_of(const MotionEntry& entry, std::int32_t body);

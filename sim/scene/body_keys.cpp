@@ -1,5 +1,6 @@
 // The keys of bodies: their shapes, their places, and how many there are.
 #include "sim/scene/key_sections.hpp"
+#include "sim/scene/particle_kinds.hpp"
 #include "sim/scene/rules.hpp"
 
 namespace scree {
@@ -319,6 +320,12 @@ Codec<EmitEntry> emit_section() {
       check_emit);
 }
 
+Codec<Shape> shape_word() {
+  std::vector<std::pair<std::string, Shape>> words;
+  for (const Shape shape : shapes_of_kinds) words.emplace_back(word_of(shape), shape);
+  return word<Shape>(words);
+}
+
 }  // namespace
 
 Codec<BodyEntry> body_section() {
@@ -326,7 +333,7 @@ Codec<BodyEntry> body_section() {
   return section<T>(
       "bodies[]",
       "One body, or many alike. Each has exactly one shape: plane, sphere, box, tube, capsule, cylinder, "
-      "polyhedron or mesh.",
+      "polyhedron or mesh; beside `file` a shape is that of all the file's bodies.",
       {
           key<T>("plane", &T::plane, optional(plane_section()), optionally, "the shape: a fixed half space"),
           key<T>("sphere", &T::sphere, optional(sphere_section()), optionally, "the shape: a ball"),
@@ -341,9 +348,14 @@ Codec<BodyEntry> body_section() {
                  "the shape: a convex polyhedron"),
           key<T>("mesh", &T::mesh, optional(mesh_section()), optionally,
                  "the shape: a surface of triangles; needs `fixed: true` or `motion`"),
-          key<T>("file", &T::file, text(), optionally,
-                 "instead of a shape: bodies from a CSV file, or those that another run left, by its folder; "
-                 "see Body files"),
+          key<T>(
+              "file", &T::file, text(), optionally,
+              "bodies from a table (CSV), an XYZ file or a dump of LAMMPS, or those that another run left, "
+              "by its folder; see Body files"),
+          key<T>("shape", &T::shape, optional(shape_word()), optionally,
+                 "of a file's bodies, where it has their sizes but no column `shape`"),
+          key<T>("frame", &T::frame, optional(large_integer(not_negative)), optionally,
+                 "of an XYZ file or a dump, from 0 on; the last one if not given"),
           key<T>("name", &T::name, identifier(), optionally, "to refer to it in measures"),
           key<T>("material", &T::material, identifier(), optionally,
                  "one of `materials`; required but for a file that has a column of them"),

@@ -51,6 +51,16 @@ void require_room(const BodyEntry& body, const MemoryLoad& load, double memory, 
                     load.bodies, bytes_words(need), bytes_words(memory)));
 }
 
+/// Of a file's bodies, if the entry gives it whole.
+std::optional<Shape> shape_with_sizes(const BodyEntry& body) {
+  if (body.sphere) return Shape::sphere;
+  if (body.box) return Shape::box;
+  if (body.capsule) return Shape::capsule;
+  if (body.cylinder) return Shape::cylinder;
+  if (body.polyhedron) return Shape::polyhedron;
+  return {};
+}
+
 /// The entry keeps where the file is found, for the resolved scene, which may be run from anywhere.
 std::unique_ptr<BodyFile> open_file(BodyEntry& body, const std::filesystem::path& scene, Reader& reader) {
   if (body.file.empty()) return nullptr;
@@ -61,7 +71,9 @@ std::unique_ptr<BodyFile> open_file(BodyEntry& body, const std::filesystem::path
     reader.fail_at("file", *body.node, error.what());
   }
   body.file = found.string();
-  return std::make_unique<BodyFile>(found);
+  const std::optional<Shape> with_sizes = shape_with_sizes(body);
+  return std::make_unique<BodyFile>(
+      found, BodyFileUse{body.frame, with_sizes ? with_sizes : body.shape, with_sizes.has_value()});
 }
 
 /// Where a mesh's file is, relative to the scene; the entry keeps it.

@@ -130,7 +130,7 @@ class Builder {
     scene.meshes.push_back({slot.entry->name, slot.entry->mesh->file, slot.bodies,
                             slot.entry->at.value_or(Vec3::Zero()), mesh.report});
     for (const std::string& warning : mesh.warnings)
-      scene.warnings.push_back(fmt::format("{}: {}", slot.entry->mesh->file, warning));
+      scene.notes.push_back(fmt::format("{}: {}", slot.entry->mesh->file, warning));
     std::int32_t id = slot.bodies.first;
     for (Surroundings& around : surroundings_of(mesh.mesh, mesh.triangles)) {
       geometry.surroundings.push_back(std::move(around));
@@ -141,14 +141,18 @@ class Builder {
   void read_bodies(const BodySlot& slot, Scene& scene) {
     const bool fixed = slot.entry->fixed.value_or(false);
     std::int32_t id = slot.bodies.first;
+    for (const std::string& note : slot.file->notes()) scene.notes.push_back(note);
     slot.file->read([&](const BodyRow& row) {
       const std::int32_t index = slot.material >= 0 ? slot.material : material_of(row, *slot.file);
       const Material& material = scene.materials[static_cast<std::size_t>(index)];
       scene.bodies.material[static_cast<std::size_t>(id)] = index;
-      const Hull* hull = row.hull.empty() ? nullptr : &hull_of(row, *slot.file);
-      if (hull) hulls_of_rows_.emplace_back(id, hull);
+      const Hull* hull = slot.hull.get();
+      if (!row.hull.empty()) {
+        hull = &hull_of(row, *slot.file);
+        hulls_of_rows_.emplace_back(id, hull);
+      }
       if (row.servo && !fixed) add_servo(row, id, *slot.file, scene);
-      if (!make_body(row, fixed, id, material.density, hull, scene.bodies))
+      if (!make_body(*slot.entry, row, id, scene.seed, material.density, hull, scene.bodies))
         slot.file->fail(BodyColumn::mass, row.mark, beyond_numbers);
       ++id;
     });
@@ -180,7 +184,7 @@ class Builder {
     if (row.material.empty())
       file.fail(BodyColumn::material, row.material_mark,
                 "the body needs one: fill the column, or give `material` beside `file` in the scene");
-    const std::optional<std::int32_t> index = materials_.find(row.material);
+    const std::optional<std::int32_t> index = materials_.find_or_at(row.material);
     if (!index) file.fail(BodyColumn::material, row.material_mark, materials_.unknown(row.material));
     return *index;
   }

@@ -1,20 +1,30 @@
 // Codecs of single values, and the messages of keys that are unknown or missing.
 #include "sim/scene/codec.hpp"
 
+#include "sim/scene/scalar.hpp"
+
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include <algorithm>
 #include <charconv>
+#include <limits>
 #include <type_traits>
 
 namespace scree {
 namespace {
 
-/// Reads all of a plain scalar as a T; the forms are those of JSON, a leading + or . allowed.
+/// The largest whole number that a T can be, of those that 64 bits hold.
+template <class T>
+constexpr auto most_whole = static_cast<std::uint64_t>(
+    std::is_integral_v<T> ? static_cast<std::uint64_t>(std::numeric_limits<T>::max()) : UINT64_MAX);
+
+/// Reads all of a plain scalar as a T; the forms are those of YAML's core schema.
 template <class T>
 T parse_plain(const Node& node, const Type& type, const Reader& reader) {
-  if (!looks_like_number(node)) fail_form(node, type, reader);
+  if (!has_form(node, type)) fail_form(node, type, reader);
+  if (const std::optional<std::uint64_t> whole = in_other_base(node.text); whole && *whole <= most_whole<T>)
+    return static_cast<T>(*whole);
   std::string_view text = node.text;
   if (text[0] == '+') text.remove_prefix(1);
   T value{};
@@ -22,7 +32,15 @@ T parse_plain(const Node& node, const Type& type, const Reader& reader) {
   if (error == std::errc::result_out_of_range)
     reader.fail(node.mark, fmt::format("{} is out of range", shown(node)));
   if (error != std::errc{} || end != text.data() + text.size()) fail_form(node, type, reader);
-  return value;
+  // The whole number -0 is 0, as the programs see it that a scene may have gone through; -0.0 has its sign.
+  return value == T{} && is_whole_number(node.text) ? T{} : value;
+}
+
+template <class T>
+std::string number_text(const T& value) {
+  if constexpr (std::is_same_v<T, double>)
+    if (value == 0 && std::signbit(value)) return "-0.0";
+  return fmt::format("{}", value);
 }
 
 template <class T>
@@ -33,7 +51,7 @@ Codec<T> numeric(const Type& type) {
             const auto as_double = static_cast<double>(value);
             if (!std::isfinite(as_double) || !type.range.holds(as_double)) fail_form(node, type, reader);
           },
-          [](const T& value) { return std::optional(Node::scalar(fmt::format("{}", value))); }};
+          [](const T& value) { return std::optional(Node::scalar(number_text(value))); }};
 }
 
 template <class T>
@@ -94,13 +112,15 @@ bool is_file_name(std::string_view word) {
 }
 
 void fail_form(const Node& node, const Type& type, const Reader& reader) {
-  reader.fail(node.mark, fmt::format("must be {}, not {}", words_of(type), shown(node)));
+  const bool is_for_quotes = node.quoted && has_form(Node::scalar(node.text), type);
+  reader.fail(node.mark, fmt::format("must be {}, not {}{}", words_of(type), shown(node),
+                                     is_for_quotes ? ", which is text: take the quotes away" : ""));
 }
 
 std::size_t read_word(const Node& node, const Type& type, const Reader& reader) {
-  if (node.kind != Node::Kind::scalar || node.quoted) fail_form(node, type, reader);
-  const auto found = std::find(type.words.begin(), type.words.end(), node.text);
-  if (found != type.words.end()) return static_cast<std::size_t>(found - type.words.begin());
+  if (const std::optional<std::size_t> word = find_word(node, type)) return *word;
+  if (node.kind != Node::Kind::scalar || has_form(Node::scalar(node.text), type))
+    fail_form(node, type, reader);
   reader.fail(node.mark, fmt::format("must be {}, not {}{}", words_of(type), shown(node),
                                      suggestion(node.text, {type.words.begin(), type.words.end()})));
 }
@@ -123,7 +143,7 @@ std::size_t find_key(const Node& member, const SectionType& section, Reader& rea
   if (found == section.keys.end()) {
     std::vector<std::string_view> known;
     for (const KeyType& key : section.keys) known.push_back(key.name);
-    std::string hint = suggestion(member.key, known);
+    std::string hint = hint_for(section.name, member.key, known);
     if (hint.empty()) hint = fmt::format(" (known here: {})", fmt::join(known, ", "));
     reader.fail(member.key_mark, "unknown key" + hint);
   }

@@ -1,12 +1,15 @@
 // yaml-cpp is included here alone: its events become a tree, and what it is lax about is refused.
 #include "sim/scene/document.hpp"
 
+#include "sim/scene/scalar.hpp"
+
 #include <fmt/format.h>
 #include <yaml-cpp/eventhandler.h>
 #include <yaml-cpp/exceptions.h>
 #include <yaml-cpp/parser.h>
 
 #include <algorithm>
+#include <charconv>
 #include <map>
 #include <sstream>
 #include <utility>
@@ -51,8 +54,44 @@ bool is_utf8(std::string_view text) {
   return true;
 }
 
+/// Whether the document is a map in braces, as in JSON, which may be indented with tabs.
+bool is_in_braces(std::string_view text) {
+  if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);
+  const std::size_t first = text.find_first_not_of(" \t\r\n");
+  return first != std::string_view::npos && text[first] == '{';
+}
+
+/// The four hexadecimal digits of an escape \uXXXX at the place, or nothing.
+std::optional<unsigned> escaped_unit(std::string_view text, std::size_t at) {
+  if (text.size() < at + 6 || text.substr(at, 2) != "\\u") return {};
+  unsigned unit = 0;
+  const char* end = text.data() + at + 6;
+  if (std::from_chars(text.data() + at + 2, end, unit, 16).ptr != end) return {};
+  return unit;
+}
+
+/// JSON writes a character beyond U+FFFF as two escapes, a surrogate pair (RFC 8259, section 7), YAML as one
+/// of eight digits.
+std::string join_surrogates(std::string_view text) {
+  std::string joined;
+  joined.reserve(text.size());
+  for (std::size_t at = 0; at < text.size();) {
+    const unsigned high = escaped_unit(text, at).value_or(0);
+    const unsigned low = escaped_unit(text, at + 6).value_or(0);
+    if (high >= 0xD800 && high < 0xDC00 && low >= 0xDC00 && low < 0xE000) {
+      joined += fmt::format("\\U{:08X}", 0x10000 + ((high - 0xD800) << 10) + (low - 0xDC00));
+      at += 12;
+      continue;
+    }
+    const std::size_t taken = text[at] == '\\' ? 2 : 1;  // a backslash may escape another one
+    joined += text.substr(at, taken);
+    at += taken;
+  }
+  return joined;
+}
+
 /// yaml-cpp replaces bad bytes, stops at a control-D and is lax about tabs, all without a word.
-void check_characters(std::string_view text) {
+void check_characters(std::string_view text, bool tabs) {
   SourceMark mark{1, 1};
   bool indentation = true;
   for (std::size_t at = 0; at < text.size();) {
@@ -63,7 +102,7 @@ void check_characters(std::string_view text) {
     const char c = text[at];
     if ((c >= 0 && c < ' ' && c != '\t' && c != '\n' && c != '\r') || c == 0x7F)
       throw SyntaxError{mark, fmt::format("control character 0x{:02X} in the text", static_cast<int>(c))};
-    if (c == '\t' && indentation) {
+    if (c == '\t' && indentation && !tabs) {
       const std::size_t next = text.find_first_not_of(" \t\r", at);
       if (next != std::string_view::npos && text[next] != '\n' && text[next] != '#')
         throw SyntaxError{mark, "a tab in the indentation; YAML is indented with spaces"};
@@ -129,24 +168,27 @@ class TreeBuilder final : public YAML::EventHandler {
   }
   void OnScalar(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor,
                 const std::string& value) override {
-    const bool quoted = tag == "!";  // yaml-cpp's way to tell quoted scalars from plain ones, "?"
-    if (!quoted) refuse_tag(mark, tag);
+    const Meaning meaning = meaning_of(mark, tag, value);
     // The text of the file is UTF-8, but these two yaml-cpp turns into single bytes.
     if (!is_utf8(value)) throw SyntaxError{to_mark(mark), "the escape \\N or \\_; write \\x85 or \\xA0"};
     Node node = leaf(mark);
-    node.kind = Node::Kind::scalar;
-    node.quoted = quoted;
-    node.text = value;
+    if (meaning != Meaning::nothing) {
+      node.kind = Node::Kind::scalar;
+      node.quoted = meaning == Meaning::text;
+      node.text = value;
+    }
     add(std::move(node), anchor);
   }
   void OnSequenceStart(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor,
                        YAML::EmitterStyle::value) override {
-    open(mark, tag, anchor, Node::Kind::list);
+    if (tag != yaml_tag("seq")) refuse_tag(mark, tag);
+    open(mark, anchor, Node::Kind::list);
   }
   void OnSequenceEnd() override { close(); }
   void OnMapStart(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor,
                   YAML::EmitterStyle::value) override {
-    open(mark, tag, anchor, Node::Kind::map);
+    if (tag != yaml_tag("map")) refuse_tag(mark, tag);
+    open(mark, anchor, Node::Kind::map);
   }
   void OnMapEnd() override { close(); }
 
@@ -170,16 +212,43 @@ class TreeBuilder final : public YAML::EventHandler {
     node.mark = to_mark(mark);
     return node;
   }
+  static std::string yaml_tag(const char* name) { return fmt::format("tag:yaml.org,2002:{}", name); }
   static void refuse_tag(const YAML::Mark& mark, const std::string& tag) {
     if (!tag.empty() && tag != "?")
-      throw SyntaxError{to_mark(mark), fmt::format("tag {} (the scene language has no tags)", tag)};
+      throw SyntaxError{
+          to_mark(mark),
+          fmt::format("tag {} (the scene language has no tags but those of YAML's core schema)", tag)};
+  }
+
+  enum class Meaning { text, plain, nothing };
+
+  /// Of a scalar with YAML's own tags (core schema, section 10.3.2), or none. For yaml-cpp a quoted scalar
+  /// has the tag "!", as has one that is tagged so, and a plain one "?".
+  static Meaning meaning_of(const YAML::Mark& mark, const std::string& tag, const std::string& value) {
+    if (tag == "!" || tag == yaml_tag("str")) return Meaning::text;
+    const auto require = [&](bool fits) {
+      if (!fits) throw SyntaxError{to_mark(mark), fmt::format("the text is not what its tag {} says", tag)};
+    };
+    if (tag == yaml_tag("null")) {
+      require(is_null_word(value));
+      return Meaning::nothing;
+    }
+    if (tag == yaml_tag("bool")) {
+      require(truth_of(value).has_value());
+    } else if (tag == yaml_tag("int")) {
+      require(is_whole_number(value));
+    } else if (tag == yaml_tag("float")) {
+      require(is_number(value));
+    } else {
+      refuse_tag(mark, tag);
+    }
+    return Meaning::plain;
   }
   void check_depth(const SourceMark& mark, int more) const {
     if (static_cast<int>(open_.size()) + more > max_depth)
       throw SyntaxError{mark, fmt::format("nested deeper than {} levels", max_depth)};
   }
-  void open(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor, Node::Kind kind) {
-    refuse_tag(mark, tag);
+  void open(const YAML::Mark& mark, YAML::anchor_t anchor, Node::Kind kind) {
     check_depth(to_mark(mark), 1);
     open_.push_back({leaf(mark), anchor, {}});
     open_.back().node.kind = kind;
@@ -261,10 +330,11 @@ Node Node::named(std::string name) && {
 }
 
 Node parse_document(const std::string& text) {
-  check_characters(text);
+  const bool in_braces = is_in_braces(text);
+  check_characters(text, in_braces);
   TreeBuilder builder;
   try {
-    std::istringstream stream(text);
+    std::istringstream stream(in_braces ? join_surrogates(text) : text);
     YAML::Parser parser(stream);
     if (parser.HandleNextDocument(builder)) {
       TreeBuilder second;

@@ -14,7 +14,7 @@ struct Node {
   enum class Kind { null, scalar, list, map };
 
   Kind kind = Kind::null;
-  bool quoted = false;  ///< a scalar in quotes: text, whatever it looks like
+  bool quoted = false;  ///< a scalar in quotes, or tagged !!str: text, whatever it looks like
   SourceMark mark;
   std::string text{};         ///< of a scalar
   std::vector<Node> items{};  ///< of a list or map
@@ -37,10 +37,10 @@ struct SyntaxError {
   std::string what;
 };
 
-/// Parses one YAML document. Throws SyntaxError for broken YAML, and for what YAML allows but a scene does
-/// not: bytes that are not UTF-8, control characters, tabs in indentation, duplicate keys, keys that are not
-/// names or longer than 200 bytes, tags, a second document, depth beyond 32, anchors that hold, or
-/// aliases that add, more than 100,000 nodes or 10 MB of text.
+/// Parses one YAML document, or one of JSON. Throws SyntaxError for broken YAML, and for what YAML allows but
+/// a scene does not: bytes that are not UTF-8, control characters, tabs in indentation outside of braces,
+/// duplicate keys, keys that are not names or longer than 200 bytes, tags but YAML's own, a second document,
+/// depth beyond 32, anchors that hold, or aliases that add, more than 100,000 nodes or 10 MB of text.
 Node parse_document(const std::string& text);
 
 /// The tree, a map, as YAML that parses to the same tree, but for quotes around plain text of more than

@@ -1,5 +1,6 @@
 // The tree as text.
 #include "sim/scene/document.hpp"
+#include "sim/scene/scalar.hpp"
 
 #include <fmt/format.h>
 
@@ -10,7 +11,7 @@ namespace {
 
 /// Whether the text is one scalar, and not null, wherever it stands without quotes.
 bool is_plain(std::string_view text) {
-  if (text == "null" || text == "Null" || text == "NULL") return false;
+  if (is_null_word(text)) return false;
   const auto is_alphanumeric = [](char c) {
     return (c >= '0' && c <= '9') || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z');
   };

@@ -124,6 +124,8 @@ struct BodyEntry {
   std::optional<PolyhedronEntry> polyhedron;
   std::optional<MeshEntry> mesh;
   std::string file;
+  std::optional<Shape> shape;         ///< of a file's bodies
+  std::optional<std::int64_t> frame;  ///< of a file
   std::string name;
   std::string material;
   std::optional<double> mass;

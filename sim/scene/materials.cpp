@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <charconv>
 #include <cmath>
 #include <map>
 
@@ -17,6 +18,14 @@ MaterialNames::MaterialNames(const std::vector<MaterialEntry>& materials) : mate
 std::optional<std::int32_t> MaterialNames::find(std::string_view name) const {
   const auto found = index_.find(name);
   return found == index_.end() ? std::nullopt : std::optional(found->second);
+}
+
+std::optional<std::int32_t> MaterialNames::find_or_at(std::string_view name_or_place) const {
+  std::size_t place = 0;
+  const char* const end = name_or_place.data() + name_or_place.size();
+  const auto [stop, error] = std::from_chars(name_or_place.data(), end, place);
+  if (error != std::errc{} || stop != end) return find(name_or_place);
+  return place < materials_.size() ? std::optional(static_cast<std::int32_t>(place)) : std::nullopt;
 }
 
 std::int32_t MaterialNames::require(const std::string& name, const Node& where, const Reader& reader) const {

@@ -18,7 +18,9 @@ class MaterialNames {
   explicit MaterialNames(const std::vector<MaterialEntry>& materials);
 
   std::optional<std::int32_t> find(std::string_view name) const;
-  /// The same; throws InputError at `where`, the value that names the material.
+  /// The same, or the one at the place, from 0, that a number gives.
+  std::optional<std::int32_t> find_or_at(std::string_view name_or_place) const;
+  /// The same by name; throws InputError at `where`, the value that names the material.
   std::int32_t require(const std::string& name, const Node& where, const Reader& reader) const;
   /// "there is no material glas (did you mean glass?)"
   std::string unknown(std::string_view name) const;

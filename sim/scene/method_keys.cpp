@@ -93,7 +93,8 @@ Codec<NarrowPhaseSettings> narrowphase_section() {
 
 Codec<ModelSettings> model_section() {
   using T = ModelSettings;
-  const auto feature = or_auto(word<bool>({{"on", true}, {"off", false}, {"true", true}, {"false", false}}));
+  const auto on_or_off = word<bool>({{"on", true}, {"off", false}, {"true", true}, {"false", false}});
+  const auto feature = or_auto(on_or_off);
   const Codec<T> automatic{word_type({"auto"}), [](T& model, const Node&, Reader&) { model = {}; },
                            [](const T& model) -> std::optional<Node> {
                              const bool given = model.rotation || model.friction || model.rolling_friction ||
@@ -107,9 +108,8 @@ Codec<ModelSettings> model_section() {
                       key<T>("rotation", &T::rotation, feature, optionally,
                          "free bodies turn; off: they keep their orientation, and friction slides"),
                       key<T>("friction", &T::friction, feature, optionally, "contacts rub"),
-                      with_default(key<T>("rolling_friction", &T::rolling_friction,
-                                          optional(word<bool>({{"on", true}, {"off", false}})), optionally,
-                                          "contacts hold back what rolls"),
+                      with_default(key<T>("rolling_friction", &T::rolling_friction, optional(on_or_off),
+                                          optionally, "contacts hold back what rolls"),
                                    "auto"),
                       key<T>("restitution", &T::restitution, feature, optionally, "impacts bounce"),
                       key<T>("continuous", &T::continuous, feature, optionally,

@@ -87,6 +87,7 @@ class Walk {
 
   Node& member(Node& node, const Type& type, std::string_view name, const Type** next) const {
     std::vector<std::string_view> known;
+    std::string_view section;
     for (const Type* alternative : alternatives(type)) {
       if (alternative->kind == Type::Kind::named) {
         for (const Node& entry : node.items) known.push_back(entry.key);
@@ -94,6 +95,7 @@ class Walk {
         if (Node* found = node.find(name)) return *found;
       }
       if (alternative->kind != Type::Kind::section) continue;
+      section = alternative->section->name;
       for (const KeyType& key : alternative->section->keys) {
         known.push_back(key.name);
         if (key.name != name) continue;
@@ -103,7 +105,7 @@ class Walk {
       }
     }
     if (known.empty()) fail(set_, fmt::format("{} has no keys, so there is no {}", before(), name));
-    fail(set_, fmt::format("{} has no {}{}", before(), name, suggestion(name, known)));
+    fail(set_, fmt::format("{} has no {}{}", before(), name, hint_for(section, name, known)));
   }
 
   /// The member of the map for this key; what is no map (`model: auto`, say) becomes one.

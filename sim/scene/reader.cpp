@@ -1,6 +1,8 @@
 // Messages: place, path, nearest known word.
 #include "sim/scene/reader.hpp"
 
+#include "sim/scene/hints.hpp"
+
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -48,6 +50,12 @@ std::string_view nearest(std::string_view word, const std::vector<std::string_vi
 std::string suggestion(std::string_view word, const std::vector<std::string_view>& candidates) {
   const std::string_view near = nearest(word, candidates);
   return near.empty() ? "" : fmt::format(" (did you mean {}?)", near);
+}
+
+std::string hint_for(std::string_view section, std::string_view word,
+                     const std::vector<std::string_view>& candidates) {
+  const std::string_view advice = advice_for(section, word);
+  return advice.empty() ? suggestion(word, candidates) : fmt::format("; {}", advice);
 }
 
 std::string to_text(const std::vector<PathPart>& path) {

@@ -17,6 +17,10 @@ std::string_view nearest(std::string_view word, const std::vector<std::string_vi
 /// " (did you mean x?)", or nothing.
 std::string suggestion(std::string_view word, const std::vector<std::string_view>& candidates);
 
+/// What to say of a word that a section does not have: what the table of hints advises, else suggestion().
+std::string hint_for(std::string_view section, std::string_view word,
+                     const std::vector<std::string_view>& candidates);
+
 /// One part of a path such as bodies[2].velocity: a key, or an index into a list.
 struct PathPart {
   std::string_view key;

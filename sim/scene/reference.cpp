@@ -12,9 +12,10 @@ constexpr const char* introduction = R"(# Scene reference
 
 <!-- Generated from the table of keys in sim/scene/keys.cpp; test_scene compares, and writes with SCREE_WRITE=1. -->
 
-A scene is one YAML file. Units are SI, angles are radians unless a key says degrees, and gravity alone decides what
-is up. Unknown keys, wrong types and values without sense are errors with file, line, column and the nearest known key.
-Every random choice follows from `seed` and the body's number.
+A scene is one YAML 1.2 file, or one of JSON, which is YAML too: words may be in quotes, numbers, true and false may not.
+Units are SI, angles are radians unless a key says degrees, and gravity alone decides what is up. Unknown keys, wrong types
+and values without sense are errors with file, line, column and the right or the nearest key. Every random choice follows from
+`seed` and the body's number.
 
 ```yaml
 format: 1
@@ -41,15 +42,25 @@ path that the file does not give is created, with its default; list items and na
 constexpr const char* body_files = R"(
 ## Body files
 
-`file:` takes bodies from a CSV file: a first line that names its columns, in any order, then one line per body. Its path
-is relative to the scene file. A run that is done leaves its free bodies in `final.csv` in this format, every number
+`file:` takes bodies from a file that has a row for each: a table, an XYZ file or a dump of LAMMPS, told apart by their first
+lines. Its path is relative to the scene file. A run that is done leaves its free bodies in `final.csv`, a table, every number
 to the bit, and the hulls of polyhedra in `hulls` beside it, which come back to rounding; `file: output/NAME` takes that.
 What is not free, such as a mesh, is for the next scene to give again. `name` names them `name[0]`, `name[1]`, ...;
 `fixed: true` holds them all.
 
+```yaml
+bodies:
+  - {file: bed.csv, material: glass}                                          # with the columns below
+  - {file: places.xyz, sphere: {radius: {uniform: [0.04, 0.06]}}, material: glass}   # places alone: the scene says what is there
+  - {file: rods.csv, shape: capsule, material: glass}                         # sizes without a word for the shape
+  - {file: output/04_pile-lammps/trajectory.lammpstrj, frame: 10, material: gravel}
+```
+
+A table begins with a line that names its columns, in any order, in capitals or not; then comes one line per body.
+
 | column | meaning |
 |---|---|
-| `shape` | `sphere`, `box`, `capsule`, `cylinder` or `polyhedron`; required |
+| `shape` | `sphere`, `box`, `capsule`, `cylinder` or `polyhedron` |
 | `radius` | of a sphere, capsule or cylinder (m); empty for a box |
 | `size_x`, `size_y`, `size_z` | full edge lengths of a box (m); of a capsule or cylinder `size_z` alone, its length from end to end; else empty |
 | `x`, `y`, `z` | the centre (m); of a polyhedron the origin of its points; required |
@@ -57,11 +68,27 @@ What is not free, such as a mesh, is for the next scene to give again. `name` na
 | `vx`, `vy`, `vz` | velocity (m/s); empty: 0 |
 | `wx`, `wy`, `wz` | spin, world frame (rad/s); empty: 0 |
 | `mass` | kg; empty: from the material's density |
-| `material` | one of `materials`; `material` in the scene goes before it |
+| `material` | one of `materials`, or its place among them, from 0; `material` in the scene goes before it |
 | `hull` | of a polyhedron: an OBJ, STL or PLY file, relative to this one, whose vertices' hull it is; else empty |
 | `servo_x`, `servo_y`, `servo_z`, `servo_force` | of a box that is a servo: its axis, and its force (N); else empty |
 
-Cells are separated by commas and not quoted; columns that are left out count as empty. Blank lines are skipped.
+Cells are parted by commas, semicolons, tabs, bars or blanks, whichever the first line has, and may be in quotes (`"`; two of
+them within quotes stand for one). What parts cells may be there once more at a line's end. Columns that are left out count
+as empty. Blank lines are skipped, and lines that begin with `#`. The text is UTF-8.
+
+Without the column `shape` all bodies are of the shape that the scene gives beside `file`: as a word, `shape: cylinder`, where the
+file has their sizes, or with its sizes, `sphere: {radius: 0.1}`, where it has none. Without either, a file with `radius` alone has
+spheres, one with `size_x` to `size_z` boxes, one with `hull` polyhedra. Columns that say nothing of a body, such as `id`, are
+ignored. `run`, `plan` and `verify` say both, once. A column that says something in other words (`diameter`, `density`) is an
+error that names the right one.
+
+| format | what is read |
+|---|---|
+| XYZ | element, x, y, z. Extended: the columns that the comment names: `pos`, `velo` or `velocity`, `angular_velocity`, `orientation` (x, y, z, w), `radius`, `diameter`, `mass` |
+| LAMMPS | `x y z`, `xu yu zu`, or shares of the cell `xs ys zs`; `vx vy vz`, `omegax omegay omegaz`, `quatw quati quatj quatk`, `radius`, `diameter`, `mass` |
+
+Numbers are taken as SI. Of several frames the last one is taken, or that of `frame`. What `scree export --to xyz` and `--to lammps` write
+comes back with its shapes, but for polyhedra, whose corners are not in it; bodies that are not free are left out, and said.
 )";
 
 /// A | within a cell would end it.

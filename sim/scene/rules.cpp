@@ -2,6 +2,7 @@
 #include "sim/scene/rules.hpp"
 
 #include "core/tolerances.hpp"
+#include "sim/scene/particle_kinds.hpp"
 #include "sim/scene/unit_quaternion.hpp"
 
 #include <fmt/format.h>
@@ -34,14 +35,20 @@ int given(std::initializer_list<const char*> keys, const Node& node) {
 }
 
 void check_file_body(const BodyEntry& body, const Node& node, Reader& reader) {
-  static constexpr std::array allowed = {"file", "name", "material", "fixed", "from", "until"};
-  for (const Node& item : node.items)
-    if (std::find(allowed.begin(), allowed.end(), item.key) == allowed.end()) {
-      const Reader::Step step(reader, item.key);
-      reader.fail(item.key_mark,
-                  "does not go with a file, which says where its bodies are and how they move");
-    }
-  if (body.file.empty()) reader.fail_at("file", node, "must be the path of a CSV file or of a run's folder");
+  static constexpr std::array allowed = {"file",     "shape", "frame", "name",
+                                         "material", "fixed", "from",  "until"};
+  for (const Node& item : node.items) {
+    const auto is_it = [&](const char* key) { return item.key == key; };
+    if (std::ranges::any_of(allowed, is_it) || std::ranges::any_of(shape_words, is_it)) continue;
+    const Reader::Step step(reader, item.key);
+    reader.fail(item.key_mark, "does not go with a file, which says where its bodies are and how they move");
+  }
+  for (std::size_t k = 0; k < shape_words.size(); ++k) {
+    exclude("shape", shape_words[k], node, reader);
+    for (std::size_t l = 0; l < k; ++l) exclude(shape_words[l], shape_words[k], node, reader);
+  }
+  if (body.file.empty())
+    reader.fail_at("file", node, "must be the path of a file of bodies or of a run's folder");
 }
 
 /// Keys that a shape cannot have, and why.
@@ -200,6 +207,9 @@ void check_emit(const EmitEntry& emit, const Node& node, Reader& reader) {
 
 void check_body(const BodyEntry& body, const Node& node, Reader& reader) {
   if (node.find("file")) return check_file_body(body, node, reader);
+  refuse({"shape"}, "goes with `file`; else the shape is a key of its own, as in `sphere: {radius: 0.1}`",
+         node, reader);
+  refuse({"frame"}, "goes with `file`", node, reader);
   const int shapes =
       given({"plane", "sphere", "box", "tube", "capsule", "cylinder", "polyhedron", "mesh"}, node);
   if (shapes != 1)

@@ -283,8 +283,8 @@ struct Scene {
   RenderSettings render;
   RecordSettings record;
   std::vector<Check> checks;
-  std::vector<std::string> warnings;  ///< of its files: what is not read, and may have been meant
-  std::string resolved;               ///< the scene as YAML with every default written out
+  std::string resolved;            ///< the scene as YAML with every default written out
+  std::vector<std::string> notes;  ///< what was left out on reading, and what was understood without a word
 
   const ContactLaw& law(std::int32_t a, std::int32_t b) const {
     return laws[static_cast<std::size_t>(a) * materials.size() + static_cast<std::size_t>(b)];

@@ -1,6 +1,8 @@
 // Types in words, and which form a node has.
 #include "sim/scene/type.hpp"
 
+#include "sim/scene/scalar.hpp"
+
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -67,15 +69,14 @@ std::string words_of(const Type& type) {
 }
 
 bool has_form(const Node& node, const Type& type) {
-  const bool plain = node.kind == Node::Kind::scalar && !node.quoted;
   switch (type.kind) {
     case Type::Kind::integer:
     case Type::Kind::number:
-      return looks_like_number(node);
+      return node.kind == Node::Kind::scalar && !node.quoted && is_number(node.text);
     case Type::Kind::text:
       return node.kind == Node::Kind::scalar;
     case Type::Kind::word:
-      return plain && std::find(type.words.begin(), type.words.end(), node.text) != type.words.end();
+      return find_word(node, type).has_value();
     case Type::Kind::list:
       return node.kind == Node::Kind::list;
     case Type::Kind::named:
@@ -86,6 +87,17 @@ bool has_form(const Node& node, const Type& type) {
                          [&](const Type& part) { return has_form(node, part); });
   }
   return false;
+}
+
+std::optional<std::size_t> find_word(const Node& node, const Type& type) {
+  if (node.kind != Node::Kind::scalar) return {};
+  const auto is_meant = [&](const std::string& word) {
+    const std::optional<bool> truth = truth_of(word);
+    return truth ? !node.quoted && truth_of(node.text) == truth : node.text == word;
+  };
+  const auto found = std::find_if(type.words.begin(), type.words.end(), is_meant);
+  if (found == type.words.end()) return {};
+  return static_cast<std::size_t>(found - type.words.begin());
 }
 
 std::string shown(const Node& node) {
@@ -101,18 +113,6 @@ std::string shown(const Node& node) {
       return fmt::format("a map of {}", node.items.size());
   }
   return {};
-}
-
-bool looks_like_number(const Node& node) {
-  if (node.kind != Node::Kind::scalar || node.quoted || node.text.empty()) return false;
-  std::string_view text = node.text;
-  if (text[0] == '+' || text[0] == '-') text.remove_prefix(1);
-  if (text.empty()) return false;
-  if (text[0] == '.') text.remove_prefix(1);
-  if (text.empty()) return false;
-  static constexpr std::string_view not_finite[] = {"inf", "Inf", "INF", "nan", "NaN", "NAN"};
-  return (text[0] >= '0' && text[0] <= '9') ||
-         std::find(std::begin(not_finite), std::end(not_finite), text) != std::end(not_finite);
 }
 
 }  // namespace scree

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -75,10 +76,11 @@ std::string words_of(const Type& type);
 /// Whether the node has the form of the type (the values in it may still be wrong).
 bool has_form(const Node& node, const Type& type);
 
+/// The place of the node's word among those of the type, if it is one of them. true and false are no text:
+/// they stand without quotes, and may begin with a capital.
+std::optional<std::size_t> find_word(const Node& node, const Type& type);
+
 /// The node in a few words, for "must be ..., not ...".
 std::string shown(const Node& node);
-
-/// True for plain scalars that YAML would read as a number; inf and nan included.
-bool looks_like_number(const Node& node);
 
 }  // namespace scree

@@ -19,7 +19,9 @@ using Words = std::set<std::string>;
 constexpr const char* misleading[] = {
     "--set ", "- ", "? ", "&a ", "*a", "<<: ", "! ", "| ", "---", "...", "[0]", "null", "glass", "ball", "region.",
     "-0.0", "1e308", "1e-308", "1e999", ".nan", ".inf", "2147483648", "9223372036854775807",
-    "18446744073709551616", "\\\\n", "\\\\x1b", "\\\\u2028", "\\xef\\xbb\\xbf"};
+    "18446744073709551616", "0x1F", "!!str ", "!!int ", "!!float ", "!!null ", "\\\\ud83e\\\\udea8", "ITEM: TIMESTEP",
+    "ITEM: NUMBER OF ATOMS", "ITEM: BOX BOUNDS pp pp pp", "ITEM: ATOMS ", "xs ys zs ", "shapex shapey shapez ",
+    "Properties=", "pos:R:3", "types=", "mobility", "\\\\n", "\\\\x1b", "\\\\u2028", "\\xef\\xbb\\xbf"};
 // clang-format on
 
 void collect(const Type& type, Words& words) {

@@ -135,7 +135,7 @@ void require_mesh(const SceneMesh& scene) {
     for (const int corner : t.corners)
       if (corner < 0 || corner >= vertices) breach(fmt::format("there is no vertex {}", corner));
   }
-  for (const std::string& warning : scene.warnings) require_message("mesh: " + warning);
+  for (const std::string& warning : scene.notes) require_message("mesh: " + warning);
   const MeshReport& r = scene.report;
   if (r.welded < 0 || r.split < 0 || r.left_out < 0 || !std::isfinite(r.farthest))
     breach("a count that is none");
@@ -181,6 +181,9 @@ void read_hostile_body_file(std::string_view bytes) {
   const std::string scene = "format: 1\ntime: {end: 1, step: 1}\nmaterials: {glass: {}}\nbodies:\n";
   require_scene_or_refusal(fmt::format("{}  - {{file: {}, name: b}}\n", scene, path));
   require_scene_or_refusal(fmt::format("{}  - {{file: {}, material: glass, fixed: true}}\n", scene, path));
+  require_scene_or_refusal(
+      fmt::format("{}  - {{file: {}, material: glass, sphere: {{radius: 0.1}}}}\n", scene, path));
+  require_scene_or_refusal(fmt::format("{}  - {{file: {}, material: glass, frame: 1}}\n", scene, path));
 }
 
 }  // namespace scree

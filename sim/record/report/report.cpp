@@ -100,10 +100,24 @@ std::string notices(const Json& run) {
   }
   for (const Json& warning : run.at("warnings")) html += notice("", text_of(warning));
   for (const auto& [name, guard] : run.at("guards").items())
+    if (guard.at("count") > 0 && guard.at("matters") == true)
+      html += notice(
+          "", fmt::format("{} {}: {}; fewer by {}.", count(guard.at("count")), text_of(guard.at("what")),
+                          text_of(guard.at("effect")), text_of(guard.at("setting"))));
+  return html.empty() ? notice("good", "No warnings, no failed checks, and no guard whose work matters.")
+                      : html;
+}
+
+/// What guards and bounds have counted, and how much it matters.
+std::string guards(const Json& run) {
+  std::vector<std::vector<std::string>> rows = {{"", "what", "to the run", "fewer by"}};
+  for (const auto& [name, guard] : run.at("guards").items())
     if (guard.at("count") > 0)
-      html += notice("", fmt::format("{} {}; fewer by {}.", count(guard.at("count")),
-                                     text_of(guard.at("what")), text_of(guard.at("setting"))));
-  return html.empty() ? notice("good", "No warnings, no failed checks, and no guard had to act.") : html;
+      rows.push_back({count(guard.at("count")), text_of(guard.at("what")),
+                      fmt::format("{}{}", guard.at("matters") == true ? "<b>matters</b>: " : "",
+                                  text_of(guard.at("effect"))),
+                      text_of(guard.at("setting"))});
+  return rows.size() > 1 ? table(rows) : std::string();
 }
 
 /// The first, the middle and the last.
@@ -234,7 +248,8 @@ void write_report(const fs::path& folder) try {
   const std::string body =
       head(run) + notices(run) + tiles(run, metrics) + section("Pictures", pictures(run, folder)) +
       section("Checks", checks(run)) + plots(chapters_of(metrics, wall)) + section("Stages", stages(run)) +
-      section("What was modelled", model(run)) + section("Where it comes from", provenance(run, folder));
+      section("What guards and bounds have counted", guards(run)) + section("What was modelled", model(run)) +
+      section("Where it comes from", provenance(run, folder));
   write_file(folder / report_name, page(run.at("scene").at("name").get<std::string>() + " – scree", body));
 } catch (const Json::exception& error) {
   throw InputError(printable(

@@ -186,6 +186,66 @@ TEST_F(ProgramTest, ABodyThatLeavesTheWorldIsShownWhereItWas) {
   EXPECT_EQ(manifest_in(folder_ / "output/fall")["guards"]["left"]["count"], 1);
 }
 
+TEST_F(ProgramTest, AGuardThatDoesNotMatterIsInTheReportAlone) {
+  // One sweep is not enough for two balls on top of each other, which hardly overlap all the same.
+  const std::string stack = R"(format: 1
+gravity: [0, 0, -10]
+time: {end: 0.1, step: 0.01}
+materials: {stone: {density: 1000}}
+bodies:
+  - {plane: {normal: [0, 0, 1]}, material: stone}
+  - {sphere: {radius: 0.1}, name: low, at: [0, 0, 0.1], material: stone}
+  - {sphere: {radius: 0.1}, name: high, at: [0, 0, 0.3], material: stone}
+response: {iterations: 1, warm_start: false}
+render: false
+)";
+  const Finished run = run_scene(stack);
+  EXPECT_EQ(run.status, 0) << run.error;
+  EXPECT_FALSE(contains(run.out, "guard:")) << run.out;
+  const Json guard = manifest_in(folder_ / "output/fall")["guards"]["sweeps"];
+  EXPECT_GT(guard["count"], 0);
+  EXPECT_EQ(guard["matters"], false);
+  EXPECT_TRUE(contains(guard["effect"].get<std::string>(), "the deepest overlap was")) << guard;
+  const std::string report = text_of(folder_ / "output/fall/report.html");
+  EXPECT_TRUE(contains(report, "substeps that used all their sweeps"));
+  EXPECT_TRUE(contains(report, guard["effect"].get<std::string>()));
+}
+
+TEST_F(ProgramTest, AJsonSceneEndsInTheSameState) {
+  ASSERT_EQ(run_scene(falling_ball(no_pictures)).status, 0);
+  write_text(
+      folder_ / "fall.json",
+      R"({"format": 1, "gravity": [0, 0, -10], "time": {"end": 0.1, "step": 1e-2}, "materials": {"stone":
+{"density": 1000}}, "bodies": [{"sphere": {"radius": 0.1}, "name": "ball", "at": [0, 0, 10], "material": "stone",
+"fixed": false}], "record": {"metrics_every": 0.02}, "response": {"mode": "default"}, "precision": "double",
+"render": false})");
+  ASSERT_EQ(scree_in(folder_, {"run", "fall.json", "-o", "json"}).status, 0);
+  EXPECT_EQ(manifest_in(folder_ / "json")["state_hash"], manifest_in(folder_ / "output/fall")["state_hash"]);
+  EXPECT_EQ(text_of(folder_ / "json/scene.yaml"), text_of(folder_ / "output/fall/scene.yaml"));
+}
+
+TEST_F(ProgramTest, WhatATableHasBesidesIsSaidOnceByEachCommand) {
+  write_text(folder_ / "bed.csv", "id;radius;x;y;z\n7;0.1;0;0;10\n");
+  const std::string scene =
+      "format: 1\ntime: {end: 0.1, step: 0.01}\nmaterials: {stone: {}}\nbodies: [{file: bed.csv, name: b, "
+      "material: "
+      "stone}]\nrender: false\nchecks: [{measure: \"b[0].position.z\", expect: 10, tolerance: 1.0e-9}]\n";
+  const auto times = [](const std::string& text, const std::string& part) {
+    int count = 0;
+    for (std::size_t at = text.find(part); at != std::string::npos; at = text.find(part, at + 1)) ++count;
+    return count;
+  };
+  const Finished run = run_scene(scene);
+  EXPECT_EQ(run.status, 0);
+  for (const Finished& said :
+       {run, scree_in(folder_, {"plan", "fall.yaml"}), scree_in(folder_, {"verify", "fall.yaml"})}) {
+    EXPECT_EQ(times(said.out + said.error, "are ignored: id"), 1) << said.out << said.error;
+    EXPECT_EQ(times(said.out + said.error, "by its sizes each body is a sphere"), 1)
+        << said.out << said.error;
+  }
+  EXPECT_EQ(manifest_in(folder_ / "output/fall")["warnings"].size(), 2u);
+}
+
 TEST_F(ProgramTest, ARunWhoseStartCannotBeObservedStillLeavesAManifest) {
   // The kinetic energy overflows.
   const Finished run = run_scene(falling_ball(no_pictures), {"--set", "bodies[0].velocity=[1e200, 0, 0]"});

@@ -102,10 +102,10 @@ TEST_F(Exports, XyzHasEachShapeAsOvitoTakesIt) {
   EXPECT_NE(lines[1].find("types=\"1 sphere, 2 box, 3 capsule, 4 cylinder, 5 polyhedron"), std::string::npos);
   EXPECT_NE(lines[1].find("left_out=\"1 plane, 4 triangles\""), std::string::npos) << lines[1];
   EXPECT_EQ(left_out.words(), "1 plane, 4 triangles");
-  expect_numbers(lines[2], {1, 1, 0, 0, 3, 0, 0.5, 0, 0, 0, 0, 0, 0, 1});
-  expect_numbers(lines[3], {2, 2, 0, 0, 4, 0, 0, 0.25, 0.5, 0.75, 0, 0, 0, 1});
-  expect_numbers(lines[4], {3, 3, 0, 0, 5, 0, 0.25, 0.25, 0.25, 1.5, half_turn, 0, 0, half_turn});
-  expect_numbers(lines[5], {4, 4, 0, 0, 6, 0, 0.25, 0.25, 0.25, 1.5, 0, half_turn, 0, half_turn});
+  expect_numbers(lines[2], {1, 1, 0, 0, 3, 0, 0.5, 0, 0, 0, 0, 0, 0, 1, 0});
+  expect_numbers(lines[3], {2, 2, 0, 0, 4, 0, 0, 0.25, 0.5, 0.75, 0, 0, 0, 1, 0});
+  expect_numbers(lines[4], {3, 3, 0, 0, 5, 0, 0.25, 0.25, 0.25, 1.5, half_turn, 0, 0, half_turn, 0});
+  expect_numbers(lines[5], {4, 4, 0, 0, 6, 0, 0.25, 0.25, 0.25, 1.5, 0, half_turn, 0, half_turn, 0});
   EXPECT_EQ(numbers_of(lines[6]).front(), 5);
 }
 
@@ -115,10 +115,10 @@ TEST_F(Exports, LammpsHasTwiceTheShapesOfXyz) {
   const std::vector<std::string> lines = lines_of(file);
   ASSERT_EQ(lines.size(), 3 * 11 + 2 * 5);
   EXPECT_EQ(left_out.words(), "1 plane, 4 triangles");
-  expect_numbers(lines[11], {4, 1, 1, 0, 0, 0.5, 1, 1, 1, 1, 0, 0, 0});
-  expect_numbers(lines[12], {5, 2, 2, 0, 0, 0, 0.5, 1, 1.5, 1, 0, 0, 0});
-  expect_numbers(lines[13], {6, 3, 3, 0, 0, 0.25, 0.5, 0.5, 3, half_turn, half_turn, 0, 0});
-  expect_numbers(lines[14], {7, 4, 4, 0, 0, 0.25, 0.5, 0.5, 3, half_turn, 0, half_turn, 0});
+  expect_numbers(lines[11], {4, 1, 1, 0, 0, 0.5, 1, 1, 1, 1, 0, 0, 0, 0});
+  expect_numbers(lines[12], {5, 2, 2, 0, 0, 0, 0.5, 1, 1.5, 1, 0, 0, 0, 0});
+  expect_numbers(lines[13], {6, 3, 3, 0, 0, 0.25, 0.5, 0.5, 3, half_turn, half_turn, 0, 0, 0});
+  expect_numbers(lines[14], {7, 4, 4, 0, 0, 0.25, 0.5, 0.5, 3, half_turn, 0, half_turn, 0, 0});
 }
 
 TEST_F(Exports, ParticlesHaveTheirPeriod) {
@@ -133,6 +133,72 @@ TEST_F(Exports, ParticlesHaveTheirPeriod) {
   EXPECT_EQ(lines_of(lammps)[6], "ITEM: BOX BOUNDS pp ff pp");
   expect_numbers(lines_of(lammps)[7], {0.5, 8.5});
   expect_numbers(lines_of(lammps)[9], {-1, -0.75});
+}
+
+/// Bodies of every kind but polyhedra, of two materials, one of them fixed and one moving as prescribed.
+constexpr const char* menagerie = R"(format: 1
+time: {end: 1, step: 0.5}
+materials: {stone: {density: 1000}, wood: {density: 600}}
+bodies:
+  - {plane: {normal: [0, 0, 1]}, material: stone}
+  - {sphere: {radius: 0.1}, at: [1, 0, 1], velocity: [0.1, 0.2, 0.3], spin: [1, 2, 3], material: wood}
+  - {box: {size: [0.5, 1, 1.5]}, at: [2, 0, 1], rotate: {axis: [1, 2, 3], degrees: 40}, material: stone}
+  - {capsule: {radius: 0.2, length: 1.5}, at: [3, 0, 1], rotate: {axis: [1, 0, 0], degrees: 90}, material: wood}
+  - {cylinder: {radius: 0.2, length: 1.5}, at: [4, 0, 1], rotate: {axis: [0, 1, 0], degrees: 60}, material: stone}
+  - {box: {size: 1}, at: [9, 0, 1], fixed: true, material: stone}
+  - {sphere: {radius: 1}, at: [12, 0, 1], motion: {velocity: [0, 0, 1]}, material: stone}
+)";
+
+TEST_F(Exports, ParticlesComeBackAsBodies) {
+  write_text(folder_ / "zoo.yaml", menagerie);
+  scene_ = read_scene(folder_ / "zoo.yaml");
+  TrajectoryReader reader = trajectory({.spin = true, .in_double = true});
+  for (const ExportFormat format : {ExportFormat::xyz, ExportFormat::lammps}) {
+    const fs::path file = export_trajectory(reader, format, {}, folder_.path()).file;
+    // A dump has no materials.
+    const std::string material = format == ExportFormat::lammps ? ", material: stone" : "";
+    const Scene again = parse_scene(
+        "format: 1\ntime: {end: 1, step: 0.5}\nmaterials: {stone: {density: 1000}, wood: "
+        "{density: 600}}\nbodies: [{file: " +
+            file.string() + ", frame: 0" + material + "}]\n",
+        folder_ / "again.yaml");
+    ASSERT_EQ(again.bodies.count(), 4) << file;
+    for (std::size_t k = 0; k < 4; ++k) {
+      EXPECT_EQ(again.bodies.shape[k], scene_.bodies.shape[k + 1]);
+      EXPECT_EQ(again.bodies.position[k], scene_.bodies.position[k + 1]);
+      EXPECT_EQ(again.bodies.velocity[k], scene_.bodies.velocity[k + 1]);
+      EXPECT_EQ(again.bodies.spin[k], scene_.bodies.spin[k + 1]);
+      EXPECT_LT((again.bodies.size[k] - scene_.bodies.size[k + 1]).norm(), 1e-15);
+      EXPECT_LT((again.bodies.orientation[k].coeffs() - scene_.bodies.orientation[k + 1].coeffs()).norm(),
+                1e-15);
+      EXPECT_EQ(again.bodies.mobility[k], Mobility::free);
+      if (format == ExportFormat::xyz) {
+        EXPECT_EQ(again.bodies.material[k], scene_.bodies.material[k + 1]);
+      }
+    }
+    ASSERT_EQ(again.notes.size(), 2u);
+    EXPECT_TRUE(again.notes[0].ends_with("are ignored: id")) << again.notes[0];
+    EXPECT_NE(again.notes[1].find("has 2 bodies that are not free, which are left out"), std::string::npos)
+        << again.notes[1];
+  }
+}
+
+TEST_F(Exports, APolyhedronDoesNotComeBackWithoutItsCorners) {
+  TrajectoryReader reader = trajectory({.in_double = true});
+  for (const ExportFormat format : {ExportFormat::xyz, ExportFormat::lammps}) {
+    const fs::path file = export_trajectory(reader, format, {}, folder_.path()).file;
+    try {
+      parse_scene("format: 1\ntime: {end: 1, step: 0.5}\nmaterials: {stone: {}}\nbodies: [{file: " +
+                      file.string() + ", frame: 0, material: stone}]\n",
+                  folder_ / "again.yaml");
+      FAIL();
+    } catch (const InputError& error) {
+      EXPECT_NE(std::string(error.what())
+                    .find("a polyhedron's corners are not in this file; final.csv of the run has them"),
+                std::string::npos)
+          << error.what();
+    }
+  }
 }
 
 /// A file of VTK's XML, by what it says of itself.

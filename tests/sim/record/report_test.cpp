@@ -111,7 +111,8 @@ class Report : public testing::Test {
       "space": "host", "precision": "double", "model": {"friction": {"on": true, "reason": "some"}}, "steps": 1234567, "steps_total": 1234567, "time": 1,
       "state_hash": "ff", "checks": [{"check": "x at 1", "measured": 2, "expected": "1", "margin": -1, "error": 1, "verdict": "failed"}],
       "observation": {"bodies": 3}, "frames": 0, "warnings": ["the <disk> is small"], "wall_s": 1.5,
-      "guards": {"sweeps": {"count": 12, "what": "substeps that used all their sweeps", "setting": "more"}, "left": {"count": 0, "what": "bodies", "setting": "x"}},
+      "guards": {"sweeps": {"count": 12, "what": "substeps that used all their sweeps", "setting": "more", "effect": "the deepest overlap was 20 %", "matters": true},
+                 "gjk": {"count": 34, "what": "calls", "setting": "y", "effect": "none", "matters": false}, "left": {"count": 0, "what": "bodies", "setting": "x", "effect": "", "matters": true}},
       "counters": {"sweeps": 7, "crosscheck": {}}, "stages": {"response": {"seconds": 0.3, "calls": 6}}})");
   }
   std::string page() const {
@@ -125,9 +126,12 @@ TEST_F(Report, SaysFirstWhatWentWrong) {
   write_manifest("failed", R"("error": "no <room>",)");
   const std::string html = page();
   const std::size_t pictures = html.find("<h2>Checks");
-  for (const char* words : {"a&lt;b", "The run failed: no &lt;room&gt;", "Check failed: x at 1",
-                            "the &lt;disk&gt; is small", "12 substeps that used all their sweeps"})
+  for (const char* words :
+       {"a&lt;b", "The run failed: no &lt;room&gt;", "Check failed: x at 1", "the &lt;disk&gt; is small",
+        "12 substeps that used all their sweeps: the deepest overlap was 20 %"})
     EXPECT_LT(html.find(words), pictures) << words;
+  EXPECT_GT(html.find("<td>34</td><td>calls</td><td>none</td>"), pictures)
+      << "what does not matter comes later";
   EXPECT_EQ(html.find("0 bodies"), std::string::npos);
   EXPECT_EQ(html.find("<disk>"), std::string::npos);
 }

@@ -268,12 +268,13 @@ TEST(Trajectory, IsExportedAsXyz) {
   EXPECT_EQ(text[0], "3");
   EXPECT_EQ(text[1],
             "Properties=type:I:1:pos:R:3:id:I:1:material:I:1:radius:R:1:aspherical_shape:R:3:orientation:R:4:"
-            "velo:R:3 Time=0 Timestep=0 pbc=\"F F F\" types=\"1 sphere, 2 box, 3 capsule, 4 cylinder, 5 "
+            "velo:R:3:mobility:I:1 Time=0 Timestep=0 pbc=\"F F F\" types=\"1 sphere, 2 box, 3 capsule, 4 "
+            "cylinder, 5 "
             "polyhedron as "
             "the box around it\" left_out=\"1 plane\"");
-  EXPECT_EQ(words(text[2]), words("1 1 0 0.33333334 1 1 0.1 0 0 0 0.099833414 0 0 0.9950042 0 0.5 0"));
+  EXPECT_EQ(words(text[2]), words("1 1 0 0.33333334 1 1 0.1 0 0 0 0.099833414 0 0 0.9950042 0 0.5 0 0"));
   EXPECT_EQ(words(text[3]),
-            words("2 2 0 0.33333334 2 2 0 0.1 0.2 0.3 0.19866933 0 0 0.9800666 0 0.33333334 0"));
+            words("2 2 0 0.33333334 2 2 0 0.1 0.2 0.3 0.19866933 0 0 0.9800666 0 0.33333334 0 0"));
 }
 
 TEST(Trajectory, IsExportedForLammps) {
@@ -293,8 +294,8 @@ TEST(Trajectory, IsExportedForLammps) {
       "0 0",
       "0.33333334 0.33333334",
       ("ITEM: ATOMS id type x y z radius shapex shapey shapez quatw quati quatj "
-       "quatk vx vy vz"),
-      "2 1 1 0 0.33333334 0.1 0.2 0.2 0.2 0.9950042 0.099833414 0 0 0 0.5 0"};
+       "quatk vx vy vz mobility"),
+      "2 1 1 0 0.33333334 0.1 0.2 0.2 0.2 0.9950042 0.099833414 0 0 0 0.5 0 0"};
   ASSERT_GE(text.size(), start.size());
   EXPECT_TRUE(std::equal(start.begin(), start.end(), text.begin()));
 }

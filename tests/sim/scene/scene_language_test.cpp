@@ -3,6 +3,7 @@
 #include "sim/scene/keys.hpp"
 #include "sim/scene/measure.hpp"
 #include "sim/scene/scene.hpp"
+#include "tests/sim/scene/json_of.hpp"
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
@@ -304,28 +305,6 @@ bool is_valid(const Json& value, const Json& schema) {
     for (const Json& key : schema["required"])
       if (!value.contains(key.get<std::string>())) return false;
   return true;
-}
-
-/// Plain scalars as YAML 1.2 reads them.
-Json json_of(const Node& node) {
-  switch (node.kind) {
-    case Node::Kind::null:
-      return nullptr;
-    case Node::Kind::scalar: {
-      const Json parsed = node.quoted ? Json(node.text) : Json::parse(node.text, nullptr, false);
-      return parsed.is_discarded() ? Json(node.text) : parsed;
-    }
-    case Node::Kind::list: {
-      Json list = Json::array();
-      for (const Node& item : node.items) list.push_back(json_of(item));
-      return list;
-    }
-    case Node::Kind::map:
-      break;
-  }
-  Json map = Json::object();
-  for (const Node& item : node.items) map[item.key] = json_of(item);
-  return map;
 }
 
 TEST(SceneSchema, AcceptsScenesAndRefusesBadOnes) {
