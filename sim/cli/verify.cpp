@@ -3,6 +3,7 @@
 #include "core/error.hpp"
 #include "sim/cli/check_table.hpp"
 #include "sim/cli/commands.hpp"
+#include "sim/cli/console.hpp"
 #include "sim/cli/process_pool.hpp"
 #include "sim/cli/trial.hpp"
 #include "sim/record/build_info.hpp"
