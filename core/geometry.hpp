@@ -47,8 +47,8 @@ struct Hull {
 };
 
 /// The hull of points of uniform density. Points inside it, within a face or within an edge are left out, but
-/// for what hull_surface() counts as none. Throws InputError, without a place, if there are too few, if one is
-/// not finite, if they lie in a plane, or if the hull has too many vertices.
+/// for what hull_surface() counts as none. Throws InputError, without a place, if there are too few, if one
+/// is not finite, if they lie in a plane, or if the hull has too many vertices.
 Hull make_hull(std::span<const Vec3> points);
 
 /// Where a mesh's triangle is among the others, in the triangle's frame. A normal of contact n (unit, from

@@ -30,8 +30,8 @@ namespace scree {
   const auto motion = [begin, end](BodyFlight& flight, const Solid& seen) {
     flight.acceleration.setZero();
     return Instants<ShapedSolid>{{flight.shape, instant_of(flight, begin).solid},
-                                {flight.shape, seen},
-                                {flight.shape, instant_of(flight, end).solid}};
+                                 {flight.shape, seen},
+                                 {flight.shape, instant_of(flight, end).solid}};
   };
   return find_separating_face(motion(pair.i, seen_i), motion(pair.j, seen_j), pair.shapes, slack,
                               (end - begin) * slow);

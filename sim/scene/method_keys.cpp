@@ -106,7 +106,7 @@ Codec<ModelSettings> model_section() {
        section<T>("model", "Features to compute; auto: only if the scene needs them.",
                   {
                       key<T>("rotation", &T::rotation, feature, optionally,
-                         "free bodies turn; off: they keep their orientation, and friction slides"),
+                             "free bodies turn; off: they keep their orientation, and friction slides"),
                       key<T>("friction", &T::friction, feature, optionally, "contacts rub"),
                       with_default(key<T>("rolling_friction", &T::rolling_friction, optional(on_or_off),
                                           optionally, "contacts hold back what rolls"),

@@ -21,8 +21,8 @@ void read_hostile_stl(std::string_view bytes);
 void read_hostile_ply(std::string_view bytes);
 
 /// Reads the bytes as points, of doubles if the first byte is even, or else of whole numbers and small parts
-/// of one, which lie in a lattice or nearly. Throws std::logic_error if what came is neither an InputError nor
-/// a hull in order that reaches as far as the points, but for a thousandth of its extent.
+/// of one, which lie in a lattice or nearly. Throws std::logic_error if what came is neither an InputError
+/// nor a hull in order that reaches as far as the points, but for a thousandth of its extent.
 void read_hostile_points(std::string_view bytes);
 
 /// Reads the bytes as what follows the first line of a checkpoint, which is given the right checksum: so that
