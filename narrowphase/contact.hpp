@@ -35,9 +35,9 @@ struct ManifoldHeader {
   std::int32_t j;
   std::int32_t part;
   std::int32_t count;
-  bool at_edge;
   std::int64_t first_point;
   Vec3 normal;
+  bool at_edge = false;  ///< as Manifold has it
 };
 
 /// Many manifolds, and all their points in the same order.

@@ -28,9 +28,9 @@ struct alignas(64) ManifoldChunk {
                        .j = m.j,
                        .part = m.part,
                        .count = m.count,
-                       .at_edge = m.at_edge,
                        .first_point = static_cast<std::int64_t>(points.size()),
-                       .normal = m.normal});
+                       .normal = m.normal,
+                       .at_edge = m.at_edge});
     points.insert(points.end(), m.points, m.points + m.count);
   }
 };

@@ -135,7 +135,7 @@ void require_mesh(const SceneMesh& scene) {
     for (const int corner : t.corners)
       if (corner < 0 || corner >= vertices) breach(fmt::format("there is no vertex {}", corner));
   }
-  for (const std::string& warning : scene.notes) require_message("mesh: " + warning);
+  for (const std::string& warning : scene.warnings) require_message("mesh: " + warning);
   const MeshReport& r = scene.report;
   if (r.welded < 0 || r.split < 0 || r.left_out < 0 || !std::isfinite(r.farthest))
     breach("a count that is none");

@@ -20,7 +20,7 @@ echo "$said"
 [[ $said =~ 't  6.8'.*'height  0.20000 m'.*'at rest' ]] || failed "no rest at 6.8 s"
 [[ $said == *'held by body 0 with 361.6'* ]] || failed "not held by its weight"
 if "$work/build/drop_height" "$source/configs/01_bouncing_ball.yaml" ball time.stop=10 2>"$work/refusal"; then failed "took time.stop"; fi
-grep -q "time has no stop (did you mean step?)" "$work/refusal" || failed "$(cat "$work/refusal")"
+grep -qF 'time has no stop; write `end`, in seconds' "$work/refusal" || failed "$(cat "$work/refusal")"
 
 pc=$(dirname "$(find "$work/installed" -name scree.pc)")
 read -ra flags < <(PKG_CONFIG_PATH=$pc pkg-config --cflags --libs scree)
