@@ -175,6 +175,7 @@ void Substepper::fly_on(const Manifolds& manifolds, double h, double done) {
     const Contact& c = std::as_const(contacts_.contacts).view()[k];
     if (c.free_ends == 2) continue;
     add_impulse_on_driven_bodies(c.i, c.j, contacts_.impulse_of(c));
+    if (contact_moment_.empty()) continue;
     for (int r = 0; r < c.count; ++r) {
       const ContactRow& row = std::as_const(contacts_.rows).view()[c.first_row + r];
       add_moment_on_triangle(c.i, -row.arm_i.cross(row.impulse));
@@ -230,9 +231,11 @@ void Substepper::resolve_impacts(double h, double from, double reach) {
   if (impacts_.hit_bound()) ++counters.unfinished_impacts;
   for (const Impact& impact : impacts_.impacts()) {
     add_impulse_on_driven_bodies(impact.i, impact.j, impact.impulse);
-    const ConstView<Vec3> centres = std::as_const(bodies_.position).view();
-    add_moment_on_triangle(impact.i, -(impact.point - centres[impact.i]).cross(impact.impulse));
-    add_moment_on_triangle(impact.j, (impact.point - centres[impact.j]).cross(impact.impulse));
+    const auto arm = [&](std::int32_t body) {
+      return bodies_.period.nearest(impact.point - std::as_const(bodies_.position).view()[body]);
+    };
+    add_moment_on_triangle(impact.i, -arm(impact.i).cross(impact.impulse));
+    add_moment_on_triangle(impact.j, arm(impact.j).cross(impact.impulse));
     struck_.push_back(impact);
   }
 }
