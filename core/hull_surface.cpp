@@ -108,8 +108,9 @@ class Surface {
     for (const auto& [place, p] : order) {
       const auto near =
           std::lower_bound(kept.begin(), kept.end(), std::pair{place - along.norm() * apart, 0});
-      const bool is_new = std::none_of(
-          near, kept.end(), [&](const auto& other) { return (at(p) - at(other.second)).norm() <= apart; });
+      const bool is_new = std::none_of(near, kept.end(), [&, &point = p](const auto& other) {
+        return (at(point) - at(other.second)).norm() <= apart;
+      });
       if (is_new) kept.emplace_back(place, p);
     }
     used_.clear();

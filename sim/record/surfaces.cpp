@@ -56,7 +56,8 @@ class Builder {
     for (std::size_t c = 0; c < frame.about.size(); ++c) {
       if (places_.says_shape(c)) continue;
       const FieldType& type = frame.about[c].type;
-      VtkPolyData::Array& array = arrays.emplace_back(frame.about[c].name, type, std::vector<double>());
+      arrays.push_back({frame.about[c].name, type, {}});
+      VtkPolyData::Array& array = arrays.back();
       for (const std::size_t row : rows)
         for (std::size_t k = 0; k < static_cast<std::size_t>(type.columns); ++k)
           array.numbers.push_back(frame.number(c, row, k));

@@ -39,7 +39,7 @@ struct Property {
 
 /// As OVITO, ASE and scree name them. Orientations are x, y, z, w there (OVITO's manual, "Extended XYZ") and
 /// have a rule of their own.
-constexpr Property properties[] = {
+constexpr Property known_properties[] = {
     {"pos", 3, BodyColumn::x},
     {"position", 3, BodyColumn::x},
     {"velo", 3, BodyColumn::vx},
@@ -128,7 +128,7 @@ void XyzRows::add_property(std::string_view name, std::int64_t count, const Sour
       add_column(std::string(name), mark, column);
     return;
   }
-  const Property* known = find(properties, name, count);
+  const Property* known = find(known_properties, name, count);
   if (!known && is_own_) known = find(own_properties, name, count);
   for (int k = 0; k < count; ++k)
     add_column(std::string(name), mark, known ? std::optional(after(known->first, k)) : std::nullopt,
