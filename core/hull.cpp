@@ -20,17 +20,6 @@ namespace {
 using Real = long double;
 using Fine = Eigen::Matrix<Real, 3, 1>;
 
-/// Of a polygon: that of the triangles from its first corner on.
-Vec3 normal_of(std::span<const int> corners, const std::vector<Vec3>& vertices) {
-  const auto from_first = [&](std::size_t k) -> Fine {
-    return vertices[static_cast<std::size_t>(corners[k])].cast<Real>() -
-           vertices[static_cast<std::size_t>(corners[0])].cast<Real>();
-  };
-  Fine area = Fine::Zero();
-  for (std::size_t k = 1; k + 1 < corners.size(); ++k) area += from_first(k).cross(from_first(k + 1));
-  return area.stableNormalized().cast<double>();
-}
-
 void append_edges(Hull& hull) {
   std::map<std::pair<int, int>, int> face_at;
   for (std::size_t f = 0; f < hull.faces.size(); ++f) {
@@ -62,7 +51,7 @@ Hull polyhedron_of(std::span<const Vec3> points) {
     const int first = static_cast<int>(hull.corners.size());
     for (const int point : face) hull.corners.push_back(number.at(point));
     hull.faces.push_back({Vec3::Zero(), first, static_cast<int>(face.size())});
-    hull.faces.back().normal = normal_of(hull.corners_of(hull.faces.back()), hull.vertices);
+    hull.faces.back().normal = polygon_normal(hull.corners_of(hull.faces.back()), hull.vertices);
   }
   append_edges(hull);
   return hull;

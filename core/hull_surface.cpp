@@ -1,6 +1,7 @@
 #include "core/hull_surface.hpp"
 
 #include "core/error.hpp"
+#include "core/geometry.hpp"
 #include "core/qhull.hpp"
 #include "core/tolerances.hpp"
 
@@ -92,7 +93,7 @@ class Surface {
     for (;;) {
       find_faces();
       const Polygon dents = find_dents();
-      if (dents.empty()) return is_closed();
+      if (dents.empty()) return is_closed() && (has_too_many_faces() || holds_points(apart));
       std::erase_if(used_, [&](int p) { return std::binary_search(dents.begin(), dents.end(), p); });
     }
   }
@@ -131,13 +132,7 @@ class Surface {
     }
   }
 
-  /// Of the triangles from its first corner on, and of any length.
-  Vec3 normal_of(const Polygon& face) const {
-    Vec3 normal = Vec3::Zero();
-    for (std::size_t k = 1; k + 1 < face.size(); ++k)
-      normal += (at(face[k]) - at(face[0])).cross(at(face[k + 1]) - at(face[0]));
-    return normal;
-  }
+  Vec3 normal_of(const Polygon& face) const { return polygon_normal(face, points_); }
 
   Vec3 side_of(const Polygon& face, std::size_t k) const {
     return at(face[(k + 1) % face.size()]) - at(face[k]);
@@ -165,7 +160,7 @@ class Surface {
 
   /// Of the corners at which the border turns inward the one nearest to the line past it.
   int least_dent(const Polygon& face) const {
-    const Vec3 normal = normal_of(face).normalized();
+    const Vec3 normal = normal_of(face);
     double least = HUGE_VAL;
     int dent = face.front();
     for (std::size_t k = 0; k < face.size(); ++k) {
@@ -198,6 +193,23 @@ class Surface {
            2 * (corners.size() + faces_.size()) == edges.size() + 4;
   }
 
+  /// It will be refused, so that nothing hangs on how good it is.
+  bool has_too_many_faces() const { return faces_.size() > 2 * Hull::most_vertices; }
+
+  /// Whether no point is far outside of a face, and no corner far from its face's plane. Qhull can merge
+  /// facets whose normals are noise, as those are between points that are only just not equal.
+  bool holds_points(double apart) const {
+    const double most = tolerance::most_off_face * apart;
+    return std::all_of(faces_.begin(), faces_.end(), [&](const Polygon& face) {
+      const Vec3 normal = normal_of(face);
+      double least = HUGE_VAL;
+      for (const int corner : face) least = std::min(least, normal.dot(at(corner) - at(face.front())));
+      return std::all_of(points_.begin(), points_.end(), [&](const Vec3& p) {
+        return normal.dot(p - at(face.front())) <= least + most;
+      });
+    });
+  }
+
   std::vector<Vec3> points_;
   double width_;  ///< of what counts as nothing
   Polygon used_;  ///< points, in their order
@@ -208,6 +220,17 @@ class Surface {
 
 std::vector<std::vector<int>> hull_surface(std::span<const Vec3> points) {
   return Surface(scaled(points)).find();
+}
+
+Vec3 polygon_normal(std::span<const int> corners, std::span<const Vec3> points) {
+  using Fine = Eigen::Matrix<long double, 3, 1>;
+  const auto from_first = [&](std::size_t k) -> Fine {
+    return points[static_cast<std::size_t>(corners[k])].cast<long double>() -
+           points[static_cast<std::size_t>(corners[0])].cast<long double>();
+  };
+  Fine area = Fine::Zero();
+  for (std::size_t k = 1; k + 1 < corners.size(); ++k) area += from_first(k).cross(from_first(k + 1));
+  return area.stableNormalized().cast<double>();
 }
 
 }  // namespace scree
