@@ -204,9 +204,8 @@ class Surface {
       const Vec3 normal = normal_of(face);
       double least = HUGE_VAL;
       for (const int corner : face) least = std::min(least, normal.dot(at(corner) - at(face.front())));
-      return std::all_of(points_.begin(), points_.end(), [&](const Vec3& p) {
-        return normal.dot(p - at(face.front())) <= least + most;
-      });
+      return std::all_of(points_.begin(), points_.end(),
+                         [&](const Vec3& p) { return normal.dot(p - at(face.front())) <= least + most; });
     });
   }
 

@@ -251,8 +251,8 @@ inline constexpr double thin_hull = 2e-7;
 inline constexpr double coplanar = 1e-6;
 inline constexpr double coplanar_thicknesses = 5;
 /// Times the distance that counts as none by which a point may be outside of a hull's face, or a corner off
-/// its plane; beyond, points that are farther apart count as one. A million adversarial sets come to 15, but for
-/// clusters of points that are only just not equal (decision 0040).
+/// its plane; beyond, points that are farther apart count as one. A million adversarial sets come to 15, but
+/// for clusters of points that are only just not equal (decision 0040).
 inline constexpr double most_off_face = 20;
 // A face's corners touch all at once: the smallest size is half the thickness.
 static_assert(2 * coplanar * coplanar_thicknesses <= closed_gap);
