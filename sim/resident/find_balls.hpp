@@ -201,9 +201,12 @@ struct JudgeBalls {
     if (!flight_of_contact(stage.struck, m, m.points, at.size(), false).flying) return;
     contacts.flags[c] |= flag_flying;
     stage.take_wall_points(at);
-    const double free = m.normal.dot(stage.kicked_relative_velocity(at));
+    const Vec3 velocity_i = stage.kicked_velocity(at.a, at.slot.i);
+    const Vec3 velocity_j = stage.kicked_velocity(at.b, at.slot.j);
+    const double free = m.normal.dot(velocity_j - velocity_i);
     Real& target = contacts.fields.at(C::target, c);
-    target = static_cast<Real>(stage.target_in_flight(static_cast<double>(target), free));
+    target = static_cast<Real>(
+        stage.target_in_flight(static_cast<double>(target), free, velocity_i.norm() + velocity_j.norm()));
   }
 };
 

@@ -179,16 +179,19 @@ struct JudgePoints {
     m.j = slot.j;
     if (!flight_of_contact(stage.struck, m, m.points, at.size(), false).flying) return;
     contacts.flags[c] |= flag_flying;
-    const Vec3 kick = stage.kick_of(at.b, slot.j) - stage.kick_of(at.a, slot.i);
-    const auto velocity_at = [&](std::int32_t body, const Vec3& point) {
+    const auto velocity_at = [&](const MidBody<Real>& at_mid, std::int32_t body, const Vec3& point) {
       const Vec3 arm = stage.bodies.period.nearest(point - stage.bodies.position[body]);
-      return Vec3(stage.bodies.velocity[body] + stage.bodies.spin[body].cross(arm));
+      return Vec3(stage.bodies.velocity[body] + stage.bodies.spin[body].cross(arm) +
+                  stage.kick_of(at_mid, body));
     };
     for (int p = 0; p < m.count; ++p) {
       const Vec3& point = m.points[p].position;
-      const double free = m.normal.dot(velocity_at(slot.j, point) - velocity_at(slot.i, point) + kick);
+      const Vec3 velocity_i = velocity_at(at.a, slot.i, point);
+      const Vec3 velocity_j = velocity_at(at.b, slot.j, point);
       Real& target = contacts.point_fields.at(C::at_point(p, C::target), c);
-      target = static_cast<Real>(stage.target_in_flight(static_cast<double>(target), free));
+      target = static_cast<Real>(stage.target_in_flight(static_cast<double>(target),
+                                                        m.normal.dot(velocity_j - velocity_i),
+                                                        velocity_i.norm() + velocity_j.norm()));
     }
   }
 };

@@ -13,6 +13,7 @@
 
 #include <cmath>
 #include <cstdint>
+#include <limits>
 
 namespace scree::resident {
 
@@ -102,10 +103,11 @@ struct FindStage {
     const double closing = gap > shell ? -(gap - shell) / (step - lead) : 0.0;
     return fmin(closing - 0.5 * step * bend, noise - parting);
   }
-  /// Of what flies past: it is not held at all. `free` is the normal velocity without contacts, and rounding
-  /// pushes nobody.
-  SCREE_HD static double target_in_flight(double target, double free) {
-    return fmin(target, free - tolerance::flight_margin * fabs(free));
+  /// Of what flies past: it is not held at all. `free` is the normal velocity without contacts, and `speed`
+  /// the sum of the two bodies' speeds there, whose rounding pushes nobody (m/s).
+  SCREE_HD static double target_in_flight(double target, double free, double speed) {
+    constexpr double rounding = 8 * std::numeric_limits<Real>::epsilon();
+    return fmin(target, free - tolerance::flight_margin * fabs(free) - rounding * speed);
   }
 
   /// What the gap at the end has beside what the velocities after the response open (m): it bends; and a

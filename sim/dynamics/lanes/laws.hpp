@@ -227,13 +227,20 @@ SCREE_LAW BallContact<A> contact_of(const Facing<A>& at, const typename A::V& fr
   return {{at.normal, arm_i, arm_j, friction, target, normal_mass, tangent_mass}, at.gap, bend};
 }
 
+/// A vector cut to the disc of a radius, which may be 0: then it is 0, even where its square underflows.
+template <class A>
+SCREE_LAW V3<A> cut_to_disc(const V3<A>& v, const typename A::V& radius) {
+  using V = typename A::V;
+  const V square = dot(v, v);
+  const V scale = radius > 0 ? radius / A::root(square) : V{};
+  return where((radius > 0) & (square <= radius * radius), v, scale * v);
+}
+
 /// Impulse in Coulomb's cone: its normal part, and the tangential part cut to the disc.
 template <class A>
 SCREE_LAW V3<A> on_disc(const typename A::V& pn, const V3<A>& pt, const V3<A>& n,
                         const typename A::V& friction) {
-  const typename A::V radius = friction * pn;
-  const typename A::V square = dot(pt, pt);
-  return pn * n + where(square <= radius * radius, pt, (radius / A::root(square)) * pt);
+  return pn * n + cut_to_disc(pt, friction * pn);
 }
 
 /// Body is Centre or Moving.
@@ -387,11 +394,8 @@ SCREE_LAW typename A::V rolling_mass(const Symmetric<A>& inverse_inertia, const 
 template <class A>
 SCREE_LAW V3<A> couple_of(const V3<A>& n, const typename A::V& most, const typename A::V& mass,
                           const V3<A>& last, const V3<A>& spin) {
-  using V = typename A::V;
   const V3<A> step = last - mass * spin;
-  const V3<A> couple = step - dot(step, n) * n;
-  const V square = dot(couple, couple);
-  return where(square <= most * most, couple, (most / A::root(square)) * couple);
+  return cut_to_disc(step - dot(step, n) * n, most);
 }
 
 /// What more a point pushes that has pushed so much (kg m), to close in on a gap of 0 by a share. Where
