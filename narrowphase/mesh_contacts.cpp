@@ -43,12 +43,15 @@ struct Neighbourhood {
   }
   bool owns(const Part& part) const { return part.kind == Part::Kind::face || feature(part).owned; }
 
-  /// Whether the mesh bends away from the face at an edge or a corner, so that it bounds what may lie on the
-  /// face.
+  /// Whether the mesh ends at an edge.
+  bool is_border(int edge) const { return around.edges[static_cast<std::size_t>(edge)].count == 1; }
+  /// Whether the mesh ends or bends away from the face at an edge or a corner, so that it bounds what may lie
+  /// on the face.
   bool is_sharp(const Part& part) const {
     const Vec3 up(0, 0, side);
     const Surroundings::Feature& f = feature(part);
-    bool bends = part.kind == Part::Kind::edge && f.count == 1;
+    bool bends =
+        is_border(part.index) || (part.kind == Part::Kind::corner && is_border((part.index + 2) % 3));
     for (const Vec3& d : around.directions_of(f)) {
       if (d.dot(up) > tolerance::cone_slack) return false;
       bends = bends || d.dot(up) < -tolerance::cone_slack;
@@ -208,13 +211,15 @@ class TrianglePair {
     using Kind = SharedPoint::Kind;
     if (p.kind == Kind::corner_of_a) return mesh_.is_sharp({Part::Kind::corner, p.name_a});
     if (p.kind == Kind::crossing) return mesh_.is_sharp({Part::Kind::edge, edge_from(p.name_a)});
-    // At a flat edge it is over the owner's face alone.
+    // At a flat edge it is over the owner's face alone, unless the body ends there: a plane along its side
+    // parts it from what is beyond.
+    const double ends = 2 * tolerance::closed_gap * size_;
     for (int k = 0; k < 3; ++k) {
       const Vec3& from = triangle_.vertices()[static_cast<std::size_t>(k)];
       const Vec3 way = triangle_.vertices()[static_cast<std::size_t>((k + 1) % 3)] - from;
       const Vec3 inward = triangle_.axes().col(2).cross(way).normalized();
       if (!mesh_.around.edges[static_cast<std::size_t>(k)].owned && mesh_.is_flat(k) &&
-          inward.dot(p.position - from) <= slack_)
+          inward.dot(p.position - from) <= slack_ && body_.reach(-inward) + inward.dot(from) > ends)
         return false;
     }
     return true;
