@@ -5,6 +5,7 @@
 #include "sim/dynamics/flight_stage.hpp"
 #include "sim/dynamics/rolling.hpp"
 #include "sim/dynamics/rotation.hpp"
+#include "sim/dynamics/struck_walls.hpp"
 
 #include <algorithm>
 
@@ -177,17 +178,35 @@ struct SolvedImpact {
   BodyInstant at_i, at_j;
   SolverBody after_i, after_j;
   Vec3 normal;
-  Vec3 point;                             ///< mean of those that close (m)
-  ContactRow rows[Manifold::max_points];  ///< of these
-  Vec3 before[Manifold::max_points];      ///< their relative velocities (m/s)
+  Vec3 at[Manifold::max_points];            ///< the points that close (m)
+  ContactRow rows[Manifold::max_points];    ///< of these
+  Vec3 before[Manifold::max_points];        ///< their relative velocities (m/s)
+  std::int32_t wall[Manifold::max_points];  ///< StruckPoints::wall
   int count;
   RollingCouple rolling;
   double restitution;
 
+  /// On j, and reversed on i.
   SCREE_HD Vec3 impulse() const {
     Vec3 sum = Vec3::Zero();
     for (int k = 0; k < count; ++k) sum += rows[k].impulse;
     return sum;
+  }
+  /// What the pair had of the impact.
+  SCREE_HD Impact of_pair() const { return of_points(StruckPoints::own, i, j); }
+  /// Whether a point is the first of those on another wall.
+  SCREE_HD bool is_first_of_wall(int point) const {
+    bool first = wall[point] != StruckPoints::own;
+    for (int k = 0; k < point; ++k) first = first && wall[k] != wall[point];
+    return first;
+  }
+  /// What another wall had of it.
+  SCREE_HD Impact of_wall(std::int32_t other) const {
+    const bool free_i = after_i.is_free();
+    const std::int32_t body = free_i ? i : j;
+    Impact impact = of_points(other, std::min(body, other), std::max(body, other));
+    if (free_i != (body < other)) impact.impulse = -impact.impulse;
+    return impact;
   }
   SCREE_HD Ledger moved() const {
     Ledger ledger;
@@ -195,13 +214,58 @@ struct SolvedImpact {
     if (rolling.reach > 0) ledger = ledger + account_couple(rolling.couple, rolling.before, after_i, after_j);
     return ledger;
   }
+
+ private:
+  SCREE_HD Impact of_points(std::int32_t whose, std::int32_t first, std::int32_t second) const {
+    Vec3 impulse = Vec3::Zero();
+    Vec3 middle = Vec3::Zero();
+    int points = 0;
+    for (int k = 0; k < count; ++k) {
+      if (wall[k] != whose) continue;
+      impulse += rows[k].impulse;
+      middle += at[k];
+      ++points;
+    }
+    return {.i = first, .j = second, .impulse = impulse, .point = points > 0 ? Vec3(middle / points) : at[0]};
+  }
+};
+
+namespace detail {
+
+/// Of the walls that a body with edges meets besides that of the pair those that it strikes in the same
+/// plane.
+template <class OtherWalls>
+SCREE_HD void add_other_walls(const FlightStage& stage, const SolvedImpact& of, const Vec3& normal,
+                              const OtherWalls& other_walls, StruckPoints& points) {
+  const bool free_i = stage.is_free(of.i);
+  if (free_i == stage.is_free(of.j)) return;
+  const std::int32_t body = free_i ? of.i : of.j;
+  if (stage.bodies.shape[body] == Shape::sphere) return;
+  const WallStrike strike{.body = body,
+                          .wall = free_i ? of.j : of.i,
+                          .normal = free_i ? Vec3(-normal) : normal,
+                          .time = of.time,
+                          .flight = free_i ? of.flight_i : of.flight_j,
+                          .at_body = free_i ? of.at_i : of.at_j,
+                          .at_wall = free_i ? of.at_j : of.at_i};
+  other_walls([&](std::int32_t wall, int part) { add_wall(stage, strike, wall, part, points); });
+  points.keep_widest(normal);
+}
+
+}  // namespace detail
+
+/// No wall but that of the pair: what solve_impact() asks of two free bodies.
+struct NoOtherWalls {
+  template <class Then>
+  SCREE_HD void operator()(const Then&) const {}
 };
 
 /// Newton's law u+ = -e u- at all points that touch and close, with Coulomb friction. `loads` are those of
-/// the pair, as LoadedParts. False if no point closes.
-template <class Loads>
+/// the pair, as LoadedParts. `other_walls(then)` calls then(wall, part) for what the free body of the pair
+/// meets besides and is not free. False if no point closes.
+template <class Loads, class OtherWalls>
 SCREE_HD bool solve_impact(const FlightStage& stage, std::int32_t i, std::int32_t j, const Meeting& meeting,
-                           const Loads& loads, SolvedImpact& out) {
+                           const Loads& loads, const OtherWalls& other_walls, SolvedImpact& out) {
   const double s = meeting.time;
   out.i = i;
   out.j = j;
@@ -231,24 +295,27 @@ SCREE_HD bool solve_impact(const FlightStage& stage, std::int32_t i, std::int32_
   out.rolling.before = b.spin - a.spin;
   // With a couple the point of two balls couples, too.
   const bool of_balls = !rolls && detail::is_of_balls(stage, i, j);
+  StruckPoints points;
+  for (int k = 0; k < m.count; ++k) {
+    if (closing_speed(m.normal, m.points[k].position, out.at_i, out.at_j) > 0)
+      points.add(m.normal, m.points[k].position, StruckPoints::own);
+  }
+  if (points.count == 0) return false;
+  detail::add_other_walls(stage, out, m.normal, other_walls, points);
   RowCoupling couplings[Manifold::max_points];
-  Vec3 middle = Vec3::Zero();
   double fastest = 0;
   int count = 0;
-  for (int k = 0; k < m.count; ++k) {
-    const double closing = closing_speed(m.normal, m.points[k].position, out.at_i, out.at_j);
-    if (!(closing > 0)) continue;
-    const Vec3& point = m.points[k].position;
+  for (; count < points.count; ++count) {
+    const Vec3& point = points.at[count];
     const Vec3 arm_i = point - out.at_i.solid.position;
     const Vec3 arm_j = point - out.at_j.solid.position;
     out.rows[count] = of_balls ? make_ball_row(arm_i, arm_j, 0.0, a, b)
                                : make_row(m.normal, arm_i, arm_j, 0.0, a, b, couplings[count]);
     out.before[count] = out.rows[count].relative_velocity(a, b);
-    fastest = std::max(fastest, closing);
-    middle += point;
-    ++count;
+    out.at[count] = point;
+    out.wall[count] = points.wall[count];
+    fastest = std::max(fastest, closing_speed(m.normal, point, out.at_i, out.at_j));
   }
-  if (count == 0) return false;
   const double slowest =
       stage.slowest_bounce(i, j) + fabs(m.normal.dot(sinking_velocity(out.flight_i, out.flight_j)));
   const bool bounces = fastest > slowest && !loads.is_loaded(meeting.part) &&
@@ -262,7 +329,6 @@ SCREE_HD bool solve_impact(const FlightStage& stage, std::int32_t i, std::int32_
     detail::sweep_impact(out.rows, couplings, count, m.normal, friction, out.rolling, guides, a, b);
     detail::keep_from_gaining(out.rows, out.before, count, out.rolling, guides, a, b);
   }
-  out.point = middle / count;
   out.count = count;
   return true;
 }
@@ -298,7 +364,7 @@ SCREE_HD inline void weary(const FlightStage& stage, const SolvedImpact& solved)
 
 /// Gives both bodies the flights that lead on from an impact. Returns what it moved.
 SCREE_HD inline Ledger fly_on(const FlightStage& stage, const SolvedImpact& solved, Impact& impact) {
-  impact = {.i = solved.i, .j = solved.j, .impulse = solved.impulse(), .point = solved.point};
+  impact = solved.of_pair();
   weary(stage, solved);
   Ledger moved = solved.moved();
   moved.integration += fly_on(stage, solved.i, solved.flight_i, solved.at_i, solved.after_i, solved.time) +

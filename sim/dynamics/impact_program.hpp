@@ -20,6 +20,7 @@ struct Foreseen {
   double time;        ///< into the substep (s); infinite: it has come to nothing
   std::int64_t pair;  ///< in the list of the pairs
   std::int32_t part;
+  std::uint32_t next_of_wall = 0;  ///< ImpactProgram::walls_of
 };
 
 /// The first meeting of a body: the earliest, of equal ones that of the first pair.
@@ -96,6 +97,8 @@ struct ImpactProgram {
   View<std::uint32_t> joined_in;            ///< the round that first foresaw a meeting of its own
   View<std::uint32_t> struck_in, waits_in;  ///< the last such round, 0 for none
   View<std::uint32_t> volley_of;            ///< its first meeting with a lighter one
+  /// One of its meetings with what is not free, from 1 on; the next is that meeting's next_of_wall. 0: none.
+  View<std::uint32_t> walls_of;
   // As long as there is room:
   View<std::int64_t> suspects;  ///< pairs that are to be looked at in this round
   View<std::int64_t> busy;      ///< pairs of bodies that have joined
@@ -234,6 +237,7 @@ struct ImpactProgram {
     for (const std::int32_t body : {i, j}) {
       exchange(&first[body].time, no_meeting.time);
       exchange(&first[body].pair, no_meeting.pair);
+      exchange(&walls_of[body], 0u);
     }
     if (last.time == HUGE_VAL || was_struck(state, i) || was_struck(state, j)) return;
     add_meeting(state, last);
@@ -280,7 +284,7 @@ struct ImpactProgram {
   /// Before the first round.
   SCREE_HD void reset(std::int64_t body) const {
     first[body] = no_meeting;
-    struck_in[body] = waits_in[body] = 0;
+    struck_in[body] = waits_in[body] = walls_of[body] = 0;
     volley_of[body] = no_volley;
   }
   /// Lists the pairs of bodies that have joined in this round, but for those of bodies that had before.
@@ -342,10 +346,12 @@ struct ImpactProgram {
   }
   SCREE_HD Volley& volley(std::int32_t heavy) const { return volleys[volley_of[heavy]]; }
 
-  /// Also gives each heavy body a volley.
+  /// Also gives each heavy body a volley, and lists the meetings of each body with walls.
   SCREE_HD void find_first_pairs(const State& state, std::int64_t e) const {
-    const Foreseen& of = meeting(state, e);
+    Foreseen& of = meeting(state, e);
     const auto [i, j] = pairs[of.pair];
+    if (stage.is_free(i) != stage.is_free(j))
+      of.next_of_wall = exchange(&walls_of[stage.is_free(i) ? i : j], static_cast<std::uint32_t>(e + 1));
     find_first_pair(i, j, of, static_cast<std::uint32_t>(e));
     find_first_pair(j, i, of, static_cast<std::uint32_t>(e));
   }
@@ -405,7 +411,9 @@ struct ImpactProgram {
     const auto [i, j] = pairs[of.pair];
     if (!is_of_heavy(i, j) || !is_first(state, of)) return;
     SolvedImpact solved;
-    if (!solve_impact(stage, i, j, {.time = of.time, .part = of.part}, loads_of(of.pair), solved)) return;
+    if (!solve_impact(stage, i, j, {.time = of.time, .part = of.part}, loads_of(of.pair), NoOtherWalls{},
+                      solved))
+      return;
     const std::int32_t heavy = stage.is_heavy_to(i, j) ? i : j;
     add_to_volley(stage, heavy, solved, of.pair, volley(heavy));
   }
@@ -417,7 +425,8 @@ struct ImpactProgram {
     const StruckBody before_i = before_impacts(stage, i);
     const StruckBody before_j = before_impacts(stage, j);
     SolvedImpact solved;
-    if (!solve_impact(stage, i, j, {.time = of.time, .part = of.part}, loads_of(of.pair), solved)) {
+    if (!solve_impact(stage, i, j, {.time = of.time, .part = of.part}, loads_of(of.pair),
+                      OtherWalls{*this, state, of.pair}, solved)) {
       of.time = HUGE_VAL;
       return;
     }
@@ -436,11 +445,59 @@ struct ImpactProgram {
     }
     if (!heavy_i) mark_struck(state, before_i);
     if (!heavy_j) mark_struck(state, before_j);
-    key[place] = std::uint64_t{state.round} * static_cast<std::uint64_t>(pairs.size()) +
-                 static_cast<std::uint64_t>(of.pair);
+    key[place] = key_of(state, of.pair);
+    for (int k = 0; k < solved.count; ++k)
+      if (solved.is_first_of_wall(k)) add_impact_of_wall(state, solved, solved.wall[k]);
     if (of.time > 0.5 * stage.terms.step) raise(&progress->late, 1u);
     if (std::max(heavy_i ? 0.0 : stage.weary[i], heavy_j ? 0.0 : stage.weary[j]) >= impacts_end)
       raise(&progress->hit_bound, 1u);
+  }
+  SCREE_HD std::uint64_t key_of(const State& state, std::int64_t pair) const {
+    return std::uint64_t{state.round} * static_cast<std::uint64_t>(pairs.size()) +
+           static_cast<std::uint64_t>(pair);
+  }
+
+  /// The meetings of a pair's free body with other walls, in the order of their pairs.
+  struct OtherWalls {
+    const ImpactProgram& program;
+    const State& state;
+    std::int64_t pair;
+
+    template <class Then>
+    SCREE_HD void operator()(const Then& then) const {
+      const auto [i, j] = program.pairs[pair];
+      const bool free_i = program.stage.is_free(i);
+      if (free_i == program.stage.is_free(j)) return;
+      const std::int32_t body = free_i ? i : j;
+      for (const Foreseen* of = after(body, -1); of != nullptr; of = after(body, of->pair)) {
+        const auto [first, second] = program.pairs[of->pair];
+        if (of->pair != pair) then(first == body ? second : first, of->part);
+      }
+    }
+    /// The first of a body's after a pair; null if there is none.
+    SCREE_HD const Foreseen* after(std::int32_t body, std::int64_t last) const {
+      const Foreseen* next = nullptr;
+      for (std::uint32_t e = program.walls_of[body]; e != 0;) {
+        const Foreseen& of = program.meeting(state, e - 1);
+        if (of.pair > last && (next == nullptr || of.pair < next->pair)) next = &of;
+        e = of.next_of_wall;
+      }
+      return next;
+    }
+  };
+
+  /// There is room, since its meeting is not resolved besides.
+  SCREE_HD void add_impact_of_wall(const State& state, const SolvedImpact& solved, std::int32_t wall) const {
+    const std::int32_t body = stage.is_free(solved.i) ? solved.i : solved.j;
+    for (std::uint32_t e = walls_of[body]; e != 0;) {
+      const Foreseen& of = meeting(state, e - 1);
+      e = of.next_of_wall;
+      const auto [i, j] = pairs[of.pair];
+      if (i != wall && j != wall) continue;
+      const auto place = static_cast<std::int64_t>(count_up(&progress->impacts));
+      resolved[place] = {solved.of_wall(wall), Ledger{}};
+      key[place] = key_of(state, of.pair);
+    }
   }
   SCREE_HD void mark_struck(const State& state, const StruckBody& before) const {
     if (!stage.is_free(before.body)) return;

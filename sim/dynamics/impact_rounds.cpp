@@ -140,7 +140,7 @@ template <class Space>
 ImpactProgram ImpactRounds<Space>::program(const FlightStage& stage, const Problem& problem) {
   const std::int64_t n = stage.bodies.count();
   first_.resize(n);
-  for (auto* of_bodies : {&struck_in_, &waits_in_, &volley_of_}) of_bodies->resize(n);
+  for (auto* of_bodies : {&struck_in_, &waits_in_, &volley_of_, &walls_of_}) of_bodies->resize(n);
   for (auto* list : {&suspects_, &busy_}) grow(*list, list->size(), least_room);
   for (auto& list : meetings_) grow(list, list.size(), least_room);
   grow(volleys_, 0, meetings_[0].size());
@@ -156,6 +156,7 @@ ImpactProgram ImpactRounds<Space>::program(const FlightStage& stage, const Probl
           .struck_in = struck_in_.view(),
           .waits_in = waits_in_.view(),
           .volley_of = volley_of_.view(),
+          .walls_of = walls_of_.view(),
           .suspects = suspects_.view(),
           .busy = busy_.view(),
           .meetings = {meetings_[0].view(), meetings_[1].view()},

@@ -78,7 +78,7 @@ class ImpactRounds {
   std::int64_t rounds_ = 0;
   // As in detail::ImpactProgram:
   Array<detail::FirstMeeting, Space> first_;
-  Array<std::uint32_t, Space> joined_in_, struck_in_, waits_in_, volley_of_;
+  Array<std::uint32_t, Space> joined_in_, struck_in_, waits_in_, volley_of_, walls_of_;
   Array<std::int64_t, Space> suspects_, busy_;
   Array<detail::Foreseen, Space> meetings_[2];
   Array<detail::Volley, Space> volleys_;

@@ -104,6 +104,20 @@ Ledger ImpactSolver::resolve(const ImpactProblem& problem, const ResponseParamet
     if (!stage.is_free(body) || version_[static_cast<std::size_t>(body)] > 0) return;
     saved_.push_back(before_impacts(stage, body));
   };
+  /// What is not free and meets the free body of a pair, besides that of the pair.
+  const auto other_walls_of = [&](std::int32_t i, std::int32_t j) {
+    return [&, i, j](const auto& then) {
+      const std::int32_t body = stage.is_free(i) ? i : j;
+      const auto k = static_cast<std::size_t>(body);
+      for (std::int64_t p = begin_[k]; p < begin_[k + 1]; ++p) {
+        const std::int32_t wall = partners_[static_cast<std::size_t>(p)];
+        if (stage.is_free(wall) || wall == i || wall == j) continue;
+        const auto [first, second] = std::minmax(body, wall);
+        const Meeting meeting = stage.next(first, second, RememberedLoads{memory, first, second});
+        if (meeting.time <= stage.terms.step) then(wall, meeting.part);
+      }
+    };
+  };
   Ledger ledger;
   while (!events_.empty()) {
     std::pop_heap(events_.begin(), events_.end(), std::greater<>());
@@ -118,11 +132,13 @@ Ledger ImpactSolver::resolve(const ImpactProblem& problem, const ResponseParamet
     save(j);
     const RememberedLoads loads{memory, i, j};
     SolvedImpact solved;
-    if (!solve_impact(stage, i, j, meeting, loads, solved)) {
+    if (!solve_impact(stage, i, j, meeting, loads, other_walls_of(i, j), solved)) {
       saved_.resize(saved);
       continue;
     }
     ledger = ledger + fly_on(stage, solved, impacts_.emplace_back());
+    for (int k = 0; k < solved.count; ++k)
+      if (solved.is_first_of_wall(k)) impacts_.push_back(solved.of_wall(solved.wall[k]));
     if (stage.is_free(i)) ++now_i;
     if (stage.is_free(j)) ++now_j;
     hit_bound_ = hit_bound_ || std::max(stage.weary[i], stage.weary[j]) >= impacts_end;

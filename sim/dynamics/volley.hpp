@@ -181,7 +181,8 @@ SCREE_HD inline Ledger fly_on_scaled(const FlightStage& stage, std::int32_t heav
   SolverBody after = heavy_is_i ? solved.after_j : solved.after_i;
   after.velocity = at.velocity + scale * (after.velocity - at.velocity);
   after.spin = at.spin + scale * (after.spin - at.spin);
-  impact = {.i = solved.i, .j = solved.j, .impulse = scale * solved.impulse(), .point = solved.point};
+  impact = solved.of_pair();
+  impact.impulse *= scale;
   weary(stage, solved);
   Ledger moved = solved.moved();
   moved.restitution *= scale;

@@ -25,6 +25,7 @@ struct Crossing {
   double up = 0;             ///< of the second tile's top (of the size)
   bool mover_first = false;  ///< among the bodies
   double thickness = 0.5;    ///< of the tiles (of the size)
+  double y = 0.05;           ///< of the mover (of the size)
 
   double true_speed() const { return speed * std::sqrt(size); }
   double duration() const { return 0.6 * size / true_speed(); }
@@ -34,7 +35,7 @@ std::string mover(const Crossing& c) {
   const double s = 0.1 * c.size;
   const std::string shape = c.shape;
   const std::string at = fmt::format("name: mover, at: [{}, {}, {}], velocity: [{}, 0, 0], material: m}}\n",
-                                     -0.3 * c.size, 0.05 * c.size, s, c.true_speed());
+                                     -0.3 * c.size, c.y * c.size, s, c.true_speed());
   if (shape == "box") return fmt::format("  - {{box: {{size: {}}}, {}", 2 * s, at);
   if (shape == "sphere") return fmt::format("  - {{sphere: {{radius: {}}}, {}", s, at);
   if (shape == "cylinder") return fmt::format("  - {{cylinder: {{radius: {}, length: {}}}, {}", s, 2 * s, at);
@@ -110,6 +111,78 @@ Crossed cross(Simulation run, const Crossing& c) {
   return crossed;
 }
 
+/// What falls flat onto the seams of a floor.
+struct Drop {
+  const char* shape = "box";
+  const char* floor = "two";  ///< two or four boxes, moving boxes, a mesh; or one box
+  double size = 1;            ///< of a tile (m); the body has a tenth of it as half extent
+  double restitution = 0.5;
+  double x = 0.03, y = 0.02;  ///< where (of the size)
+  double sliding = 0;         ///< speed (of a tile of 1 m, m/s)
+  double friction = 0;
+
+  double duration() const { return 0.75 * std::sqrt(size); }
+};
+
+std::string scene_of_drop(const Drop& d) {
+  const std::string name = d.floor;
+  std::string floor;
+  if (name == "one") {
+    floor = tile({.size = 4 * d.size}, 0, 0);
+  } else if (name == "mesh") {
+    floor = tile({.floor = "mesh", .size = d.size}, 0, 0);
+  } else if (name == "four") {
+    for (const double x : {-0.5, 0.5})
+      for (const double y : {-0.5, 0.5})
+        floor += fmt::format("  - {{box: {{size: {0}}}, at: [{1}, {2}, {3}], fixed: true, material: m}}\n",
+                             d.size, x * d.size, y * d.size, -0.5 * d.size);
+  } else {
+    const char* how = name == "moving" ? "moving" : "fixed";
+    floor = tile({.floor = how, .size = d.size}, -0.5 * d.size, 0) +
+            tile({.floor = how, .size = d.size}, 0.5 * d.size, 0);
+  }
+  const double s = 0.1 * d.size;
+  const std::string body =
+      std::string(d.shape) == "box" ? fmt::format("box: {{size: [{}, {}, {}]}}", 2 * s, 1.6 * s, 2 * s)
+      : std::string(d.shape) == "cylinder"
+          ? fmt::format("cylinder: {{radius: {}, length: {}}}", s, 2 * s)
+          : fmt::format(
+                "polyhedron: {{points: [[{0}, 0, {1}], [{2}, {0}, {1}], [{2}, {2}, {1}], "
+                "[0, 0, {0}]]}}",
+                2 * s, -s, -s);
+  return fmt::format(
+      "gravity: [0, 0, -9.81]\ntime: {{end: {}, step: {}}}\nmaterials: {{m: {{restitution: {}, friction: "
+      "{}}}}}\nbodies:\n{}  - {{{}, name: mover, at: [{}, {}, {}], velocity: [{}, 0, 0], material: m}}\n",
+      d.duration(), 0.005 * std::sqrt(d.size), d.restitution, d.friction, floor, body, d.x * d.size,
+      d.y * d.size, 3 * s, d.sliding * std::sqrt(d.size));
+}
+
+/// Its fastest spin, and how it moves at the end: of a tile of 1 m.
+struct Dropped {
+  double spin = 0;
+  Vec3 velocity;
+  double height = 0;
+};
+
+Dropped drop(Simulation run, const Drop& d) {
+  const std::int32_t body = run.scene().body_names.at("mover");
+  const double root = std::sqrt(d.size);
+  Dropped dropped;
+  while (!run.finished()) {
+    run.step();
+    dropped.spin = std::max(dropped.spin, run.body(body).spin.norm() * root);
+  }
+  dropped.velocity = run.body(body).velocity / root;
+  dropped.height = run.body(body).position.z() / d.size;
+  return dropped;
+}
+
+void expect_same(const Dropped& seam, const Dropped& one, double tolerance, const std::string& scene) {
+  EXPECT_NEAR(seam.spin, one.spin, tolerance) << scene;
+  EXPECT_LT((seam.velocity - one.velocity).norm(), tolerance) << scene;
+  EXPECT_NEAR(seam.height, one.height, tolerance) << scene;
+}
+
 class Seams : public WayTest {
  protected:
   void expect_flat(const Crossing& c) const {
@@ -142,6 +215,21 @@ TEST_P(Seams, AreNotFeltWhereTilesOverlapOrLieApartOrNotQuiteLevel) {
   expect_flat({.up = -1e-9});
   expect_flat({.thickness = 0.004});
   expect_flat({.shape = "sphere", .gap = -0.3});
+}
+
+TEST_P(Seams, AreStruckAsOneFloor) {
+  for (const char* floor : {"two", "four", "moving"}) {
+    for (const double restitution : {0.3, 1.0}) {
+      for (const double size : {1e-3, 1.0, 1e3}) {
+        const Drop on_seam{.floor = floor, .size = size, .restitution = restitution};
+        Drop on_one = on_seam;
+        on_one.floor = "one";
+        expect_same(drop(simulate(scene_of_drop(on_seam)), on_seam),
+                    drop(simulate(scene_of_drop(on_one)), on_one), is_mixed() ? 1e-5 : 1e-7,
+                    scene_of_drop(on_seam));
+      }
+    }
+  }
 }
 
 TEST_P(Seams, AStepUpIsAWall) {
@@ -215,6 +303,84 @@ TEST_P(GeneralSeams, AreNotFelt) {
         EXPECT_LT(crossed.speed_lost, 1e-6) << scene_of_crossing(c);
         EXPECT_LT(crossed.rise, 1e-6) << scene_of_crossing(c);
       }
+    }
+  }
+}
+
+TEST_P(GeneralSeams, AreStruckAsOneFloor) {
+  const auto dropped = [](Drop d, const char* floor) {
+    d.floor = floor;
+    return drop(simulation_of(scene_of_drop(d) + fmt::format("response: {{mode: {}}}\n", GetParam())), d);
+  };
+  for (const char* shape : {"box", "cylinder", "polyhedron"})
+    for (const double restitution : {0.5, 1.0})
+      for (const double friction : {0.0, 0.4})
+        for (const double x : {0.03, 0.1}) {
+          const Drop d{.shape = shape, .restitution = restitution, .x = x, .friction = friction};
+          const Dropped on_one = dropped(d, "one");
+          for (const char* floor : {"four", "mesh"})
+            expect_same(dropped(d, floor), on_one, 1e-5, floor + scene_of_drop(d));
+        }
+}
+
+/// The impulse of an impact on several walls is shared out, and none of it is lost.
+TEST_P(GeneralSeams, EachWallHasItsShareOfAnImpact) {
+  const Drop d{.floor = "two", .restitution = 1};
+  Simulation run = simulation_of(scene_of_drop(d) + fmt::format("response: {{mode: {}}}\n", GetParam()));
+  const std::int32_t body = run.scene().body_names.at("mover");
+  double change = 0, left = 0, right = 0;
+  double before = 0;
+  while (!run.finished()) {
+    run.step();
+    const double now = run.body(body).velocity.z();
+    if (now > 0 && before < 0) {
+      change = run.body(body).force.z();
+      left = run.body(0).force.z();
+      right = run.body(1).force.z();
+      break;
+    }
+    before = now;
+  }
+  EXPECT_GT(change, 0);
+  EXPECT_NEAR(left + right, -change, 1e-9 * change);
+  EXPECT_LT(left, 0);
+  EXPECT_LT(right, 0);
+}
+
+/// The sides of what slides lie along edges of the mesh.
+TEST_P(GeneralSeams, AreNotFeltAlongThem) {
+  for (const char* shape : {"box", "cylinder", "polyhedron"}) {
+    for (const double y : {-0.1, 0.1, 1.0 / 6 - 0.1}) {
+      for (const double restitution : {0.0, 1.0}) {
+        const Crossing c{
+            .shape = shape, .floor = "mesh", .step = 1.0 / 60, .restitution = restitution, .y = y};
+        const Crossed crossed = cross(
+            simulation_of(scene_of_crossing(c) + fmt::format("response: {{mode: {}}}\n", GetParam())), c);
+        EXPECT_LT(crossed.speed_lost, 1e-6) << scene_of_crossing(c);
+        EXPECT_LT(crossed.rise, 1e-6) << scene_of_crossing(c);
+      }
+    }
+  }
+}
+
+TEST_P(GeneralSeams, WhatIsLargerThanAMeshRestsOnIt) {
+  const std::string file = testing::TempDir() + "/small_plate.obj";
+  write_grid(file, 0.2);
+  for (const char* body :
+       {"box: {size: 1}", "cylinder: {radius: 0.5, length: 1}",
+        "polyhedron: {points: [[-1, -1, -0.5], [1, -1, -0.5], [0, 2, -0.5], [-1, -1, 0.5], [1, -1, 0.5], [0, "
+        "2, 0.5]]}",
+        "capsule: {radius: 0.5, length: 1}, rotate: {axis: [1, 0, 0], degrees: 90}"}) {
+    for (const double x : {0.0, 0.05}) {
+      Simulation run = simulation_of(fmt::format(
+          "gravity: [0, 0, -9.81]\ntime: {{end: 0.5, step: 0.005}}\nmaterials: {{m: {{}}}}\nbodies:\n"
+          "  - {{mesh: {{file: {}}}, fixed: true, material: m}}\n"
+          "  - {{{}, name: body, at: [{}, 0, 0.5], material: m}}\nresponse: {{mode: {}}}\n",
+          file, body, x, GetParam()));
+      run_to_end(run);
+      const BodyState state = run.body(run.scene().body_names.at("body"));
+      EXPECT_NEAR(state.position.z(), 0.5, 1e-6) << body;
+      EXPECT_LT(state.spin.norm(), 1e-6) << body;
     }
   }
 }
