@@ -18,7 +18,7 @@ struct StruckPoints {
   int count = 0;
 
   SCREE_HD void add(const Vec3& normal, const Vec3& point, std::int32_t of) {
-    if (count == most) keep_widest(normal);
+    if (count == most) keep_farthest(normal);
     at[count] = point;
     wall[count++] = of;
   }
@@ -43,6 +43,30 @@ struct StruckPoints {
   }
 
  private:
+  /// Leaves those that reach farthest along eight directions, 45 degrees apart: corners of less than 135
+  /// degrees are among them, whatever comes later.
+  SCREE_HD void keep_farthest(const Vec3& normal) {
+    constexpr int directions = 8;
+    const Vec3 x = tangent_of(normal);
+    const Vec3 y = normal.cross(x);
+    std::uint32_t farthest = 0;
+    for (int d = 0; d < directions; ++d) {
+      const double angle = 2 * pi * d / directions;
+      const Vec3 along = cos(angle) * x + sin(angle) * y;
+      int best = 0;
+      for (int k = 1; k < count; ++k)
+        if (along.dot(at[k]) > along.dot(at[best])) best = k;
+      farthest |= 1u << best;
+    }
+    int kept = 0;
+    for (int k = 0; k < count; ++k) {
+      if ((farthest >> k & 1u) == 0) continue;
+      at[kept] = at[k];
+      wall[kept++] = wall[k];
+    }
+    count = kept;
+  }
+
   /// Exchanges the point in a place with that of it and those after it at which the value is largest.
   template <class Value>
   SCREE_HD void bring_to(int place, const Value& value) {
