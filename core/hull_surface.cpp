@@ -193,7 +193,7 @@ class Surface {
            2 * (corners.size() + faces_.size()) == edges.size() + 4;
   }
 
-  /// It will be refused, so that nothing hangs on how good it is.
+  /// The hull of so many faces has too many vertices and is refused, so that its accuracy does not matter.
   bool has_too_many_faces() const { return faces_.size() > 2 * Hull::most_vertices; }
 
   /// Whether no point is far outside of a face, and no corner far from its face's plane. Qhull can merge

@@ -132,6 +132,8 @@ inline constexpr double response_gain = 1e-10;
 
 /// By how much contacts in flight may close faster than they do before they count as touched, relative.
 inline constexpr double flight_margin = 1e-9;
+/// Roundings of the bodies' speeds, in the precision of the impulses, that are added to that margin.
+inline constexpr double flight_roundings = 8;
 /// Change at which the time of an impact is found (of the substep), and at which the impulses of one impact
 /// are (of their size). Both are met to rounding; energy depends on neither.
 inline constexpr double impact_time = 1e-15;

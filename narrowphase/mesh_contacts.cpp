@@ -212,7 +212,8 @@ class TrianglePair {
     if (p.kind == Kind::corner_of_a) return mesh_.is_sharp({Part::Kind::corner, p.name_a});
     if (p.kind == Kind::crossing) return mesh_.is_sharp({Part::Kind::edge, edge_from(p.name_a)});
     // At a flat edge it is over the owner's face alone, unless the body ends there: a plane along its side
-    // parts it from what is beyond.
+    // parts it from what is beyond. Twice what counts as closed, so that no point falls between the two
+    // rules.
     const double ends = 2 * tolerance::closed_gap * size_;
     for (int k = 0; k < 3; ++k) {
       const Vec3& from = triangle_.vertices()[static_cast<std::size_t>(k)];

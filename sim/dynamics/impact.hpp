@@ -232,8 +232,8 @@ struct SolvedImpact {
 
 namespace detail {
 
-/// Of the walls that a body with edges meets besides that of the pair those that it strikes in the same
-/// plane.
+/// Adds the points on other walls that the free body of the pair strikes in the same plane. A ball has one
+/// point, and needs no others.
 template <class OtherWalls>
 SCREE_HD void add_other_walls(const FlightStage& stage, const SolvedImpact& of, const Vec3& normal,
                               const OtherWalls& other_walls, StruckPoints& points) {

@@ -5,6 +5,7 @@
 #include "core/tolerances.hpp"
 #include "narrowphase/contact.hpp"
 #include "sim/dynamics/flight_stage.hpp"
+#include "sim/dynamics/meeting.hpp"
 
 namespace scree {
 

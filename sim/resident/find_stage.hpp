@@ -106,7 +106,7 @@ struct FindStage {
   /// Of what flies past: it is not held at all. `free` is the normal velocity without contacts, and `speed`
   /// the sum of the two bodies' speeds there, whose rounding pushes nobody (m/s).
   SCREE_HD static double target_in_flight(double target, double free, double speed) {
-    constexpr double rounding = 8 * std::numeric_limits<Real>::epsilon();
+    constexpr double rounding = tolerance::flight_roundings * std::numeric_limits<Real>::epsilon();
     return fmin(target, free - tolerance::flight_margin * fabs(free) - rounding * speed);
   }
 
