@@ -2,6 +2,7 @@
 #pragma once
 
 #include "broadphase/census.hpp"
+#include "core/z_order.hpp"
 
 #include <algorithm>
 #include <bit>
@@ -16,7 +17,7 @@ namespace scree {
 /// leave one number to all others where a single one lies far away.
 class CentreScale {
  public:
-  static constexpr int bits = 21;
+  static constexpr int bits = z_order_bits;
 
   /// The unit is four times the geometric mean of the distances, so that all is even without outliers.
   explicit CentreScale(const Census& census) {
@@ -47,23 +48,10 @@ class CentreScale {
   int shift_;
 };
 
-/// 21 bits, each to three times its place.
-SCREE_HD inline std::uint64_t spread_bits(std::uint64_t x) {
-  x = (x | x << 32) & 0x001f00000000ffffull;
-  x = (x | x << 16) & 0x001f0000ff0000ffull;
-  x = (x | x << 8) & 0x100f00f00f00f00full;
-  x = (x | x << 4) & 0x10c30c30c30c30c3ull;
-  x = (x | x << 2) & 0x1249249249249249ull;
-  return x;
-}
-
-/// Place of a box's centre on the Z-order curve (Morton 1966).
+/// Place of a box's centre on the Z-order curve.
 SCREE_HD inline std::uint64_t morton_code(const CentreScale& scale, const Aabb& box) {
-  std::uint64_t code = 0;
-  for (int a = 0; a < 3; ++a) code = code << 1 | spread_bits(scale.number(centre_of(box, a)));
-  return code;
+  return z_order(scale.number(centre_of(box, 0)), scale.number(centre_of(box, 1)),
+                 scale.number(centre_of(box, 2)));
 }
-/// Beyond all codes.
-inline constexpr std::uint64_t no_morton_code = std::uint64_t{1} << (3 * CentreScale::bits);
 
 }  // namespace scree

@@ -64,7 +64,7 @@ struct CodeOfBox {
   View<std::int32_t> body;
   SCREE_HD void operator()(std::int64_t i) const {
     const Aabb box = bounds[i];
-    code[i] = is_absent(box) ? no_morton_code : morton_code(scale, box);
+    code[i] = is_absent(box) ? beyond_z_order : morton_code(scale, box);
     body[i] = static_cast<std::int32_t>(i);
   }
 };

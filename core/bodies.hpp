@@ -4,6 +4,7 @@
 
 #include "core/archive.hpp"
 #include "core/array.hpp"
+#include "core/body_number.hpp"
 #include "core/math.hpp"
 #include "core/period.hpp"
 #include "scree/body.hpp"
@@ -14,14 +15,13 @@
 
 namespace scree {
 
-/// A body's place in the arrays. Everything that refers to a body beyond one step uses Bodies::id instead.
-enum class BodyIndex : std::int32_t { none = -1 };
-
 template <class T>
 using HostVector = std::vector<T>;
 
 /// Fields of N bodies. `Container` is an array type: HostVector for scenes and snapshots, Array<., Space>
 /// in the simulation. SI units, world frame unless said.
+/// A body has a number, by which the scene and all outputs know it, and a place, which is its index in the
+/// fields. The step may move bodies to other places (sim/dynamics/body_order.hpp); their numbers stay.
 template <template <class> class Container>
 struct BodyFields {
   Container<Vec3> position;         ///< centre of mass (m); of a plane, the point of it nearest the origin
@@ -34,10 +34,16 @@ struct BodyFields {
   Container<Shape> shape;
   Container<Mobility> mobility;
   Container<std::int32_t> material;  ///< index into the scene's materials
-  Container<std::int32_t> id;        ///< the body's number in the scene; stays when the arrays are permuted
+  Container<BodyNumber> id;
 
   Period period = {};  ///< of the space that they are in; no field of theirs
+  /// Place of each body, by its number. Empty where the place of each body is its number. No field of theirs.
+  Container<std::int32_t> place_of = {};
 
+  SCREE_HD std::int32_t place(BodyNumber number) const {
+    const auto k = static_cast<std::int32_t>(number);
+    return place_of.size() == 0 ? k : place_of.data()[k];
+  }
   std::int64_t count() const { return static_cast<std::int64_t>(position.size()); }
   void archive(Archive& archive);  ///< of as many as there are
 };
@@ -97,6 +103,7 @@ BodyView view_of(BodyFields<Container>& bodies) {
   BodyView views;
   for_each_field([](const char*, auto& v, auto& field) { v = field.view(); }, views, bodies);
   views.period = bodies.period;
+  views.place_of = bodies.place_of.view();
   return views;
 }
 template <template <class> class Container>
@@ -104,20 +111,23 @@ ConstBodyView view_of(const BodyFields<Container>& bodies) {
   ConstBodyView views;
   for_each_field([](const char*, auto& v, const auto& field) { v = field.view(); }, views, bodies);
   views.period = bodies.period;
+  views.place_of = bodies.place_of.view();
   return views;
 }
 
-/// Every field of `to` becomes that of `from`, and so does the period; the two may live in different spaces.
+/// Every field of `to` becomes that of `from`, and so do the period and the places; the two may live in
+/// different spaces.
 template <template <class> class To, template <class> class From>
 void copy_bodies(BodyFields<To>& to, const BodyFields<From>& from) {
   for_each_field([](const char*, auto& t, const auto& f) { copy(t, f); }, to, from);
   to.period = from.period;
+  copy(to.place_of, from.place_of);
 }
 
 /// Moves every field into the order given: element k becomes the old element order[k].
 void permute(BodyTable& bodies, const std::vector<std::int32_t>& order);
 
-/// 64-bit XXH3 over every field in the order of the list.
+/// 64-bit XXH3 over every field in the order of the list, of bodies that lie in the order of their numbers.
 std::uint64_t hash_of(const BodyTable& bodies);
 
 /// Radius of the smallest sphere around the centre that holds the body (m); infinite for a plane.

@@ -1,4 +1,5 @@
-// Labelled parallel calls in either space: loops and sums (parallel_loops.hpp), scans, selections and sorts.
+// Labelled parallel calls in either space: loops and sums (parallel_loops.hpp), scans, selections,
+// moves and sorts.
 // It and its own headers (space_*.hpp) reach Thrust: for parallel sources alone.
 #pragma once
 
@@ -26,6 +27,22 @@ template <class T>
 struct Widen {
   const T* counts;
   SCREE_HD std::int64_t operator()(std::int64_t i) const { return static_cast<std::int64_t>(counts[i]); }
+};
+
+template <class T>
+struct Gather {
+  const T* from;
+  const std::int32_t* index;
+  T* to;
+  SCREE_HD void operator()(std::int64_t k) const { to[k] = from[index[k]]; }
+};
+
+template <class T>
+struct Scatter {
+  const T* from;
+  const std::int32_t* index;
+  T* to;
+  SCREE_HD void operator()(std::int64_t k) const { to[index[k]] = from[k]; }
 };
 
 template <class T>
@@ -97,6 +114,21 @@ void select(const char* label, std::int64_t n, F f, T none, Array<T, Space>& fou
   const detail::IsNot<T> some{none};
   found.resize(thrust::count_if(scree::detail::policy(Space{}), first, first + n, some));
   thrust::copy_if(scree::detail::policy(Space{}), first, first + n, found.data(), some);
+}
+
+/// to[k] = from[index[k]]; `to` takes the size of `index`.
+template <class Space, class T>
+void gather(const char* label, const Array<T, Space>& from, const Array<std::int32_t, Space>& index,
+            Array<T, Space>& to) {
+  to.resize(index.size());
+  parallel::for_each<Space>(label, index.size(), detail::Gather<T>{from.data(), index.data(), to.data()});
+}
+
+/// to[index[k]] = from[k]; no two indices are the same.
+template <class Space, class T>
+void scatter(const char* label, const Array<T, Space>& from, const Array<std::int32_t, Space>& index,
+             Array<T, Space>& to) {
+  parallel::for_each<Space>(label, index.size(), detail::Scatter<T>{from.data(), index.data(), to.data()});
 }
 
 /// Sorts unsigned keys that hold nothing above their lowest `bits` bits.

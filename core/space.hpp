@@ -62,9 +62,11 @@ struct Device {
 #if SCREE_WITH_CUDA
 #define SCREE_FOR_EACH_SPACE(M) M(::scree::Host) M(::scree::Device)
 #define SCREE_SPACES ::scree::Host, ::scree::Device
+using DeviceIfBuilt = Device;
 #else
 #define SCREE_FOR_EACH_SPACE(M) M(::scree::Host)
 #define SCREE_SPACES ::scree::Host
+using DeviceIfBuilt = Host;
 #endif
 #endif
 

@@ -23,9 +23,9 @@ struct PlaneNumber {
   }
 };
 
-/// A pair as a number, whose order is that of (i, j).
+/// A pair as a number, whose order is that of the places (i, j), i < j.
 struct PairKey {
-  int bits;  // of a body's number
+  int bits;  // of a body's place
   SCREE_HD std::uint64_t of(std::int32_t i, std::int32_t j) const {
     return (static_cast<std::uint64_t>(i) << bits) | static_cast<std::uint64_t>(j);
   }
@@ -91,8 +91,12 @@ struct CandidateKey {
 struct TakePair {
   PairKey key;
   ConstView<std::uint64_t> keys;
+  ConstView<BodyNumber> number;
   View<Pair> pairs;
-  SCREE_HD void operator()(std::int64_t k) const { pairs[k] = key.pair_of(keys[k]); }
+  SCREE_HD void operator()(std::int64_t k) const {
+    const Pair pair = key.pair_of(keys[k]);
+    pairs[k] = number[pair.i] < number[pair.j] ? pair : Pair{pair.j, pair.i};
+  }
 };
 
 }  // namespace
@@ -107,7 +111,7 @@ ConstView<Pair> Candidates<Space>::list(const ConstBodyView& bodies, ConstView<P
   parallel::sort("candidates", keys_, 2 * key.bits);
   pairs_.resize(keys_.size());
   parallel::for_each<Space>("candidates", keys_.size(),
-                            TakePair{key, std::as_const(keys_).view(), pairs_.view()});
+                            TakePair{key, std::as_const(keys_).view(), bodies.id, pairs_.view()});
   return std::as_const(pairs_).view();
 }
 

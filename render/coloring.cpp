@@ -81,10 +81,10 @@ Color Painter::colored(std::size_t body) const {
     return scale_color((value_of(frame_, color_by_, body) - range_[0]) / (range_[1] - range_[0]));
   }
   std::int32_t kind = bodies.material[body];
-  if (color_by_ == ColorBy::id) kind = bodies.id[body];
+  if (color_by_ == ColorBy::id) kind = static_cast<std::int32_t>(bodies.id[body]);
   if (color_by_ == ColorBy::level) kind = body < frame_.level.size() ? frame_.level[body] : 0;
   const Color& color = palette_[static_cast<std::size_t>(kind) % palette_.size()];
-  return color_by_ == ColorBy::level ? color : tinted(color, bodies.id[body]);
+  return color_by_ == ColorBy::level ? color : tinted(color, static_cast<std::int32_t>(bodies.id[body]));
 }
 
 }  // namespace scree::render

@@ -30,18 +30,22 @@ void AppliedForces<Space>::act(std::int64_t step, const Bodies<Space>& bodies,
 template <class Space>
 void AppliedForces<Space>::sum_up(const Bodies<Space>& bodies, const Vec3& gravity) {
   const std::vector<double> inverse_mass = to_vector(bodies.inverse_mass);
+  const std::vector<std::int32_t> place_of = to_vector(bodies.place_of);
+  const auto place = [&place_of](BodyNumber number) {
+    return place_of.empty() ? index_of(number) : static_cast<std::size_t>(place_of[index_of(number)]);
+  };
   std::vector<Vec3> acceleration(inverse_mass.size(), Vec3::Zero());
   std::vector<Vec3> torque(inverse_mass.size(), Vec3::Zero());
   for (std::size_t f = 0; f < forces_.size(); ++f) {
     if (!acting_[f]) continue;
-    const auto first = static_cast<std::size_t>(forces_[f].on.first);
-    for (std::size_t k = first; k < first + static_cast<std::size_t>(forces_[f].on.count); ++k) {
+    for (std::int32_t number = 0; number < forces_[f].on.count; ++number) {
+      const std::size_t k = place(BodyNumber{forces_[f].on.first + number});
       acceleration[k] += inverse_mass[k] * forces_[f].force;
       torque[k] += forces_[f].torque;
     }
   }
   for (const Servo& servo : servos_) {
-    const auto k = static_cast<std::size_t>(servo.body);
+    const std::size_t k = place(BodyNumber{servo.body});
     acceleration[k] = inverse_mass[k] * servo.force * servo.axis - gravity;
   }
   copy(acceleration_, acceleration);

@@ -63,13 +63,14 @@ BodyTable Emission::emit(std::int64_t step, const Scene& scene, const BodiesNear
   waiting_.clear();
   for (std::size_t k = 0; k < those.size(); ++k) {
     const auto row = static_cast<std::size_t>(those[k]);
+    const auto number = static_cast<std::int32_t>(table.id[row]);
     if (static_cast<std::int64_t>(k) >= fitted) {
-      waiting_.push_back(table.id[row]);
+      waiting_.push_back(number);
       continue;
     }
     append(table, row, come);
-    first_step_[index_of(table.id[row])] = step;
-    place_[index_of(table.id[row])] = table.position[row];
+    first_step_[index_of(number)] = step;
+    place_[index_of(number)] = table.position[row];
   }
   return come;
 }

@@ -33,6 +33,16 @@ void GuardedSteps::start(const Stepper& stepper, double least_scale) {
 void GuardedSteps::take(std::int64_t step, double time, double length, const Exchange& exchange,
                         Stepper& stepper) {
   const Books before{baseline_, stepper.counters};
+  try {
+    take_once_or_twice(step, time, length, exchange, before, stepper);
+  } catch (...) {
+    undo(before, stepper);
+    throw;
+  }
+}
+
+void GuardedSteps::take_once_or_twice(std::int64_t step, double time, double length, const Exchange& exchange,
+                                      const Books& before, Stepper& stepper) {
   const int n = scene_.time.substeps.value_or(substeps_.next());
   try {
     return take_in(n, step, length, exchange, stepper);
@@ -49,11 +59,9 @@ void GuardedSteps::take(std::int64_t step, double time, double length, const Exc
     throw;
   } catch (const std::exception& error) {
     const auto* failure = dynamic_cast<const StepFailure*>(&error);
-    std::vector<std::int32_t> bodies = failure ? failure->bodies() : bodies_out_of_range(state_of(stepper));
-    undo(before, stepper);
     throw StepFailure(fmt::format("step {} (t = {} s) failed, and again in {} substeps: {}", step + 1, time,
                                   more, error.what()),
-                      std::move(bodies));
+                      failure ? failure->bodies() : bodies_out_of_range(state_of(stepper)));
   }
 }
 
@@ -83,7 +91,10 @@ void GuardedSteps::judge(const Exchange& exchange, const Stepper& stepper) {
                      "most; try a smaller time.step",
                      baseline_.unexplained_change()));
   if (!scene_.world || scene_.world->leaving != Leaving::stop) return;
-  if (const std::vector<std::int32_t> out = stepper.bodies_beyond(*scene_.world); !out.empty())
+  std::vector<std::int32_t> out;
+  for (const BodyNumber number : stepper.bodies_beyond(*scene_.world))
+    out.push_back(static_cast<std::int32_t>(number));
+  if (!out.empty())
     fail(out, "outside of the world; world.leaving: remove takes out what leaves it, and goes on");
 }
 

@@ -23,9 +23,9 @@ class GuardedSteps {
   void start(const Stepper& stepper, double least_scale);
 
   /// Takes the step that starts at `time` and is `length` long (s). `exchange`: what bodies brought and took
-  /// so far. Throws StepFailure, with the state and the books as they were, if a body's state stops being
-  /// finite, if energy comes or goes that the ledger does not explain, if a body leaves the world and the
-  /// scene says to stop, or if the stepper throws, but for std::bad_alloc, which passes.
+  /// so far. Throws StepFailure if a body's state stops being finite, if energy comes or goes that the ledger
+  /// does not explain, if a body leaves the world and the scene says to stop, or if the stepper throws, but
+  /// for std::bad_alloc, which passes. Whatever is thrown, the state and the books are then as they were.
   void take(std::int64_t step, double time, double length, const Exchange& exchange, Stepper& stepper);
   /// Bodies have come or gone between two steps, whose potential energy when they appeared was so much in sum
   /// (J, likewise).
@@ -41,6 +41,8 @@ class GuardedSteps {
     Counters counters;
   };
 
+  void take_once_or_twice(std::int64_t step, double time, double length, const Exchange& exchange,
+                          const Books& before, Stepper& stepper);
   void take_in(int substeps, std::int64_t step, double length, const Exchange& exchange, Stepper& stepper);
   void judge(const Exchange& exchange, const Stepper& stepper);
   [[noreturn]] void fail(const std::vector<std::int32_t>& bodies, const std::string& how) const;

@@ -101,7 +101,7 @@ void measure_penetration(const Manifolds& manifolds, const ConstBodyView& bodies
     relative_sum += relative;
     if (relative <= out.relative_max) continue;
     out.relative_max = relative;
-    out.deepest = {bodies.id[i], bodies.id[j]};
+    out.deepest = {static_cast<std::int32_t>(bodies.id[i]), static_cast<std::int32_t>(bodies.id[j])};
   }
   if (depths.empty()) return;
   const auto n = static_cast<double>(depths.size());

@@ -4,6 +4,7 @@
 #include "broadphase/grid_plan.hpp"
 #include "broadphase/periodic_images.hpp"
 #include "core/error.hpp"
+#include "core/space_chosen.hpp"
 #include "core/timing.hpp"
 
 #include <fmt/format.h>
@@ -116,16 +117,6 @@ void require_one_image(const Period& period, const Array<double, Space>& contact
       margin, period.most_margin));
 }
 
-/// Picks Device only where the build has it: the last of the spaces is Device there, Host elsewhere.
-template <class First, class... Rest>
-struct Last {
-  using type = typename Last<Rest...>::type;
-};
-template <class Only>
-struct Last<Only> {
-  using type = Only;
-};
-
 }  // namespace
 
 template <class Space>
@@ -158,11 +149,12 @@ template <class Space>
 std::unique_ptr<PairFinder<Space>> make_pair_finder(const BroadPhaseSettings& settings, bool on_device,
                                                     const Vec3& origin) {
   if constexpr (std::is_same_v<Space, Host>) {
-    if (!on_device) return std::make_unique<PairFinderIn<Host, Host>>(settings, origin);
+    return in_chosen_space(on_device, [&](auto finding) -> std::unique_ptr<PairFinder<Space>> {
+      return std::make_unique<PairFinderIn<Host, decltype(finding)>>(settings, origin);
+    });
+  } else {
+    return std::make_unique<PairFinderIn<Space, Space>>(settings, origin);
   }
-  const DeviceInfo info = device_info();
-  if (!info.available) throw InputError("--device cuda: there is no GPU to run on: " + info.name);
-  return std::make_unique<PairFinderIn<Space, typename Last<SCREE_SPACES>::type>>(settings, origin);
 }
 
 #define SCREE_INSTANTIATE(Space)                                                                       \

@@ -43,12 +43,6 @@ class KeptPairs {
   KeptPairs(const BroadPhaseSettings& settings, bool on_device, const Vec3& origin)
       : finder_(make_pair_finder<Space>(settings, on_device, origin)) {}
 
-  /// Boxes put around fast bodies are too wide for slow ones: now and then all are put anew. It depends on
-  /// the number of the step alone.
-  void start_step(std::int64_t step) {
-    constexpr std::int64_t steps_kept = 64;
-    if (step % steps_kept == 0) forget();
-  }
   /// Candidates among which are all pairs that may come as close as their contact margins (m). Where they
   /// have to be made anew, they have room for the bodies' travel within `reach` (s). Valid until they are
   /// made the next time.

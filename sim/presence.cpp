@@ -14,8 +14,8 @@ namespace scree {
 
 namespace {
 
-void set_present(std::int64_t k, const BodyTable& start, const BodyView& views) {
-  const auto from = static_cast<std::size_t>(k);
+void set_present(std::int32_t k, const BodyTable& start, const BodyView& views) {
+  const std::size_t from = index_of(views.id[k]);
   views.mobility[k] = start.mobility[from];
   views.inverse_mass[k] = start.inverse_mass[from];
   views.inverse_inertia[k] = start.inverse_inertia[from];
@@ -81,14 +81,15 @@ std::int64_t Presence::first_step(std::int32_t body) const {
 }
 
 void Presence::begin(Bodies<Host>& bodies) const {
+  const BodyView views = view_of(bodies);
   for (const Window& window : windows_) {
     if (window.steps.holds(0)) continue;
     for (std::int32_t k = 0; k < window.bodies.count; ++k)
-      set_absent(window.bodies.first + k, view_of(bodies));
+      set_absent(views.place(BodyNumber{window.bodies.first + k}), views);
   }
   for (const Emission& emission : emissions_) {
     for (std::int32_t k = 0; k < emission.bodies().count; ++k)
-      set_absent(emission.bodies().first + k, view_of(bodies));
+      set_absent(views.place(BodyNumber{emission.bodies().first + k}), views);
   }
 }
 
@@ -105,7 +106,7 @@ void Presence::book(const ConstBodyView& bodies, std::int64_t k, double sign, co
   change.exchange.energy += sign * (body.kinetic() + body.potential);
   change.exchange.momentum += sign * body.momentum;
   change.exchange.angular_momentum += sign * body.angular_momentum;
-  const std::int32_t id = bodies.id[k];
+  const auto id = static_cast<std::int32_t>(bodies.id[k]);
   const Emission* emission = emission_of(id);
   const Vec3& start = emission ? emission->place(id) : scene.bodies.position[static_cast<std::size_t>(id)];
   change.first_potential -= sign * body.mass * field.gravity.dot(start - field.reference);
@@ -119,7 +120,8 @@ Presence::Change Presence::update(std::int64_t step, const Scene& scene, const P
   for (const Window& window : windows_) {
     if (!window.changes_at(step)) continue;
     const bool comes = window.steps.first == step;
-    for (std::int64_t k = window.bodies.first; k < window.bodies.first + window.bodies.count; ++k) {
+    for (std::int32_t number = 0; number < window.bodies.count; ++number) {
+      const std::int32_t k = views.place(BodyNumber{window.bodies.first + number});
       if (comes) set_present(k, scene.bodies, views);
       if (views.mobility[k] == Mobility::absent) continue;  // it has left before its time
       book(view_of(std::as_const(bodies)), k, comes ? 1 : -1, scene, field, change);

@@ -1,9 +1,10 @@
 #include "sim/resident_stepper.hpp"
 
-#include "core/error.hpp"
+#include "core/space_chosen.hpp"
 #include "core/timing.hpp"
 #include "core/tolerances.hpp"
 #include "sim/applied_forces.hpp"
+#include "sim/dynamics/body_order.hpp"
 #include "sim/dynamics/coming_and_going.hpp"
 #include "sim/dynamics/impact_rounds.hpp"
 #include "sim/dynamics/motion.hpp"
@@ -16,6 +17,7 @@
 #include "sim/scene/measure.hpp"
 #include "sim/turning_gravity.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <map>
@@ -27,16 +29,22 @@ namespace scree {
 
 namespace {
 
-/// Bodies that are not free, on which the scene's checks ask for the force.
-std::vector<std::int32_t> driven_bodies_asked_for(const Scene& scene) {
-  std::vector<std::int32_t> bodies;
+/// On which the scene's checks ask for the force.
+std::vector<BodyNumber> bodies_with_forces_asked_for(const Scene& scene) {
+  std::vector<BodyNumber> bodies;
   for (const Check& check : scene.checks) {
     const Measure measure = parse_measure(check.measure, scene);
-    if (measure.kind != MeasureKind::force) continue;
-    if (scene.bodies.mobility[static_cast<std::size_t>(measure.body)] != Mobility::free)
-      bodies.push_back(measure.body);
+    if (measure.kind == MeasureKind::force) bodies.push_back(BodyNumber{measure.body});
   }
   return bodies;
+}
+
+/// Whether each number from 0 on stands there once.
+bool are_numbers(std::vector<BodyNumber> list) {
+  std::ranges::sort(list);
+  for (std::size_t k = 0; k < list.size(); ++k)
+    if (index_of(list[k]) != k) return false;
+  return true;
 }
 
 /// Real: of impulses and of the velocities that they are found with.
@@ -49,23 +57,30 @@ class ResidentStepper final : public Stepper {
         parameters_(response_parameters_of(scene)),
         forces_(scene, grid),
         gravity_(scene),
+        order_(scene.bodies, origin),
         kept_pairs_(scene.broadphase, is_device, origin),
         seen_pairs_(scene.broadphase, is_device, origin) {
     copy_bodies(bodies_, scene.bodies);
+    find_places<Space>(bodies_);
     copy(laws_, pair_laws_of(scene));
     materials_ = static_cast<std::int64_t>(scene.materials.size());
-    for (const std::int32_t body : driven_bodies_asked_for(scene)) driven_impulse_[body] = Vec3::Zero();
+    for (const BodyNumber body : bodies_with_forces_asked_for(scene))
+      if (value_at(bodies_.mobility, place(body)) != Mobility::free) driven_[body] = {};
+    find_driven_bodies();
     start_.save(bodies_);
   }
 
   void start_step(std::int64_t step) override {
     step_ = step;
-    start_.save(bodies_);
-    kept_pairs_.start_step(step);
     start_ledger_ = ledger;
     start_gravity_ = parameters_.gravity;
+    start_.save(bodies_);
+    if (step % steps_in_order == 0) {
+      sort_bodies();  // where there is no memory for it, the bodies stay where they are, and are saved
+      start_.save(bodies_);
+    }
     gravity_.start_step();
-    for (auto& [body, impulse] : driven_impulse_) impulse.setZero();
+    for (auto& [number, driven] : driven_) driven.impulse.setZero();
     forces_.act(step, bodies_, parameters_);
   }
 
@@ -78,6 +93,8 @@ class ResidentStepper final : public Stepper {
     parameters_.gravity = start_gravity_;
     forget_pairs();
     contacts_ = {};
+    struck_.clear();
+    have_moved_ = false;
   }
 
   void change_bodies(const std::function<void(Bodies<Host>&)>& change) override {
@@ -87,8 +104,8 @@ class ResidentStepper final : public Stepper {
     copy_bodies(bodies_, on_host);
     forget_pairs();
   }
-  BodyTable take_out(const std::vector<std::int32_t>& ids) override {
-    BodyTable gone = scree::take_out<Space>(ids, bodies_);
+  BodyTable take_out(const std::vector<BodyNumber>& numbers) override {
+    BodyTable gone = scree::take_out<Space>(numbers, bodies_);
     forget_pairs();
     return gone;
   }
@@ -99,8 +116,8 @@ class ResidentStepper final : public Stepper {
 
   void archive(Archive& archive) override;
 
-  void copy_state(BodyTable& out) const override { copy_bodies(out, bodies_); }
-  SteppedBody body(std::int32_t id) const override;
+  void copy_state(BodyTable& out) const override { copy_by_number<Space>(out, bodies_); }
+  SteppedBody body(BodyNumber number) const override;
   Vec3 gravity() const override { return parameters_.gravity; }
   Energies energies(const Vec3& reference) const override {
     return energies_of<Space>(bodies_, parameters_.gravity, reference);
@@ -112,10 +129,10 @@ class ResidentStepper final : public Stepper {
   RegionContents contents_of(const Region& region) const override {
     return scree::contents_of<Space>(region, bodies_);
   }
-  std::vector<std::int32_t> bodies_beyond(const World& world) const override {
+  std::vector<BodyNumber> bodies_beyond(const World& world) const override {
     return scree::bodies_beyond<Space>(world, bodies_);
   }
-  std::vector<std::int32_t> bodies_in(const Region& region) const override {
+  std::vector<BodyNumber> bodies_in(const Region& region) const override {
     return scree::bodies_in<Space>(region, bodies_);
   }
   BodyTable bodies_near(const Vec3& low, const Vec3& high) const override {
@@ -125,9 +142,11 @@ class ResidentStepper final : public Stepper {
   std::vector<BodyPair> pairs() override;
   GridOccupancy grid_occupancy() override {
     pairs_now();
-    return pairs_seen().grid_occupancy();
+    GridOccupancy grid = pairs_seen().grid_occupancy();
+    grid.level = by_number(grid.level);
+    return grid;
   }
-  std::vector<BodyBox> boxes() const override { return kept_pairs_.boxes(); }
+  std::vector<BodyBox> boxes() const override { return by_number(kept_pairs_.boxes()); }
   void measure_overlaps(Observation& out) override {
     const ConstView<Pair> pairs = pairs_now();
     out.pairs = pairs_seen().size();
@@ -142,8 +161,48 @@ class ResidentStepper final : public Stepper {
 
  private:
   static constexpr bool is_device = !std::is_same_v<Space, Host>;
+  /// After so many the bodies are put in order anew. Most still have their old neighbours by then.
+  static constexpr std::int64_t steps_in_order = 64;
 
   BodyView views() { return view_of(bodies_); }
+  /// What was found for the places that the bodies had goes with them, but for what contacts remember. New
+  /// pairs have their boxes put around the bodies as fast as these are now, and not as they once were.
+  void sort_bodies() {
+    const timing::Region region("broadphase");
+    order_.sort(bodies_);
+    have_moved_ = true;
+    forces_.forget();
+    kept_pairs_.forget();
+    seen_pairs_.forget();
+    find_driven_bodies();
+  }
+  ConstView<std::int32_t> place_before() const {
+    return have_moved_ ? order_.place_before() : ConstView<std::int32_t>{};
+  }
+  void find_driven_bodies() {
+    for (auto& [number, driven] : driven_) driven.place = place(number);
+  }
+  std::int32_t place(BodyNumber number) const {
+    std::int32_t place;
+    copy_bytes<Host, Space>(&place, bodies_.place_of.data() + index_of(number), sizeof(place));
+    return place;
+  }
+  /// Of a field of the bodies, or another list by place.
+  template <class List>
+  auto value_at(const List& list, std::int32_t place) const {
+    std::remove_cvref_t<decltype(list.data()[0])> value;
+    copy_bytes<Host, Space>(&value, list.data() + place, sizeof(value));
+    return value;
+  }
+  /// A list by place, which may be empty, in the order of the bodies' numbers.
+  template <class T>
+  std::vector<T> by_number(const std::vector<T>& by_place) const {
+    std::vector<T> ordered;
+    if (by_place.empty()) return ordered;
+    for (const std::int32_t place : to_vector(bodies_.place_of))
+      ordered.push_back(by_place[static_cast<std::size_t>(place)]);
+    return ordered;
+  }
   /// Others of the bodies are there now, or somewhere else.
   void forget_pairs() {
     forces_.forget();
@@ -183,6 +242,8 @@ class ResidentStepper final : public Stepper {
   std::int64_t materials_ = 0;
   AppliedForces<Space> forces_;
   TurningGravity gravity_;
+  BodyOrder<Space> order_;
+  bool have_moved_ = false;  // to other places since the contacts last took candidates
   KeptPairs<Space> kept_pairs_;
   KeptPairs<Space> seen_pairs_;
   bool sees_kept_ = true;
@@ -195,7 +256,12 @@ class ResidentStepper final : public Stepper {
   MovingState<Space> start_;
   Ledger start_ledger_;
   Vec3 start_gravity_ = Vec3::Zero();
-  std::map<std::int32_t, Vec3> driven_impulse_;  // on bodies that are not free and that the scene asks for
+  /// A body that is not free, and on which the scene asks for the force.
+  struct Driven {
+    std::int32_t place = 0;
+    Vec3 impulse = Vec3::Zero();  // of contacts (N s)
+  };
+  std::map<BodyNumber, Driven> driven_;
   Array<double, Space> contact_margin_;
   std::vector<Impact> struck_;  // in the last substep
 };
@@ -243,10 +309,15 @@ void ResidentStepper<Space, Real>::archive(Archive& archive) {
   archive("ledger", ledger);
   archive("counters", counters);
   archive.part("bodies", bodies_);
+  if (archive.is_loading()) {
+    archive.expect(are_numbers(to_vector(bodies_.id)), "bodies/id");
+    find_places<Space>(bodies_);
+    find_driven_bodies();
+  }
   archive("velocity_before", start_.velocity);
   archive.expect(start_.velocity.size() == bodies_.count(), "velocity_before");
-  for (auto& [body, impulse] : driven_impulse_)
-    archive(("impulse_on_" + std::to_string(body)).c_str(), impulse);
+  for (auto& [number, driven] : driven_)
+    archive(("impulse_on_" + std::to_string(index_of(number))).c_str(), driven.impulse);
   archive.part("kept_pairs", kept_pairs_);
   archive.part("seen_pairs", seen_pairs_);
   archive("sees_kept", sees_kept_);
@@ -263,7 +334,9 @@ template <class Space, class Real>
 void ResidentStepper<Space, Real>::give_candidates(ConstView<Pair> pairs) {
   if (pairs_taken_ == kept_pairs_.times_made()) return;
   const timing::Region region("slots");
-  contacts_.take_candidates(pairs, view_of(std::as_const(bodies_)), parameters_.rolling_friction);
+  contacts_.take_candidates(pairs, place_before(), view_of(std::as_const(bodies_)),
+                            parameters_.rolling_friction);
+  have_moved_ = false;
   pairs_taken_ = kept_pairs_.times_made();
 }
 
@@ -271,7 +344,7 @@ void ResidentStepper<Space, Real>::give_candidates(ConstView<Pair> pairs) {
 template <class Space, class Real>
 ConstView<LoadedParts> ResidentStepper<Space, Real>::loads_of(ConstView<Pair> pairs) {
   if (pairs_taken_ == kept_pairs_.times_made()) return contacts_.loads();
-  contacts_.look_up_loads(pairs, loads_);
+  contacts_.look_up_loads(pairs, place_before(), loads_);
   return std::as_const(loads_).view();
 }
 
@@ -318,40 +391,34 @@ bool ResidentStepper<Space, Real>::resolve_impacts(double h, double from, double
 
 template <class Space, class Real>
 void ResidentStepper<Space, Real>::add_impulse_on_driven(const Impact& impact) {
-  if (const auto i = driven_impulse_.find(impact.i); i != driven_impulse_.end()) i->second -= impact.impulse;
-  if (const auto j = driven_impulse_.find(impact.j); j != driven_impulse_.end()) j->second += impact.impulse;
+  if (const auto i = driven_.find(BodyNumber{impact.i}); i != driven_.end())
+    i->second.impulse -= impact.impulse;
+  if (const auto j = driven_.find(BodyNumber{impact.j}); j != driven_.end())
+    j->second.impulse += impact.impulse;
 }
 
 template <class Space, class Real>
 void ResidentStepper<Space, Real>::add_impulses_on_driven() {
-  for (auto& [body, impulse] : driven_impulse_) impulse += contacts_.impulse_on(body);
+  for (auto& [number, driven] : driven_) driven.impulse += contacts_.impulse_on(driven.place);
 }
 
 template <class Space, class Real>
-SteppedBody ResidentStepper<Space, Real>::body(std::int32_t id) const {
-  const auto at = [id](const auto& field) {
-    std::remove_cvref_t<decltype(field.view()[0])> value;
-    copy_bytes<Host, Space>(&value, field.data() + id, sizeof(value));
-    return value;
-  };
+SteppedBody ResidentStepper<Space, Real>::body(BodyNumber number) const {
+  const std::int32_t k = place(number);
   SteppedBody body{
-      .mobility = at(bodies_.mobility),
-      .inverse_mass = at(bodies_.inverse_mass),
-      .position = at(bodies_.position),
-      .orientation = at(bodies_.orientation),
-      .velocity = at(bodies_.velocity),
-      .spin = at(bodies_.spin),
-      .velocity_before = at(start_.velocity),
+      .mobility = value_at(bodies_.mobility, k),
+      .inverse_mass = value_at(bodies_.inverse_mass, k),
+      .position = value_at(bodies_.position, k),
+      .orientation = value_at(bodies_.orientation, k),
+      .velocity = value_at(bodies_.velocity, k),
+      .spin = value_at(bodies_.spin, k),
+      .velocity_before = value_at(start_.velocity, k),
       .acceleration = parameters_.gravity + gravity_.excess_of_mean(grid_.length(step_ + 1), parameters_),
       .contact_impulse = Vec3::Zero(),
       .contact_moment = Vec3::Zero()};
-  if (parameters_.acceleration.size() > 0) {
-    Vec3 more;
-    copy_bytes<Host, Space>(&more, parameters_.acceleration.data() + id, sizeof(more));
-    body.acceleration += more;
-  }
-  if (const auto driven = driven_impulse_.find(id); driven != driven_impulse_.end())
-    body.contact_impulse = driven->second;
+  if (parameters_.acceleration.size() > 0) body.acceleration += value_at(parameters_.acceleration, k);
+  if (const auto driven = driven_.find(number); driven != driven_.end())
+    body.contact_impulse = driven->second.impulse;
   return body;
 }
 
@@ -368,12 +435,14 @@ std::vector<BodyPair> ResidentStepper<Space, Real>::pairs() {
   std::vector<Pair> on_host(static_cast<std::size_t>(found.size()));
   copy_bytes<Host, Space>(on_host.data(), found.data(), on_host.size() * sizeof(Pair));
   const std::vector<Shape> shape = to_vector(bodies_.shape);
+  const std::vector<BodyNumber> numbers = to_vector(bodies_.id);
+  const auto number = [&numbers](std::size_t place) { return static_cast<std::int32_t>(numbers[place]); };
   std::vector<BodyPair> pairs;
   for (const Pair& pair : on_host) {
-    if (shape[static_cast<std::size_t>(pair.i)] != Shape::plane &&
-        shape[static_cast<std::size_t>(pair.j)] != Shape::plane)
-      pairs.push_back({pair.i, pair.j});
+    const auto i = static_cast<std::size_t>(pair.i), j = static_cast<std::size_t>(pair.j);
+    if (shape[i] != Shape::plane && shape[j] != Shape::plane) pairs.push_back({number(i), number(j)});
   }
+  std::ranges::sort(pairs);
   return pairs;
 }
 
@@ -405,32 +474,16 @@ void ResidentStepper<Space, Real>::measure_contacts(std::int64_t free_bodies, Ob
   out.coordination_mean = mean(static_cast<double>(books.ends), free_bodies);
 }
 
-template <class Space>
-std::unique_ptr<Stepper> make_in(const Scene& scene, const TimeGrid& grid, const PathTable& paths,
-                                 const Vec3& origin) {
-  if (scene.precision == Precision::mixed)
-    return std::make_unique<ResidentStepper<Space, float>>(scene, grid, paths, origin);
-  return std::make_unique<ResidentStepper<Space, double>>(scene, grid, paths, origin);
-}
-
-/// The last of several types: Device where the build has it, Host elsewhere.
-template <class First, class... Rest>
-struct Last {
-  using type = typename Last<Rest...>::type;
-};
-template <class Only>
-struct Last<Only> {
-  using type = Only;
-};
-
 }  // namespace
 
 std::unique_ptr<Stepper> make_resident_stepper(const Scene& scene, const TimeGrid& grid,
                                                const PathTable& paths, bool on_device, const Vec3& origin) {
-  if (!on_device) return make_in<Host>(scene, grid, paths, origin);
-  const DeviceInfo info = device_info();
-  if (!info.available) throw InputError("--device cuda: there is no GPU to run on: " + info.name);
-  return make_in<Last<SCREE_SPACES>::type>(scene, grid, paths, origin);
+  return in_chosen_space(on_device, [&](auto space) -> std::unique_ptr<Stepper> {
+    using Space = decltype(space);
+    if (scene.precision == Precision::mixed)
+      return std::make_unique<ResidentStepper<Space, float>>(scene, grid, paths, origin);
+    return std::make_unique<ResidentStepper<Space, double>>(scene, grid, paths, origin);
+  });
 }
 
 }  // namespace scree

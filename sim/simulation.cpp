@@ -53,7 +53,8 @@ double lifting_energy(const Scene& scene) {
 /// Of the prescribed bodies, each from when it is there.
 PathTable paths_of(const Scene& scene, const TimeGrid& grid, const Presence& presence) {
   PathTable table = prescribed_paths(scene);
-  for (PrescribedPath& path : table.paths) path.start = grid.time(presence.first_step(path.body));
+  for (std::size_t k = 0; k < table.paths.size(); ++k)
+    table.paths[k].start = grid.time(presence.first_step(scene.motions[k].body));
   return table;
 }
 
@@ -61,7 +62,7 @@ Vector plain(const Vec3& v) { return {v.x(), v.y(), v.z()}; }
 std::array<double, 4> plain(const Quat& q) { return {q.w(), q.x(), q.y(), q.z()}; }
 
 Body body_at(const BodyTable& bodies, std::size_t k) {
-  return {.id = bodies.id[k],
+  return {.id = static_cast<std::int32_t>(bodies.id[k]),
           .shape = bodies.shape[k],
           .mobility = bodies.mobility[k],
           .size = plain(bodies.size[k]),
@@ -152,7 +153,7 @@ struct Simulation::Parts {
     const double dt = grid.length(step + 1);
     try {
       steps.take(step, grid.time(step), dt, exchange, *stepper);
-    } catch (const StepFailure&) {
+    } catch (...) {
       if (!observed) forget_contacts();
       throw;
     }
@@ -188,7 +189,7 @@ struct Simulation::Parts {
     emit();
   }
 
-  Removed take_out(const std::vector<std::int32_t>& bodies) {
+  Removed take_out(const std::vector<BodyNumber>& bodies) {
     if (bodies.empty()) return {};
     const Presence::Change change = presence.take_leave_of(stepper->take_out(bodies), scene, field());
     book(change);
@@ -292,7 +293,7 @@ std::uint64_t Simulation::state_hash() const {
 
 BodyState Simulation::body(std::int32_t id) const {
   const Parts& p = *parts_;
-  const SteppedBody body = p.stepper->body(id);
+  const SteppedBody body = p.stepper->body(BodyNumber{id});
   if (body.mobility == Mobility::absent) return BodyState::absent();
   BodyState state{.position = body.position,
                   .velocity = body.velocity,
@@ -317,7 +318,7 @@ Body Simulation::read_body(std::int32_t id) const {
   const Parts& p = *parts_;
   if (id < 0 || id >= p.scene.bodies.count())
     throw InputError(fmt::format("there is no body {}: they are 0 to {}", id, p.scene.bodies.count() - 1));
-  const SteppedBody now = p.stepper->body(id);
+  const SteppedBody now = p.stepper->body(BodyNumber{id});
   Body body = body_at(p.scene.bodies, static_cast<std::size_t>(id));
   body.mobility = now.mobility;
   body.mass = 1 / now.inverse_mass;

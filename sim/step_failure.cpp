@@ -36,7 +36,8 @@ StepFailure::StepFailure(const std::string& what, std::vector<std::int32_t> bodi
 std::vector<std::int32_t> bodies_out_of_range(const BodyTable& bodies) {
   std::vector<std::int32_t> found;
   for (std::size_t k = 0; k < bodies.position.size(); ++k) {
-    if (bodies.mobility[k] != Mobility::absent && !is_in_range(bodies, k)) found.push_back(bodies.id[k]);
+    if (bodies.mobility[k] != Mobility::absent && !is_in_range(bodies, k))
+      found.push_back(static_cast<std::int32_t>(bodies.id[k]));
   }
   return found;
 }
@@ -45,7 +46,8 @@ std::vector<std::int32_t> by_kinetic_energy(const BodyTable& bodies) {
   std::vector<std::pair<double, std::int32_t>> free;
   for (std::size_t k = 0; k < bodies.position.size(); ++k) {
     if (bodies.mobility[k] != Mobility::free) continue;
-    free.emplace_back(-bodies.velocity[k].squaredNorm() / bodies.inverse_mass[k], bodies.id[k]);
+    free.emplace_back(-bodies.velocity[k].squaredNorm() / bodies.inverse_mass[k],
+                      static_cast<std::int32_t>(bodies.id[k]));
   }
   std::ranges::sort(free);
   std::vector<std::int32_t> ids;

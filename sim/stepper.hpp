@@ -30,7 +30,7 @@ struct SteppedBody {
   Vec3 contact_moment;   ///< of these impulses about its centre, on a triangle (N m s)
 };
 
-/// The bodies, and the stages that move them. Bodies are known by their ids.
+/// The bodies, and the stages that move them. Bodies are known by their numbers, in whatever places they lie.
 class Stepper {
  public:
   virtual ~Stepper() = default;
@@ -48,7 +48,7 @@ class Stepper {
   /// Lets bodies come, go, or become others between two steps. It may copy all of them to Host and back.
   virtual void change_bodies(const std::function<void(Bodies<Host>&)>& change) = 0;
   /// The same for bodies that go, which are few: they are returned as they were.
-  virtual BodyTable take_out(const std::vector<std::int32_t>& ids) = 0;
+  virtual BodyTable take_out(const std::vector<BodyNumber>& numbers) = 0;
   /// And for bodies that come.
   virtual void bring_in(const BodyTable& bodies) = 0;
 
@@ -57,22 +57,22 @@ class Stepper {
   virtual void archive(Archive& archive) = 0;
 
   // The state.
-  virtual void copy_state(BodyTable& out) const = 0;
-  virtual SteppedBody body(std::int32_t id) const = 0;
+  virtual void copy_state(BodyTable& out) const = 0;  ///< in the order of numbers
+  virtual SteppedBody body(BodyNumber number) const = 0;
   virtual Vec3 gravity() const = 0;  ///< of the last substep, or of the start (m/s^2)
   virtual Energies energies(const Vec3& reference) const = 0;
   virtual Totals totals(const Vec3& reference) const = 0;
   virtual double largest_speed() const = 0;
   virtual RegionContents contents_of(const Region& region) const = 0;
-  /// The free bodies whose centre is outside of the world, in order.
-  virtual std::vector<std::int32_t> bodies_beyond(const World& world) const = 0;
+  /// The free bodies whose centre is outside of the world, in the order of their numbers.
+  virtual std::vector<BodyNumber> bodies_beyond(const World& world) const = 0;
   /// And those whose centre is in a region.
-  virtual std::vector<std::int32_t> bodies_in(const Region& region) const = 0;
+  virtual std::vector<BodyNumber> bodies_in(const Region& region) const = 0;
   /// The bodies that are there and may reach into a box (m), planes and tubes included.
   virtual BodyTable bodies_near(const Vec3& low, const Vec3& high) const = 0;
 
   // The pairs that may touch, for the state as it is; and the boxes in which the last broad phase looked for
-  // them, by body.
+  // them, in the order of numbers.
   virtual std::vector<BodyPair> pairs() = 0;
   virtual GridOccupancy grid_occupancy() = 0;
   virtual std::vector<BodyBox> boxes() const = 0;

@@ -74,6 +74,9 @@ void Substepper::undo_step() {
   parameters_.gravity = start_gravity_;
   forget_pairs();
   memory_ = {};
+  // The failed step may have left them half made.
+  contacts_ = {};
+  struck_.clear();
 }
 
 void Substepper::change_bodies(const std::function<void(Bodies<Host>&)>& change) {
@@ -81,8 +84,8 @@ void Substepper::change_bodies(const std::function<void(Bodies<Host>&)>& change)
   forget_pairs();
 }
 
-BodyTable Substepper::take_out(const std::vector<std::int32_t>& ids) {
-  BodyTable gone = scree::take_out<Host>(ids, bodies_);
+BodyTable Substepper::take_out(const std::vector<BodyNumber>& numbers) {
+  BodyTable gone = scree::take_out<Host>(numbers, bodies_);
   forget_pairs();
   return gone;
 }
@@ -318,31 +321,33 @@ void Substepper::add_moment_on_triangle(std::int32_t id, const Vec3& moment) {
     contact_moment_[static_cast<std::size_t>(id)] += moment;
 }
 
-SteppedBody Substepper::body(std::int32_t id) const {
+SteppedBody Substepper::body(BodyNumber number) const {
   const ConstBodyView views = view_of(bodies_);
+  const std::int32_t place = views.place(number);
   const bool guided =
-      std::ranges::any_of(guides_.view(), [id](const Guide& guide) { return guide.body == id; });
+      std::ranges::any_of(guides_.view(), [place](const Guide& guide) { return guide.body == place; });
   // A servo's drive bears its weight, whatever that is.
   const Vec3 excess =
       guided ? Vec3(Vec3::Zero()) : gravity_.excess_of_mean(grid_.length(step_ + 1), parameters_);
-  return {.mobility = views.mobility[id],
-          .inverse_mass = views.inverse_mass[id],
-          .position = views.position[id],
-          .orientation = views.orientation[id],
-          .velocity = views.velocity[id],
-          .spin = views.spin[id],
-          .velocity_before = start_.velocity.view()[id],
-          .acceleration = parameters_.acceleration_of(id) + excess,
-          .contact_impulse = contact_impulse_[static_cast<std::size_t>(id)],
-          .contact_moment =
-              contact_moment_.empty() ? Vec3(Vec3::Zero()) : contact_moment_[static_cast<std::size_t>(id)]};
+  return {.mobility = views.mobility[place],
+          .inverse_mass = views.inverse_mass[place],
+          .position = views.position[place],
+          .orientation = views.orientation[place],
+          .velocity = views.velocity[place],
+          .spin = views.spin[place],
+          .velocity_before = start_.velocity.view()[place],
+          .acceleration = parameters_.acceleration_of(place) + excess,
+          .contact_impulse = contact_impulse_[static_cast<std::size_t>(place)],
+          .contact_moment = contact_moment_.empty() ? Vec3(Vec3::Zero())
+                                                    : contact_moment_[static_cast<std::size_t>(place)]};
 }
 
 /// The volume of polyhedra is not told by their sizes.
 RegionContents Substepper::contents_of(const Region& region) const {
   RegionContents contents = scree::contents_of<Host>(region, bodies_);
   if (!geometry_) return contents;
-  for (const std::int32_t k : bodies_in(region)) {
+  for (const BodyNumber number : bodies_in(region)) {
+    const std::int32_t k = view_of(bodies_).place(number);
     const Hull* hull = shapes()[k].hull;
     if (hull) contents.volume += hull->volume - volume_of(Shape::polyhedron, bodies_.size.view()[k]);
   }

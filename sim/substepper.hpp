@@ -41,22 +41,22 @@ class Substepper final : public Stepper {
   double overlap() const override { return corrector_.overlap(); }
   void undo_step() override;
   void change_bodies(const std::function<void(Bodies<Host>&)>& change) override;
-  BodyTable take_out(const std::vector<std::int32_t>& ids) override;
+  BodyTable take_out(const std::vector<BodyNumber>& numbers) override;
   void bring_in(const BodyTable& bodies) override;
 
   void archive(Archive& archive) override;
 
   void copy_state(BodyTable& out) const override { copy_bodies(out, bodies_); }
-  SteppedBody body(std::int32_t id) const override;
+  SteppedBody body(BodyNumber number) const override;
   Vec3 gravity() const override { return parameters_.gravity; }
   Energies energies(const Vec3& reference) const override;
   Totals totals(const Vec3& reference) const override;
   double largest_speed() const override { return scree::largest_speed<Host>(bodies_); }
   RegionContents contents_of(const Region& region) const override;
-  std::vector<std::int32_t> bodies_beyond(const World& world) const override {
+  std::vector<BodyNumber> bodies_beyond(const World& world) const override {
     return scree::bodies_beyond<Host>(world, bodies_);
   }
-  std::vector<std::int32_t> bodies_in(const Region& region) const override {
+  std::vector<BodyNumber> bodies_in(const Region& region) const override {
     return scree::bodies_in<Host>(region, bodies_);
   }
   BodyTable bodies_near(const Vec3& low, const Vec3& high) const override {

@@ -34,7 +34,7 @@ const Vec3 gravity(0, 0, -9.81);
 
 void append(BodyTable& bodies, Shape shape, const Vec3& position, const Quat& orientation, const Vec3& size) {
   const bool free = shape != Shape::plane;
-  bodies.id.push_back(static_cast<std::int32_t>(bodies.id.size()));
+  bodies.id.push_back(BodyNumber{static_cast<std::int32_t>(bodies.id.size())});
   bodies.position.push_back(position);
   bodies.orientation.push_back(orientation);
   bodies.velocity.push_back(Vec3(0, 0, -position.z()));

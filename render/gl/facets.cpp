@@ -112,7 +112,7 @@ void facets_of(const Frame& frame, std::size_t body, const Vec3& eye, const Colo
                            Vec3::UnitZ());
   if (bodies.shape[body] == Shape::capsule) return facets.add_round(capsule_profile(size));
   if (bodies.shape[body] == Shape::cylinder) return facets.add_round(cylinder_profile(size));
-  const Hull& hull = *frame.geometry->of_body[static_cast<std::size_t>(bodies.id[body])].hull;
+  const Hull& hull = *frame.geometry->of_body[index_of(bodies.id[body])].hull;
   for (const Hull::Face& face : hull.faces) {
     const auto corners = hull.corners_of(face);
     const auto at = [&](std::size_t k) -> const Vec3& {

@@ -2,7 +2,8 @@
 
 #include "core/parallel.hpp"
 
-#include <type_traits>
+#include <algorithm>
+#include <numeric>
 #include <utility>
 
 namespace scree {
@@ -41,7 +42,7 @@ struct IsNear {
 };
 
 template <class Is>
-struct IdWhere {
+struct PlaceWhere {
   static constexpr std::int32_t none = -1;
   Is is;
   SCREE_HD std::int32_t operator()(std::int64_t k) const {
@@ -49,48 +50,57 @@ struct IdWhere {
   }
 };
 
-/// In order; none costs one pass that writes nothing.
+/// None costs one pass that writes nothing.
 template <class Space, class Is>
-Array<std::int32_t, Space> ids_where(const Is& is, std::int64_t count) {
-  Array<std::int32_t, Space> ids;
-  if (parallel::max<int, Space>("coming_and_going.any", count, is, 0) == 0) return ids;
-  parallel::select<Space>("coming_and_going.ids", count, IdWhere<Is>{is}, IdWhere<Is>::none, ids);
-  return ids;
+Array<std::int32_t, Space> places_where(const Is& is, std::int64_t count) {
+  Array<std::int32_t, Space> places;
+  if (parallel::max<int, Space>("coming_and_going.any", count, is, 0) == 0) return places;
+  parallel::select<Space>("coming_and_going.places", count, PlaceWhere<Is>{is}, PlaceWhere<Is>::none, places);
+  return places;
 }
 
-template <class T>
-struct Gather {
-  ConstView<T> from;
-  ConstView<std::int32_t> ids;
-  View<T> to;
-  SCREE_HD void operator()(std::int64_t k) const { to[k] = from[ids[k]]; }
-};
-
-template <class T>
-struct Spread {
-  ConstView<T> from;
-  ConstView<std::int32_t> ids;
-  View<T> to;
-  SCREE_HD void operator()(std::int64_t k) const { to[ids[k]] = from[k]; }
-};
-
-struct TakeOut {
-  ConstView<std::int32_t> ids;
-  BodyView bodies;
-  SCREE_HD void operator()(std::int64_t k) const { set_absent(ids[k], bodies); }
-};
-
-template <class T, class Space>
-void gather(const Array<T, Space>& from, const Array<std::int32_t, Space>& ids, Array<T, Space>& to) {
-  to.resize(ids.size());
-  parallel::for_each<Space>("coming_and_going.gather", ids.size(),
-                            Gather<T>{from.view(), ids.view(), to.view()});
+/// In their order.
+template <class Space>
+std::vector<BodyNumber> numbers_at(const Array<std::int32_t, Space>& places, const Bodies<Space>& bodies) {
+  Array<BodyNumber, Space> numbers;
+  parallel::gather("coming_and_going.numbers", bodies.id, places, numbers);
+  std::vector<BodyNumber> sorted = to_vector(numbers);
+  std::ranges::sort(sorted);
+  return sorted;
 }
+
+struct FindPlaceOf {
+  ConstBodyView bodies;
+  ConstView<BodyNumber> numbers;
+  View<std::int32_t> places;
+  SCREE_HD void operator()(std::int64_t k) const { places[k] = bodies.place(numbers[k]); }
+};
 
 template <class Space>
-BodyTable table_of(const Array<std::int32_t, Space>& ids, const Bodies<Space>& bodies) {
+Array<std::int32_t, Space> places_of(const std::vector<BodyNumber>& numbers, const Bodies<Space>& bodies) {
+  Array<BodyNumber, Space> those;
+  Array<std::int32_t, Space> places;
+  copy(those, numbers);
+  places.resize(those.size());
+  parallel::for_each<Space>("coming_and_going.places", those.size(),
+                            FindPlaceOf{view_of(bodies), std::as_const(those).view(), places.view()});
+  return places;
+}
+
+struct TakeOut {
+  ConstView<std::int32_t> places;
+  BodyView bodies;
+  SCREE_HD void operator()(std::int64_t k) const { set_absent(places[k], bodies); }
+};
+
+template <class Space>
+BodyTable table_of(const Array<std::int32_t, Space>& places, const Bodies<Space>& bodies) {
   Bodies<Space> those;
-  for_each_field([&ids](const char*, auto& to, const auto& from) { gather(from, ids, to); }, those, bodies);
+  for_each_field(
+      [&places](const char*, auto& to, const auto& from) {
+        parallel::gather("coming_and_going.table", from, places, to);
+      },
+      those, bodies);
   those.period = bodies.period;
   BodyTable on_host;
   copy_bodies(on_host, those);
@@ -100,52 +110,54 @@ BodyTable table_of(const Array<std::int32_t, Space>& ids, const Bodies<Space>& b
 }  // namespace
 
 template <class Space>
-std::vector<std::int32_t> bodies_beyond(const World& world, const Bodies<Space>& bodies) {
-  return to_vector(ids_where<Space>(IsFreeAnd{view_of(bodies), world.from, world.to, false}, bodies.count()));
+std::vector<BodyNumber> bodies_beyond(const World& world, const Bodies<Space>& bodies) {
+  const IsFreeAnd is_outside{view_of(bodies), world.from, world.to, false};
+  return numbers_at(places_where<Space>(is_outside, bodies.count()), bodies);
 }
 
 template <class Space>
-std::vector<std::int32_t> bodies_in(const Region& region, const Bodies<Space>& bodies) {
-  return to_vector(
-      ids_where<Space>(IsFreeAnd{view_of(bodies), region.from, region.to, true}, bodies.count()));
+std::vector<BodyNumber> bodies_in(const Region& region, const Bodies<Space>& bodies) {
+  const IsFreeAnd is_inside{view_of(bodies), region.from, region.to, true};
+  return numbers_at(places_where<Space>(is_inside, bodies.count()), bodies);
 }
 
 template <class Space>
 BodyTable bodies_near(const Vec3& low, const Vec3& high, const Bodies<Space>& bodies) {
-  return table_of<Space>(ids_where<Space>(IsNear{view_of(bodies), low, high}, bodies.count()), bodies);
+  BodyTable near = table_of(places_where<Space>(IsNear{view_of(bodies), low, high}, bodies.count()), bodies);
+  std::vector<std::int32_t> order(near.id.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::ranges::sort(order, {}, [&near](std::int32_t k) { return near.id[static_cast<std::size_t>(k)]; });
+  permute(near, order);
+  return near;
 }
 
 template <class Space>
 void bring_in(const BodyTable& those, Bodies<Space>& bodies) {
-  Array<std::int32_t, Space> ids;
-  copy(ids, those.id);
+  const Array<std::int32_t, Space> places = places_of<Space>(those.id, bodies);
   Bodies<Space> come;
   copy_bodies(come, those);
   for_each_field(
-      [&ids](const char*, auto& to, const auto& from) {
-        using T = std::decay_t<decltype(to.view()[0])>;
-        parallel::for_each<Space>("coming_and_going.bring_in", ids.size(),
-                                  Spread<T>{from.view(), std::as_const(ids).view(), to.view()});
+      [&places](const char*, auto& to, const auto& from) {
+        parallel::scatter("coming_and_going.bring_in", from, places, to);
       },
       bodies, std::as_const(come));
 }
 
 template <class Space>
-BodyTable take_out(const std::vector<std::int32_t>& ids, Bodies<Space>& bodies) {
-  Array<std::int32_t, Space> those;
-  copy(those, ids);
-  BodyTable gone = table_of<Space>(those, std::as_const(bodies));
-  parallel::for_each<Space>("coming_and_going.take_out", those.size(),
-                            TakeOut{std::as_const(those).view(), view_of(bodies)});
+BodyTable take_out(const std::vector<BodyNumber>& numbers, Bodies<Space>& bodies) {
+  const Array<std::int32_t, Space> places = places_of<Space>(numbers, bodies);
+  BodyTable gone = table_of(places, bodies);
+  parallel::for_each<Space>("coming_and_going.take_out", places.size(),
+                            TakeOut{places.view(), view_of(bodies)});
   return gone;
 }
 
-#define SCREE_INSTANTIATE(Space)                                                               \
-  template std::vector<std::int32_t> bodies_beyond<Space>(const World&, const Bodies<Space>&); \
-  template std::vector<std::int32_t> bodies_in<Space>(const Region&, const Bodies<Space>&);    \
-  template BodyTable bodies_near<Space>(const Vec3&, const Vec3&, const Bodies<Space>&);       \
-  template void bring_in<Space>(const BodyTable&, Bodies<Space>&);                             \
-  template BodyTable take_out<Space>(const std::vector<std::int32_t>&, Bodies<Space>&);
+#define SCREE_INSTANTIATE(Space)                                                             \
+  template std::vector<BodyNumber> bodies_beyond<Space>(const World&, const Bodies<Space>&); \
+  template std::vector<BodyNumber> bodies_in<Space>(const Region&, const Bodies<Space>&);    \
+  template BodyTable bodies_near<Space>(const Vec3&, const Vec3&, const Bodies<Space>&);     \
+  template void bring_in<Space>(const BodyTable&, Bodies<Space>&);                           \
+  template BodyTable take_out<Space>(const std::vector<BodyNumber>&, Bodies<Space>&);
 SCREE_FOR_EACH_SPACE(SCREE_INSTANTIATE)
 #undef SCREE_INSTANTIATE
 

@@ -9,32 +9,32 @@
 
 namespace scree {
 
-/// Body k is not there from now on.
+/// The body at place k is not there from now on.
 SCREE_HD inline void set_absent(std::int64_t k, const BodyView& bodies) {
   bodies.mobility[k] = Mobility::absent;
   bodies.inverse_mass[k] = 0;
   bodies.inverse_inertia[k] = Vec3::Zero();
 }
 
-/// The free bodies whose centre is outside of the world, in order.
+/// Numbers of the free bodies whose centre is outside of the world, in order.
 template <class Space>
-std::vector<std::int32_t> bodies_beyond(const World& world, const Bodies<Space>& bodies);
+std::vector<BodyNumber> bodies_beyond(const World& world, const Bodies<Space>& bodies);
 
-/// The free bodies whose centre is in a region, in order.
+/// Numbers of the free bodies whose centre is in a region, in order.
 template <class Space>
-std::vector<std::int32_t> bodies_in(const Region& region, const Bodies<Space>& bodies);
+std::vector<BodyNumber> bodies_in(const Region& region, const Bodies<Space>& bodies);
 
 /// The bodies that are there and whose bounding sphere reaches into the box from `low` to `high` (m), and all
-/// planes and tubes, in order.
+/// planes and tubes, in the order of their numbers.
 template <class Space>
 BodyTable bodies_near(const Vec3& low, const Vec3& high, const Bodies<Space>& bodies);
 
-/// Each of these becomes the state of the body with its id.
+/// Each of these becomes the state of the body with its number.
 template <class Space>
 void bring_in(const BodyTable& those, Bodies<Space>& bodies);
 
-/// Takes out these bodies, and returns them as they were.
+/// Takes out the bodies with these numbers, and returns them as they were.
 template <class Space>
-BodyTable take_out(const std::vector<std::int32_t>& ids, Bodies<Space>& bodies);
+BodyTable take_out(const std::vector<BodyNumber>& numbers, Bodies<Space>& bodies);
 
 }  // namespace scree

@@ -61,8 +61,13 @@ struct LoadOrdered {
 struct PutInOrder {
   ConstView<std::int64_t> order;
   ConstView<Resolved> resolved;
+  ConstView<BodyNumber> number;
   View<Impact> impacts;
-  SCREE_HD void operator()(std::int64_t k) const { impacts[k] = resolved[order[k]].impact; }
+  SCREE_HD void operator()(std::int64_t k) const {
+    impacts[k] = resolved[order[k]].impact;
+    impacts[k].i = static_cast<std::int32_t>(number[impacts[k].i]);
+    impacts[k].j = static_cast<std::int32_t>(number[impacts[k].j]);
+  }
 };
 
 struct CountOff {
@@ -121,7 +126,7 @@ Ledger ImpactRounds<Space>::resolve(const Problem& problem, const ResponseParame
     copy_bytes<Host, Space>(&progress_, shared_progress_.data(), sizeof(progress_));
   if (state.counts.meetings > 0) progress_.hit_bound = 1;
   struck_.resize(signed_count(progress_.struck));
-  return put_in_order(problem.pairs.size());
+  return put_in_order(problem.pairs.size(), bodies.id);
 }
 
 template <class Space>
@@ -191,7 +196,7 @@ void ImpactRounds<Space>::make_room(RoundsState& state) {
 
 /// Returns the sum of what the impacts moved.
 template <class Space>
-Ledger ImpactRounds<Space>::put_in_order(std::int64_t pairs) {
+Ledger ImpactRounds<Space>::put_in_order(std::int64_t pairs, ConstView<BodyNumber> number) {
   const std::int64_t n = signed_count(progress_.impacts);
   impacts_.resize(n);
   if (n == 0) return {};
@@ -201,7 +206,7 @@ Ledger ImpactRounds<Space>::put_in_order(std::int64_t pairs) {
   parallel::sort_by_key("impact.order", key_, order_,
                         std::bit_width(static_cast<std::uint64_t>((rounds_ + 1) * pairs)));
   const ConstView<std::int64_t> order = order_.view();
-  parallel::for_each<Space>("impact.order", n, PutInOrder{order, resolved_.view(), impacts_.view()});
+  parallel::for_each<Space>("impact.order", n, PutInOrder{order, resolved_.view(), number, impacts_.view()});
   return parallel::sum<Ledger, Space>("impact.moved", n, LoadOrdered{order, resolved_.view()});
 }
 

@@ -48,8 +48,8 @@ class ImpactRounds {
   /// Puts the bodies back to where they were before the last resolve().
   void undo(BodyView bodies);
 
-  /// Of the last resolve(): round by round, in each in the order of the pairs, so that those of one body are
-  /// in the order of their times.
+  /// Of the last resolve(), between bodies by their numbers: round by round, in each in the order of the
+  /// pairs, so that those of one body are in the order of their times.
   ConstView<Impact> impacts() const { return impacts_.view(); }
   /// The bodies that have had one, as they were before it, in any order.
   ConstView<StruckBody> struck() const { return struck_.view(); }
@@ -69,7 +69,7 @@ class ImpactRounds {
   detail::ImpactProgram program(const FlightStage& stage, const Problem& problem);
   /// For rounds that have halted for want of it.
   void make_room(detail::RoundsState& state);
-  Ledger put_in_order(std::int64_t pairs);
+  Ledger put_in_order(std::int64_t pairs, ConstView<BodyNumber> number);
 
   FlightLog<Space> log_;
   detail::ImpactProgress progress_;                       ///< as the host last saw it

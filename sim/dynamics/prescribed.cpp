@@ -78,7 +78,7 @@ PathTable prescribed_paths(const Scene& scene) {
     const Vec3 pivot = motion.about.value_or(centre);
     const Oscillation oscillation = motion.oscillate.value_or(Oscillation{});
     const std::vector<PathKey> keys = path_keys(motion.keyframes, scene.bodies.orientation[k]);
-    table.paths.push_back({.body = motion.body,
+    table.paths.push_back({.body = BodyNumber{motion.body},
                            .pivot = pivot,
                            .arm = centre - pivot,
                            .orientation = scene.bodies.orientation[k],

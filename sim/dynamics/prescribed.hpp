@@ -72,7 +72,7 @@ SCREE_HD inline PathPoint point_at(const PathKey* keys, std::int32_t count, doub
 /// The way of one prescribed body: it turns with a pivot that moves along a line, and both may oscillate
 /// besides; or it goes from key to key.
 struct PrescribedPath {
-  std::int32_t body;
+  BodyNumber body;
   Vec3 pivot;                        ///< at the start (m)
   Vec3 arm;                          ///< from the pivot to the body's centre, at the start (m)
   Quat orientation;                  ///< at the start
@@ -89,13 +89,14 @@ struct PrescribedPath {
   /// Puts the body, if it is there, where it is at a time (s), with the velocity that it has there. The turn
   /// is that of the start's pose, whole: nothing adds up over the steps, so the radius stays.
   SCREE_HD void place(double time, ConstView<PathKey> keys, const BodyView& bodies) const {
-    if (bodies.mobility[body] != Mobility::prescribed) return;
+    const std::int32_t k = bodies.place(body);
+    if (bodies.mobility[k] != Mobility::prescribed) return;
     const PathPoint point = key_count > 0 ? point_at(keys.data() + first_key, key_count, time - start)
                                           : point_of_pivot(time - start);
-    bodies.position[body] = point.position;
-    bodies.orientation[body] = point.orientation;
-    bodies.velocity[body] = point.velocity;
-    bodies.spin[body] = point.spin;
+    bodies.position[k] = point.position;
+    bodies.orientation[k] = point.orientation;
+    bodies.velocity[k] = point.velocity;
+    bodies.spin[k] = point.spin;
   }
 
  private:

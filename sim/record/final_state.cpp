@@ -41,7 +41,7 @@ class Rows {
  public:
   Rows(const BodyTable& bodies, const Scene& scene, fs::path folder)
       : bodies_(bodies), scene_(scene), folder_(std::move(folder)) {
-    for (const Servo& servo : scene.servos) servos_.emplace(servo.body, &servo);
+    for (const Servo& servo : scene.servos) servos_.emplace(BodyNumber{servo.body}, &servo);
     for (std::size_t k = 0; k < bodies.shape.size(); ++k) {
       if (!is_in(k)) continue;
       has_hulls_ = has_hulls_ || bodies.shape[k] == Shape::polyhedron;
@@ -110,7 +110,7 @@ class Rows {
   /// Written when its first body is; empty of other bodies.
   std::string hull_file(std::size_t k) {
     if (bodies_.shape[k] != Shape::polyhedron) return {};
-    const Hull* hull = scene_.geometry->of_body[static_cast<std::size_t>(bodies_.id[k])].hull;
+    const Hull* hull = scene_.geometry->of_body[index_of(bodies_.id[k])].hull;
     const auto [found, fresh] = hull_files_.try_emplace(hull);
     if (fresh) {
       found->second = fmt::format("{}/{}.obj", hulls_name, hull_files_.size() - 1);
@@ -137,7 +137,7 @@ class Rows {
   const Scene& scene_;
   fs::path folder_;
   bool has_hulls_ = false, has_servos_ = false;
-  std::map<std::int32_t, const Servo*> servos_;  ///< by their bodies
+  std::map<BodyNumber, const Servo*> servos_;  ///< by their bodies
   std::map<const Hull*, std::string> hull_files_;
 };
 

@@ -56,7 +56,7 @@ std::vector<BodyColumnSource> body_columns_of(const TrajectorySettings& settings
     add("velocity", vector, false, [](const BodyTable& b, std::size_t k) { return of(b.velocity[k]); });
   if (settings.spin)
     add("spin", vector, false, [](const BodyTable& b, std::size_t k) { return of(b.spin[k]); });
-  add("id", number, true, [](const BodyTable& b, std::size_t k) { return of(b.id[k]); });
+  add("id", number, true, [](const BodyTable& b, std::size_t k) { return of(static_cast<double>(b.id[k])); });
   add("size", vector, true,
       [](const BodyTable& b, std::size_t k) { return of(extent_of(b.shape[k], b.size[k])); });
   add("shape", small_number, true,

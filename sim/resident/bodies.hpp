@@ -19,6 +19,7 @@ inline ConstBodyView read_only(const BodyView& bodies) {
   ConstBodyView views;
   for_each_field([](const char*, auto& to, const auto& from) { to = from; }, views, bodies);
   views.period = bodies.period;
+  views.place_of = bodies.place_of;
   return views;
 }
 

@@ -18,14 +18,13 @@ namespace scree::resident {
 struct Books {
   double restitution = 0;  ///< dissipated (J)
   double friction = 0;
-  double work = 0;           ///< of bodies that are not free (J)
-  double gaps = 0;           ///< sum of |gap| of loaded points (m)
-  std::int64_t loaded = 0;   ///< points that carry an impulse
-  std::int64_t ends = 0;     ///< free bodies at loaded contacts
-  std::int64_t gaining = 0;  ///< contacts that gain energy
-  double deepest = 0;        ///< overlap at the end, of the cap
-  double gap_power = 0;      ///< of normal impulses on what they leave undone: 0 when all are found (J)
-  double kick_power = 0;     ///< of impulses on what they have changed (J)
+  double work = 0;          ///< of bodies that are not free (J)
+  double gaps = 0;          ///< sum of |gap| of loaded points (m)
+  std::int64_t loaded = 0;  ///< points that carry an impulse
+  std::int64_t ends = 0;    ///< free bodies at loaded contacts
+  double deepest = 0;       ///< overlap at the end, of the cap
+  double gap_power = 0;     ///< of normal impulses on what they leave undone: 0 when all are found (J)
+  double kick_power = 0;    ///< of impulses on what they have changed (J)
 
   SCREE_HD friend Books operator+(const Books& a, const Books& b) {
     return {a.restitution + b.restitution,
@@ -34,7 +33,6 @@ struct Books {
             a.gaps + b.gaps,
             a.loaded + b.loaded,
             a.ends + b.ends,
-            a.gaining + b.gaining,
             a.deepest > b.deepest ? a.deepest : b.deepest,
             a.gap_power + b.gap_power,
             a.kick_power + b.kick_power};
@@ -74,8 +72,7 @@ struct BookStage {
   }
 
   /// Adds what a point's impulse has moved: account(), at the arms given.
-  SCREE_HD void book(const BookedPoint& at, const Slot& slot, const Ends& ends, Moved& moved,
-                     Books& books) const {
+  SCREE_HD void book(const BookedPoint& at, const Slot& slot, const Ends& ends, Books& books) const {
     const Vec3& p = at.impulse;
     const Vec3 after = velocity_of(solver, ends.j, at.arm_j) - velocity_of(solver, ends.i, at.arm_i);
     const Vec3 free_u = velocity_of(free, ends.j, at.arm_j) - velocity_of(free, ends.i, at.arm_i);
@@ -90,8 +87,6 @@ struct BookStage {
     if (!is_free(ends.j)) books.work -= p.dot(velocity_of(solver, ends.j, at.arm_j));
     books.gap_power += pn * (after.dot(at.normal) - at.target);
     books.kick_power += changed;
-    moved.linear += 0.5 * p.dot(before + free_u);
-    moved.square += 0.5 * changed;
   }
   SCREE_HD bool is_free(std::int32_t end) const { return solver[end].inverse_mass > 0; }
   SCREE_HD std::int64_t free_ends(const Ends& ends) const {
@@ -137,11 +132,9 @@ struct BookBalls {
       const Slot& slot = stage.places[place];
       const Vec3 normal = vec3(n);
       const auto number = [&](int field) { return static_cast<double>(f.at(field, c)); };
-      Moved moved;
       stage.book(
           {vec3(impulse), normal, number(C::arm_i) * normal, number(C::arm_j) * normal, number(C::target)},
-          slot, ends, moved, books);
-      books.gaining = moved.gains(tolerance::response_gain) ? 1 : 0;
+          slot, ends, books);
       books.gaps = fabs(static_cast<double>(f.at(C::gap, c)));
       books.loaded = 1;
       books.ends = stage.free_ends(ends);
@@ -176,7 +169,6 @@ struct BookPoints {
     const double cap = static_cast<double>(contacts.fields.at(C::cap, c));
     const Fields<Real>& f = contacts.point_fields;
     Books books;
-    Moved moved;
     for (int k = 0; k < contacts.points[c]; ++k) {
       const auto number = [&](int field) { return static_cast<double>(f.at(C::at_point(k, field), c)); };
       const auto at = point_at(contacts, c, k);
@@ -184,8 +176,7 @@ struct BookPoints {
       const bool loaded = !is_zero<Real>(impulse);
       memory[place].impulse[k] = impulse;
       if (loaded) {
-        stage.book({vec3(impulse), n, vec3(at.arm_i), vec3(at.arm_j), number(C::target)}, slot, ends, moved,
-                   books);
+        stage.book({vec3(impulse), n, vec3(at.arm_i), vec3(at.arm_j), number(C::target)}, slot, ends, books);
         books.gaps += fabs(number(C::gap));
         ++books.loaded;
       }
@@ -198,7 +189,6 @@ struct BookPoints {
     }
     if (books.loaded == 0) return books;
     books.ends = stage.free_ends(ends);
-    books.gaining = moved.gains(tolerance::response_gain) ? 1 : 0;
     if (stage.loads.size() > 0) stage.mark_loaded(slot, stage.part_of(slot));
     return books;
   }

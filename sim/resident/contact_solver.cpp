@@ -21,9 +21,10 @@ constexpr int tile = parallel::tile;
 }  // namespace
 
 template <class Space, class Real>
-void ContactSolver<Space, Real>::take_candidates(ConstView<Pair> candidates, const ConstBodyView& bodies,
-                                                 bool rolls) {
-  slots_.build(candidates, bodies, rolls);
+void ContactSolver<Space, Real>::take_candidates(ConstView<Pair> candidates,
+                                                 ConstView<std::int32_t> place_before,
+                                                 const ConstBodyView& bodies, bool rolls) {
+  slots_.build(candidates, place_before, bodies, rolls);
   make_places();
   const std::int64_t balls = store_.ball_places();
   for (auto* loads : {&loads_, &next_loads_}) {
@@ -57,10 +58,12 @@ void ContactSolver<Space, Real>::archive(Archive& archive, const ConstBodyView& 
 
 template <class Space, class Real>
 void ContactSolver<Space, Real>::look_up_loads(ConstView<Pair> candidates,
+                                               ConstView<std::int32_t> place_before,
                                                Array<LoadedParts, Space>& loads) const {
   loads.resize(candidates.size());
-  parallel::for_each<Space>("contacts.loads", candidates.size(),
-                            LookUpLoads{candidates, slots_.candidates(), this->loads(), loads.view()});
+  parallel::for_each<Space>(
+      "contacts.loads", candidates.size(),
+      LookUpLoads{candidates, {slots_.candidates(), place_before}, this->loads(), loads.view()});
 }
 
 template <class Space, class Real>
@@ -83,14 +86,14 @@ ConstView<Slot> ContactSolver<Space, Real>::places_of_points() const {
 }
 
 template <class Space, class Real>
-Vec3 ContactSolver<Space, Real>::impulse_on(std::int32_t body) {
+Vec3 ContactSolver<Space, Real>::impulse_on(std::int32_t place) {
   if (counts_.contacts == 0) return Vec3::Zero();
   const auto on_balls = parallel::sum_by_tiles<ImpulseSum, Space>(
       "contacts.impulse", ball_list_.size(),
-      on_contacts(ball_list_, BallImpulseOn<Real>{body, store_.balls(), slots_.places()}));
+      on_contacts(ball_list_, BallImpulseOn<Real>{place, store_.balls(), slots_.places()}));
   const auto on_points = parallel::sum_by_tiles<ImpulseSum, Space>(
       "contacts.impulse", point_list_.size(),
-      on_contacts(point_list_, PointImpulseOn<Real>{body, store_.points(), places_of_points()}));
+      on_contacts(point_list_, PointImpulseOn<Real>{place, store_.points(), places_of_points()}));
   return (on_balls + on_points).impulse;
 }
 

@@ -38,7 +38,9 @@ template <class Space, class Real>
 class ContactSolver {
  public:
   /// The candidates have been made anew; impulses are remembered, and couples if anything `rolls`.
-  void take_candidates(ConstView<Pair> candidates, const ConstBodyView& bodies, bool rolls);
+  /// `place_before`: as for Slots::build().
+  void take_candidates(ConstView<Pair> candidates, ConstView<std::int32_t> place_before,
+                       const ConstBodyView& bodies, bool rolls);
 
   /// Others of the bodies are free now; new candidates follow.
   void change_bodies() { slots_.forget_colors(); }
@@ -71,13 +73,14 @@ class ContactSolver {
     return {reinterpret_cast<const LoadedParts*>(loads_.data()), slots_.candidates().size()};
   }
   /// The same of other candidates (ordered likewise), for those that it knows.
-  void look_up_loads(ConstView<Pair> candidates, Array<LoadedParts, Space>& loads) const;
+  void look_up_loads(ConstView<Pair> candidates, ConstView<std::int32_t> place_before,
+                     Array<LoadedParts, Space>& loads) const;
   const Slots<Space, Real>& slots() const { return slots_; }
 
   /// Of the last substep, brought to Host.
   Inspection<Real> inspect() const;
-  /// What the contacts of the last substep gave to a body (N s).
-  Vec3 impulse_on(std::int32_t body);
+  /// What the contacts of the last substep gave to the body at a place (N s).
+  Vec3 impulse_on(std::int32_t place);
 
  private:
   void make_places();

@@ -20,11 +20,12 @@ struct CountPoints {
 
 /// What is known of pairs in another list.
 struct LookUpLoads {
-  ConstView<Pair> pairs, known;
+  ConstView<Pair> pairs;
+  ListedPairs known;
   ConstView<LoadedParts> loads;
   View<LoadedParts> out;
   SCREE_HD void operator()(std::int64_t k) const {
-    const std::int64_t at = find_pair(known, pairs[k].i, pairs[k].j);
+    const std::int64_t at = known.find(pairs[k]);
     out[k] = at < 0 ? LoadedParts{} : loads[at];
   }
 };

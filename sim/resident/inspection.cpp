@@ -8,16 +8,20 @@ template <class Real>
 ContactProblem problem_of(Inspection<Real>& seen, const BodyTable& bodies) {
   ContactProblem problem;
   if (seen.step == 0) return problem;
+  const auto number_of = [&bodies](std::int32_t place) {
+    return static_cast<std::int32_t>(bodies.id[static_cast<std::size_t>(place)]);
+  };
+  problem.bodies.resize(bodies.position.size());
   for (std::size_t k = 0; k < bodies.position.size(); ++k) {
-    problem.bodies.push_back({bodies.inverse_mass[k],
-                              world_inverse_inertia(bodies.orientation[k], bodies.inverse_inertia[k]),
-                              vec3(seen.free[k].velocity), vec3(seen.free[k].spin)});
+    problem.bodies[index_of(bodies.id[k])] = {
+        bodies.inverse_mass[k], world_inverse_inertia(bodies.orientation[k], bodies.inverse_inertia[k]),
+        vec3(seen.free[k].velocity), vec3(seen.free[k].spin)};
   }
   // Then the points of walls that turn.
   const auto first = static_cast<std::int32_t>(seen.first_wall_point - std::ssize(bodies.position));
   for (auto k = static_cast<std::size_t>(seen.first_wall_point); k < seen.free.size(); ++k)
     problem.bodies.push_back({0, Mat3::Zero(), vec3(seen.free[k].velocity), Vec3::Zero()});
-  const auto number = [&](std::int32_t k) { return k >= seen.first_wall_point ? k - first : k; };
+  const auto number = [&](std::int32_t k) { return k >= seen.first_wall_point ? k - first : number_of(k); };
   for_each_contact(seen, [&](const SeenContact& c) {
     problem.contacts.push_back({number(c.i), number(c.j), static_cast<std::int64_t>(problem.points.size()),
                                 static_cast<std::int32_t>(c.points.size()), c.normal, c.friction, c.balls});
@@ -39,7 +43,8 @@ std::vector<ContactForce> forces_of(Inspection<Real>& seen, const BodyTable& bod
     Vec3 arm = Vec3::Zero();
     for (const SeenPoint& p : c.points)
       arm += (from_j ? p.arm_j : p.arm_i) / static_cast<double>(c.points.size());
-    forces.push_back({c.slot.i, c.slot.j, impulse / seen.step, bodies.position[from_j ? j : i] + arm});
+    forces.push_back({static_cast<std::int32_t>(bodies.id[i]), static_cast<std::int32_t>(bodies.id[j]),
+                      impulse / seen.step, bodies.position[from_j ? j : i] + arm});
   });
   return forces;
 }

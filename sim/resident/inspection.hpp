@@ -88,6 +88,7 @@ void for_each_contact(Inspection<Real>& seen, Visit visit) {
   }
 }
 
+/// `bodies` lie as they do in the space.
 template <class Real>
 ContactProblem problem_of(Inspection<Real>& seen, const BodyTable& bodies);
 

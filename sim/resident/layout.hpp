@@ -65,7 +65,7 @@ struct alignas(16) MidBody {
 struct alignas(8) Slot {
   static constexpr std::int32_t empty = -1;
 
-  std::int32_t i = empty, j = empty;          ///< bodies, i < j
+  std::int32_t i = empty, j = empty;          ///< places of the bodies, that with the smaller number first
   std::int32_t end_i = empty, end_j = empty;  ///< bodies of the solver: a hub has several, as a turning wall
   std::int32_t candidate = empty;             ///< number of the pair in the list of candidates
   std::int32_t surface = 0;                   ///< which of the pair's manifolds

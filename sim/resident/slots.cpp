@@ -66,11 +66,12 @@ SCREE_HD bool is_on_part(ConstView<Mobility> mobility, const Slot& slot) {
 
 /// The first of the old slots of each pair, -1 for new pairs.
 struct LookUpOld {
-  ConstView<Pair> pairs, old_pairs;
+  ConstView<Pair> pairs;
+  ListedPairs old_pairs;
   ConstView<std::int64_t> old_first;
   View<std::int64_t> was;
   SCREE_HD void operator()(std::int64_t k) const {
-    const std::int64_t pair = find_pair(old_pairs, pairs[k].i, pairs[k].j);
+    const std::int64_t pair = old_pairs.find(pairs[k]);
     was[k] = pair < 0 ? -1 : old_first[pair];
   }
 };
@@ -234,7 +235,8 @@ struct Recall {
 }  // namespace
 
 template <class Space, class Real>
-void Slots<Space, Real>::build(ConstView<Pair> candidates, const ConstBodyView& bodies, bool rolls) {
+void Slots<Space, Real>::build(ConstView<Pair> candidates, ConstView<std::int32_t> place_before,
+                               const ConstBodyView& bodies, bool rolls) {
   old_pairs_.swap(pairs_);
   old_first_.swap(first_);
   old_place_.swap(place_);
@@ -248,8 +250,10 @@ void Slots<Space, Real>::build(ConstView<Pair> candidates, const ConstBodyView& 
                            static_cast<std::size_t>(candidates.size()) * sizeof(Pair));
   was_.resize(pairs_.size());
   parallel::for_each<Space>("slots.recall", pairs_.size(),
-                            LookUpOld{std::as_const(pairs_).view(), std::as_const(old_pairs_).view(),
-                                      std::as_const(old_first_).view(), was_.view()});
+                            LookUpOld{std::as_const(pairs_).view(),
+                                      {std::as_const(old_pairs_).view(), place_before},
+                                      std::as_const(old_first_).view(),
+                                      was_.view()});
   list_slots(bodies);
   solver_bodies_.number(bodies, slots_.view());
   color_slots(bodies);

@@ -14,20 +14,34 @@
 
 namespace scree::resident {
 
-/// The number of a pair in a list ordered by (i, j); -1 if it is not there.
-SCREE_HD inline std::int64_t find_pair(ConstView<Pair> pairs, std::int32_t i, std::int32_t j) {
-  std::int64_t low = 0, high = pairs.size();
-  while (low < high) {
-    const std::int64_t middle = (low + high) / 2;
-    const Pair& pair = pairs[middle];
-    if (pair.i < i || (pair.i == i && pair.j < j)) {
-      low = middle + 1;
-    } else {
-      high = middle;
+/// Candidates in their order, and which place each body had when they were listed, by its place of now; none
+/// where the places are the same.
+struct ListedPairs {
+  ConstView<Pair> pairs;
+  ConstView<std::int32_t> place_before;
+
+  /// The index of a pair; -1 if it is not there.
+  SCREE_HD std::int64_t find(const Pair& pair) const {
+    const Pair wanted =
+        ordered(place_before.size() > 0 ? Pair{place_before[pair.i], place_before[pair.j]} : pair);
+    std::int64_t low = 0, high = pairs.size();
+    while (low < high) {
+      const std::int64_t middle = (low + high) / 2;
+      const Pair at = ordered(pairs[middle]);
+      if (at.i < wanted.i || (at.i == wanted.i && at.j < wanted.j)) {
+        low = middle + 1;
+      } else {
+        high = middle;
+      }
     }
+    if (low == pairs.size()) return -1;
+    const Pair found = ordered(pairs[low]);
+    return found.i == wanted.i && found.j == wanted.j ? low : -1;
   }
-  return low < pairs.size() && pairs[low].i == i && pairs[low].j == j ? low : -1;
-}
+
+ private:
+  SCREE_HD static Pair ordered(const Pair& pair) { return pair.i < pair.j ? pair : Pair{pair.j, pair.i}; }
+};
 
 /// Tiles of one colour after the other: slots of one colour share no free body.
 struct ColorTiles {
@@ -41,11 +55,13 @@ struct ColorTiles {
 template <class Space, class Real>
 class Slots {
  public:
-  /// Slots for the candidates (ordered by (i, j), each with a free body); those that were there before keep
+  /// Slots for the candidates (in their order, each with a free body); those that were there before keep
   /// what they remember. Places are given in tiles of parallel::tile: first those of balls, colour by colour,
   /// then the others. Most keep their colours, too. The result does not depend on the order of threads.
+  /// `place_before`: where each body lay at the last call, by its place, if bodies have changed places since.
   /// `rolls`: couples are remembered, too.
-  void build(ConstView<Pair> candidates, const ConstBodyView& bodies, bool rolls);
+  void build(ConstView<Pair> candidates, ConstView<std::int32_t> place_before, const ConstBodyView& bodies,
+             bool rolls);
   /// Others of the bodies are free now: colours are not to be kept.
   void forget_colors() { keeps_colors_ = false; }
   /// `bodies`: as they are saved.

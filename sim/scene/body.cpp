@@ -128,7 +128,7 @@ void place_hull(const Hull& hull, std::size_t b, BodyTable& bodies) {
 bool make_body(const BodyEntry& entry, std::int64_t k, std::int32_t id, std::uint64_t seed, double density,
                const Hull* hull, BodyTable& bodies) {
   const auto b = static_cast<std::size_t>(id);
-  bodies.id[b] = id;
+  bodies.id[b] = BodyNumber{id};
   bodies.velocity[b] = bodies.spin[b] = bodies.inverse_inertia[b] = Vec3::Zero();
   bodies.inverse_mass[b] = 0;
   if (entry.plane) {
@@ -171,7 +171,7 @@ void make_body(const BodyEntry& entry, const PlacedTriangle& triangle, std::int3
   Random unused(0, 0);
   const Quat turn = orientation_of(entry, unused);
   const Vec3 at = entry.at.value_or(Vec3::Zero());
-  bodies.id[b] = id;
+  bodies.id[b] = BodyNumber{id};
   bodies.shape[b] = Shape::triangle;
   bodies.size[b] = triangle.size;
   bodies.position[b] = at + turn * triangle.position;
@@ -187,7 +187,7 @@ bool make_body(const BodyEntry& entry, const BodyRow& row, std::int32_t id, std:
                double density, const Hull* hull, BodyTable& bodies) {
   const auto b = static_cast<std::size_t>(id);
   const bool fixed = entry.fixed.value_or(false);
-  bodies.id[b] = id;
+  bodies.id[b] = BodyNumber{id};
   bodies.shape[b] = row.shape;
   bodies.size[b] = hull ? hull->half_extent() : row.size;
   if (row.has_shape_of_entry) {

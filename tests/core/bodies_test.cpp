@@ -37,7 +37,7 @@ BodyTable some_bodies(std::int32_t n) {
     bodies.shape.push_back(k % 2 ? Shape::box : Shape::sphere);
     bodies.mobility.push_back(k % 3 ? Mobility::free : Mobility::fixed);
     bodies.material.push_back(k % 5);
-    bodies.id.push_back(k);
+    bodies.id.push_back(BodyNumber{k});
   }
   return bodies;
 }
@@ -58,8 +58,9 @@ void expect_same_bits(const BodyTable& a, const BodyTable& b) {
 TEST(BodyFields, ListNamesEveryMemberOnce) {
   BodyTable bodies;
   // This stops compiling when the struct gains or loses a member.
-  auto& [a, b, c, d, e, f, g, h, i, j, k, period] = bodies;
-  EXPECT_FALSE(period.exists);  // no field: there is one of all bodies
+  auto& [a, b, c, d, e, f, g, h, i, j, k, period, place_of] = bodies;
+  EXPECT_FALSE(period.exists);    // no field: there is one of all bodies
+  EXPECT_TRUE(place_of.empty());  // no field: it is by number
   const std::set<const void*> members = {&a, &b, &c, &d, &e, &f, &g, &h, &i, &j, &k};
   std::set<const void*> visited;
   std::set<std::string> names;

@@ -40,7 +40,7 @@ Bodies<Host> crowd() {
                              : k % 5 == 3        ? Mobility::prescribed
                                                  : Mobility::free);
     table.material.push_back(0);
-    table.id.push_back(k);
+    table.id.push_back(BodyNumber{k});
   }
   Bodies<Host> bodies;
   copy_bodies(bodies, table);

@@ -40,7 +40,7 @@ void add(BodyTable& table, Shape shape, Mobility mobility, const Vec3& at, const
   table.shape.push_back(shape);
   table.mobility.push_back(mobility);
   table.material.push_back(0);
-  table.id.push_back(static_cast<std::int32_t>(table.id.size()));
+  table.id.push_back(BodyNumber{static_cast<std::int32_t>(table.id.size())});
 }
 
 /// Spheres and boxes of three mobilities in a crowd, with planes and tubes at both ends and in the middle of

@@ -10,7 +10,7 @@ inline void add_body(Snapshot& snapshot, Shape shape, const Vec3& position, cons
                      Mobility mobility = Mobility::free, const Quat& orientation = Quat::Identity()) {
   BodyTable& bodies = snapshot.bodies;
   const double inverse = mobility == Mobility::free ? 1 : 0;
-  bodies.id.push_back(static_cast<std::int32_t>(bodies.id.size()));
+  bodies.id.push_back(BodyNumber{static_cast<std::int32_t>(bodies.id.size())});
   bodies.position.push_back(position);
   bodies.orientation.push_back(orientation);
   bodies.velocity.push_back(Vec3::Zero());

@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cstdint>
 #include <functional>
 #include <limits>
 #include <new>
@@ -45,18 +46,19 @@ class FakeStepper final : public Stepper {
     copy_bodies(copied, bodies);
     return energies_of<Host>(copied, Vec3::Zero(), reference);
   }
-  std::vector<std::int32_t> bodies_beyond(const World& world) const override {
-    return bodies.position[0].x() > world.to.x() ? std::vector<std::int32_t>{0} : std::vector<std::int32_t>{};
+  std::vector<BodyNumber> bodies_beyond(const World& world) const override {
+    return bodies.position[0].x() > world.to.x() ? std::vector<BodyNumber>{BodyNumber{0}}
+                                                 : std::vector<BodyNumber>{};
   }
 
   void change_bodies(const std::function<void(Bodies<Host>&)>&) override {}
-  BodyTable take_out(const std::vector<std::int32_t>&) override { return {}; }
+  BodyTable take_out(const std::vector<BodyNumber>&) override { return {}; }
   void bring_in(const BodyTable&) override {}
   void archive(Archive&) override {}
-  SteppedBody body(std::int32_t) const override { return {}; }
+  SteppedBody body(BodyNumber) const override { return {}; }
   Totals totals(const Vec3&) const override { return {}; }
   double largest_speed() const override { return 0; }
-  std::vector<std::int32_t> bodies_in(const Region&) const override { return {}; }
+  std::vector<BodyNumber> bodies_in(const Region&) const override { return {}; }
   BodyTable bodies_near(const Vec3&, const Vec3&) const override { return {}; }
   RegionContents contents_of(const Region&) const override { return {}; }
   std::vector<BodyPair> pairs() override { return {}; }
@@ -161,10 +163,16 @@ TEST_F(GuardedStepsTest, WhateverTheStepperThrowsIsAFailedStep) {
   expect_given_up("bounds are not finite");
 }
 
-TEST_F(GuardedStepsTest, OutOfMemoryPasses) {
-  stepper_.on_substep = [](double, FakeStepper&) { throw std::bad_alloc(); };
+TEST_F(GuardedStepsTest, OutOfMemoryPassesAndTheStateIsThatBeforeTheStep) {
+  const std::uint64_t before = hash_of(stepper_.bodies);
+  stepper_.on_substep = [](double, FakeStepper& s) {
+    s.bodies.velocity[0] *= 2;
+    throw std::bad_alloc();
+  };
   EXPECT_THROW(take(), std::bad_alloc);
   EXPECT_EQ(stepper_.starts, 1);
+  EXPECT_EQ(stepper_.undone, 1);
+  EXPECT_EQ(hash_of(stepper_.bodies), before);
 }
 
 }  // namespace

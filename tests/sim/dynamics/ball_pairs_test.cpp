@@ -44,7 +44,7 @@ BodyTable crowd(std::uint64_t seed) {
                              : plane || k == 2 ? Mobility::fixed
                                                : Mobility::prescribed);
     table.material.push_back(k % 2);
-    table.id.push_back(k);
+    table.id.push_back(BodyNumber{k});
   }
   return table;
 }

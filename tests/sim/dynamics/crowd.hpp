@@ -6,6 +6,9 @@
 #include "sim/dynamics/rotation.hpp"
 
 #include <cstdint>
+#include <numeric>
+#include <utility>
+#include <vector>
 
 namespace scree {
 
@@ -37,8 +40,25 @@ inline BodyTable crowd() {
     table.shape.push_back(k % 2 == 0 ? Shape::sphere : Shape::box);
     table.mobility.push_back(mobility);
     table.material.push_back(0);
-    table.id.push_back(static_cast<std::int32_t>(k));
+    table.id.push_back(BodyNumber{static_cast<std::int32_t>(k)});
   }
+  return table;
+}
+
+inline std::vector<BodyNumber> numbers(const std::vector<std::int32_t>& list) {
+  std::vector<BodyNumber> numbers;
+  for (const std::int32_t number : list) numbers.push_back(BodyNumber{number});
+  return numbers;
+}
+
+/// The same bodies at other places.
+inline BodyTable shuffled(BodyTable table) {
+  std::vector<std::int32_t> order(table.id.size());
+  std::iota(order.begin(), order.end(), 0);
+  Random random(3, 0);
+  for (std::size_t k = order.size() - 1; k > 0; --k)
+    std::swap(order[k], order[static_cast<std::size_t>(random.uniform() * static_cast<double>(k + 1))]);
+  permute(table, order);
   return table;
 }
 

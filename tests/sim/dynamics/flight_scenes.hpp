@@ -31,7 +31,7 @@ struct FlightScene {
     bodies.shape.push_back(shape);
     bodies.mobility.push_back(free ? Mobility::free : Mobility::fixed);
     bodies.material.push_back(0);
-    bodies.id.push_back(static_cast<std::int32_t>(bodies.id.size()));
+    bodies.id.push_back(BodyNumber{static_cast<std::int32_t>(bodies.id.size())});
   }
   void add_ball(double radius, const Vec3& position, const Vec3& velocity) {
     add(Shape::sphere, Vec3::Constant(radius), position, velocity);

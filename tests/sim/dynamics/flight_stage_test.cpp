@@ -33,7 +33,7 @@ BodyTable crowd(std::uint64_t seed) {
     table.shape.push_back(shape);
     table.mobility.push_back(plane ? Mobility::fixed : Mobility::free);
     table.material.push_back(k % 2);
-    table.id.push_back(k);
+    table.id.push_back(BodyNumber{k});
   }
   return table;
 }

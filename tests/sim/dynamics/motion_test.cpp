@@ -171,7 +171,7 @@ TYPED_TEST(MotionTest, PrescribedBodiesAreWhereTheirPathsSay) {
   Bodies<TypeParam> bodies = in_space<TypeParam>(start);
   PathTable table;
   for (std::int32_t k = 0; k < static_cast<std::int32_t>(count); ++k)
-    table.paths.push_back({.body = k,
+    table.paths.push_back({.body = BodyNumber{k},
                            .pivot = Vec3(1, 0, 2),
                            .arm = Vec3(0, 1, 0),
                            .orientation = Quat::Identity(),

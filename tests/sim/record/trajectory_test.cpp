@@ -39,7 +39,7 @@ Scene scene_of(int bodies, TrajectorySettings settings = {}) {
     table.shape.push_back(k == 0 ? Shape::plane : k % 2 == 1 ? Shape::sphere : Shape::box);
     table.mobility.push_back(k == 0 ? Mobility::fixed : Mobility::free);
     table.material.push_back(k % 3);
-    table.id.push_back(k);
+    table.id.push_back(BodyNumber{k});
   }
   return scene;
 }

@@ -1,4 +1,8 @@
 // Steps with everything in one space, beside Host's own and closed forms.
+#include "sim/resident_stepper.hpp"
+
+#include "sim/dynamics/prescribed.hpp"
+#include "sim/scene/time_grid.hpp"
 #include "sim/simulation.hpp"
 #include "tests/sim/dynamics/simulations.hpp"
 
@@ -101,6 +105,62 @@ TEST_P(ResidentStep, RunsRepeatBitByBitWhateverTheThreadsAndWhoLooks) {
   const std::uint64_t first = hash(1, false);
   EXPECT_EQ(first, hash(2, false));
   EXPECT_EQ(first, hash(1, true));
+}
+
+/// What the step works on and what it tells of, wherever the bodies lie at the start.
+TEST_P(ResidentStep, PlacesOfTheStartDoNotMatter) {
+  const Scene scene = scene_of(std::string(everything) + R"(
+  - {sphere: {radius: 0.06}, name: pushed, at: [0.1, 0, 0.7], material: stone}
+forces:
+  - {on: pushed, force: [3, 0, 1], torque: [0, 0.1, 0], from: 0.1, until: 0.4}
+checks:
+  - {measure: drum.force.z, below: 0}
+precision: )" + GetParam().precision +
+                               "\n");
+  const TimeGrid grid(scene.time);
+  const PathTable paths = prescribed_paths(scene);
+  Scene elsewhere = scene;
+  std::vector<std::int32_t> order(scene.bodies.id.size());
+  for (std::size_t k = 0; k < order.size(); ++k)
+    order[k] = static_cast<std::int32_t>((17 * k + 11) % order.size());
+  permute(elsewhere.bodies, order);
+  const bool on_device = GetParam().options.space == SpaceChoice::cuda;
+  const auto here = make_resident_stepper(scene, grid, paths, on_device, Vec3::Zero());
+  const auto there = make_resident_stepper(elsewhere, grid, paths, on_device, Vec3::Zero());
+  constexpr BodyNumber drum{1}, ball{39};
+  const std::int64_t steps = 150;  // in which the bodies are put in order three times
+  for (std::int64_t step = 0; step < steps; ++step) {
+    for (Stepper* stepper : {here.get(), there.get()}) {
+      stepper->start_step(step);
+      stepper->substep(grid.length(step + 1), 0);
+      if (step == 70) stepper->bring_in(stepper->take_out({BodyNumber{20}, BodyNumber{3}, BodyNumber{9}}));
+    }
+    BodyTable bodies_here, bodies_there;
+    here->copy_state(bodies_here);
+    there->copy_state(bodies_there);
+    ASSERT_EQ(hash_of(bodies_here), hash_of(bodies_there)) << "step " << step;
+    for (std::size_t k = 0; k < bodies_here.id.size(); ++k) ASSERT_EQ(index_of(bodies_here.id[k]), k);
+    ASSERT_EQ(here->body(drum).contact_impulse, there->body(drum).contact_impulse);
+    ASSERT_EQ(here->body(ball).velocity, there->body(ball).velocity);
+    ASSERT_EQ(here->body(ball).velocity, bodies_here.velocity[index_of(ball)]);
+    ASSERT_EQ(here->body(ball).acceleration, there->body(ball).acceleration);
+    if (step % 25 > 0) continue;
+    ASSERT_EQ(here->pairs(), there->pairs());
+    const std::vector<ContactForce> forces = here->contact_forces(), others = there->contact_forces();
+    ASSERT_EQ(forces.size(), others.size());
+    for (std::size_t k = 0; k < forces.size(); ++k) {
+      ASSERT_EQ(forces[k].i, others[k].i);
+      ASSERT_EQ(forces[k].j, others[k].j);
+      ASSERT_EQ(forces[k].force, others[k].force);
+    }
+    const ContactProblem problem = here->contact_problem();
+    ASSERT_EQ(problem.bodies[index_of(ball)].inverse_mass, bodies_here.inverse_mass[index_of(ball)]);
+    ASSERT_EQ(problem.bodies[0].inverse_mass, 0);
+    const Region low{.name = "", .from = Vec3::Constant(-1), .to = Vec3(1, 1, 0)};
+    ASSERT_EQ(here->bodies_in(low), there->bodies_in(low));
+    ASSERT_EQ(here->bodies_near(low.from, low.to).id, there->bodies_near(low.from, low.to).id);
+  }
+  EXPECT_EQ(here->energies(Vec3::Zero()).kinetic(), there->energies(Vec3::Zero()).kinetic());
 }
 
 /// A heap, on both ways of taking a step: the same centre of mass within what chaos leaves, no overlap.

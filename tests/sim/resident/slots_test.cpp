@@ -9,9 +9,12 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cstdint>
 #include <map>
 #include <set>
 #include <tuple>
+#include <utility>
+#include <vector>
 
 namespace scree::resident {
 namespace {
@@ -64,10 +67,13 @@ struct Built {
   Slots<Space, double> slots;
 
   explicit Built(const BodyTable& table) { copy_bodies(bodies, table); }
-  void build(const std::vector<Pair>& list) {
+  void build(const std::vector<Pair>& list, const std::vector<std::int32_t>& place_before = {}) {
+    Array<std::int32_t, Space> before;
     copy(pairs, list);
+    copy(before, place_before);
     constexpr bool rolls = true;
-    slots.build(std::as_const(pairs).view(), view_of(std::as_const(bodies)), rolls);
+    slots.build(std::as_const(pairs).view(), std::as_const(before).view(), view_of(std::as_const(bodies)),
+                rolls);
   }
   std::vector<Slot> places() const {
     std::vector<Slot> all(static_cast<std::size_t>(slots.places().size()));
@@ -225,6 +231,51 @@ TYPED_TEST(SlotsTest, MemoryOutlivesTheCandidates) {
     kept += known;
   }
   EXPECT_GT(kept, 10);
+}
+
+TYPED_TEST(SlotsTest, MemoryAndColoursOutliveMovesOfTheBodies) {
+  constexpr std::int32_t count = 200;
+  const BodyTable table = balls(count, false);
+  const std::vector<Pair> before = random_pairs(count, 700, 2);
+  Built<TypeParam> built(table);
+  built.build(before);
+  parallel::for_each<TypeParam>(
+      "test", built.slots.places().size(),
+      Remember<double>{built.slots.places(), built.slots.ball_memory(), built.slots.couples()});
+  const std::int64_t colors = built.slots.balls().colors();
+
+  // To any other places, and the pairs in their order there.
+  std::vector<std::int32_t> place_before(count), place_now(count);
+  for (std::int32_t k = 0; k < count; ++k) {
+    place_before[static_cast<std::size_t>(k)] = (37 * k + 5) % count;
+    place_now[static_cast<std::size_t>((37 * k + 5) % count)] = k;
+  }
+  BodyTable moved = table;
+  permute(moved, place_before);
+  copy_bodies(built.bodies, moved);
+  std::vector<Pair> after;
+  for (const Pair& pair : before)
+    after.push_back(
+        {place_now[static_cast<std::size_t>(pair.i)], place_now[static_cast<std::size_t>(pair.j)]});
+  std::ranges::sort(after, {}, [](const Pair& pair) {
+    return std::pair(std::min(pair.i, pair.j), std::max(pair.i, pair.j));
+  });
+  built.build(after, place_before);
+
+  EXPECT_EQ(built.slots.balls().colors(), colors);
+  const std::vector<Slot> places = built.places();
+  expect_colors_apart(places, built.slots.balls(), moved);
+  std::vector<BallMemory<double>> memory(places.size());
+  copy_bytes<Host, TypeParam>(memory.data(), built.slots.ball_memory().data(),
+                              memory.size() * sizeof(BallMemory<double>));
+  int turned = 0;
+  for (std::size_t p = 0; p < places.size(); ++p) {
+    if (places[p].i == Slot::empty) continue;
+    EXPECT_EQ(memory[p].impulse.x, place_before[static_cast<std::size_t>(places[p].i)]);
+    EXPECT_EQ(memory[p].impulse.y, place_before[static_cast<std::size_t>(places[p].j)]);
+    if (places[p].i > places[p].j) ++turned;
+  }
+  EXPECT_GT(turned, 100);
 }
 
 }  // namespace

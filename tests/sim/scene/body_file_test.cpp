@@ -48,7 +48,7 @@ TEST_F(BodyFileTest, EachColumnIsRead) {
   const BodyTable& bodies = scene.bodies;
   ASSERT_EQ(bodies.count(), 3);
   EXPECT_EQ(scene.body_names.at("b[1]"), 2);
-  EXPECT_EQ(bodies.id[2], 2);
+  EXPECT_EQ(bodies.id[2], BodyNumber{2});
   EXPECT_EQ(bodies.shape[1], Shape::sphere);
   EXPECT_EQ(bodies.size[1].x(), 0.5);
   EXPECT_EQ(bodies.position[1], Vec3(1, 2, 3));

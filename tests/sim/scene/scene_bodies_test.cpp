@@ -115,7 +115,7 @@ TEST(SceneBodies, RepeatRunsXFastest) {
       for (int x = 0; x < 2; ++x, ++k) {
         const std::int32_t id = scene.body_names.at("b[" + std::to_string(k) + "]");
         EXPECT_EQ(id, 1 + k);
-        EXPECT_EQ(scene.bodies.id[static_cast<std::size_t>(id)], id);
+        EXPECT_EQ(scene.bodies.id[static_cast<std::size_t>(id)], BodyNumber{id});
         EXPECT_EQ(scene.bodies.position[static_cast<std::size_t>(id)], Vec3(10 + x, 2 * y, 3 * z));
         EXPECT_EQ(scene.bodies.material[static_cast<std::size_t>(id)], 0);
       }
