@@ -23,7 +23,9 @@ Checkpoints::Checkpoints(const RunFolder& folder, double every, RunIdentity iden
       every_(every),
       identity_(std::move(identity)),
       draws_(draws),
-      writer_(1, [this](Saved& saved) { write(saved); }) {}
+      writer_(1, [this](Saved& saved) { write(saved); }) {
+  prepare_checkpoints();
+}
 
 bool Checkpoints::find(std::vector<std::string>& warnings) {
   found_ = folder_.newest(warnings);

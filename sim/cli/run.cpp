@@ -160,11 +160,10 @@ void say_guards(const RunSummary& summary, Console& console) {
           fmt::format("guard: {} {}: {}; fewer by {}", guard.count, guard.what, guard.effect, guard.setting));
 }
 
-/// Whether the present state is one to go on from: no row or frame of it is missing, and it is that of the
-/// end of a step, as after every failure of a step but that of memory.
+/// Whether the present state is one to go on from: no row or frame of it is missing. It is that of the end of
+/// a step, whatever has failed.
 bool is_whole(const RunSummary& summary, const Simulation& simulation, const Recorder& recorder) {
-  if (summary.error.empty()) return true;
-  return summary.error != out_of_memory && recorder.recorded() == simulation.steps();
+  return summary.error.empty() || recorder.recorded() == simulation.steps();
 }
 
 /// A page of what is there already: without it the run has come out no worse.

@@ -102,6 +102,14 @@ std::string file_of(const SavedState& state) {
   return bytes;
 }
 
+/// HDF5 is for one thread at a time.
+std::string file_in_turn(const SavedState& state) {
+  static std::mutex turn;
+  const std::lock_guard lock(turn);
+  hdf5::start();
+  return file_of(state);
+}
+
 std::string bytes_of(const fs::path& file) {
   std::error_code none;
   if (!fs::is_regular_file(file, none)) throw RunError("is no file");
@@ -145,12 +153,16 @@ SavedState state_of(std::string_view file) {
 
 }  // namespace
 
+void prepare_checkpoints() {
+  SavedState little;
+  Archive archive = Archive::saving(little);
+  double number = 0;
+  archive("number", number);
+  file_in_turn(little);
+}
+
 void write_checkpoint(const fs::path& file, const SavedState& state) {
-  // HDF5 is for one thread at a time.
-  static std::mutex turn;
-  const std::lock_guard lock(turn);
-  hdf5::start();
-  write_file(file, file_of(state));
+  write_file(file, file_in_turn(state));
 }
 
 SavedState read_checkpoint(const fs::path& file) try {

@@ -11,6 +11,10 @@
 
 namespace scree {
 
+/// Makes HDF5 take the memory that it needs besides a state's own, and keep it: where there is none any more
+/// it would crash. To be called before a run.
+void prepare_checkpoints();
+
 /// Writes the state as HDF5: a dataset for each field, of its numbers or of records as opaque bytes, each
 /// with the attribute xxh3, the checksum of its bytes. Before that stands what HDF5's readers skip: a line
 /// with the checksum of all that follows, and a directory, a line for each field: kind, width, columns, rows,

@@ -5,21 +5,44 @@
 #include <fmt/format.h>
 
 #include <cstddef>
+#include <new>
 
 namespace scree::hdf5 {
 
+namespace {
+
+/// Throws what the library's failure was for want of.
+[[noreturn]] void fail(const char* what) {
+  bool lacks_memory = false;
+  H5Ewalk2(
+      H5E_DEFAULT, H5E_WALK_UPWARD,
+      [](unsigned, const H5E_error2_t* error, void* lacks) -> herr_t {
+        const bool of_memory = error->maj_num == H5E_RESOURCE &&
+                               (error->min_num == H5E_NOSPACE || error->min_num == H5E_CANTALLOC);
+        if (of_memory) *static_cast<bool*>(lacks) = true;
+        return 0;
+      },
+      &lacks_memory);
+  if (lacks_memory) throw std::bad_alloc();
+  throw RunError(fmt::format("HDF5 cannot {}", what));
+}
+
+}  // namespace
+
 Handle::Handle(hid_t id, Close close, const char* what) : id_(id), close_(close) {
-  if (id < 0) throw RunError(fmt::format("HDF5 cannot {}", what));
+  if (id < 0) fail(what);
 }
 
 void check(herr_t status, const char* what) {
-  if (status < 0) throw RunError(fmt::format("HDF5 cannot {}", what));
+  if (status < 0) fail(what);
 }
 
 void start() {
   static const herr_t told = H5dont_atexit();
   check(told, "start");
   H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
+  constexpr int all = -1;
+  check(H5set_free_list_limits(all, all, all, all, all, all), "start");
 }
 
 Handle type_of(const FieldType& type) {

@@ -11,7 +11,7 @@ namespace scree::hdf5 {
 class Handle {
  public:
   using Close = herr_t (*)(hid_t);
-  /// Throws RunError if the library gave none.
+  /// Throws as check() if the library gave none.
   Handle(hid_t id, Close close, const char* what);
   ~Handle() { close_(id_); }
   Handle(const Handle&) = delete;
@@ -23,11 +23,12 @@ class Handle {
   Close close_;
 };
 
-/// Throws RunError if the library says that it failed.
+/// Throws RunError if the library says that it failed, and std::bad_alloc if for want of memory.
 void check(herr_t status, const char* what);
 
-/// To be called first. Its own messages would go to stderr; and at the program's end it would try again to
-/// write what it could not, and crash.
+/// To be called first. The library's own messages would go to stderr; and at the program's end it would try
+/// again to write what it could not, and crash. It keeps the memory of what it has closed for what it opens
+/// next: it crashes where it gets none for the cache of a file.
 void start();
 
 /// Of one number, little-endian; of a record, its bytes.

@@ -3,7 +3,8 @@
 // - write, fsync, rename: the call fails with FAULT_ERRNO where its path has FAULT_PATH in it;
 // - memory: once FAULT_AFTER bytes were written to such a path, allocations of FAULT_SIZE bytes and more
 // fail;
-// - arrays: the same of aligned memory alone, which only a program's own arrays are;
+// - allocation: allocations of FAULT_SIZE bytes and more fail, whatever was written;
+// - arrays: the same as memory, of aligned memory alone, which only a program's own arrays are;
 // - limit: instead, the process gets no more address space from then on (RLIMIT_AS);
 // - flush: of a stream to such a path, whose buffer is lost, as on a full disk;
 // - osmesa_create, osmesa_current: the first call of OSMesa's that can fail, and the second;
@@ -157,6 +158,11 @@ void* __libc_realloc(void* old, size_t bytes);
 void* __libc_memalign(size_t alignment, size_t bytes);
 
 static bool is_refused(size_t bytes, bool aligned) {
+  if (is("allocation")) {
+    if (bytes < (size_t)size || !is_due(1)) return false;
+    errno = ENOMEM;
+    return true;
+  }
   if (!atomic_load(&short_of_memory) || bytes < (size_t)size) return false;
   if (!is("memory") && !(is("arrays") && aligned)) return false;
   if (atomic_fetch_add(&refused, 1) >= times && times > 0) return false;

@@ -238,6 +238,25 @@ def out_of_memory(case, fault):
     case.resume("--no-render")
 
 
+@case(("any allocation of 32 kB fails, and all after it", 32768, 0), ("any allocation of 8 kB fails, alone", 8192, 1))
+def out_of_memory_anywhere(case, size, times):
+    case.expected = case.harness.without_pictures
+    statuses = {}
+    # Where memory ends right after it was seen that there is some, at the start, HDF5 crashes; nothing but a test brings that about.
+    first = 8 if times == 0 else 0
+    for after in (*range(first, 20), *range(20, 600, 14)):
+        fault = {"FAULT": "allocation", "FAULT_SIZE": size, "FAULT_AFTER": after, "FAULT_TIMES": times}
+        finished = case.run("--no-render", "--overwrite", fault=fault, environment={"MALLOC_MMAP_THRESHOLD_": "32768"})
+        statuses[finished.status] = statuses.get(finished.status, 0) + 1
+        expect(finished.status in (0, 3), f"allocation {after}: exit status {finished.status}: {finished.error}")
+        says_why = "out of memory" in finished.error or os.strerror(errno.ENOMEM) in finished.error
+        expect(says_why == (finished.status == 3), f"allocation {after}: {finished.status} {finished.error}")
+    expect(statuses.get(3, 0) > 10, f"few faults happened: {statuses}")
+    case.happened = f"{statuses[3]} of {sum(statuses.values())} runs ended with: out of memory"
+    case.status, case.left = "3", case.found()
+    case.resume("--no-render", from_checkpoint=False)
+
+
 @case(("memory runs out while pictures are drawn", shortage("memory", 4096)))
 def out_of_memory_for_pictures(case, fault):
     finished = case.run(fault=fault)
