@@ -160,10 +160,12 @@ void say_guards(const RunSummary& summary, Console& console) {
           fmt::format("guard: {} {}: {}; fewer by {}", guard.count, guard.what, guard.effect, guard.setting));
 }
 
-/// Whether the present state is one to go on from: no row or frame of it is missing. It is that of the end of
-/// a step, whatever has failed.
+/// Whether the present state is one to go on from: no row or frame of it is missing. Where memory ran out,
+/// what contacts remember went with the step that was undone: going on from there would give other bits,
+/// while the checkpoint before it gives those of a run that nothing disturbed.
 bool is_whole(const RunSummary& summary, const Simulation& simulation, const Recorder& recorder) {
-  return summary.error.empty() || recorder.recorded() == simulation.steps();
+  if (summary.error.empty()) return true;
+  return summary.error != out_of_memory && recorder.recorded() == simulation.steps();
 }
 
 /// A page of what is there already: without it the run has come out no worse.
