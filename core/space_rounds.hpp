@@ -3,10 +3,12 @@
 #pragma once
 
 #include "core/array.hpp"
+#include "core/crew.hpp"
 #include "core/space_tiles.hpp"
 #include "core/timing.hpp"
 
 #include <algorithm>
+#include <concepts>
 #include <cstdint>
 #include <type_traits>
 #include <vector>
@@ -34,6 +36,49 @@ struct TileOfPhase {
     sums[t] = sum;
   }
 };
+
+/// A program that says itself how it does its work on a run of items, program.over(state, phase, begin, end),
+/// and whose items() hang on the state alone. Runs of equal length are shared out, so that who has the same
+/// run of all phases works on like items.
+template <class Program>
+concept WorksOnRuns = requires(const Program& program, const typename Program::State& state) {
+  { program.over(state, 0, std::int64_t{}, std::int64_t{}) } -> std::same_as<typename Program::Sum>;
+};
+
+template <class Program>
+requires WorksOnRuns<Program>
+typename Program::State run(Host, const char* label, const Program& program, typename Program::State state) {
+  using Sum = typename Program::Sum;
+  constexpr std::int64_t most_runs = 128;
+  constexpr std::int64_t fewest = 16;   // items that are worth sharing out, some 2 us
+  constexpr std::int64_t together = 4;  // of which a run has at least so many
+  const timing::Call<Host> call(label);
+  std::vector<Sum> sums;
+  for (int phases = program.phases(state); phases > 0; phases = program.phases(state)) {
+    sums.assign(static_cast<std::size_t>(phases * most_runs), Sum{});
+    const auto runs_of = [&](int phase) {
+      const std::int64_t items = program.items(state, phase);
+      return items < fewest ? 1 : std::min(items / together, most_runs);
+    };
+    const auto work = [&](int phase, std::int64_t first, std::int64_t last) {
+      const std::int64_t items = program.items(state, phase);
+      const std::int64_t runs = runs_of(phase);
+      for (std::int64_t r = first; r < last; ++r) {
+        sums[static_cast<std::size_t>(phase * most_runs + r)] =
+            program.over(state, phase, items * r / runs, items * (r + 1) / runs);
+      }
+    };
+    if (program.most_items() < fewest) {
+      for (int phase = 0; phase < phases; ++phase) work(phase, 0, 1);
+    } else {
+      scree::detail::Crew::get().share_phases(phases, runs_of, work);
+    }
+    Sum total{};
+    for (const Sum& sum : sums) total = total + sum;
+    state = program.judge(state, total);
+  }
+  return state;
+}
 
 template <class Program>
 typename Program::State run(Host, const char* label, const Program& program, typename Program::State state) {

@@ -32,7 +32,6 @@ struct LoadBody {
   double step;
   View<MidBody<Real>> mid;
   View<BodyRecord<Real>> solver;
-  View<InertiaRecord<Real>> inertia;  ///< empty if all contacts are of balls
 
   SCREE_HD void operator()(std::int64_t k) const {
     const Vec3& v = bodies.velocity[k];
@@ -48,13 +47,9 @@ struct LoadBody {
               .shape = bodies.shape[k],
               .mobility = bodies.mobility[k]};
     Vec3 spin = bodies.spin[k];
-    if (inertia.size() > 0 || parameters.torque.size() > 0) {
+    if (free && parameters.torque.size() > 0) {
       const Mat3 world = world_inverse_inertia(bodies.orientation[k], bodies.inverse_inertia[k]);
-      if (inertia.size() > 0) {
-        inertia[k] = {real(world(0, 0)), real(world(1, 1)), real(world(2, 2)),
-                      real(world(0, 1)), real(world(0, 2)), real(world(1, 2))};
-      }
-      if (free && parameters.torque.size() > 0) spin += step * (world * parameters.torque[k]).eval();
+      spin += step * (world * parameters.torque[k]).eval();
     }
     BodyRecord<Real>& body = solver[k];
     body.velocity = v3<Real>(free ? Vec3(v + step * parameters.acceleration_of(k)) : v);
@@ -70,33 +65,24 @@ struct LoadPart {
   ConstView<Hub> hubs;
   ConstView<std::int32_t> hub_of;
   ConstView<double> share;
-  std::int64_t bodies;
+  std::int64_t first_part;
   View<BodyRecord<Real>> solver;
-  View<InertiaRecord<Real>> inertia;
   SCREE_HD void operator()(std::int64_t p) const {
     const Hub& hub = hubs[hub_of[p]];
     const auto lighter = static_cast<Real>(1 / share[p]);
     BodyRecord<Real> part = solver[hub.body];
     part.inverse_mass *= lighter;
     part.inverse_inertia *= lighter;
-    solver[bodies + p] = part;
-    if (inertia.size() == 0) return;
-    const InertiaRecord<Real>& whole = inertia[hub.body];
-    inertia[bodies + p] = {lighter * whole.xx, lighter * whole.yy, lighter * whole.zz,
-                           lighter * whole.xy, lighter * whole.xz, lighter * whole.yz};
+    solver[first_part + p] = part;
   }
 };
 
-/// Points of walls are not free; those of contacts get their velocities when these are found.
+/// Nobody, and points of walls, are not free; those of contacts get their velocities when these are found.
 template <class Real>
-struct ClearWallPoint {
+struct ClearNotFree {
   std::int64_t first;
   View<BodyRecord<Real>> solver;
-  View<InertiaRecord<Real>> inertia;
-  SCREE_HD void operator()(std::int64_t k) const {
-    solver[first + k] = {};
-    if (inertia.size() > 0) inertia[first + k] = {};
-  }
+  SCREE_HD void operator()(std::int64_t k) const { solver[first + k] = {}; }
 };
 
 /// What the contacts have made of the velocities.

@@ -122,7 +122,7 @@ struct BookBalls {
     using C = BallContacts<Real>;
     const std::int64_t place = c - c % 256 + contacts.slot[c];
     const Ends ends = contacts.ends[c];
-    const Fields<Real>& f = contacts.fields;
+    const auto& f = contacts.fields;
     const V3<Real> n = f.vector(C::normal, c);
     const V3<Real> impulse = f.vector(C::impulse, c);
     Books books;
@@ -135,16 +135,16 @@ struct BookBalls {
       stage.book(
           {vec3(impulse), normal, number(C::arm_i) * normal, number(C::arm_j) * normal, number(C::target)},
           slot, ends, books);
-      books.gaps = fabs(static_cast<double>(f.at(C::gap, c)));
+      books.gaps = fabs(static_cast<double>(contacts.gaps.at(C::gap, c)));
       books.loaded = 1;
       books.ends = stage.free_ends(ends);
       if (stage.loads.size() > 0) stage.mark_loaded(slot, slot.surface);
     }
-    Real& flown = f.at(C::flown, c);
+    Real& flown = contacts.gaps.at(C::flown, c);
     if (contacts.flags[c] == 0) {
       const V3<Real> u = stage.solver[ends.j].velocity - stage.solver[ends.i].velocity;
       flown += static_cast<Real>(0.5 * stage.step) * dot(n, u);
-      books.deepest = fmax(0.0, static_cast<double>(-flown / f.at(C::cap, c)));
+      books.deepest = fmax(0.0, static_cast<double>(-flown / contacts.gaps.at(C::cap, c)));
     } else if (passes(contacts.flags[c], loaded)) {
       flown = static_cast<Real>(HUGE_VAL);
     }
@@ -167,20 +167,20 @@ struct BookPoints {
     const Ends ends = contacts.ends[c];
     const Vec3 n = vec3(contacts.fields.vector(C::normal, c));
     const double cap = static_cast<double>(contacts.fields.at(C::cap, c));
-    const Fields<Real>& f = contacts.point_fields;
+    const auto& f = contacts.point_fields;
     Books books;
     for (int k = 0; k < contacts.points[c]; ++k) {
-      const auto number = [&](int field) { return static_cast<double>(f.at(C::at_point(k, field), c)); };
-      const auto at = point_at(contacts, c, k);
+      const auto number = [&](auto field) { return static_cast<double>(f.at(C::at_point(k, field), c)); };
+      const auto at = point_at<Scalar<Real>>(contacts, c, k);
       const V3<Real> impulse = f.vector(C::at_point(k, C::impulse), c);
-      const bool loaded = !is_zero<Real>(impulse);
+      const bool loaded = !is_zero(impulse);
       memory[place].impulse[k] = impulse;
       if (loaded) {
         stage.book({vec3(impulse), n, vec3(at.arm_i), vec3(at.arm_j), number(C::target)}, slot, ends, books);
-        books.gaps += fabs(number(C::gap));
+        books.gaps += fabs(static_cast<double>(contacts.gaps.at(C::at_point(k, C::gap), c)));
         ++books.loaded;
       }
-      Real& flown = f.at(C::at_point(k, C::flown), c);
+      Real& flown = contacts.gaps.at(C::at_point(k, C::flown), c);
       if (passes(contacts.flags[c], loaded)) flown = static_cast<Real>(HUGE_VAL);
       if (contacts.flags[c] != 0) continue;
       const V3<Real> u = velocity_at(at, stage.solver[ends.i], stage.solver[ends.j]);

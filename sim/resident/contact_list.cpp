@@ -11,13 +11,22 @@ namespace {
 
 constexpr std::int64_t tile = parallel::tile;
 
-struct ListContacts {
+struct CountVisits {
   const std::int32_t* found;
+  std::int32_t width;
+  View<std::int32_t> counts;
+  SCREE_HD void operator()(std::int64_t t) const { counts[t] = (found[t] + width - 1) / width; }
+};
+
+struct ListVisits {
+  ConstView<std::int32_t> counts;
   ConstView<std::int64_t> number;
+  std::int32_t width;
   View<std::int32_t> places;
-  SCREE_HD void operator()(std::int64_t place) const {
-    if (has_contact(found, place))
-      places[number[place / tile] + place % tile] = static_cast<std::int32_t>(place);
+  SCREE_HD void operator()(std::int64_t k) const {
+    const std::int64_t t = k / tile;
+    const auto visit = static_cast<std::int32_t>(k % tile);
+    if (visit < counts[t]) places[number[t] + visit] = static_cast<std::int32_t>(t * tile) + visit * width;
   }
 };
 
@@ -35,23 +44,35 @@ void ContactList<Space>::take(const ColorTiles& colors) {
   std::vector<std::int64_t> tiles;
   for (const std::int64_t t : colors.begin) tiles.push_back(t - colors.begin.front());
   copy(tile_, tiles);
-  places_.resize(0);
-  begin_.assign(tiles.size(), 0);
+  for (List* list : {&contacts_, &blocks_}) {
+    list->places.resize(0);
+    list->begin.assign(tiles.size(), 0);
+  }
 }
 
 template <class Space>
-void ContactList<Space>::make(const Array<std::int32_t, Space>& found) {
+void ContactList<Space>::make(const Array<std::int32_t, Space>& found, int width) {
+  width_ = width;
   if (found.empty()) return;
-  parallel::exclusive_scan_into("contacts.list", found, number_);
-  places_.resize(tile * found.size());
-  parallel::for_each<Space>("contacts.list", places_.size(),
-                            ListContacts{found.data(), std::as_const(number_).view(), places_.view()});
+  make(found, 1, contacts_);
+  if (width > 1) make(found, width, blocks_);
+}
+
+template <class Space>
+void ContactList<Space>::make(const Array<std::int32_t, Space>& found, int width, List& list) {
+  counts_.resize(found.size());
+  parallel::for_each<Space>("contacts.list", found.size(), CountVisits{found.data(), width, counts_.view()});
+  parallel::exclusive_scan_into("contacts.list", counts_, number_);
+  list.places.resize(tile * found.size());
+  parallel::for_each<Space>(
+      "contacts.list", list.places.size(),
+      ListVisits{std::as_const(counts_).view(), std::as_const(number_).view(), width, list.places.view()});
   first_.resize(tile_.size());
   parallel::for_each<Space>(
       "contacts.list", tile_.size(),
       FirstOfColor{std::as_const(number_).view(), std::as_const(tile_).view(), first_.view()});
-  copy(begin_, first_);
-  places_.resize(begin_.back());
+  copy(list.begin, first_);
+  list.places.resize(list.begin.back());
 }
 
 #define SCREE_INSTANTIATE(Space) template class ContactList<Space>;

@@ -15,20 +15,31 @@ class ContactList {
  public:
   /// Contacts will be in tiles of these colours.
   void take(const ColorTiles& colors);
-  /// Of the tiles, each has `found` so many at its front. The host waits for the counts.
-  void make(const Array<std::int32_t, Space>& found);
+  /// Of the tiles, each has `found` so many at its front. The host waits for the counts. `width`: how many
+  /// contacts side by side a visit is made to.
+  void make(const Array<std::int32_t, Space>& found, int width);
 
-  std::int64_t size() const { return places_.size(); }
+  std::int64_t size() const { return contacts_.places.size(); }
   /// Counted from the first tile, colour by colour.
-  ConstView<std::int32_t> places() const { return places_.view(); }
-  /// The first of each colour; one more than colours.
-  const std::vector<std::int64_t>& begin() const { return begin_; }
+  ConstView<std::int32_t> places() const { return contacts_.places.view(); }
+
+  /// The first place of each visit, and
+  ConstView<std::int32_t> visits() const { return (width_ > 1 ? blocks_ : contacts_).places.view(); }
+  /// the first visit of each colour; one more than colours.
+  const std::vector<std::int64_t>& visits_begin() const { return (width_ > 1 ? blocks_ : contacts_).begin; }
 
  private:
-  Array<std::int32_t, Space> places_;
-  Array<std::int64_t, Space> number_;        // of the first contact of each tile
+  struct List {
+    Array<std::int32_t, Space> places;
+    std::vector<std::int64_t> begin;
+  };
+  void make(const Array<std::int32_t, Space>& found, int width, List& list);
+
+  int width_ = 1;
+  List contacts_, blocks_;
+  Array<std::int32_t, Space> counts_;        // of each tile
+  Array<std::int64_t, Space> number_;        // of the first of each tile
   Array<std::int64_t, Space> tile_, first_;  // of each colour
-  std::vector<std::int64_t> begin_;
 };
 
 /// f(place) for the contacts of a list.

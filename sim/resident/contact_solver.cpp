@@ -6,6 +6,7 @@
 #include "core/tolerances.hpp"
 #include "sim/resident/contact_sums.hpp"
 #include "sim/resident/few_contacts.hpp"
+#include "sim/resident/padding.hpp"
 #include "sim/resident/rounds.hpp"
 
 #include <algorithm>
@@ -72,7 +73,6 @@ Inspection<Real> ContactSolver<Space, Real>::inspect() const {
   seen.places.resize(static_cast<std::size_t>(slots_.places().size()));
   copy_bytes<Host, Space>(seen.places.data(), slots_.places().data(), seen.places.size() * sizeof(Slot));
   copy(seen.free, free_);
-  copy(seen.inertia, inertia_);
   seen.contacts.copy_from(store_);
   seen.first_wall_point = slots_.solver_bodies().first_wall_point();
   seen.step = step_;
@@ -106,18 +106,18 @@ void ContactSolver<Space, Real>::load_bodies(const ConstBodyView& bodies, ConstV
   for (auto* records : {&solver_, &free_, &last_}) records->resize(all);
   displacement_.resize(all);
   const bool only_balls = slots_.others().tiles() == 0;
-  inertia_.resize(only_balls ? 0 : all);
   turn_.resize(only_balls ? 0 : all);
-  parallel::for_each<Space>(
-      "contacts.bodies", n,
-      LoadBody<Real>{bodies, margin, parameters, step_, mid_.view(), solver_.view(), inertia_.view()});
+  parallel::for_each<Space>("contacts.bodies", n,
+                            LoadBody<Real>{bodies, margin, parameters, step_, mid_.view(), solver_.view()});
   parallel::for_each<Space>(
       "contacts.bodies", slots_.solver_bodies().hub_of_parts().size(),
       LoadPart<Real>{slots_.solver_bodies().hubs(), slots_.solver_bodies().hub_of_parts(),
-                     slots_.solver_bodies().share_of_parts(), n, solver_.view(), inertia_.view()});
+                     slots_.solver_bodies().share_of_parts(), slots_.solver_bodies().first_part(),
+                     solver_.view()});
   const std::int64_t walls = slots_.solver_bodies().first_wall_point();
-  parallel::for_each<Space>("contacts.bodies", all - walls,
-                            ClearWallPoint<Real>{walls, solver_.view(), inertia_.view()});
+  parallel::for_each<Space>("contacts.bodies", all - walls, ClearNotFree<Real>{walls, solver_.view()});
+  parallel::for_each<Space>("contacts.bodies", 1,
+                            ClearNotFree<Real>{slots_.solver_bodies().nobody(), solver_.view()});
 }
 
 template <class Space, class Real>
@@ -141,21 +141,35 @@ void ContactSolver<Space, Real>::find(ConstView<double> margin, double scale, co
                               .any_is_late = any_is_late};
   finder_.find(stage, slots_, loads(), solver_.view(), store_);
   copy(free_, solver_);
-  ball_list_.make(store_.ball_tiles());
-  point_list_.make(store_.point_tiles());
+  constexpr int width = visit_width<Space, Real>;
+  ball_list_.make(store_.ball_tiles(), width);
+  point_list_.make(store_.point_tiles(), width);
   counts_ = {ball_list_.size(), ball_list_.size()};
   if (parameters.rolling_friction) start_rolling(stage);
+  if constexpr (width > 1) pad();
   if (point_list_.size() == 0) return;
   counts_.contacts += point_list_.size();
   counts_.points += parallel::sum_by_tiles<std::int64_t, Space>(
       "contacts.count", point_list_.size(), on_contacts(point_list_, CountPoints<Real>{store_.points()}));
 }
 
+/// What visits to several contacts at once find where there are fewer.
+template <class Space, class Real>
+void ContactSolver<Space, Real>::pad() {
+  const std::int32_t nobody = slots_.solver_bodies().nobody();
+  parallel::for_each<Space>(
+      "contacts.pad", store_.ball_tiles().size(),
+      PadBalls<Real>{store_.balls(), rolling_of_balls(), rolls(), store_.ball_tiles().data(), nobody});
+  parallel::for_each<Space>(
+      "contacts.pad", store_.point_tiles().size(),
+      PadPoints<Real>{store_.points(), rolling_of_points(), rolls(), store_.point_tiles().data(), nobody});
+}
+
 template <class Space, class Real>
 void ContactSolver<Space, Real>::start_rolling(const FindStage<Real>& stage) {
   using R = RollingFields<Real>;
-  ball_rolling_.resize(store_.ball_places() * R::count);
-  point_rolling_.resize(store_.point_places() * R::count);
+  ball_rolling_.resize(decltype(R::fields)::size(store_.ball_places()));
+  point_rolling_.resize(decltype(R::fields)::size(store_.point_places()));
   const ConstView<V3<Real>> couples = slots_.couples();
   parallel::for_each<Space>(
       "rolling.start", ball_list_.size(),
@@ -189,7 +203,6 @@ SweepState ContactSolver<Space, Real>::run_impulse_rounds(const SweepPlan& plan)
                                       .rolls = rolls(),
                                       .ball_rolling = rolling_of_balls(),
                                       .point_rolling = rolling_of_points(),
-                                      .inertia = inertia_.data(),
                                       .bodies = solver_.data(),
                                       .last = last_.data(),
                                       .body_count = slots_.solver_bodies().first_wall_point(),
@@ -343,7 +356,7 @@ void ContactSolver<Space, Real>::take_velocities(const ConstBodyView& bodies) {
   parallel::for_each<Space>(
       "late.reload", solver_.size(),
       ReloadBody<Real>{bodies, slots_.solver_bodies().hubs(), slots_.solver_bodies().hub_of_parts(),
-                       solver_.view(), last_.view()});
+                       slots_.solver_bodies().first_part(), solver_.view(), last_.view()});
   parallel::for_each<Space>(
       "late.fly", ball_list_.size(),
       on_contacts(ball_list_, FlyBalls<Real>{store_.balls(), solver_.view(), last_.view(), step_}));
@@ -408,7 +421,6 @@ void ContactSolver<Space, Real>::run_parting_rounds(const PartingPlan& plan) {
                                       .point_colors = ColorPhases(point_list_),
                                       .balls = store_.balls(),
                                       .points = store_.points(),
-                                      .inertia = inertia_.data(),
                                       .displacement = displacement_.data(),
                                       .turn = turn_.data(),
                                       .shifted_hubs = join_hubs(displacement_),

@@ -18,6 +18,7 @@
 #include "sim/resident/inspection.hpp"
 #include "sim/resident/patience.hpp"
 #include "sim/resident/rolling.hpp"
+#include "sim/resident/rolling_visits.hpp"
 #include "sim/resident/slots.hpp"
 #include "sim/resident/sweeps.hpp"
 
@@ -84,6 +85,7 @@ class ContactSolver {
 
  private:
   void make_places();
+  void pad();
   void load_bodies(const ConstBodyView& bodies, ConstView<double> margin,
                    const ResponseParameters& parameters);
   ConstView<Slot> places_of_points() const;
@@ -97,8 +99,12 @@ class ContactSolver {
   SweepState run_impulse_rounds(const SweepPlan& plan);
   void start_rolling(const FindStage<Real>& stage);
   bool rolls() const { return ball_rolling_.size() + point_rolling_.size() > 0; }
-  RollingFields<Real> rolling_of_balls() { return {{ball_rolling_.data(), store_.ball_places()}}; }
-  RollingFields<Real> rolling_of_points() { return {{point_rolling_.data(), store_.point_places()}}; }
+  RollingFields<Real> rolling_of_balls() {
+    return {decltype(RollingFields<Real>::fields)(ball_rolling_.data())};
+  }
+  RollingFields<Real> rolling_of_points() {
+    return {decltype(RollingFields<Real>::fields)(point_rolling_.data())};
+  }
   PartingPlan plan_parting() const;
   template <bool only_balls>
   void run_parting_rounds(const PartingPlan& plan);
@@ -111,7 +117,6 @@ class ContactSolver {
 
   Array<MidBody<Real>, Space> mid_;
   Array<BodyRecord<Real>, Space> solver_, free_, last_;
-  Array<InertiaRecord<Real>, Space> inertia_;
   Array<CentreRecord<Real>, Space> displacement_, turn_;
   Array<PartsSum, Space> parts_sums_;
 

@@ -20,9 +20,11 @@ class ContactStore {
     slot_.resize(balls + others);
     flags_.resize(balls + others);
     points_.resize(others);
-    ball_fields_.resize(balls * BallContacts<Real>::count);
-    contact_fields_.resize(others * PointContacts<Real>::count);
-    point_fields_.resize(others * PointContacts<Real>::point_count * Manifold::max_points);
+    ball_fields_.resize(decltype(BallContacts<Real>::fields)::size(balls));
+    ball_gaps_.resize(decltype(BallContacts<Real>::gaps)::size(balls));
+    contact_fields_.resize(decltype(PointContacts<Real>::fields)::size(others));
+    point_fields_.resize(decltype(PointContacts<Real>::point_fields)::size(others));
+    point_gaps_.resize(decltype(PointContacts<Real>::gaps)::size(others));
   }
 
   /// Places.
@@ -33,19 +35,21 @@ class ContactStore {
   Array<std::int32_t, Space>& point_tiles() { return point_tiles_; }
 
   BallContacts<Real> balls() {
-    return {.ends = {ends_.data(), balls_},
+    return {.ends = ends_.data(),
             .slot = {slot_.data(), balls_},
             .flags = {flags_.data(), balls_},
-            .fields = {ball_fields_.data(), balls_}};
+            .fields = decltype(BallContacts<Real>::fields)(ball_fields_.data()),
+            .gaps = decltype(BallContacts<Real>::gaps)(ball_gaps_.data())};
   }
   PointContacts<Real> points() {
     const std::int64_t places = points_.size();
-    return {.ends = {ends_.data() + balls_, places},
+    return {.ends = ends_.data() + balls_,
             .slot = {slot_.data() + balls_, places},
             .flags = {flags_.data() + balls_, places},
-            .points = points_.view(),
-            .fields = {contact_fields_.data(), places},
-            .point_fields = {point_fields_.data(), places}};
+            .points = points_.data(),
+            .fields = decltype(PointContacts<Real>::fields)(contact_fields_.data()),
+            .point_fields = decltype(PointContacts<Real>::point_fields)(point_fields_.data()),
+            .gaps = decltype(PointContacts<Real>::gaps)(point_gaps_.data())};
   }
 
   template <class From>
@@ -60,6 +64,8 @@ class ContactStore {
     copy(ball_fields_, from.ball_fields_);
     copy(contact_fields_, from.contact_fields_);
     copy(point_fields_, from.point_fields_);
+    copy(ball_gaps_, from.ball_gaps_);
+    copy(point_gaps_, from.point_gaps_);
   }
 
  private:
@@ -71,7 +77,7 @@ class ContactStore {
   Array<Ends, Space> ends_;
   Array<std::uint8_t, Space> slot_, flags_;
   Array<std::int32_t, Space> points_;
-  Array<Real, Space> ball_fields_, contact_fields_, point_fields_;
+  Array<Real, Space> ball_fields_, contact_fields_, point_fields_, ball_gaps_, point_gaps_;
 };
 
 }  // namespace scree::resident

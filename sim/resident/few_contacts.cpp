@@ -16,13 +16,14 @@ FewContacts<Real>::FewContacts(Inspection<Real>& seen) : seen_(seen) {
     SolverBody& body = bodies_.view()[k];
     body = {vec3(free.velocity), vec3(free.spin), static_cast<double>(free.inverse_mass),
             static_cast<double>(free.inverse_inertia) * Mat3::Identity()};
-    if (!seen.inertia.empty()) {
-      const InertiaRecord<Real>& m = seen.inertia[static_cast<std::size_t>(k)];
-      body.inverse_inertia << m.xx, m.xy, m.xz, m.xy, m.yy, m.yz, m.xz, m.yz, m.zz;
-    }
     velocity_.view()[k] = body.velocity;
     spin_.view()[k] = body.spin;
   }
+  for_each_contact(seen, [&](const SeenContact& c) {
+    if (c.balls) return;
+    bodies_.view()[c.i].inverse_inertia = c.inertia_i;
+    bodies_.view()[c.j].inverse_inertia = c.inertia_j;
+  });
   std::vector<Contact> contacts;
   std::vector<ContactRow> rows;
   for_each_contact(seen, [&](const SeenContact& c) {
@@ -100,10 +101,13 @@ std::vector<BodyRecord<Real>> FewContacts<Real>::put_back() {
     const std::int64_t place = place_[static_cast<std::size_t>(c)];
     for (int k = 0; k < contact.count; ++k) {
       const V3<Real> impulse = v3<Real>(rows_.view()[contact.first_row + k].impulse);
-      const Fields<Real>& fields = contact.balls ? balls.fields : points.point_fields;
-      for (const int field : {contact.balls ? int{B::impulse} : P::at_point(k, P::impulse),
-                              contact.balls ? int{B::last} : P::at_point(k, P::last)})
-        fields.set(field, place, impulse);
+      for (const bool last : {false, true}) {
+        if (contact.balls) {
+          balls.fields.set(last ? B::last : B::impulse, place, impulse);
+        } else {
+          points.point_fields.set(P::at_point(k, last ? P::last : P::impulse), place, impulse);
+        }
+      }
     }
     const Ends& ends = contact.balls ? balls.ends[place] : points.ends[place];
     for (const auto& [end, body] : {std::pair(ends.i, contact.i), std::pair(ends.j, contact.j)}) {

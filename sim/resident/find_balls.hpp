@@ -150,7 +150,7 @@ struct FindBalls {
     contacts.slot[to] = static_cast<std::uint8_t>(place % 256);
     contacts.flags[to] = static_cast<std::uint8_t>(record.lead > 0 ? flag_late : 0);
     if (may_pass) passing.add(to);
-    const Fields<Real>& f = contacts.fields;
+    const auto& f = contacts.fields;
     const auto put = [&](int field, double value) { f.at(field, to) = static_cast<Real>(value); };
     const V3<Real> impulse = v3<Real>(stage.remembered(remembered.impulse, n, friction));
     f.set(C::normal, to, v3<Real>(n));
@@ -162,10 +162,13 @@ struct FindBalls {
     put(C::tangent_mass, masses.tangent);
     f.set(C::impulse, to, impulse);
     f.set(C::last, to, impulse);
-    put(C::gap, record.gap);
-    put(C::flown, record.gap + opened);
-    put(C::pushed, 0);
-    put(C::cap, tolerance::correction_cap * at.size());
+    const auto put_gap = [&](int field, double value) {
+      contacts.gaps.at(field, to) = static_cast<Real>(value);
+    };
+    put_gap(C::gap, record.gap);
+    put_gap(C::flown, record.gap + opened);
+    put_gap(C::pushed, 0);
+    put_gap(C::cap, tolerance::correction_cap * at.size());
   }
 
  private:

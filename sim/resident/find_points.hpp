@@ -106,6 +106,8 @@ struct FindPoints {
     contacts.fields.set(C::normal, to, v3<Real>(m.normal));
     contacts.fields.at(C::friction, to) = static_cast<Real>(friction);
     contacts.fields.at(C::cap, to) = static_cast<Real>(tolerance::correction_cap * pair.size());
+    put_inertia(C::inertia_i, to, i.inverse_inertia);
+    put_inertia(C::inertia_j, to, j.inverse_inertia);
     now.count = m.count;
     const double bend = stage.bend_of(pair, m.normal);
     bool may_pass = false;
@@ -121,23 +123,26 @@ struct FindPoints {
       const V3<Real> impulse = v3<Real>(stage.remembered(last, m.normal, friction));
       const double parting = m.normal.dot(row.relative_velocity(i, j));
       may_pass = may_pass || may_hold_apart(point.gap, -(parting + m.normal.dot(kick)), lead);
-      const auto at = [p](int field) { return C::at_point(p, field); };
-      const Fields<Real>& f = contacts.point_fields;
-      const auto put = [&](int field, double value) { f.at(at(field), to) = static_cast<Real>(value); };
+      const auto at = [p](auto field) { return C::at_point(p, field); };
+      const auto& f = contacts.point_fields;
+      const auto put = [&](auto field, double value) { f.at(at(field), to) = static_cast<Real>(value); };
       f.set(at(C::arm_i), to, v3<Real>(row.arm_i));
       f.set(at(C::arm_j), to, v3<Real>(row.arm_j));
       const Mat3& w = coupling.stick;
       const double stick[] = {w(0, 0), w(1, 1), w(2, 2), w(0, 1), w(0, 2), w(1, 2)};
-      for (int e = 0; e < 6; ++e) put(C::stick + e, stick[e]);
+      for (int e = 0; e < 6; ++e) f.at(at(C::stick) + e, to) = static_cast<Real>(stick[e]);
       f.set(at(C::coupling), to, v3<Real>(coupling.normal));
       put(C::target, stage.target_of(point.gap, shell, bend, parting, lead));
       put(C::normal_mass, row.normal_mass);
       put(C::tangent_mass, row.tangent_mass);
       f.set(at(C::impulse), to, impulse);
       f.set(at(C::last), to, impulse);
-      put(C::gap, point.gap);
-      put(C::flown, point.gap + stage.opened_by_then(pair, m.normal, bend, lead));
-      put(C::pushed, 0);
+      const auto put_gap = [&](typename C::GapField field, double value) {
+        contacts.gaps.at(C::at_point(p, field), to) = static_cast<Real>(value);
+      };
+      put_gap(C::gap, point.gap);
+      put_gap(C::flown, point.gap + stage.opened_by_then(pair, m.normal, bend, lead));
+      put_gap(C::pushed, 0);
     }
     if (may_pass && !loads[slot.candidate].is_loaded(m.part)) passing.add(to);
   }
@@ -150,6 +155,10 @@ struct FindPoints {
   }
   SCREE_HD Vec3 arm_of(std::int32_t body, const Vec3& point) const {
     return stage.bodies.period.nearest(point - stage.bodies.position[body]);
+  }
+  SCREE_HD void put_inertia(int first, std::int64_t to, const Mat3& m) const {
+    const double elements[] = {m(0, 0), m(1, 1), m(2, 2), m(0, 1), m(0, 2), m(1, 2)};
+    for (int e = 0; e < 6; ++e) contacts.fields.at(first + e, to) = static_cast<Real>(elements[e]);
   }
   /// Before the kick.
   SCREE_HD SolverBody solver_body(const MidBody<Real>& body, std::int32_t k, std::int32_t end) const {

@@ -21,7 +21,7 @@ struct FlyBalls {
     if (contacts.flags[c] != 0) return;
     const auto change = [&](std::int32_t k) { return after[k].velocity - before[k].velocity; };
     const V3<Real> u = change(contacts.ends[c].j) - change(contacts.ends[c].i);
-    contacts.fields.at(C::flown, c) +=
+    contacts.gaps.at(C::flown, c) +=
         static_cast<Real>(0.5 * step) * dot(contacts.fields.vector(C::normal, c), u);
   }
 };
@@ -36,9 +36,9 @@ struct FlyPoints {
     const Moving<Real> i = change(contacts.ends[c].i);
     const Moving<Real> j = change(contacts.ends[c].j);
     for (int k = 0; k < contacts.points[c]; ++k) {
-      contacts.point_fields.at(C::at_point(k, C::flown), c) +=
-          static_cast<Real>(0.5 * step) *
-          dot(contacts.fields.vector(C::normal, c), velocity_at(point_at(contacts, c, k), i, j));
+      contacts.gaps.at(C::at_point(k, C::flown), c) +=
+          static_cast<Real>(0.5 * step) * dot(contacts.fields.vector(C::normal, c),
+                                              velocity_at(point_at<Scalar<Real>>(contacts, c, k), i, j));
     }
   }
   SCREE_HD Moving<Real> change(std::int32_t k) const {
@@ -55,13 +55,14 @@ struct ReloadBody {
   ConstBodyView bodies;
   ConstView<Hub> hubs;
   ConstView<std::int32_t> hub_of;
+  std::int64_t first_part;
   ConstView<BodyRecord<Real>> before;
   View<BodyRecord<Real>> solver;
   SCREE_HD void operator()(std::int64_t k) const {
-    const std::int64_t count = bodies.position.size();
+    const std::int64_t part = k - first_part;
     solver[k] = before[k];
-    if (k >= count + hub_of.size()) return;  // a point of a wall
-    const std::int64_t body = k < count ? k : hubs[hub_of[k - count]].body;
+    if (k == first_part - 1 || part >= hub_of.size()) return;  // nobody, or a point of a wall
+    const std::int64_t body = part < 0 ? k : hubs[hub_of[part]].body;
     solver[k].velocity = v3<Real>(bodies.velocity[body]);
     solver[k].spin = v3<Real>(bodies.spin[body]);
   }
@@ -83,8 +84,7 @@ struct FlyLateBalls {
     const Vec3 turned = turning_of(slot.j, slot.end_j) - turning_of(slot.i, slot.end_i);
     const Vec3 apart =
         bodies.period.nearest(bodies.position[slot.j] - bodies.position[slot.i]) + left * turned;
-    contacts.fields.at(C::flown, c) +=
-        static_cast<Real>(vec3(contacts.fields.vector(C::normal, c)).dot(apart));
+    contacts.gaps.at(C::flown, c) += static_cast<Real>(vec3(contacts.fields.vector(C::normal, c)).dot(apart));
   }
   /// Velocity of the point of a wall beside that of the wall.
   SCREE_HD Vec3 turning_of(std::int32_t body, std::int32_t end) const {
@@ -106,11 +106,10 @@ struct FlyLatePoints {
     const Vec3 apart = bodies.period.nearest(bodies.position[slot.j] - bodies.position[slot.i]);
     const double left = flight.terms.step - fmax(flight.clock[slot.i], flight.clock[slot.j]);
     for (int k = 0; k < contacts.points[c]; ++k) {
-      const auto at = point_at(contacts, c, k);
+      const auto at = point_at<Scalar<Real>>(contacts, c, k);
       const Vec3 turned =
           bodies.spin[slot.j].cross(vec3(at.arm_j)) - bodies.spin[slot.i].cross(vec3(at.arm_i));
-      contacts.point_fields.at(C::at_point(k, C::flown), c) +=
-          static_cast<Real>(n.dot(apart + left * turned));
+      contacts.gaps.at(C::at_point(k, C::flown), c) += static_cast<Real>(n.dot(apart + left * turned));
     }
   }
 };

@@ -11,11 +11,54 @@
 
 namespace scree::resident {
 
-/// Arithmetic of one contact to a thread, in the precision of the solution.
+/// The bodies of the solver that a contact acts on.
+struct alignas(8) Ends {
+  std::int32_t i, j;
+};
+enum class End { i, j };
+template <End end>
+SCREE_LAW std::int32_t body_at(const Ends& ends) {
+  return end == End::i ? ends.i : ends.j;
+}
+
 template <class Real>
+struct BodyRecord;
+template <class Real>
+struct CentreRecord;
+
+/// Arithmetic of one contact to a thread, in the precision of the solution. Beside what the laws ask for, an
+/// arithmetic knows how many contacts it works on, gets their numbers from memory and puts them there, and
+/// so with their bodies: those named by `ends` of these contacts. A body that is not free is never written.
+template <class Number>
 struct Scalar {
+  using Real = Number;
   using V = Real;
+  static constexpr int width = 1;
   SCREE_HD static Real root(Real a) { return std::sqrt(a); }
+  SCREE_LAW static V all(Real a) { return a; }
+  SCREE_LAW static V get(const Real* from) { return *from; }
+  SCREE_LAW static void set(Real* to, V value) { *to = value; }
+  SCREE_LAW static bool any(bool condition) { return condition; }
+  SCREE_LAW static Real at(V value, int) { return value; }
+  /// The most of a number of each.
+  SCREE_LAW static std::int32_t most(const std::int32_t* of) { return *of; }
+
+  template <End end>
+  SCREE_LAW static lanes::Moving<Scalar> bodies(const BodyRecord<Real>* from, const Ends* ends) {
+    const BodyRecord<Real> body = from[body_at<end>(*ends)];
+    return body;
+  }
+  template <End end>
+  SCREE_LAW static lanes::Centre<Scalar> bodies(const CentreRecord<Real>* from, const Ends* ends) {
+    const CentreRecord<Real> body = from[body_at<end>(*ends)];
+    return body;
+  }
+  template <End end, class Record, class Body>
+  SCREE_LAW static void put(const Body& body, Record* to, const Ends* ends) {
+    Record record;
+    static_cast<Body&>(record) = body;
+    if (body.inverse_mass > 0) to[body_at<end>(*ends)] = record;
+  }
 };
 
 template <class Real>
@@ -32,9 +75,9 @@ SCREE_HD inline Vec3 vec3(const V3<Real>& a) {
   return {static_cast<double>(a.x), static_cast<double>(a.y), static_cast<double>(a.z)};
 }
 
-template <class Real>
-SCREE_HD inline bool is_zero(const V3<Real>& a) {
-  return a.x == 0 && a.y == 0 && a.z == 0;
+template <class A>
+SCREE_LAW auto is_zero(const lanes::V3<A>& a) {
+  return (a.x == 0) & (a.y == 0) & (a.z == 0);
 }
 
 /// Velocities of a body, or its displacement and turn: a record that is read and written as a whole.
@@ -71,14 +114,40 @@ struct alignas(8) Slot {
   std::int32_t surface = 0;                   ///< which of the pair's manifolds
 };
 
-/// Numbers of places, field by field.
-template <class Real>
+/// `count` numbers of each place, in blocks of lanes::width places that lie field by field: one instruction
+/// of Host works on a field of a block, and one access to the memory of a GPU brings it.
+template <class Real, int count>
 class Fields {
  public:
   Fields() = default;
-  SCREE_HD Fields(Real* data, std::int64_t places) : data_(data), places_(places) {}
+  SCREE_HD explicit Fields(Real* data) : data_(data) {}
+  /// Numbers of so many places, whole tiles of them.
+  static std::int64_t size(std::int64_t places) { return places * count; }
 
-  SCREE_HD Real& at(int field, std::int64_t place) const { return data_[field * places_ + place]; }
+  SCREE_LAW Real& at(int field, std::int64_t place) const {
+    const auto k = static_cast<std::uint64_t>(place);
+    constexpr std::uint64_t width = lanes::width;
+    return data_[(k / width * count + static_cast<std::uint64_t>(field)) * width + k % width];
+  }
+  /// Of as many places as the arithmetic works on.
+  template <class A>
+  SCREE_LAW typename A::V get(int field, std::int64_t place) const {
+    return A::get(&at(field, place));
+  }
+  template <class A>
+  SCREE_LAW lanes::V3<A> vector(int field, std::int64_t place) const {
+    return {get<A>(field, place), get<A>(field + 1, place), get<A>(field + 2, place)};
+  }
+  template <class A>
+  SCREE_LAW void put(int field, std::int64_t place, const typename A::V& value) const {
+    A::set(&at(field, place), value);
+  }
+  template <class A>
+  SCREE_LAW void put(int field, std::int64_t place, const lanes::V3<A>& value) const {
+    put<A>(field, place, value.x);
+    put<A>(field + 1, place, value.y);
+    put<A>(field + 2, place, value.z);
+  }
   SCREE_HD V3<Real> vector(int field, std::int64_t place) const {
     return {at(field, place), at(field + 1, place), at(field + 2, place)};
   }
@@ -90,12 +159,6 @@ class Fields {
 
  private:
   Real* data_ = nullptr;
-  std::int64_t places_ = 0;
-};
-
-/// The bodies of the solver that a contact acts on.
-struct alignas(8) Ends {
-  std::int32_t i, j;
 };
 
 /// Contacts of balls with balls, or with bodies that are not free, tile by tile: those of a tile of slots are
@@ -112,23 +175,35 @@ struct BallContacts {
     tangent_mass,
     impulse,
     last = impulse + 3,  ///< the impulse before the last sweep
-    gap = last + 3,      ///< at the midpoint (m)
-    flown,               ///< at the end of the substep, without correction (m)
+    count = last + 3
+  };
+  /// What the sweeps do not ask for.
+  enum GapField {
+    gap,    ///< at the midpoint (m)
+    flown,  ///< at the end of the substep, without correction (m)
     pushed,
     cap,
-    count
+    gap_count
   };
 
-  View<Ends> ends;
+  Ends* ends;
   View<std::uint8_t> slot;  ///< of each contact, in its tile
   View<std::uint8_t> flags;
-  Fields<Real> fields;
+  Fields<Real, count> fields;
+  Fields<Real, gap_count> gaps;
 };
 
 /// Contacts of any bodies, with up to Manifold::max_points points.
 template <class Real>
 struct PointContacts {
-  enum Field { normal, friction = normal + 3, cap, count };
+  enum Field {
+    normal,
+    friction = normal + 3,
+    cap,
+    inertia_i,  ///< inverse, world frame: xx, yy, zz, xy, xz, yz
+    inertia_j = inertia_i + 6,
+    count = inertia_j + 6
+  };
   enum PointField {
     arm_i,
     arm_j = arm_i + 3,
@@ -139,20 +214,21 @@ struct PointContacts {
     tangent_mass,
     impulse,
     last = impulse + 3,
-    gap = last + 3,
-    flown,
-    pushed,
-    point_count
+    point_count = last + 3
   };
+  enum GapField { gap, flown, pushed, gap_count };
 
-  View<Ends> ends;
+  Ends* ends;
   View<std::uint8_t> slot;
   View<std::uint8_t> flags;
-  View<std::int32_t> points;  ///< of each contact
-  Fields<Real> fields;
-  Fields<Real> point_fields;  ///< of point k: from k * point_count on
+  std::int32_t* points;  ///< of each contact
+  Fields<Real, count> fields;
+  Fields<Real, Manifold::max_points * point_count> point_fields;
+  Fields<Real, Manifold::max_points * gap_count> gaps;
 
-  SCREE_HD static int at_point(int k, int field) { return k * point_count + field; }
+  /// Of point k.
+  SCREE_LAW static int at_point(int k, PointField field) { return k * point_count + field; }
+  SCREE_LAW static int at_point(int k, GapField field) { return k * gap_count + field; }
 };
 
 /// True if there is a contact in a place: `found` in each tile, at its front.
@@ -171,7 +247,7 @@ template <class Real>
 struct BallMemory {
   V3<Real> impulse;  ///< N s, world frame
 
-  SCREE_HD bool is_loaded() const { return !is_zero<Real>(impulse); }
+  SCREE_HD bool is_loaded() const { return !is_zero(impulse); }
 };
 template <class Real>
 struct PointMemory {
@@ -181,7 +257,7 @@ struct PointMemory {
 
   SCREE_HD bool is_loaded() const {
     for (int k = 0; k < count; ++k)
-      if (!is_zero<Real>(impulse[k])) return true;
+      if (!is_zero(impulse[k])) return true;
     return false;
   }
 };

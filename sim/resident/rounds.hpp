@@ -5,9 +5,10 @@
 #include "sim/resident/contact_list.hpp"
 #include "sim/resident/hubs.hpp"
 #include "sim/resident/layout.hpp"
-#include "sim/resident/rolling.hpp"
+#include "sim/resident/rolling_visits.hpp"
 #include "sim/resident/slots.hpp"
 #include "sim/resident/sweeps.hpp"
+#include "sim/resident/visit_kernels.hpp"
 
 #include <algorithm>
 #include <cstdint>
@@ -15,7 +16,7 @@
 
 namespace scree::resident {
 
-/// The colours of one kind of contacts as phases.
+/// Visits to the contacts of one kind, the colours being phases.
 struct ColorPhases {
   std::int64_t begin[most_colors + 1];
   int count = 0;
@@ -23,8 +24,8 @@ struct ColorPhases {
 
   template <class Space>
   explicit ColorPhases(const ContactList<Space>& list)
-      : count(static_cast<int>(list.begin().size()) - 1), places(list.places()) {
-    std::ranges::copy(list.begin(), begin);
+      : count(static_cast<int>(list.visits_begin().size()) - 1), places(list.visits()) {
+    std::ranges::copy(list.visits_begin(), begin);
   }
   SCREE_HD std::int64_t items(int color) const { return begin[color + 1] - begin[color]; }
   SCREE_HD std::int64_t place(int color, std::int64_t item) const { return places[begin[color] + item]; }
@@ -33,6 +34,76 @@ struct ColorPhases {
     for (int c = 0; c < count; ++c) most = std::max(most, items(c));
     return most;
   }
+};
+
+/// Work on one item of a phase, by a thread of its own.
+template <class Number>
+struct OneItem {
+  using Real = Number;
+  std::int64_t item;
+
+  template <class Visit, class... More>
+  SCREE_HD auto visit(const ColorPhases& colors, int color, const Visit& visit, More... more) const {
+    return visit.template visit<Scalar<Real>>(colors.place(color, item), more...);
+  }
+  template <class Visit>
+  SCREE_HD Overlaps part(const ColorPhases& colors, int color, const Visit& visit) const {
+    return Overlaps::of_gap(static_cast<float>(this->visit(colors, color, visit)));
+  }
+  SCREE_HD void accelerate(const Accelerate<Real>& bodies, Real beta) const { bodies.visit(item, beta); }
+  template <class F>
+  SCREE_HD void each(const F& f) const {
+    f(item);
+  }
+};
+
+/// Work on a run of items by Host.
+template <class Number>
+struct RunOfItems {
+  using Real = Number;
+  std::int64_t begin, end;
+
+  template <class Visit, class... More>
+  auto visit(const ColorPhases& colors, int color, const Visit& visit, More... more) const {
+    const std::int32_t* const places = colors.places.data() + colors.begin[color];
+    if constexpr (by_kernels) {
+      return visit_kernels()(visit, Blocks{places + begin, end - begin}, more...);
+    } else {
+      using Sum = decltype(visit.template visit<Scalar<Real>>(0, more...));
+      if constexpr (std::is_void_v<Sum>) {
+        for (std::int64_t k = begin; k < end; ++k) visit.template visit<Scalar<Real>>(places[k], more...);
+      } else {
+        Sum sum{};
+        for (std::int64_t k = begin; k < end; ++k)
+          sum = sum + visit.template visit<Scalar<Real>>(places[k], more...);
+        return sum;
+      }
+    }
+  }
+  template <class Visit>
+  Overlaps part(const ColorPhases& colors, int color, const Visit& visit) const {
+    if constexpr (by_kernels) {
+      return this->visit(colors, color, visit);
+    } else {
+      Overlaps sum;
+      for (std::int64_t k = begin; k < end; ++k) sum = sum + OneItem<Real>{k}.part(colors, color, visit);
+      return sum;
+    }
+  }
+  void accelerate(const Accelerate<Real>& bodies, Real beta) const {
+    if constexpr (by_kernels) {
+      visit_kernels().accelerate(bodies, begin, end, beta);
+    } else {
+      for (std::int64_t k = begin; k < end; ++k) bodies.visit(k, beta);
+    }
+  }
+  template <class F>
+  void each(const F& f) const {
+    for (std::int64_t k = begin; k < end; ++k) f(k);
+  }
+
+ private:
+  static constexpr bool by_kernels = visit_width<Host, Real> != 1;
 };
 
 /// Finds impulses. The first round gives the bodies what their contacts remember, each other one is a sweep:
@@ -52,7 +123,6 @@ struct ImpulseRounds {
   PointContacts<Real> points;
   bool rolls;
   RollingFields<Real> ball_rolling, point_rolling;
-  const InertiaRecord<Real>* inertia;
   BodyRecord<Real>* bodies;
   BodyRecord<Real>* last;
   std::int64_t body_count;
@@ -85,50 +155,10 @@ struct ImpulseRounds {
     return std::max({body_count, ball_colors.most_items(), point_colors.most_items()});
   }
   SCREE_HD Sum operator()(const State& state, int phase, std::int64_t item) const {
-    const auto beta = static_cast<Real>(state.beta);
-    if (goes_on(state) && phase-- == 0) {
-      Accelerate<Real>{bodies, last}(item, beta);
-      return {};
-    }
-    if (phase < ball_colors.count) {
-      const std::int64_t c = ball_colors.place(phase, item);
-      if (state.pushed) return SweepBalls<Real>{balls, bodies, momentum}(c, beta);
-      PushBalls<Real>{balls, bodies}(c);
-      return {};
-    }
-    phase -= ball_colors.count;
-    if constexpr (!only_balls) {
-      if (phase < point_colors.count) {
-        const std::int64_t c = point_colors.place(phase, item);
-        if (state.pushed) return SweepPoints<Real>{points, inertia, bodies, block_sweeps}(c, beta);
-        PushPoints<Real>{points, inertia, bodies}(c);
-        return {};
-      }
-    }
-    phase -= point_colors.count;
-    if (rolls) {
-      if (phase < ball_colors.count)
-        return roll(
-            Roll<Real, BallContacts<Real>, TurnBalls<Real>>{balls, ball_rolling, {}, bodies, momentum}, state,
-            ball_colors.place(phase, item));
-      phase -= ball_colors.count;
-      if constexpr (!only_balls) {
-        if (phase < point_colors.count)
-          return roll(
-              Roll<Real, PointContacts<Real>, TurnPoints<Real>>{
-                  points, point_rolling, {inertia}, bodies, true},
-              state, point_colors.place(phase, item));
-      }
-      phase -= point_colors.count;
-    }
-    hubs(phase, item);
-    return {};
+    return work(state, phase, OneItem<Real>{item});
   }
-  template <class Roll>
-  SCREE_HD static Sum roll(const Roll& contacts, const State& state, std::int64_t c) {
-    if (state.pushed) return contacts.sweep(c, static_cast<Real>(state.beta));
-    contacts.push(c);
-    return {};
+  Sum over(const State& state, int phase, std::int64_t begin, std::int64_t end) const {
+    return work(state, phase, RunOfItems<Real>{begin, end});
   }
   /// After a sweep: have the impulses converged, and by how much does the next one go on (Sweeps).
   SCREE_HD State judge(State state, const Sum& change) const {
@@ -144,6 +174,53 @@ struct ImpulseRounds {
     state.beta = ratio < 1.0 ? ratio : 0.0;
     state.last_step = step;
     return state;
+  }
+
+ private:
+  template <class Items>
+  SCREE_HD Sum work(const State& state, int phase, const Items& items) const {
+    const auto beta = static_cast<Real>(state.beta);
+    if (goes_on(state) && phase-- == 0) {
+      items.accelerate(Accelerate<Real>{bodies, last}, beta);
+      return {};
+    }
+    if (phase < ball_colors.count) {
+      if (state.pushed)
+        return items.visit(ball_colors, phase, SweepBalls<Real>{balls, bodies, momentum}, beta);
+      items.visit(ball_colors, phase, PushBalls<Real>{balls, bodies});
+      return {};
+    }
+    phase -= ball_colors.count;
+    if constexpr (!only_balls) {
+      if (phase < point_colors.count) {
+        if (state.pushed)
+          return items.visit(point_colors, phase, SweepPoints<Real>{points, bodies, block_sweeps}, beta);
+        items.visit(point_colors, phase, PushPoints<Real>{points, bodies});
+        return {};
+      }
+    }
+    phase -= point_colors.count;
+    if (rolls) {
+      if (phase < ball_colors.count)
+        return roll(state, phase, ball_colors, balls, ball_rolling, TurnBalls{}, items);
+      phase -= ball_colors.count;
+      if constexpr (!only_balls) {
+        if (phase < point_colors.count)
+          return roll(state, phase, point_colors, points, point_rolling, TurnPoints{}, items);
+      }
+      phase -= point_colors.count;
+    }
+    items.each([&](std::int64_t item) { hubs(phase, item); });
+    return {};
+  }
+  template <class Contacts, class Turn, class Items>
+  SCREE_HD Sum roll(const State& state, int color, const ColorPhases& colors, const Contacts& contacts,
+                    const RollingFields<Real>& rolling, const Turn&, const Items& items) const {
+    if (state.pushed)
+      return items.visit(colors, color, Roll<Real, Contacts, Turn>{contacts, rolling, bodies, momentum},
+                         static_cast<Real>(state.beta));
+    items.visit(colors, color, PushRolling<Real, Contacts, Turn>{contacts, rolling, bodies});
+    return {};
   }
 };
 
@@ -164,7 +241,6 @@ struct PartingRounds {
   ColorPhases ball_colors, point_colors;
   BallContacts<Real> balls;
   PointContacts<Real> points;
-  const InertiaRecord<Real>* inertia;
   CentreRecord<Real>* displacement;
   CentreRecord<Real>* turn;  ///< none if all contacts are of balls
   JoinHubs<CentreRecord<Real>> shifted_hubs, turned_hubs;
@@ -186,24 +262,35 @@ struct PartingRounds {
   }
   std::int64_t most_items() const { return std::max(ball_colors.most_items(), point_colors.most_items()); }
   SCREE_HD Sum operator()(const State&, int phase, std::int64_t item) const {
-    if (phase < ball_colors.count)
-      return PartBalls<Real>{balls, displacement, share}(ball_colors.place(phase, item));
-    phase -= ball_colors.count;
-    if constexpr (!only_balls) {
-      if (phase < point_colors.count)
-        return PartPoints<Real>{points, inertia, displacement, turn, share}(point_colors.place(phase, item));
-    }
-    phase -= point_colors.count;
-    if (phase < shifted_hubs.phases()) {
-      shifted_hubs(phase, item);
-    } else {
-      turned_hubs(phase - shifted_hubs.phases(), item);
-    }
-    return {};
+    return work(phase, OneItem<Real>{item});
+  }
+  Sum over(const State&, int phase, std::int64_t begin, std::int64_t end) const {
+    return work(phase, RunOfItems<Real>{begin, end});
   }
   SCREE_HD State judge(const State& state, const Sum& seen) const {
     const int sweeps = state.sweeps + 1;
     return {sweeps, sweeps >= least && seen.deepest <= deepest && seen.sum <= mean * seen.count};
+  }
+
+ private:
+  template <class Items>
+  SCREE_HD Sum work(int phase, const Items& items) const {
+    if (phase < ball_colors.count)
+      return items.part(ball_colors, phase, PartBalls<Real>{balls, displacement, share});
+    phase -= ball_colors.count;
+    if constexpr (!only_balls) {
+      if (phase < point_colors.count)
+        return items.part(point_colors, phase, PartPoints<Real>{points, displacement, turn, share});
+    }
+    phase -= point_colors.count;
+    items.each([&](std::int64_t item) {
+      if (phase < shifted_hubs.phases()) {
+        shifted_hubs(phase, item);
+      } else {
+        turned_hubs(phase - shifted_hubs.phases(), item);
+      }
+    });
+    return {};
   }
 };
 

@@ -49,10 +49,10 @@ struct ListHubs {
 
 struct PlaceHubs {
   ConstView<std::int64_t> first;
-  std::int64_t bodies;
+  std::int64_t first_part;
   View<Hub> hubs;
   SCREE_HD void operator()(std::int64_t h) const {
-    hubs[h].first = static_cast<std::int32_t>(bodies + first[h]);
+    hubs[h].first = static_cast<std::int32_t>(first_part + first[h]);
   }
 };
 /// The hub of each part: the last that does not begin after it.
@@ -198,6 +198,7 @@ void SolverBodies<Space>::number(const ConstBodyView& bodies, View<Slot> slots) 
 template <class Space>
 void SolverBodies<Space>::split_hubs(const ConstBodyView& bodies, View<Slot> slots) {
   const std::int64_t n = bodies.count();
+  const std::int64_t first_part = n + 1;
   const std::int64_t ends = 2 * slots.size();
   Array<std::int32_t, Space> counts(n);
   Array<std::uint8_t, Space> marks(n);
@@ -206,7 +207,7 @@ void SolverBodies<Space>::split_hubs(const ConstBodyView& bodies, View<Slot> slo
   parallel::for_each<Space>("slots.degree", slots.size(), CountSlots{slots, bodies.mobility, counts.view()});
   parallel::for_each<Space>("slots.hubs", n, MarkHubs{std::as_const(counts).view(), marks.view()});
   hubs_.resize(parallel::exclusive_scan("slots.hubs", marks, number));
-  count_ = n;
+  count_ = first_part;
   hub_of_.resize(0);
   share_.resize(0);
   if (hubs_.empty()) return;
@@ -216,7 +217,8 @@ void SolverBodies<Space>::split_hubs(const ConstBodyView& bodies, View<Slot> slo
       ListHubs{std::as_const(counts).view(), std::as_const(number).view(), hubs_.view(), parts.view()});
   hub_of_.resize(parallel::exclusive_scan("slots.hubs", parts, to));
   count_ += hub_of_.size();
-  parallel::for_each<Space>("slots.hubs", hubs_.size(), PlaceHubs{std::as_const(to).view(), n, hubs_.view()});
+  parallel::for_each<Space>("slots.hubs", hubs_.size(),
+                            PlaceHubs{std::as_const(to).view(), first_part, hubs_.view()});
   parallel::for_each<Space>("slots.hubs", hub_of_.size(), NameHubs{std::as_const(to).view(), hub_of_.view()});
   marks.resize(ends);
   parallel::for_each<Space>("slots.hub ends", ends,
@@ -232,13 +234,13 @@ void SolverBodies<Space>::split_hubs(const ConstBodyView& bodies, View<Slot> slo
   parallel::for_each<Space>(
       "slots.hub ends", hub_of_.size(),
       DealHubEnds{bodies, std::as_const(key).view(), std::as_const(end).view(), std::as_const(hubs_).view(),
-                  std::as_const(hub_of_).view(), n, slots, weight.view()});
+                  std::as_const(hub_of_).view(), first_part, slots, weight.view()});
   parallel::exclusive_scan("slots.hub ends", weight, before);
   share_.resize(hub_of_.size());
   parallel::for_each<Space>(
       "slots.hub ends", hub_of_.size(),
-      ShareHub{std::as_const(hubs_).view(), std::as_const(hub_of_).view(), n, std::as_const(weight).view(),
-               std::as_const(before).view(), share_.view()});
+      ShareHub{std::as_const(hubs_).view(), std::as_const(hub_of_).view(), first_part,
+               std::as_const(weight).view(), std::as_const(before).view(), share_.view()});
 }
 
 template <class Space>

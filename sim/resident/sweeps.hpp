@@ -1,4 +1,6 @@
-// Visits to one contact of a substep: those that find its impulse, and those that part what overlaps.
+// Visits to contacts of a substep: those that find their impulses, and those that part what overlaps. Each is
+// written once, for an arithmetic A that works on one contact or on several side by side (Scalar, and Lanes
+// of the kernels).
 #pragma once
 
 #include "sim/resident/layout.hpp"
@@ -6,12 +8,6 @@
 #include <cstdint>
 
 namespace scree::resident {
-
-/// Loads and stores of the two bodies of a contact; one that is not free is never written.
-template <class Record>
-SCREE_HD inline void store_free(Record* bodies, std::int32_t k, const Record& body) {
-  if (body.inverse_mass > 0) bodies[k] = body;
-}
 
 /// What the sweeps of a substep know of one another.
 struct SweepState {
@@ -23,48 +19,77 @@ struct SweepState {
 };
 
 /// Change of the impulses by a sweep, and their size: as ImpulseChange.
-template <class Real>
-struct SweepChange {
-  Real step = 0;
-  Real size = 0;
-  SCREE_HD friend SweepChange operator+(const SweepChange& a, const SweepChange& b) {
+template <class A>
+struct ChangeOf {
+  typename A::V step{}, size{};
+  SCREE_LAW friend ChangeOf operator+(const ChangeOf& a, const ChangeOf& b) {
     return {a.step + b.step, a.size + b.size};
   }
 };
-
 template <class Real>
-SCREE_HD inline lanes::Balls<Scalar<Real>> balls_at(const BallContacts<Real>& contacts, std::int64_t c) {
+using SweepChange = ChangeOf<Scalar<Real>>;
+
+template <class A, class Real>
+SCREE_LAW lanes::Balls<A> balls_at(const BallContacts<Real>& contacts, std::int64_t c) {
   using C = BallContacts<Real>;
-  const Fields<Real>& f = contacts.fields;
-  return {f.vector(C::normal, c), f.at(C::arm_i, c),       f.at(C::arm_j, c),       f.at(C::friction, c),
-          f.at(C::target, c),     f.at(C::normal_mass, c), f.at(C::tangent_mass, c)};
+  const auto get = [&](int field) { return contacts.fields.template get<A>(field, c); };
+  return {contacts.fields.template vector<A>(C::normal, c),
+          get(C::arm_i),
+          get(C::arm_j),
+          get(C::friction),
+          get(C::target),
+          get(C::normal_mass),
+          get(C::tangent_mass)};
 }
 
-template <class Real>
-SCREE_HD inline lanes::Point<Scalar<Real>> point_at(const PointContacts<Real>& contacts, std::int64_t c,
-                                                    int k) {
+template <class A, class Real>
+SCREE_LAW lanes::Point<A> point_at(const PointContacts<Real>& contacts, std::int64_t c, int k) {
   using C = PointContacts<Real>;
-  const Fields<Real>& f = contacts.point_fields;
-  return {f.vector(C::at_point(k, C::arm_i), c), f.vector(C::at_point(k, C::arm_j), c)};
+  const auto& f = contacts.point_fields;
+  return {f.template vector<A>(C::at_point(k, C::arm_i), c),
+          f.template vector<A>(C::at_point(k, C::arm_j), c)};
 }
 
-template <class Real>
-SCREE_HD inline lanes::PointLaw<Scalar<Real>> law_at(const PointContacts<Real>& contacts, std::int64_t c,
-                                                     int k) {
+template <class A, class Real>
+SCREE_LAW lanes::PointLaw<A> law_at(const PointContacts<Real>& contacts, std::int64_t c, int k) {
   using C = PointContacts<Real>;
-  const Fields<Real>& f = contacts.point_fields;
-  const auto at = [&](int field) { return f.at(C::at_point(k, field), c); };
-  return {{at(C::stick), at(C::stick + 1), at(C::stick + 2), at(C::stick + 3), at(C::stick + 4),
-           at(C::stick + 5)},
-          f.vector(C::at_point(k, C::coupling), c),
-          at(C::target),
-          at(C::normal_mass),
-          at(C::tangent_mass)};
+  const auto& f = contacts.point_fields;
+  const auto get = [&](auto field) { return f.template get<A>(C::at_point(k, field), c); };
+  const auto stick = [&](int e) { return f.template get<A>(C::at_point(k, C::stick) + e, c); };
+  return {{stick(0), stick(1), stick(2), stick(3), stick(4), stick(5)},
+          f.template vector<A>(C::at_point(k, C::coupling), c),
+          get(C::target),
+          get(C::normal_mass),
+          get(C::tangent_mass)};
 }
 
-/// Inverse inertia of a body, world frame.
-template <class Real>
-struct alignas(8 * sizeof(Real)) InertiaRecord : lanes::Symmetric<Scalar<Real>> {};
+/// The two bodies of each contact that A works on.
+template <class A, class Body>
+struct Two {
+  Body i, j;
+};
+template <class A, class Record>
+SCREE_LAW auto bodies_of(const Record* bodies, const Ends* ends) {
+  auto i = A::template bodies<End::i>(bodies, ends);
+  auto j = A::template bodies<End::j>(bodies, ends);
+  return Two<A, decltype(i)>{i, j};
+}
+template <class A, class Body, class Record>
+SCREE_LAW void store(const Two<A, Body>& two, Record* bodies, const Ends* ends) {
+  A::template put<End::i>(two.i, bodies, ends);
+  A::template put<End::j>(two.j, bodies, ends);
+}
+template <class A, class Real>
+SCREE_LAW Two<A, lanes::Symmetric<A>> inertia_of(const PointContacts<Real>& contacts, std::int64_t c) {
+  using C = PointContacts<Real>;
+  const auto& f = contacts.fields;
+  const auto at = [&](int first) {
+    return lanes::Symmetric<A>{f.template get<A>(first, c),     f.template get<A>(first + 1, c),
+                               f.template get<A>(first + 2, c), f.template get<A>(first + 3, c),
+                               f.template get<A>(first + 4, c), f.template get<A>(first + 5, c)};
+  };
+  return {at(C::inertia_i), at(C::inertia_j)};
+}
 
 /// Gives the bodies of a contact of balls what its impulse is.
 template <class Real>
@@ -72,35 +97,33 @@ struct PushBalls {
   BallContacts<Real> contacts;
   BodyRecord<Real>* bodies;
 
-  SCREE_HD void operator()(std::int64_t c) const {
-    const Ends ends = contacts.ends[c];
-    BodyRecord<Real> i = bodies[ends.i];
-    BodyRecord<Real> j = bodies[ends.j];
-    push(balls_at(contacts, c), contacts.fields.vector(BallContacts<Real>::impulse, c), i, j);
-    store_free(bodies, ends.i, i);
-    store_free(bodies, ends.j, j);
+  template <class A>
+  SCREE_LAW void visit(std::int64_t c) const {
+    const Ends* const ends = contacts.ends + c;
+    auto two = bodies_of<A>(bodies, ends);
+    push(balls_at<A>(contacts, c), contacts.fields.template vector<A>(BallContacts<Real>::impulse, c), two.i,
+         two.j);
+    store<A>(two, bodies, ends);
   }
 };
 
 template <class Real>
 struct PushPoints {
   PointContacts<Real> contacts;
-  const InertiaRecord<Real>* inertia;
   BodyRecord<Real>* bodies;
 
-  SCREE_HD void operator()(std::int64_t c) const {
+  template <class A>
+  SCREE_LAW void visit(std::int64_t c) const {
     using C = PointContacts<Real>;
-    const Ends ends = contacts.ends[c];
-    BodyRecord<Real> i = bodies[ends.i];
-    BodyRecord<Real> j = bodies[ends.j];
-    const InertiaRecord<Real> inertia_i = inertia[ends.i];
-    const InertiaRecord<Real> inertia_j = inertia[ends.j];
-    for (int p = 0; p < contacts.points[c]; ++p) {
-      const V3<Real> impulse = contacts.point_fields.vector(C::at_point(p, C::impulse), c);
-      push<Scalar<Real>>(inertia_i, inertia_j, point_at(contacts, c, p), impulse, i, j);
+    const Ends* const ends = contacts.ends + c;
+    auto two = bodies_of<A>(bodies, ends);
+    const auto turning = inertia_of<A>(contacts, c);
+    const int count = A::most(contacts.points + c);
+    for (int p = 0; p < count; ++p) {
+      push<A>(turning.i, turning.j, point_at<A>(contacts, c, p),
+              contacts.point_fields.template vector<A>(C::at_point(p, C::impulse), c), two.i, two.j);
     }
-    store_free(bodies, ends.i, i);
-    store_free(bodies, ends.j, j);
+    store<A>(two, bodies, ends);
   }
 };
 
@@ -112,74 +135,74 @@ struct SweepBalls {
   BodyRecord<Real>* bodies;
   bool momentum;  ///< else beta is 0, and the last sweep is not remembered
 
-  SCREE_HD SweepChange<Real> operator()(std::int64_t c, Real beta) const {
+  template <class A>
+  SCREE_LAW ChangeOf<A> visit(std::int64_t c, Real beta) const {
     using C = BallContacts<Real>;
-    const Ends ends = contacts.ends[c];
-    BodyRecord<Real> i = bodies[ends.i];
-    BodyRecord<Real> j = bodies[ends.j];
-    const V3<Real> before = contacts.fields.vector(C::impulse, c);
-    const V3<Real> last = momentum ? contacts.fields.vector(C::last, c) : before;
-    const V3<Real> ahead = before + beta * (before - last);
-    // Many contacts are open and stay so: they need no more.
-    if (is_zero<Real>(before) && is_zero<Real>(last) &&
-        dot(contacts.fields.vector(C::normal, c), j.velocity - i.velocity) >=
-            contacts.fields.at(C::target, c))
-      return {};
-    const auto balls = balls_at(contacts, c);
-    const V3<Real> p = impulse_of(balls, ahead, i, j);
-    const V3<Real> change = p - ahead;
-    push(balls, change, i, j);
-    store_free(bodies, ends.i, i);
-    store_free(bodies, ends.j, j);
-    if (momentum) contacts.fields.set(C::last, c, before);
-    contacts.fields.set(C::impulse, c, p);
+    const auto& f = contacts.fields;
+    const Ends* const ends = contacts.ends + c;
+    auto two = bodies_of<A>(bodies, ends);
+    const lanes::V3<A> before = f.template vector<A>(C::impulse, c);
+    const lanes::V3<A> last = momentum ? f.template vector<A>(C::last, c) : before;
+    const lanes::V3<A> ahead = before + A::all(beta) * (before - last);
+    // Many contacts are open and stay so: they need no more. Several side by side seldom are.
+    if constexpr (A::width == 1) {
+      if (is_zero(before) && is_zero(last) &&
+          dot(f.template vector<A>(C::normal, c), two.j.velocity - two.i.velocity) >=
+              f.template get<A>(C::target, c))
+        return {};
+    }
+    const auto balls = balls_at<A>(contacts, c);
+    const lanes::V3<A> p = impulse_of(balls, ahead, two.i, two.j);
+    const lanes::V3<A> change = p - ahead;
+    push(balls, change, two.i, two.j);
+    store<A>(two, bodies, ends);
+    if (momentum) f.template put<A>(C::last, c, before);
+    f.template put<A>(C::impulse, c, p);
     return {dot(change, change) / balls.normal_mass, dot(p, p) / balls.normal_mass};
   }
 };
 
+/// Solves the points of a contact, one after the other.
 template <class Real>
 struct SweepPoints {
   PointContacts<Real> contacts;
-  const InertiaRecord<Real>* inertia;
   BodyRecord<Real>* bodies;
   int block_sweeps;
 
-  SCREE_HD SweepChange<Real> operator()(std::int64_t c, Real beta) const {
+  template <class A>
+  SCREE_LAW ChangeOf<A> visit(std::int64_t c, Real beta) const {
     using C = PointContacts<Real>;
-    const Ends ends = contacts.ends[c];
-    BodyRecord<Real> i = bodies[ends.i];
-    BodyRecord<Real> j = bodies[ends.j];
-    const InertiaRecord<Real> inertia_i = inertia[ends.i];
-    const InertiaRecord<Real> inertia_j = inertia[ends.j];
-    const V3<Real> n = contacts.fields.vector(C::normal, c);
-    const Real friction = contacts.fields.at(C::friction, c);
-    const int count = contacts.points[c];
-    const Fields<Real>& f = contacts.point_fields;
-    V3<Real> now[Manifold::max_points];
-    V3<Real> ahead[Manifold::max_points];
+    using V3 = lanes::V3<A>;
+    const Ends* const ends = contacts.ends + c;
+    auto two = bodies_of<A>(bodies, ends);
+    const auto turning = inertia_of<A>(contacts, c);
+    const V3 n = contacts.fields.template vector<A>(C::normal, c);
+    const auto friction = contacts.fields.template get<A>(C::friction, c);
+    const int count = A::most(contacts.points + c);
+    const auto& f = contacts.point_fields;
+    V3 now[Manifold::max_points];
+    V3 ahead[Manifold::max_points];
     for (int p = 0; p < count; ++p) {
-      const V3<Real> before = f.vector(C::at_point(p, C::impulse), c);
-      now[p] = ahead[p] = before + beta * (before - f.vector(C::at_point(p, C::last), c));
-      f.set(C::at_point(p, C::last), c, before);
+      const V3 before = f.template vector<A>(C::at_point(p, C::impulse), c);
+      now[p] = ahead[p] = before + A::all(beta) * (before - f.template vector<A>(C::at_point(p, C::last), c));
+      f.template put<A>(C::at_point(p, C::last), c, before);
     }
-    const int sweeps = count > 1 ? block_sweeps : 1;
-    for (int sweep = 0; sweep < sweeps; ++sweep) {
+    for (int sweep = 0; sweep < block_sweeps; ++sweep) {
       for (int p = 0; p < count; ++p) {
-        const auto at = point_at(contacts, c, p);
-        const V3<Real> impulse =
-            impulse_of(law_at(contacts, c, p), n, friction, now[p], velocity_at(at, i, j));
-        push<Scalar<Real>>(inertia_i, inertia_j, at, impulse - now[p], i, j);
+        const auto at = point_at<A>(contacts, c, p);
+        const V3 impulse =
+            impulse_of(law_at<A>(contacts, c, p), n, friction, now[p], velocity_at(at, two.i, two.j));
+        push<A>(turning.i, turning.j, at, impulse - now[p], two.i, two.j);
         now[p] = impulse;
       }
     }
-    store_free(bodies, ends.i, i);
-    store_free(bodies, ends.j, j);
-    SweepChange<Real> total;
+    store<A>(two, bodies, ends);
+    ChangeOf<A> total;
     for (int p = 0; p < count; ++p) {
-      f.set(C::at_point(p, C::impulse), c, now[p]);
-      const V3<Real> change = now[p] - ahead[p];
-      const Real mass = f.at(C::at_point(p, C::normal_mass), c);
-      total = total + SweepChange<Real>{dot(change, change) / mass, dot(now[p], now[p]) / mass};
+      f.template put<A>(C::at_point(p, C::impulse), c, now[p]);
+      const V3 change = now[p] - ahead[p];
+      const auto mass = f.template get<A>(C::at_point(p, C::normal_mass), c);
+      total = total + ChangeOf<A>{dot(change, change) / mass, dot(now[p], now[p]) / mass};
     }
     return total;
   }
@@ -190,7 +213,9 @@ template <class Real>
 struct Accelerate {
   BodyRecord<Real>* bodies;
   BodyRecord<Real>* last;
-  SCREE_HD void operator()(std::int64_t k, Real beta) const {
+
+  /// Of body k.
+  SCREE_LAW void visit(std::int64_t k, Real beta) const {
     const BodyRecord<Real> now = bodies[k];
     if (beta > 0) {
       BodyRecord<Real> ahead = now;
@@ -217,78 +242,78 @@ struct Overlaps {
     return {a.deepest > b.deepest ? a.deepest : b.deepest, a.sum + b.sum, a.count + b.count};
   }
 };
-
-/// Parts the bodies of a contact of balls: as the position correction of Host.
+/// Parts the bodies of a contact of balls, and returns the gap that there was, of the cap; 0 or more where
+/// nothing overlapped.
 template <class Real>
 struct PartBalls {
   BallContacts<Real> contacts;
   CentreRecord<Real>* bodies;
   Real share;
 
-  SCREE_HD Overlaps operator()(std::int64_t c) const {
+  template <class A>
+  SCREE_LAW typename A::V visit(std::int64_t c) const {
     using C = BallContacts<Real>;
-    const Ends ends = contacts.ends[c];
-    CentreRecord<Real> i = bodies[ends.i];
-    CentreRecord<Real> j = bodies[ends.j];
-    const Fields<Real>& f = contacts.fields;
-    const V3<Real> n = f.vector(C::normal, c);
-    const Real gap = f.at(C::flown, c) + dot(n, j.velocity - i.velocity);
-    Real pushed = f.at(C::pushed, c);
-    if (!(gap < 0) && pushed == 0) return {};
-    const Real cap = f.at(C::cap, c);
-    const Real more = lanes::parting<Scalar<Real>>(gap, cap, share, f.at(C::normal_mass, c), pushed);
-    push_centres(more * n, i, j);
-    store_free(bodies, ends.i, i);
-    store_free(bodies, ends.j, j);
-    f.at(C::pushed, c) = pushed;
-    return Overlaps::of_gap(static_cast<float>(gap / cap));
+    const auto& f = contacts.fields;
+    const Ends* const ends = contacts.ends + c;
+    auto two = bodies_of<A>(bodies, ends);
+    const lanes::V3<A> n = f.template vector<A>(C::normal, c);
+    const auto gap = contacts.gaps.template get<A>(C::flown, c) + dot(n, two.j.velocity - two.i.velocity);
+    auto pushed = contacts.gaps.template get<A>(C::pushed, c);
+    if (!A::any((gap < 0) | (pushed > 0))) return typename A::V{};
+    const auto cap = contacts.gaps.template get<A>(C::cap, c);
+    const auto more =
+        lanes::parting<A>(gap, cap, A::all(share), f.template get<A>(C::normal_mass, c), pushed);
+    push_centres(more * n, two.i, two.j);
+    store<A>(two, bodies, ends);
+    contacts.gaps.template put<A>(C::pushed, c, pushed);
+    return gap / cap;
   }
 };
 
+/// All points of a contact have its normal, so that along it their bodies part alike.
 template <class Real>
 struct PartPoints {
   PointContacts<Real> contacts;
-  const InertiaRecord<Real>* inertia;
   CentreRecord<Real>* bodies;
   CentreRecord<Real>* turns;
   Real share;
 
-  SCREE_HD Overlaps operator()(std::int64_t c) const {
+  template <class A>
+  SCREE_LAW typename A::V visit(std::int64_t c) const {
     using C = PointContacts<Real>;
-    const Ends ends = contacts.ends[c];
-    Moving<Real> i = load(ends.i);
-    Moving<Real> j = load(ends.j);
-    const InertiaRecord<Real> inertia_i = inertia[ends.i];
-    const InertiaRecord<Real> inertia_j = inertia[ends.j];
-    const V3<Real> n = contacts.fields.vector(C::normal, c);
-    const Real cap = contacts.fields.at(C::cap, c);
-    const Fields<Real>& f = contacts.point_fields;
-    Real least = 0;
-    for (int p = 0; p < contacts.points[c]; ++p) {
-      const auto at = point_at(contacts, c, p);
-      const Real gap = f.at(C::at_point(p, C::flown), c) + dot(n, velocity_at(at, i, j));
-      Real pushed = f.at(C::at_point(p, C::pushed), c);
-      if (gap < 0 || pushed > 0) {
-        const Real more =
-            lanes::parting<Scalar<Real>>(gap, cap, share, f.at(C::at_point(p, C::normal_mass), c), pushed);
-        push<Scalar<Real>>(inertia_i, inertia_j, at, more * n, i, j);
-        f.at(C::at_point(p, C::pushed), c) = pushed;
+    using V = typename A::V;
+    const Ends* const ends = contacts.ends + c;
+    auto centres = bodies_of<A>(bodies, ends);
+    auto turned = bodies_of<A>(turns, ends);
+    const auto turning = inertia_of<A>(contacts, c);
+    const lanes::V3<A> n = contacts.fields.template vector<A>(C::normal, c);
+    const V cap = contacts.fields.template get<A>(C::cap, c);
+    const V masses = centres.i.inverse_mass + centres.j.inverse_mass;
+    V apart = dot(n, centres.j.velocity - centres.i.velocity);
+    V pushed_apart{}, least{};
+    const int count = A::most(contacts.points + c);
+    for (int p = 0; p < count; ++p) {
+      const auto at = point_at<A>(contacts, c, p);
+      const lanes::V3<A> lever_i = cross(at.arm_i, n), lever_j = cross(at.arm_j, n);
+      const V gap = contacts.gaps.template get<A>(C::at_point(p, C::flown), c) + apart +
+                    (dot(lever_j, turned.j.velocity) - dot(lever_i, turned.i.velocity));
+      V pushed = contacts.gaps.template get<A>(C::at_point(p, C::pushed), c);
+      if (A::any((gap < 0) | (pushed > 0))) {
+        const V more = lanes::parting<A>(
+            gap, cap, A::all(share), contacts.point_fields.template get<A>(C::at_point(p, C::normal_mass), c),
+            pushed);
+        apart = apart + masses * more;
+        pushed_apart = pushed_apart + more;
+        turned.i.velocity = turned.i.velocity - more * (turning.i * lever_i);
+        turned.j.velocity = turned.j.velocity + more * (turning.j * lever_j);
+        contacts.gaps.template put<A>(C::at_point(p, C::pushed), c, pushed);
       }
       least = gap < least ? gap : least;
     }
-    store(ends.i, i);
-    store(ends.j, j);
-    return Overlaps::of_gap(static_cast<float>(least / cap));
-  }
-
- private:
-  SCREE_HD Moving<Real> load(std::int32_t k) const {
-    return {bodies[k].velocity, bodies[k].inverse_mass, turns[k].velocity, turns[k].inverse_mass};
-  }
-  SCREE_HD void store(std::int32_t k, const Moving<Real>& body) const {
-    if (!(body.inverse_mass > 0)) return;
-    bodies[k].velocity = body.velocity;
-    turns[k].velocity = body.spin;
+    push_centres(pushed_apart * n, centres.i, centres.j);
+    store<A>(centres, bodies, ends);
+    store<A>(turned, turns, ends);
+    return least / cap;
   }
 };
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "core/period.hpp"
+#include "sim/dynamics/lanes/laws.hpp"
 
 #include <cstdint>
 #include <vector>
@@ -12,7 +13,6 @@ namespace scree::lanes {
 /// In place of a contact or of a candidate, where a lane has none.
 inline constexpr std::int32_t none = -1;
 
-inline constexpr int width = 8;
 inline constexpr int most_points = 4;  ///< of a contact
 
 /// A number of each contact.

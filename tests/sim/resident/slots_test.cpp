@@ -119,8 +119,8 @@ TYPED_TEST(SlotsTest, ATubeHasASlotForEachSurfaceAndOneThatTurnsAPointForEach) {
   Built<TypeParam> built(balls(10, true));
   built.build({{0, 2}, {1, 2}, {1, 3}, {2, 3}});
   EXPECT_EQ(built.slots.others().tiles(), 0);
-  EXPECT_EQ(built.slots.solver_bodies().first_wall_point(), 10);
-  EXPECT_EQ(built.slots.solver_bodies().count(), 16);
+  EXPECT_EQ(built.slots.solver_bodies().first_wall_point(), 11);
+  EXPECT_EQ(built.slots.solver_bodies().count(), 17);
   std::multiset<std::pair<std::int32_t, std::int32_t>> on_tube;
   std::set<std::int32_t> points;
   for (const Slot& slot : built.places()) {
@@ -132,8 +132,8 @@ TYPED_TEST(SlotsTest, ATubeHasASlotForEachSurfaceAndOneThatTurnsAPointForEach) {
     }
     on_tube.insert({slot.candidate, slot.surface});
     EXPECT_TRUE(points.insert(slot.end_i).second);
-    EXPECT_GE(slot.end_i, 10);
-    EXPECT_LT(slot.end_i, 16);
+    EXPECT_GE(slot.end_i, 11);
+    EXPECT_LT(slot.end_i, 17);
   }
   EXPECT_EQ(on_tube, (std::multiset<std::pair<std::int32_t, std::int32_t>>{
                          {1, 0}, {1, 1}, {1, 2}, {2, 0}, {2, 1}, {2, 2}}));
@@ -153,7 +153,7 @@ TYPED_TEST(SlotsTest, AHubIsSplitSoThatColoursStayFew) {
   std::map<std::int32_t, int> of_part;
   for (const Slot& slot : places)
     if (slot.i != Slot::empty) ++of_part[slot.end_i];
-  EXPECT_EQ(built.slots.solver_bodies().count(), 1002 + static_cast<std::int64_t>(of_part.size()));
+  EXPECT_EQ(built.slots.solver_bodies().count(), 1003 + static_cast<std::int64_t>(of_part.size()));
   for (const auto& [part, count] : of_part) {
     EXPECT_GE(part, 1002);
     EXPECT_LE(count, 32);
@@ -181,7 +181,7 @@ TYPED_TEST(SlotsTest, TheHeaviestNeighboursOfAHubShareAPart) {
   EXPECT_NEAR(sum, 1, 1e-12);
   for (const Slot& slot : built.places()) {
     if (slot.i == Slot::empty || (slot.i != 0 && slot.j != 500 && slot.j != 900)) continue;
-    EXPECT_EQ(slot.i == 0 ? slot.end_j : slot.end_i, 1005);
+    EXPECT_EQ(slot.i == 0 ? slot.end_j : slot.end_i, built.slots.solver_bodies().first_part());
   }
   // Half of it by weight: 1,000 for the plane, 500 for each ball, 9 light ones, of 3,001; the rest alike.
   EXPECT_NEAR(share[0], 0.5 * (2009.0 / 3001 + 1.0 / static_cast<double>(share.size())), 1e-3);

@@ -1,7 +1,7 @@
 // Bodies that turn freely.
 #pragma once
 
-#include "sim/dynamics/lanes/kernels/vectors.hpp"
+#include "sim/dynamics/lanes/kernels/batch_vectors.hpp"
 
 namespace scree::lanes::SCREE_LANES {
 
