@@ -3,7 +3,6 @@
 #include "sim/resident/visit_kernels.hpp"
 
 #include "core/rng.hpp"
-#include "core/space_tiles.hpp"
 #include "sim/dynamics/lanes/lanes.hpp"
 #include "sim/resident/contact_store.hpp"
 #include "sim/resident/padding.hpp"
@@ -17,7 +16,7 @@
 namespace scree::resident {
 namespace {
 
-constexpr int tile = parallel::tile;
+constexpr int tile = 256;
 using Balls = BallContacts<double>;
 using Points = PointContacts<double>;
 using Rolling = RollingFields<double>;
