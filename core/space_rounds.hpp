@@ -17,6 +17,14 @@
 #include <cooperative_groups.h>
 #endif
 
+/// Before a SCREE_HD template that calls functions of its arguments: these need to run only where it is
+/// called.
+#if defined(__CUDACC__)
+#define SCREE_CALLS_ITS_ARGUMENTS _Pragma("nv_exec_check_disable")
+#else
+#define SCREE_CALLS_ITS_ARGUMENTS
+#endif
+
 namespace scree::parallel {
 
 namespace detail {

@@ -2,6 +2,7 @@
 // and until nothing overlaps (core/space_rounds.hpp).
 #pragma once
 
+#include "core/space_rounds.hpp"
 #include "sim/resident/contact_list.hpp"
 #include "sim/resident/hubs.hpp"
 #include "sim/resident/layout.hpp"
@@ -177,6 +178,7 @@ struct ImpulseRounds {
   }
 
  private:
+  SCREE_CALLS_ITS_ARGUMENTS
   template <class Items>
   SCREE_HD Sum work(const State& state, int phase, const Items& items) const {
     const auto beta = static_cast<Real>(state.beta);
@@ -213,6 +215,7 @@ struct ImpulseRounds {
     items.each([&](std::int64_t item) { hubs(phase, item); });
     return {};
   }
+  SCREE_CALLS_ITS_ARGUMENTS
   template <class Contacts, class Turn, class Items>
   SCREE_HD Sum roll(const State& state, int color, const ColorPhases& colors, const Contacts& contacts,
                     const RollingFields<Real>& rolling, const Turn&, const Items& items) const {
@@ -273,6 +276,7 @@ struct PartingRounds {
   }
 
  private:
+  SCREE_CALLS_ITS_ARGUMENTS
   template <class Items>
   SCREE_HD Sum work(int phase, const Items& items) const {
     if (phase < ball_colors.count)
