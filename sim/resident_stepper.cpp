@@ -1,5 +1,6 @@
 #include "sim/resident_stepper.hpp"
 
+#include "core/geometry.hpp"
 #include "core/space_chosen.hpp"
 #include "core/timing.hpp"
 #include "core/tolerances.hpp"
@@ -21,9 +22,11 @@
 #include <cmath>
 #include <cstdint>
 #include <map>
+#include <memory>
 #include <string>
 #include <type_traits>
 #include <utility>
+#include <vector>
 
 namespace scree {
 
@@ -35,6 +38,8 @@ std::vector<BodyNumber> bodies_with_forces_asked_for(const Scene& scene) {
   for (const Check& check : scene.checks) {
     const Measure measure = parse_measure(check.measure, scene);
     if (measure.kind == MeasureKind::force) bodies.push_back(BodyNumber{measure.body});
+    if (measure.kind == MeasureKind::mesh_force || measure.kind == MeasureKind::mesh_torque)
+      for (std::int32_t k = 0; k < measure.triangles; ++k) bodies.push_back(BodyNumber{measure.body + k});
   }
   return bodies;
 }
@@ -53,6 +58,7 @@ class ResidentStepper final : public Stepper {
  public:
   ResidentStepper(const Scene& scene, const TimeGrid& grid, const PathTable& paths, const Vec3& origin)
       : grid_(grid),
+        geometry_(scene.geometry),
         paths_(paths),
         parameters_(response_parameters_of(scene)),
         forces_(scene, grid),
@@ -67,6 +73,7 @@ class ResidentStepper final : public Stepper {
     for (const BodyNumber body : bodies_with_forces_asked_for(scene))
       if (value_at(bodies_.mobility, place(body)) != Mobility::free) driven_[body] = {};
     find_driven_bodies();
+    find_shapes();
     start_.save(bodies_);
   }
 
@@ -80,7 +87,7 @@ class ResidentStepper final : public Stepper {
       start_.save(bodies_);
     }
     gravity_.start_step();
-    for (auto& [number, driven] : driven_) driven.impulse.setZero();
+    for (auto& [number, driven] : driven_) driven = {};
     forces_.act(step, bodies_, parameters_);
   }
 
@@ -126,9 +133,7 @@ class ResidentStepper final : public Stepper {
     return totals_of<Space>(bodies_, parameters_.gravity, reference);
   }
   double largest_speed() const override { return scree::largest_speed<Space>(bodies_); }
-  RegionContents contents_of(const Region& region) const override {
-    return scree::contents_of<Space>(region, bodies_);
-  }
+  RegionContents contents_of(const Region& region) const override;
   std::vector<BodyNumber> bodies_beyond(const World& world) const override {
     return scree::bodies_beyond<Space>(world, bodies_);
   }
@@ -150,7 +155,8 @@ class ResidentStepper final : public Stepper {
   void measure_overlaps(Observation& out) override {
     const ConstView<Pair> pairs = pairs_now();
     out.pairs = pairs_seen().size();
-    out.penetration = resident::measure_overlaps<Space>(view_of(std::as_const(bodies_)), pairs);
+    out.penetration =
+        resident::measure_overlaps<Space>(view_of(std::as_const(bodies_)), shapes_.view(), pairs);
   }
 
   ContactProblem contact_problem() const override;
@@ -175,12 +181,28 @@ class ResidentStepper final : public Stepper {
     kept_pairs_.forget();
     seen_pairs_.forget();
     find_driven_bodies();
+    find_shapes();
   }
   ConstView<std::int32_t> place_before() const {
     return have_moved_ ? order_.place_before() : ConstView<std::int32_t>{};
   }
+  /// General shapes are known on Host alone.
+  void find_shapes() {
+    if constexpr (!is_device) {
+      if (!geometry_) return;
+      shapes_.resize(bodies_.count());
+      for (std::int64_t k = 0; k < bodies_.count(); ++k)
+        shapes_.view()[k] = geometry_->of_body[index_of(bodies_.id.view()[k])];
+    }
+  }
   void find_driven_bodies() {
-    for (auto& [number, driven] : driven_) driven.place = place(number);
+    if (driven_.empty()) return;
+    const std::vector<std::int32_t> places = to_vector(bodies_.place_of);
+    std::vector<std::uint8_t> is_driven(places.size());
+    for (const auto& [number, driven] : driven_)
+      is_driven[static_cast<std::size_t>(places[index_of(number)])] = 1;
+    copy(is_driven_, is_driven);
+    number_of_ = to_vector(bodies_.id);
   }
   std::int32_t place(BodyNumber number) const {
     std::int32_t place;
@@ -212,7 +234,7 @@ class ResidentStepper final : public Stepper {
   }
   FlightTerms terms(double h, double from) const {
     return {.laws = {bodies_.shape.view(), bodies_.size.view(), bodies_.mobility.view(),
-                     bodies_.material.view(), laws_.view(), materials_},
+                     bodies_.material.view(), laws_.view(), materials_, shapes_.view()},
             .step = h,
             .from = from,
             .bounces = from == 0};
@@ -228,14 +250,16 @@ class ResidentStepper final : public Stepper {
   ConstView<LoadedParts> loads_of(ConstView<Pair> pairs);
   bool resolve_impacts(double h, double from, double foresight, double reach);
   void add_impulse_on_driven(const Impact& impact);
-  void add_impulses_on_driven();
+  void add_impulses_on_driven(const FlightStage& flight);
 
   /// For the state as it is; which pairs the step keeps must not hang on who looks at it.
   ConstView<Pair> pairs_now();
   const KeptPairs<Space>& pairs_seen() const { return sees_kept_ ? kept_pairs_ : seen_pairs_; }
   TimeGrid grid_;
+  std::shared_ptr<const Geometry> geometry_;
   std::int64_t step_ = 0;
   Bodies<Space> bodies_;
+  Array<ShapeData, Space> shapes_;  // by place; empty if no body's shape is general
   PrescribedPaths<Space> paths_;
   ResponseParameters parameters_;
   Array<PairLaw, Space> laws_;
@@ -258,10 +282,12 @@ class ResidentStepper final : public Stepper {
   Vec3 start_gravity_ = Vec3::Zero();
   /// A body that is not free, and on which the scene asks for the force.
   struct Driven {
-    std::int32_t place = 0;
-    Vec3 impulse = Vec3::Zero();  // of contacts (N s)
+    Vec3 impulse = Vec3::Zero();  // of contacts over the step (N s)
+    Vec3 moment = Vec3::Zero();   // of these about its centre (N m s)
   };
   std::map<BodyNumber, Driven> driven_;
+  Array<std::uint8_t, Space> is_driven_;  // by place; empty if nobody asks
+  std::vector<BodyNumber> number_of_;     // by place, if somebody asks
   Array<double, Space> contact_margin_;
   std::vector<Impact> struck_;  // in the last substep
 };
@@ -289,6 +315,7 @@ void ResidentStepper<Space, Real>::substep(double h, double done) {
     const timing::Region region("response");
     ledger = ledger + contacts_.solve(flight, late, h / grid_.length(step_ + 1), counters);
   }
+  add_impulses_on_driven(flight);
   if (resolve_impacts(h, 0.5 * h, 0.5 * h, reach_from(h, done)))
     contacts_.take_velocities(view_of(std::as_const(bodies_)));
   fly(grid_.time(step_) + done + h, 0.5 * h);
@@ -298,7 +325,6 @@ void ResidentStepper<Space, Real>::substep(double h, double done) {
     const timing::Region region("correction");
     ledger = ledger + contacts_.correct(flight, late);
   }
-  add_impulses_on_driven();
   last_substep_ = h;
 }
 
@@ -313,11 +339,16 @@ void ResidentStepper<Space, Real>::archive(Archive& archive) {
     archive.expect(are_numbers(to_vector(bodies_.id)), "bodies/id");
     find_places<Space>(bodies_);
     find_driven_bodies();
+    find_shapes();
   }
   archive("velocity_before", start_.velocity);
   archive.expect(start_.velocity.size() == bodies_.count(), "velocity_before");
-  for (auto& [number, driven] : driven_)
-    archive(("impulse_on_" + std::to_string(index_of(number))).c_str(), driven.impulse);
+  std::vector<Vec3> on_driven;
+  for (const auto& [number, driven] : driven_)
+    on_driven.insert(on_driven.end(), {driven.impulse, driven.moment});
+  archive("on_driven", on_driven);
+  archive.expect(on_driven.size() == 2 * driven_.size(), "on_driven");
+  for (auto next = on_driven.begin(); auto& [number, driven] : driven_) driven = {*next++, *next++};
   archive.part("kept_pairs", kept_pairs_);
   archive.part("seen_pairs", seen_pairs_);
   archive("sees_kept", sees_kept_);
@@ -391,15 +422,24 @@ bool ResidentStepper<Space, Real>::resolve_impacts(double h, double from, double
 
 template <class Space, class Real>
 void ResidentStepper<Space, Real>::add_impulse_on_driven(const Impact& impact) {
-  if (const auto i = driven_.find(BodyNumber{impact.i}); i != driven_.end())
-    i->second.impulse -= impact.impulse;
-  if (const auto j = driven_.find(BodyNumber{impact.j}); j != driven_.end())
-    j->second.impulse += impact.impulse;
+  for (const auto& [number, sign] : {std::pair(impact.i, -1.0), std::pair(impact.j, 1.0)}) {
+    const auto driven = driven_.find(BodyNumber{number});
+    if (driven == driven_.end()) continue;
+    driven->second.impulse += sign * impact.impulse;
+    if (!geometry_) continue;  // the moment is asked for of meshes alone
+    const Vec3 centre = value_at(bodies_.position, place(BodyNumber{number}));
+    driven->second.moment += sign * bodies_.period.nearest(impact.point - centre).cross(impact.impulse);
+  }
 }
 
 template <class Space, class Real>
-void ResidentStepper<Space, Real>::add_impulses_on_driven() {
-  for (auto& [number, driven] : driven_) driven.impulse += contacts_.impulse_on(driven.place);
+void ResidentStepper<Space, Real>::add_impulses_on_driven(const FlightStage& flight) {
+  if (driven_.empty()) return;
+  for (const resident::WallImpulse& on : contacts_.wall_impulses(is_driven_.view(), flight)) {
+    Driven& driven = driven_.at(number_of_[static_cast<std::size_t>(on.body)]);
+    driven.impulse += on.impulse;
+    driven.moment += on.moment;
+  }
 }
 
 template <class Space, class Real>
@@ -417,9 +457,24 @@ SteppedBody ResidentStepper<Space, Real>::body(BodyNumber number) const {
       .contact_impulse = Vec3::Zero(),
       .contact_moment = Vec3::Zero()};
   if (parameters_.acceleration.size() > 0) body.acceleration += value_at(parameters_.acceleration, k);
-  if (const auto driven = driven_.find(number); driven != driven_.end())
+  if (const auto driven = driven_.find(number); driven != driven_.end()) {
     body.contact_impulse = driven->second.impulse;
+    body.contact_moment = driven->second.moment;
+  }
   return body;
+}
+
+/// The volume of polyhedra is not told by their sizes.
+template <class Space, class Real>
+RegionContents ResidentStepper<Space, Real>::contents_of(const Region& region) const {
+  RegionContents contents = scree::contents_of<Space>(region, bodies_);
+  if (!geometry_) return contents;
+  for (const BodyNumber number : bodies_in(region)) {
+    const Hull* hull = geometry_->of_body[index_of(number)].hull;
+    if (hull)
+      contents.volume += hull->volume - volume_of(Shape::polyhedron, value_at(bodies_.size, place(number)));
+  }
+  return contents;
 }
 
 template <class Space, class Real>

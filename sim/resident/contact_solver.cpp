@@ -4,7 +4,6 @@
 #include "core/space_rounds.hpp"
 #include "core/space_tiles.hpp"
 #include "core/tolerances.hpp"
-#include "sim/resident/contact_sums.hpp"
 #include "sim/resident/few_contacts.hpp"
 #include "sim/resident/padding.hpp"
 #include "sim/resident/rounds.hpp"
@@ -86,15 +85,35 @@ ConstView<Slot> ContactSolver<Space, Real>::places_of_points() const {
 }
 
 template <class Space, class Real>
-Vec3 ContactSolver<Space, Real>::impulse_on(std::int32_t place) {
-  if (counts_.contacts == 0) return Vec3::Zero();
-  const auto on_balls = parallel::sum_by_tiles<ImpulseSum, Space>(
-      "contacts.impulse", ball_list_.size(),
-      on_contacts(ball_list_, BallImpulseOn<Real>{place, store_.balls(), slots_.places()}));
-  const auto on_points = parallel::sum_by_tiles<ImpulseSum, Space>(
-      "contacts.impulse", point_list_.size(),
-      on_contacts(point_list_, PointImpulseOn<Real>{place, store_.points(), places_of_points()}));
-  return (on_balls + on_points).impulse;
+std::vector<WallImpulse> ContactSolver<Space, Real>::wall_impulses(ConstView<std::uint8_t> asked,
+                                                                   const FlightStage& flight) {
+  std::vector<WallImpulse> all;
+  if (counts_.contacts == 0) return all;
+  const ConstView<MidBody<Real>> mid = std::as_const(mid_).view();
+  list_wall_impulses(
+      ball_list_.size(),
+      AskedBalls<Real>{{asked, slots_.places(), mid, flight}, store_.balls(), ball_list_.places()}, all);
+  list_wall_impulses(
+      point_list_.size(),
+      AskedPoints<Real>{{asked, places_of_points(), mid, flight}, store_.points(), point_list_.places()},
+      all);
+  return all;
+}
+
+template <class Space, class Real>
+template <class Asked>
+void ContactSolver<Space, Real>::list_wall_impulses(std::int64_t contacts, const Asked& asked,
+                                                    std::vector<WallImpulse>& out) {
+  if (contacts == 0) return;
+  Array<std::uint32_t, Space> list;
+  parallel::select("contacts.walls", contacts, asked, Asked::none, list);
+  Array<WallImpulse, Space> found(list.size());
+  parallel::for_each<Space>("contacts.walls", list.size(),
+                            PutWallImpulse<Asked>{asked, std::as_const(list).view(), found.view()});
+  const std::size_t before = out.size();
+  out.resize(before + static_cast<std::size_t>(found.size()));
+  copy_bytes<Host, Space>(out.data() + before, found.data(),
+                          static_cast<std::size_t>(found.size()) * sizeof(WallImpulse));
 }
 
 template <class Space, class Real>
@@ -131,8 +150,7 @@ void ContactSolver<Space, Real>::find(ConstView<double> margin, double scale, co
                               .mid = mid_.view(),
                               .bodies = bodies,
                               .solver = solver_.view(),
-                              .laws = flight.terms.laws.table,
-                              .materials = flight.terms.laws.materials,
+                              .laws = flight.terms.laws,
                               .parameters = parameters,
                               .step = step_,
                               .scale = scale,

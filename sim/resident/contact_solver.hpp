@@ -13,6 +13,7 @@
 #include "sim/resident/contact_finder.hpp"
 #include "sim/resident/contact_list.hpp"
 #include "sim/resident/contact_store.hpp"
+#include "sim/resident/contact_sums.hpp"
 #include "sim/resident/flights.hpp"
 #include "sim/resident/hubs.hpp"
 #include "sim/resident/inspection.hpp"
@@ -23,6 +24,7 @@
 #include "sim/resident/sweeps.hpp"
 
 #include <cstdint>
+#include <vector>
 
 namespace scree::resident {
 
@@ -80,8 +82,9 @@ class ContactSolver {
 
   /// Of the last substep, brought to Host.
   Inspection<Real> inspect() const;
-  /// What the contacts of the last substep gave to the body at a place (N s).
-  Vec3 impulse_on(std::int32_t place);
+  /// What each loaded contact of the last solve() gave to the bodies that are `asked` about, which are not
+  /// free, by their places. Contacts of balls come first, in their order.
+  std::vector<WallImpulse> wall_impulses(ConstView<std::uint8_t> asked, const FlightStage& flight);
 
  private:
   void make_places();
@@ -89,6 +92,8 @@ class ContactSolver {
   void load_bodies(const ConstBodyView& bodies, ConstView<double> margin,
                    const ResponseParameters& parameters);
   ConstView<Slot> places_of_points() const;
+  template <class Asked>
+  void list_wall_impulses(std::int64_t contacts, const Asked& asked, std::vector<WallImpulse>& out);
   template <class Record>
   JoinHubs<Record> join_hubs(Array<Record, Space>& bodies);
   void find_impulses(const ResponseParameters& parameters, double share, Counters& counters);

@@ -1,10 +1,9 @@
 // From slots of balls to contacts: which of them have one, and what the sweeps need to know of it.
 #pragma once
 
-#include "narrowphase/sphere_box.hpp"
+#include "narrowphase/any_contacts.hpp"
 #include "narrowphase/sphere_plane.hpp"
 #include "narrowphase/sphere_sphere.hpp"
-#include "narrowphase/sphere_tube.hpp"
 #include "sim/resident/find_stage.hpp"
 
 namespace scree::resident {
@@ -35,22 +34,20 @@ SCREE_HD inline bool meet(const FindStage<Real>& stage, const SlotBodies<Real>& 
   if (shape == Shape::plane) {
     found = sphere_plane(of_ball, other, at.margin(), out);
   } else if constexpr (rare) {
-    if (shape == Shape::box) {
-      found = sphere_box(of_ball, other, at.margin(), out);
-      if (found && out.at_edge) {
-        if (!ball_a) out.normal = -out.normal;
-        take_normal_of_face(stage.struck, at.slot.i, at.slot.j, 1, out.points, out.normal);
-        return true;
-      }
-    } else {
-      Manifold all[3];
-      const Manifold* on =
-          manifold_on(at.slot.surface, false, all, sphere_tube(of_ball, other, at.margin(), all));
-      found = on != nullptr;
-      if (found) out = *on;
-    }
+    constexpr int most_manifolds = 3;  // of a ball and a tube
+    Manifold all[most_manifolds];
+    const PairShapes shapes = stage.shapes_of(ball_a ? at.slot.i : at.slot.j, ball_a ? at.slot.j : at.slot.i);
+    const int count =
+        find_any_contacts({Shape::sphere, of_ball}, {shape, other}, shapes, {.margin = at.margin()}, all);
+    const Manifold* on = manifold_on(at.slot.surface, false, all, count);
+    found = on != nullptr;
+    if (found) out = *on;
   }
   if (found && !ball_a) out.normal = -out.normal;
+  if constexpr (rare) {
+    if (found && out.at_edge)
+      take_normal_of_face(stage.struck, at.slot.i, at.slot.j, 1, out.points, out.normal);
+  }
   return found;
 }
 

@@ -2,8 +2,8 @@
 // know of it.
 #pragma once
 
+#include "narrowphase/any_contacts.hpp"
 #include "narrowphase/far_apart.hpp"
-#include "narrowphase/pair_contacts.hpp"
 #include "sim/dynamics/rotation.hpp"
 #include "sim/resident/find_stage.hpp"
 
@@ -26,7 +26,8 @@ template <class Real>
   const Solid a = stage.solid(at.slot.i, lead);
   Solid b = stage.solid(at.slot.j, lead);
   stage.bodies.period.bring_near(a.position, b.position);
-  const int count = find_pair_contacts(at.a.shape, a, at.b.shape, b, at.margin(), all);
+  const int count = find_any_contacts({at.a.shape, a}, {at.b.shape, b}, stage.shapes_of(at.slot.i, at.slot.j),
+                                      {.margin = at.margin()}, all);
   const auto is_of = [&](Shape shape) { return at.a.shape == shape || at.b.shape == shape; };
   const bool corners = is_of(Shape::tube) && is_of(Shape::box);
   const Manifold* on = manifold_on(at.slot.surface, corners, all, count);

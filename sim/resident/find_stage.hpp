@@ -3,6 +3,7 @@
 
 #include "core/space_atomic.hpp"
 #include "core/tolerances.hpp"
+#include "narrowphase/any_contacts.hpp"
 #include "narrowphase/contact.hpp"
 #include "narrowphase/tube.hpp"
 #include "sim/dynamics/contact_flight.hpp"
@@ -33,8 +34,7 @@ struct FindStage {
   ConstView<MidBody<Real>> mid;
   ConstBodyView bodies;                ///< at the midpoint, before the kick
   ConstView<BodyRecord<Real>> solver;  ///< kicked
-  ConstView<PairLaw> laws;             ///< materials x materials
-  std::int64_t materials;
+  ContactLaws laws;
   ResponseParameters parameters;
   double step;           ///< s
   double scale;          ///< of remembered impulses
@@ -44,7 +44,10 @@ struct FindStage {
 
   SCREE_HD SlotBodies<Real> load(const Slot& slot) const { return {slot, mid[slot.i], mid[slot.j]}; }
   SCREE_HD const PairLaw& law_of(const SlotBodies<Real>& at) const {
-    return laws[at.a.material * materials + at.b.material];
+    return laws.table[at.a.material * laws.materials + at.b.material];
+  }
+  SCREE_HD PairShapes shapes_of(std::int32_t i, std::int32_t j) const {
+    return {laws.shape_data(i), laws.shape_data(j)};
   }
   SCREE_HD double friction_of(const SlotBodies<Real>& at) const {
     return parameters.friction ? law_of(at).friction : 0.0;

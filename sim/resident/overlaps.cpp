@@ -2,7 +2,7 @@
 
 #include "core/parallel.hpp"
 #include "core/space_tiles.hpp"
-#include "narrowphase/pair_contacts.hpp"
+#include "narrowphase/any_contacts.hpp"
 
 #include <cmath>
 #include <cstdint>
@@ -28,6 +28,7 @@ struct Depths {
 /// Of a pair. Its depth is kept as the bits of a number that is not negative, which are ordered as it is.
 struct MeasurePair {
   ConstBodyView bodies;
+  ConstView<ShapeData> shapes;
   ConstView<Pair> pairs;
   View<std::uint64_t> bits;
 
@@ -53,12 +54,14 @@ struct MeasurePair {
     Manifold found[max_pair_manifolds];
     Solid of_j = solid(pair.j);
     bodies.period.bring_near(bodies.position[pair.i], of_j.position);
-    const int count = find_pair_contacts(a, solid(pair.i), b, of_j, 0.0, found);
+    const int count =
+        find_any_contacts({a, solid(pair.i)}, {b, of_j}, {data(pair.i), data(pair.j)}, {.margin = 0}, found);
     double depth = 0;
     for (int m = 0; m < count; ++m)
       for (int p = 0; p < found[m].count; ++p) depth = fmax(depth, -found[m].points[p].gap);
     return depth;
   }
+  SCREE_HD const ShapeData* data(std::int32_t k) const { return shapes.size() > 0 ? &shapes[k] : nullptr; }
   SCREE_HD Solid solid(std::int32_t k) const {
     return {bodies.position[k], bodies.orientation[k], bodies.size[k]};
   }
@@ -67,11 +70,13 @@ struct MeasurePair {
 }  // namespace
 
 template <class Space>
-Penetration measure_overlaps(const ConstBodyView& bodies, ConstView<Pair> candidates) {
+Penetration measure_overlaps(const ConstBodyView& bodies, ConstView<ShapeData> shapes,
+                             ConstView<Pair> candidates) {
   Array<std::uint64_t, Space> bits(candidates.size());
   Array<Depths, Space> scratch, total(1);
   parallel::sum_into<Depths, Space>("overlaps", candidates.size(),
-                                    MeasurePair{bodies, candidates, bits.view()}, scratch, total.data());
+                                    MeasurePair{bodies, shapes, candidates, bits.view()}, scratch,
+                                    total.data());
   Depths depths;
   copy_bytes<Host, Space>(&depths, total.data(), sizeof(depths));
   Penetration out;
@@ -95,7 +100,7 @@ Penetration measure_overlaps(const ConstBodyView& bodies, ConstView<Pair> candid
 }
 
 #define SCREE_INSTANTIATE(Space) \
-  template Penetration measure_overlaps<Space>(const ConstBodyView&, ConstView<Pair>);
+  template Penetration measure_overlaps<Space>(const ConstBodyView&, ConstView<ShapeData>, ConstView<Pair>);
 SCREE_FOR_EACH_SPACE(SCREE_INSTANTIATE)
 
 }  // namespace scree::resident

@@ -4,12 +4,15 @@
 #include "broadphase/broad_phase.hpp"
 #include "core/array.hpp"
 #include "core/bodies.hpp"
+#include "core/shape_data.hpp"
 #include "sim/observation.hpp"
 
 namespace scree::resident {
 
-/// Over all overlapping pairs among the candidates: of each its deepest point, true geometry.
+/// Over all overlapping pairs among the candidates: of each its deepest point, true geometry. `shapes`: of
+/// each body, by its place; empty if no body's shape is general.
 template <class Space>
-Penetration measure_overlaps(const ConstBodyView& bodies, ConstView<Pair> candidates);
+Penetration measure_overlaps(const ConstBodyView& bodies, ConstView<ShapeData> shapes,
+                             ConstView<Pair> candidates);
 
 }  // namespace scree::resident

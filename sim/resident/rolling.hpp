@@ -25,7 +25,7 @@ struct StartRolling {
     const std::int64_t place = first_place + c - c % 256 + contacts.slot[c];
     const Slot slot = stage.places[place];
     const SlotBodies<Real> at = stage.load(slot);
-    const auto reach = static_cast<Real>(reach_of(at));
+    const auto reach = static_cast<Real>(stage.laws.rolling_reach(slot.i, slot.j));
     const V3<Real> n = contacts.fields.vector(Contacts::normal, c);
     const auto share = static_cast<Real>(stage.parameters.warm_start ? stage.scale : 0.0);
     const V3<Real> couple = lanes::couple_of<Scalar<Real>>(
@@ -40,15 +40,6 @@ struct StartRolling {
   }
 
  private:
-  /// ContactLaws::rolling_reach(), where balls are all that is round.
-  SCREE_HD double reach_of(const SlotBodies<Real>& at) const {
-    const auto curvature_of = [](const MidBody<Real>& body) {
-      return body.shape == Shape::sphere ? 1 / body.size : 0.0;
-    };
-    const double curvature = curvature_of(at.a) + curvature_of(at.b);
-    const double coefficient = stage.law_of(at).rolling_friction;
-    return curvature > 0 ? coefficient / curvature : 0.0;
-  }
 };
 
 /// What the couple of a contact has moved, which its place remembers: account_couple().
