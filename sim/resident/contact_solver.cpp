@@ -105,15 +105,15 @@ template <class Asked>
 void ContactSolver<Space, Real>::list_wall_impulses(std::int64_t contacts, const Asked& asked,
                                                     std::vector<WallImpulse>& out) {
   if (contacts == 0) return;
-  Array<std::uint32_t, Space> list;
-  parallel::select("contacts.walls", contacts, asked, Asked::none, list);
-  Array<WallImpulse, Space> found(list.size());
-  parallel::for_each<Space>("contacts.walls", list.size(),
-                            PutWallImpulse<Asked>{asked, std::as_const(list).view(), found.view()});
+  parallel::select("contacts.walls", contacts, asked, Asked::none, asked_contacts_);
+  wall_impulses_.resize(asked_contacts_.size());
+  parallel::for_each<Space>(
+      "contacts.walls", wall_impulses_.size(),
+      PutWallImpulse<Asked>{asked, std::as_const(asked_contacts_).view(), wall_impulses_.view()});
   const std::size_t before = out.size();
-  out.resize(before + static_cast<std::size_t>(found.size()));
-  copy_bytes<Host, Space>(out.data() + before, found.data(),
-                          static_cast<std::size_t>(found.size()) * sizeof(WallImpulse));
+  out.resize(before + static_cast<std::size_t>(wall_impulses_.size()));
+  copy_bytes<Host, Space>(out.data() + before, wall_impulses_.data(),
+                          static_cast<std::size_t>(wall_impulses_.size()) * sizeof(WallImpulse));
 }
 
 template <class Space, class Real>

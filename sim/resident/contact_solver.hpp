@@ -138,6 +138,8 @@ class ContactSolver {
   Array<std::uint32_t, Space> loads_, next_loads_;
 
   Array<Books, Space> books_scratch_, books_totals_;
+  Array<std::uint32_t, Space> asked_contacts_;
+  Array<WallImpulse, Space> wall_impulses_;  // of these
   Array<Ledger, Space> ledger_scratch_;
 };
 

@@ -39,7 +39,6 @@ struct Scalar {
   SCREE_LAW static V get(const Real* from) { return *from; }
   SCREE_LAW static void set(Real* to, V value) { *to = value; }
   SCREE_LAW static bool any(bool condition) { return condition; }
-  SCREE_LAW static Real at(V value, int) { return value; }
   /// The most of a number of each.
   SCREE_LAW static std::int32_t most(const std::int32_t* of) { return *of; }
 

@@ -242,6 +242,7 @@ struct Overlaps {
     return {a.deepest > b.deepest ? a.deepest : b.deepest, a.sum + b.sum, a.count + b.count};
   }
 };
+
 /// Parts the bodies of a contact of balls, and returns the gap that there was, of the cap; 0 or more where
 /// nothing overlapped.
 template <class Real>
@@ -270,7 +271,8 @@ struct PartBalls {
   }
 };
 
-/// All points of a contact have its normal, so that along it their bodies part alike.
+/// Parts the bodies of a contact of several points. They all have its normal, so that along it the bodies
+/// part alike.
 template <class Real>
 struct PartPoints {
   PointContacts<Real> contacts;

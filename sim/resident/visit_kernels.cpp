@@ -22,7 +22,6 @@ struct Lanes : Vectors {
   SCREE_LAW static V all(double a) { return a - V{}; }
   SCREE_LAW static V get(const double* from) { return *reinterpret_cast<const V*>(from); }
   SCREE_LAW static void set(double* to, const V& value) { *reinterpret_cast<V*>(to) = value; }
-  SCREE_LAW static double at(const V& value, int l) { return value[l]; }
   SCREE_LAW static std::int32_t most(const std::int32_t* of) {
     std::int32_t most = 0;
     for (int l = 0; l < width; ++l) most = of[l] > most ? of[l] : most;

@@ -1,14 +1,8 @@
 // For processors that scree knows nothing of.
-#include "sim/dynamics/lanes/lanes.hpp"
 #include "sim/resident/visit_kernels.hpp"
 
 namespace scree::resident {
 
 const VisitKernels& visit_kernels(const char*) { return baseline::visit_kernels; }
-
-const VisitKernels& visit_kernels() {
-  static const VisitKernels& widest = visit_kernels(lanes::supported_kernels().back().name);
-  return widest;
-}
 
 }  // namespace scree::resident

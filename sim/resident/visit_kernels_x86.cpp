@@ -1,5 +1,4 @@
 // For x86-64 processors.
-#include "sim/dynamics/lanes/lanes.hpp"
 #include "sim/resident/visit_kernels.hpp"
 
 #include <string_view>
@@ -10,11 +9,6 @@ const VisitKernels& visit_kernels(const char* instruction_set) {
   const std::string_view name = instruction_set;
   if (name == "avx512") return avx512::visit_kernels;
   return name == "avx2" ? avx2::visit_kernels : baseline::visit_kernels;
-}
-
-const VisitKernels& visit_kernels() {
-  static const VisitKernels& widest = visit_kernels(lanes::supported_kernels().back().name);
-  return widest;
 }
 
 }  // namespace scree::resident

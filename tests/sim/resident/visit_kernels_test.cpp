@@ -17,6 +17,7 @@ namespace scree::resident {
 namespace {
 
 constexpr int tile = 256;
+constexpr double float_sums = 1e-6;  // of some numbers that are added up as floats, in whatever order
 using Balls = BallContacts<double>;
 using Points = PointContacts<double>;
 using Rolling = RollingFields<double>;
@@ -267,7 +268,7 @@ TEST_P(VisitKernelsTest, VisitsToSeveralAreVisitsToEach) {
   // Sums are added up in another order, and those of overlaps in float.
   ASSERT_EQ(sums.size(), sums_of_several.size());
   for (std::size_t k = 0; k < sums.size(); ++k)
-    EXPECT_NEAR(sums[k], sums_of_several[k], 1e-6 * (1 + sums[k])) << k;
+    EXPECT_NEAR(sums[k], sums_of_several[k], float_sums * (1 + sums[k])) << k;
 }
 
 TEST_P(VisitKernelsTest, BodiesGoOnByWhatTheLastSweepChanged) {
