@@ -26,7 +26,7 @@ struct CompactTile {
   std::int32_t* counts;
   void operator()(std::int64_t t) const {
     std::int32_t count = 0;
-    for (std::int64_t item = t * tile; item < (t + 1) * tile; ++item) {
+    for (std::int64_t item = t * tile; item < (t + 1) * tile && !f.is_end(item); ++item) {
       typename F::Record record;
       if (f.find(item, record)) f.store(t * tile + count++, item, record);
     }
@@ -119,7 +119,8 @@ void add_up(Device, const char* label, std::int64_t n, const F& f, Array<T, Devi
 }  // namespace detail
 
 /// For each item of so many tiles: f.find(item, record), which says whether there is something; what is found
-/// is stored by f.store(place, item, record), in the order of the items, from the front of its tile on.
+/// is stored by f.store(place, item, record), in the order of the items, from the front of its tile on. Where
+/// f.is_end(item), there is nothing from there to the end of its tile.
 /// counts[t] becomes how much tile t has found. F has a type Record. On Device the call returns before the
 /// work is done.
 template <class Space, class F>

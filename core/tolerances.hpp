@@ -108,6 +108,12 @@ inline constexpr double done_power = 0.004;
 /// over the second no longer that.
 inline constexpr double calm_power = 0.0004;
 inline constexpr double stirring_power = 0.001;
+/// What is dissipated in a heap that flows leaves 0.01 to 0.08 of it undone; slow modes 0.3 to 1. Larger:
+/// heaps come to rest later. Smaller: heaps in motion are swept more often, which changes nothing in them.
+inline constexpr double undone_of_dissipated = 0.1;
+/// Of the power of all impulses, what is dissipated in a heap that moves: 0.5 to 1 where it flows, under 0.1
+/// at rest.
+inline constexpr double moving_power = 0.25;
 /// The least change with impulses in float, whose rounding is 1e-7.
 inline constexpr double mixed_change = 2e-6;
 
@@ -129,6 +135,7 @@ inline constexpr double least_slide = 1e-9;
 /// Energy that the impulses of an island may gain before they are scaled down, as a share of half p.W p: what
 /// the tolerance of the response leaves.
 inline constexpr double response_gain = 1e-10;
+inline constexpr double mixed_response_gain = 1e-3;
 
 /// By how much contacts in flight may close faster than they do before they count as touched, relative.
 inline constexpr double flight_margin = 1e-9;

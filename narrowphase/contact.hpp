@@ -29,26 +29,6 @@ struct Manifold {
   ContactPoint points[max_points];
 };
 
-/// A manifold among others: its points are in a list of their own, so that it takes what it has.
-struct ManifoldHeader {
-  std::int32_t i;
-  std::int32_t j;
-  std::int32_t part;
-  std::int32_t count;
-  std::int64_t first_point;
-  Vec3 normal;
-  bool at_edge = false;  ///< as Manifold has it
-};
-
-/// Many manifolds, and all their points in the same order.
-struct Manifolds {
-  ConstView<ManifoldHeader> headers;
-  ConstView<ContactPoint> points;
-
-  SCREE_HD std::int64_t size() const { return headers.size(); }
-  SCREE_HD const ContactPoint* points_of(const ManifoldHeader& m) const { return &points[m.first_point]; }
-};
-
 /// A pair has at most this many manifolds: those of a box that just fits into a tube, whose 8 corners touch
 /// the wall, each with a normal of its own, and whose ends touch the caps.
 inline constexpr int max_pair_manifolds = 10;

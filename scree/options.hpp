@@ -16,8 +16,7 @@ enum class SpaceChoice { automatic, host, cuda };
 struct SimulationOptions {
   /// automatic: the GPU if the machine has one and the scene has bodies enough for it, else the processor.
   SpaceChoice space = SpaceChoice::automatic;
-  int threads = 0;        ///< 0: all cores. Never changes the result.
-  bool resident = false;  ///< the processor too takes the steps as a GPU does, with everything in one space
+  int threads = 0;  ///< 0: all cores. Never changes the result.
 };
 
 }  // namespace scree

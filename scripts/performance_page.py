@@ -218,8 +218,8 @@ def crossover(number):
         return []
     rows.sort(key=lambda row: (row.bodies, row.space, row.precision))
     lines = [f"## {number}. Host against Device", "",
-             "Spheres at rest, as in section 1, by the processor and by the GPU of one machine. On Host double takes Host's own step, and mixed the one that "
-             "Device takes ([decision 0022](decisions/0022-resident-steps.md)). Scenes of under 2,500 contact points are solved until they converge, "
+             "Spheres at rest, as in section 1, by the processor and by the GPU of one machine, which take the same step "
+             "([decision 0046](decisions/0046-one-step.md)); the figures are of before that, when Host in double precision took another. Scenes of under 2,500 contact points are solved until they converge, "
              "in more sweeps ([decision 0005](decisions/0005-sweeps-by-contacts.md)).", ""]
     lines += over_bodies("crossover", rows, lambda row: row.median_ms, "ms/step") + crossings(rows)
     return lines + table_of(rows, WHERE | SPEED | ERROR) + left_out(failed) + caption(rows)

@@ -3,8 +3,6 @@
 
 #include "core/archive.hpp"
 #include "core/bodies.hpp"
-#include "narrowphase/contact.hpp"
-#include "sim/dynamics/contact_set.hpp"
 #include "sim/dynamics/motion.hpp"
 #include "sim/dynamics/region.hpp"
 #include "sim/observation.hpp"
@@ -53,11 +51,5 @@ void measure_totals(const Totals& totals, const EnergyBaseline& baseline, const 
 void measure_regions(const std::vector<Region>& regions, const std::vector<RegionContents>& now,
                      const std::vector<RegionContents>& before, const std::vector<Removed>& removed,
                      double step, std::vector<RegionState>& out);
-
-/// Counts and gaps of the contacts that carried an impulse in the last substep.
-void measure_contacts(const ContactSet& contacts, std::int64_t free_bodies, Observation& out);
-
-/// Penetration over all manifolds with a negative gap: per pair its deepest point.
-void measure_penetration(const Manifolds& manifolds, const ConstBodyView& bodies, Penetration& out);
 
 }  // namespace scree

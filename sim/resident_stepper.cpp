@@ -1,5 +1,6 @@
 #include "sim/resident_stepper.hpp"
 
+#include "core/error.hpp"
 #include "core/geometry.hpp"
 #include "core/space_chosen.hpp"
 #include "core/timing.hpp"
@@ -32,18 +33,6 @@ namespace scree {
 
 namespace {
 
-/// On which the scene's checks ask for the force.
-std::vector<BodyNumber> bodies_with_forces_asked_for(const Scene& scene) {
-  std::vector<BodyNumber> bodies;
-  for (const Check& check : scene.checks) {
-    const Measure measure = parse_measure(check.measure, scene);
-    if (measure.kind == MeasureKind::force) bodies.push_back(BodyNumber{measure.body});
-    if (measure.kind == MeasureKind::mesh_force || measure.kind == MeasureKind::mesh_torque)
-      for (std::int32_t k = 0; k < measure.triangles; ++k) bodies.push_back(BodyNumber{measure.body + k});
-  }
-  return bodies;
-}
-
 /// Whether each number from 0 on stands there once.
 bool are_numbers(std::vector<BodyNumber> list) {
   std::ranges::sort(list);
@@ -56,7 +45,9 @@ bool are_numbers(std::vector<BodyNumber> list) {
 template <class Space, class Real>
 class ResidentStepper final : public Stepper {
  public:
-  ResidentStepper(const Scene& scene, const TimeGrid& grid, const PathTable& paths, const Vec3& origin)
+  /// `pairs_on_device`: the PCS of bodies on Host is made there.
+  ResidentStepper(const Scene& scene, const TimeGrid& grid, const PathTable& paths, bool pairs_on_device,
+                  const Vec3& origin)
       : grid_(grid),
         geometry_(scene.geometry),
         paths_(paths),
@@ -64,16 +55,17 @@ class ResidentStepper final : public Stepper {
         forces_(scene, grid),
         gravity_(scene),
         order_(scene.bodies, origin),
-        kept_pairs_(scene.broadphase, is_device, origin),
-        seen_pairs_(scene.broadphase, is_device, origin) {
+        kept_pairs_(scene.broadphase, pairs_on_device, origin),
+        seen_pairs_(scene.broadphase, pairs_on_device, origin),
+        libccd_(scene.narrowphase) {
     copy_bodies(bodies_, scene.bodies);
     find_places<Space>(bodies_);
+    for (const Servo& servo : scene.servos) servo_axis_[BodyNumber{servo.body}] = servo.axis;
+    find_guides();
     copy(laws_, pair_laws_of(scene));
     materials_ = static_cast<std::int64_t>(scene.materials.size());
-    for (const BodyNumber body : bodies_with_forces_asked_for(scene))
-      if (value_at(bodies_.mobility, place(body)) != Mobility::free) driven_[body] = {};
-    find_driven_bodies();
     find_shapes();
+    find_walls(scene.bodies.id, scene.bodies.mobility);
     start_.save(bodies_);
   }
 
@@ -87,7 +79,7 @@ class ResidentStepper final : public Stepper {
       start_.save(bodies_);
     }
     gravity_.start_step();
-    for (auto& [number, driven] : driven_) driven = {};
+    clear_wall_impulses();
     forces_.act(step, bodies_, parameters_);
   }
 
@@ -109,6 +101,7 @@ class ResidentStepper final : public Stepper {
     copy_bodies(on_host, bodies_);
     change(on_host);
     copy_bodies(bodies_, on_host);
+    find_walls(to_vector(on_host.id), to_vector(on_host.mobility));
     forget_pairs();
   }
   BodyTable take_out(const std::vector<BodyNumber>& numbers) override {
@@ -163,7 +156,7 @@ class ResidentStepper final : public Stepper {
   std::vector<ContactForce> contact_forces() const override;
   void measure_contacts(std::int64_t free_bodies, Observation& out) const override;
 
-  const char* space_name() const override { return Space::name; }
+  const char* space_name() const override { return kept_pairs_.space_name(); }
 
  private:
   static constexpr bool is_device = !std::is_same_v<Space, Host>;
@@ -180,8 +173,23 @@ class ResidentStepper final : public Stepper {
     forces_.forget();
     kept_pairs_.forget();
     seen_pairs_.forget();
-    find_driven_bodies();
     find_shapes();
+    find_guides();
+  }
+  void find_walls(const std::vector<BodyNumber>& numbers, const std::vector<Mobility>& mobility) {
+    is_wall_.resize(numbers.size());
+    for (std::size_t k = 0; k < numbers.size(); ++k)
+      is_wall_[index_of(numbers[k])] = mobility[k] != Mobility::free && mobility[k] != Mobility::absent;
+  }
+  void clear_wall_impulses() {
+    contacts_.wall_sums().start_step(bodies_.count());
+    struck_walls_.clear();
+  }
+  void find_guides() {
+    std::vector<Guide> guides;
+    for (const auto& [number, axis] : servo_axis_) guides.push_back({place(number), axis});
+    copy(guides_, guides);
+    parameters_.guides = std::as_const(guides_).view();
   }
   ConstView<std::int32_t> place_before() const {
     return have_moved_ ? order_.place_before() : ConstView<std::int32_t>{};
@@ -194,15 +202,6 @@ class ResidentStepper final : public Stepper {
       for (std::int64_t k = 0; k < bodies_.count(); ++k)
         shapes_.view()[k] = geometry_->of_body[index_of(bodies_.id.view()[k])];
     }
-  }
-  void find_driven_bodies() {
-    if (driven_.empty()) return;
-    const std::vector<std::int32_t> places = to_vector(bodies_.place_of);
-    std::vector<std::uint8_t> is_driven(places.size());
-    for (const auto& [number, driven] : driven_)
-      is_driven[static_cast<std::size_t>(places[index_of(number)])] = 1;
-    copy(is_driven_, is_driven);
-    number_of_ = to_vector(bodies_.id);
   }
   std::int32_t place(BodyNumber number) const {
     std::int32_t place;
@@ -241,16 +240,25 @@ class ResidentStepper final : public Stepper {
   }
   double reach_from(double h, double done) const { return grid_.length(step_ + 1) - done + h; }
 
+  /// To what it is at a time (s), the midpoint of the substep that begins.
+  void turn_gravity(double midpoint) {
+    if (!gravity_.turns()) return;
+    ledger.work += gravity_.turn_to<Space>(midpoint, bodies_, parameters_);
+    forces_.forget();
+    forces_.act(step_, bodies_, parameters_);
+  }
   void fly(double time, double dt) {
     const timing::Region region("integration");
     ledger.integration += advance<Space>(bodies_, dt, parameters_);
     place_prescribed<Space>(paths_, time, bodies_);
   }
+  bool fly_and_respond(double h, double done, bool may_be_undone);
+  void fly_on(double h, double done, bool late);
   void give_candidates(ConstView<Pair> pairs);
   ConstView<LoadedParts> loads_of(ConstView<Pair> pairs);
   bool resolve_impacts(double h, double from, double foresight, double reach);
-  void add_impulse_on_driven(const Impact& impact);
-  void add_impulses_on_driven(const FlightStage& flight);
+  void add_impulse_on_walls(const Impact& impact);
+  void archive_wall_impulses(Archive& archive);
 
   /// For the state as it is; which pairs the step keeps must not hang on who looks at it.
   ConstView<Pair> pairs_now();
@@ -260,6 +268,8 @@ class ResidentStepper final : public Stepper {
   std::int64_t step_ = 0;
   Bodies<Space> bodies_;
   Array<ShapeData, Space> shapes_;  // by place; empty if no body's shape is general
+  std::map<BodyNumber, Vec3> servo_axis_;
+  Array<Guide, Space> guides_;  // by place
   PrescribedPaths<Space> paths_;
   ResponseParameters parameters_;
   Array<PairLaw, Space> laws_;
@@ -273,30 +283,69 @@ class ResidentStepper final : public Stepper {
   bool sees_kept_ = true;
   std::int64_t pairs_taken_ = 0;  // how often they had been made when the contacts last took them
   Array<LoadedParts, Space> loads_;
+  LibccdContacts libccd_;
   ImpactRounds<Space> impacts_;
-  resident::ContactSolver<Space, Real> contacts_;
+  mutable resident::ContactSolver<Space, Real> contacts_;  // shown on Host where they are
 
   double last_substep_ = 0;  // its length; scales the remembered impulses
   MovingState<Space> start_;
   Ledger start_ledger_;
   Vec3 start_gravity_ = Vec3::Zero();
-  /// A body that is not free, and on which the scene asks for the force.
-  struct Driven {
-    Vec3 impulse = Vec3::Zero();  // of contacts over the step (N s)
-    Vec3 moment = Vec3::Zero();   // of these about its centre (N m s)
+  // Bodies that are not free:
+  std::map<BodyNumber, resident::WallImpulse> struck_walls_;  // what impacts gave to them in the step
+  std::vector<std::uint8_t> is_wall_;                         // by number
+  /// What the first half of a substep changes, beside what contacts remember.
+  struct Restart {
+    MovingState<Space> state;
+    Vec3 gravity;
+    Ledger ledger;
+    std::int64_t impacts = 0, unfinished_impacts = 0;
+    Array<resident::WallImpulse, Space> on_walls;
+    std::map<BodyNumber, resident::WallImpulse> struck_walls;
+
+    void save(const ResidentStepper& now);
+    void restore(ResidentStepper& now) const;
   };
-  std::map<BodyNumber, Driven> driven_;
-  Array<std::uint8_t, Space> is_driven_;  // by place; empty if nobody asks
-  std::vector<BodyNumber> number_of_;     // by place, if somebody asks
+  Restart before_;  // of the last substep, in the accurate mode
   Array<double, Space> contact_margin_;
   std::vector<Impact> struck_;  // in the last substep
 };
 
-/// Moreau's midpoint step: as Substepper's, without cuts.
+/// In the accurate mode in parts that end where contacts come to stick. What stops by a blow and not by
+/// friction does so no sooner in a shorter part: then cuts do not help, and there are none.
 template <class Space, class Real>
 void ResidentStepper<Space, Real>::substep(double h, double done) {
+  constexpr int most_cuts = 16;
+  constexpr double helps = 0.25;  // of what the cut before it found too long
+  const double end = done + h;
+  int cuts = 0;
+  bool cuts_help = parameters_.accurate;
+  while (done < end) {
+    double part = end - done;
+    if (cuts_help) before_.save(*this);
+    bool late = fly_and_respond(part, done, cuts_help);
+    double last = HUGE_VAL;
+    while (cuts_help && contacts_.slip_end() < 1) {
+      const double too_long = 1 - contacts_.slip_end();
+      cuts_help = too_long < helps * last && ++cuts <= most_cuts;
+      part = cuts_help ? contacts_.slip_end() * part : end - done;
+      last = too_long;
+      before_.restore(*this);
+      late = fly_and_respond(part, done, cuts_help);
+    }
+    fly_on(part, done, late);
+    done = part < end - done ? done + part : end;
+  }
+  counters.cuts += cuts;
+}
+
+/// Moreau's midpoint step. Its first half: free flight to the midpoint, impacts on the way, contacts there,
+/// impulses. Returns whether a body was struck after the midpoint. `done`: how much of the step went before
+/// (s); `may_be_undone`: before_ may be restored after it.
+template <class Space, class Real>
+bool ResidentStepper<Space, Real>::fly_and_respond(double h, double done, bool may_be_undone) {
   struck_.clear();
-  ledger.work += gravity_.turn_to<Space>(grid_.time(step_) + done + 0.5 * h, bodies_, parameters_);
+  turn_gravity(grid_.time(step_) + done + 0.5 * h);
   forces_.start_substep(bodies_);
   fly(grid_.time(step_) + done + 0.5 * h, 0.5 * h);
   const bool struck = resolve_impacts(h, 0, h, reach_from(h, done));
@@ -304,18 +353,27 @@ void ResidentStepper<Space, Real>::substep(double h, double done) {
   give_candidates(struck ? kept_pairs_.covering(bodies_, contact_margin_, reach_from(h, done), parameters_)
                          : kept_pairs_.pairs());
   counters.pcs_made = kept_pairs_.times_made();
+  if (may_be_undone) contacts_.keep_memory();
   const double scale = last_substep_ > 0 ? h / last_substep_ : 1.0;
   const FlightStage flight = impacts_.stage(terms(h, 0), parameters_, views());
   {
     const timing::Region region("narrowphase");
-    contacts_.find(std::as_const(contact_margin_).view(), scale, flight, late);
+    libccd_.start_search();
+    contacts_.find(std::as_const(contact_margin_).view(), scale, flight, late,
+                   libccd_.is_needed() ? &libccd_ : nullptr);
     counters.narrowphase.tested += contacts_.slots().candidates().size();
+    counters.narrowphase += libccd_.take_stats();
   }
-  {
-    const timing::Region region("response");
-    ledger = ledger + contacts_.solve(flight, late, h / grid_.length(step_ + 1), counters);
-  }
-  add_impulses_on_driven(flight);
+  const timing::Region region("response");
+  ledger = ledger + contacts_.solve(flight, late, h / grid_.length(step_ + 1), counters);
+  return late;
+}
+
+/// And its second: impacts on the way, since the response has changed it, and free flight to the end.
+template <class Space, class Real>
+void ResidentStepper<Space, Real>::fly_on(double h, double done, bool late) {
+  const FlightStage flight = impacts_.stage(terms(h, 0), parameters_, views());
+  contacts_.add_wall_impulses(flight);
   if (resolve_impacts(h, 0.5 * h, 0.5 * h, reach_from(h, done)))
     contacts_.take_velocities(view_of(std::as_const(bodies_)));
   fly(grid_.time(step_) + done + h, 0.5 * h);
@@ -329,6 +387,29 @@ void ResidentStepper<Space, Real>::substep(double h, double done) {
 }
 
 template <class Space, class Real>
+void ResidentStepper<Space, Real>::Restart::save(const ResidentStepper& now) {
+  state.save(now.bodies_);
+  gravity = now.parameters_.gravity;
+  ledger = now.ledger;
+  impacts = now.counters.impacts;
+  unfinished_impacts = now.counters.unfinished_impacts;
+  copy(on_walls, now.contacts_.wall_sums().totals());
+  struck_walls = now.struck_walls_;
+}
+
+template <class Space, class Real>
+void ResidentStepper<Space, Real>::Restart::restore(ResidentStepper& now) const {
+  state.restore(now.bodies_);
+  now.parameters_.gravity = gravity;
+  now.ledger = ledger;
+  now.counters.impacts = impacts;
+  now.counters.unfinished_impacts = unfinished_impacts;
+  now.contacts_.wall_sums().restore_totals(on_walls);
+  now.struck_walls_ = struck_walls;
+  now.contacts_.recall_memory();
+}
+
+template <class Space, class Real>
 void ResidentStepper<Space, Real>::archive(Archive& archive) {
   archive("step", step_);
   archive("last_substep", last_substep_);
@@ -338,17 +419,13 @@ void ResidentStepper<Space, Real>::archive(Archive& archive) {
   if (archive.is_loading()) {
     archive.expect(are_numbers(to_vector(bodies_.id)), "bodies/id");
     find_places<Space>(bodies_);
-    find_driven_bodies();
     find_shapes();
+    find_guides();
+    find_walls(to_vector(bodies_.id), to_vector(bodies_.mobility));
   }
   archive("velocity_before", start_.velocity);
   archive.expect(start_.velocity.size() == bodies_.count(), "velocity_before");
-  std::vector<Vec3> on_driven;
-  for (const auto& [number, driven] : driven_)
-    on_driven.insert(on_driven.end(), {driven.impulse, driven.moment});
-  archive("on_driven", on_driven);
-  archive.expect(on_driven.size() == 2 * driven_.size(), "on_driven");
-  for (auto next = on_driven.begin(); auto& [number, driven] : driven_) driven = {*next++, *next++};
+  archive_wall_impulses(archive);
   archive.part("kept_pairs", kept_pairs_);
   archive.part("seen_pairs", seen_pairs_);
   archive("sees_kept", sees_kept_);
@@ -398,8 +475,11 @@ bool ResidentStepper<Space, Real>::resolve_impacts(double h, double from, double
     const ConstView<Pair> pairs =
         covered ? kept_pairs_.pairs() : kept_pairs_.make(bodies_, contact_margin_, reach, parameters_);
     const timing::Region region("impacts");
-    const Ledger moved = impacts_.resolve(
-        {.pairs = pairs, .loaded = loads_of(pairs), .terms = terms(h, from)}, parameters_, views());
+    const Ledger moved = impacts_.resolve({.pairs = pairs,
+                                           .loaded = loads_of(pairs),
+                                           .terms = terms(h, from),
+                                           .one_by_one = parameters_.accurate},
+                                          parameters_, views());
     if (impacts_.impacts().size() == 0) return false;
     // What was struck may have left the boxes: others that it can meet now are not among the pairs.
     if (cover() || attempt == most_attempts) {
@@ -416,50 +496,73 @@ bool ResidentStepper<Space, Real>::resolve_impacts(double h, double from, double
   struck_.resize(before + static_cast<std::size_t>(impacts_.impacts().size()));
   copy_bytes<Host, Space>(struck_.data() + before, impacts_.impacts().data(),
                           (struck_.size() - before) * sizeof(Impact));
-  for (std::size_t k = before; k < struck_.size(); ++k) add_impulse_on_driven(struck_[k]);
+  for (std::size_t k = before; k < struck_.size(); ++k) add_impulse_on_walls(struck_[k]);
   return true;
 }
 
 template <class Space, class Real>
-void ResidentStepper<Space, Real>::add_impulse_on_driven(const Impact& impact) {
+void ResidentStepper<Space, Real>::add_impulse_on_walls(const Impact& impact) {
   for (const auto& [number, sign] : {std::pair(impact.i, -1.0), std::pair(impact.j, 1.0)}) {
-    const auto driven = driven_.find(BodyNumber{number});
-    if (driven == driven_.end()) continue;
-    driven->second.impulse += sign * impact.impulse;
+    if (is_wall_[static_cast<std::size_t>(number)] == 0) continue;
+    resident::WallImpulse& on = struck_walls_[BodyNumber{number}];
+    on.impulse += sign * impact.impulse;
     if (!geometry_) continue;  // the moment is asked for of meshes alone
     const Vec3 centre = value_at(bodies_.position, place(BodyNumber{number}));
-    driven->second.moment += sign * bodies_.period.nearest(impact.point - centre).cross(impact.impulse);
+    on.moment += sign * bodies_.period.nearest(impact.point - centre).cross(impact.impulse);
   }
 }
 
+/// Of those that have any.
 template <class Space, class Real>
-void ResidentStepper<Space, Real>::add_impulses_on_driven(const FlightStage& flight) {
-  if (driven_.empty()) return;
-  for (const resident::WallImpulse& on : contacts_.wall_impulses(is_driven_.view(), flight)) {
-    Driven& driven = driven_.at(number_of_[static_cast<std::size_t>(on.body)]);
-    driven.impulse += on.impulse;
-    driven.moment += on.moment;
+void ResidentStepper<Space, Real>::archive_wall_impulses(Archive& archive) {
+  std::vector<BodyNumber> walls;
+  std::vector<Vec3> impulses;
+  if (!archive.is_loading()) {
+    std::vector<resident::WallImpulse> on_walls = by_number(to_vector(contacts_.wall_sums().totals()));
+    on_walls.resize(is_wall_.size());
+    for (const auto& [number, on] : struck_walls_)
+      on_walls[index_of(number)] = on_walls[index_of(number)] + on;
+    for (std::size_t k = 0; k < on_walls.size(); ++k) {
+      if (on_walls[k].impulse.isZero(0) && on_walls[k].moment.isZero(0)) continue;
+      walls.push_back(BodyNumber{static_cast<std::int32_t>(k)});
+      impulses.insert(impulses.end(), {on_walls[k].impulse, on_walls[k].moment});
+    }
   }
+  archive("walls", walls);
+  archive("on_walls", impulses);
+  archive.expect(impulses.size() == 2 * walls.size(), "on_walls");
+  if (!archive.is_loading()) return;
+  clear_wall_impulses();
+  for (std::size_t k = 0; k < walls.size(); ++k)
+    struck_walls_[walls[k]] = {impulses[2 * k], impulses[2 * k + 1]};
 }
 
 template <class Space, class Real>
 SteppedBody ResidentStepper<Space, Real>::body(BodyNumber number) const {
   const std::int32_t k = place(number);
-  SteppedBody body{
-      .mobility = value_at(bodies_.mobility, k),
-      .inverse_mass = value_at(bodies_.inverse_mass, k),
-      .position = value_at(bodies_.position, k),
-      .orientation = value_at(bodies_.orientation, k),
-      .velocity = value_at(bodies_.velocity, k),
-      .spin = value_at(bodies_.spin, k),
-      .velocity_before = value_at(start_.velocity, k),
-      .acceleration = parameters_.gravity + gravity_.excess_of_mean(grid_.length(step_ + 1), parameters_),
-      .contact_impulse = Vec3::Zero(),
-      .contact_moment = Vec3::Zero()};
+  SteppedBody body{.mobility = value_at(bodies_.mobility, k),
+                   .inverse_mass = value_at(bodies_.inverse_mass, k),
+                   .position = value_at(bodies_.position, k),
+                   .orientation = value_at(bodies_.orientation, k),
+                   .velocity = value_at(bodies_.velocity, k),
+                   .spin = value_at(bodies_.spin, k),
+                   .velocity_before = value_at(start_.velocity, k),
+                   .acceleration = parameters_.gravity,
+                   .contact_impulse = Vec3::Zero(),
+                   .contact_moment = Vec3::Zero()};
   if (parameters_.acceleration.size() > 0) body.acceleration += value_at(parameters_.acceleration, k);
-  if (const auto driven = driven_.find(number); driven != driven_.end()) {
-    body.contact_impulse = driven->second.impulse;
-    body.contact_moment = driven->second.moment;
+  // A servo's drive bears its weight, whatever that is.
+  if (!servo_axis_.contains(number))
+    body.acceleration += gravity_.excess_of_mean(grid_.length(step_ + 1), parameters_);
+  if (is_wall_[index_of(number)] == 0) return body;
+  if (const auto& totals = contacts_.wall_sums().totals(); totals.size() > 0) {
+    const auto on = value_at(totals, k);
+    body.contact_impulse = on.impulse;
+    body.contact_moment = on.moment;
+  }
+  if (const auto on = struck_walls_.find(number); on != struck_walls_.end()) {
+    body.contact_impulse += on->second.impulse;
+    body.contact_moment += on->second.moment;
   }
   return body;
 }
@@ -531,13 +634,24 @@ void ResidentStepper<Space, Real>::measure_contacts(std::int64_t free_bodies, Ob
 
 }  // namespace
 
+bool needs_host(const Scene& scene) {
+  return scene.geometry != nullptr || LibccdContacts(scene.narrowphase).is_needed();
+}
+
 std::unique_ptr<Stepper> make_resident_stepper(const Scene& scene, const TimeGrid& grid,
                                                const PathTable& paths, bool on_device, const Vec3& origin) {
+  if (needs_host(scene)) {
+    if (scene.precision == Precision::mixed)
+      throw InputError(
+          "meshes, capsules, cylinders, polyhedra and what asks libccd are stepped on the host, in double "
+          "precision: leave out `precision: mixed`");
+    return std::make_unique<ResidentStepper<Host, double>>(scene, grid, paths, on_device, origin);
+  }
   return in_chosen_space(on_device, [&](auto space) -> std::unique_ptr<Stepper> {
     using Space = decltype(space);
     if (scene.precision == Precision::mixed)
-      return std::make_unique<ResidentStepper<Space, float>>(scene, grid, paths, origin);
-    return std::make_unique<ResidentStepper<Space, double>>(scene, grid, paths, origin);
+      return std::make_unique<ResidentStepper<Space, float>>(scene, grid, paths, on_device, origin);
+    return std::make_unique<ResidentStepper<Space, double>>(scene, grid, paths, on_device, origin);
   });
 }
 

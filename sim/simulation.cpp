@@ -11,7 +11,6 @@
 #include "sim/scene/time_grid.hpp"
 #include "sim/step_failure.hpp"
 #include "sim/stepper.hpp"
-#include "sim/substepper.hpp"
 
 #include <fmt/format.h>
 #include <tbb/global_control.h>
@@ -76,32 +75,12 @@ Body body_at(const BodyTable& bodies, std::size_t k) {
 /// Free bodies from which on Device takes the steps unless told otherwise (docs/decisions/0022).
 constexpr std::int64_t few_for_device = 20000;
 
-/// libccd is asked, or asked as well, about some contacts.
-bool asks_libccd(const NarrowPhaseSettings& settings) {
-  return settings.crosscheck > 0 || settings.box_box == BoxBoxMethod::ccd_gjk ||
-         settings.box_box == BoxBoxMethod::ccd_mpr || settings.convex == ConvexMethod::ccd_gjk ||
-         settings.convex == ConvexMethod::ccd_mpr;
-}
-
-/// The accurate mode, servos, general shapes, and few bodies are for Host; their PCS may come from Device all
-/// the same. General shapes take resident steps there if these are asked for.
 std::unique_ptr<Stepper> make_stepper(const Scene& scene, const TimeGrid& grid, const Presence& presence,
-                                      const SimulationOptions& options, const Vec3& origin) {
-  const SpaceChoice space = options.space;
-  const PathTable paths = paths_of(scene, grid, presence);
-  const bool only_host = scene.response.mode == ResponseMode::accurate || !scene.servos.empty();
-  if (scene.geometry && scene.precision == Precision::mixed)
-    throw InputError(
-        "meshes, capsules, cylinders and polyhedra are stepped on the host, in double precision: leave out "
-        "`precision: mixed`");
-  const bool device = space == SpaceChoice::cuda ||
-                      (space == SpaceChoice::automatic && device_info().available &&
-                       std::ranges::count(scene.bodies.mobility, Mobility::free) >= few_for_device);
-  const bool resident = scene.geometry ? options.resident && !asks_libccd(scene.narrowphase)
-                                       : device || options.resident || scene.precision == Precision::mixed;
-  if (!only_host && resident)
-    return make_resident_stepper(scene, grid, paths, device && !scene.geometry, origin);
-  return std::make_unique<Substepper>(scene, grid, paths, device, origin);
+                                      SpaceChoice space, const Vec3& origin) {
+  const bool on_device = space == SpaceChoice::cuda ||
+                         (space == SpaceChoice::automatic && device_info().available &&
+                          std::ranges::count(scene.bodies.mobility, Mobility::free) >= few_for_device);
+  return make_resident_stepper(scene, grid, paths_of(scene, grid, presence), on_device, origin);
 }
 
 }  // namespace
@@ -139,7 +118,7 @@ struct Simulation::Parts {
                     : tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism)),
         origin(middle_of(s.bodies)),
         reference(s.gravity_turn ? Vec3(Vec3::Zero()) : origin),
-        stepper(make_stepper(s, grid, presence, options, origin)),
+        stepper(make_stepper(s, grid, presence, options.space, origin)),
         steps(scene, reference) {
     if (presence.count() < scene.bodies.count())
       stepper->change_bodies([this](Bodies<Host>& bodies) { presence.begin(bodies); });

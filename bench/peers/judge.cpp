@@ -1,6 +1,6 @@
 #include "bench/peers/judge.hpp"
 
-#include "sim/measurement.hpp"
+#include "narrowphase/any_contacts.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -34,13 +34,45 @@ Energy energy_of(const BodyTable& state, const Vec3& gravity) {
   return sum;
 }
 
+/// Of a pair at its deepest point (m).
+struct Overlap {
+  std::int32_t i, j;
+  double depth;
+};
+
+Solid solid_of(const ConstBodyView& bodies, std::int32_t k) {
+  return {bodies.position[k], bodies.orientation[k], bodies.size[k]};
+}
+
+Penetration penetration_of(const std::vector<Overlap>& overlaps, const ConstBodyView& bodies) {
+  Penetration out;
+  if (overlaps.empty()) return out;
+  std::vector<double> depths;
+  const auto n = static_cast<double>(overlaps.size());
+  for (const auto& [i, j, depth] : overlaps) {
+    const double relative = depth / std::min(smallest_size(bodies.shape[i], bodies.size[i]),
+                                             smallest_size(bodies.shape[j], bodies.size[j]));
+    depths.push_back(depth);
+    out.max = std::max(out.max, depth);
+    out.mean += depth / n;
+    out.relative_mean += relative / n;
+    if (relative <= out.relative_max) continue;
+    out.relative_max = relative;
+    out.deepest = {static_cast<std::int32_t>(bodies.id[i]), static_cast<std::int32_t>(bodies.id[j])};
+  }
+  // The smallest depth that at least 99 % of the pairs do not exceed.
+  const auto rank = static_cast<std::ptrdiff_t>(std::ceil(0.99 * n)) - 1;
+  std::nth_element(depths.begin(), depths.begin() + rank, depths.end());
+  out.p99 = depths[static_cast<std::size_t>(rank)];
+  return out;
+}
+
 }  // namespace
 
 Judge::Judge(const Scene& scene)
     : gravity_(scene.gravity),
       first_place_(scene.bodies.position.back()),
-      pair_finder_(make_pair_finder<Host>({}, false, Vec3::Zero())),
-      narrow_phase_(NarrowPhaseSettings{}) {
+      pair_finder_(make_pair_finder<Host>({}, false, Vec3::Zero())) {
   first_energy_ = energy_of(scene.bodies, gravity_).total();
   see(scene.bodies, 0);
 }
@@ -72,11 +104,23 @@ void Judge::measure_penetration_of(const BodyTable& state) {
   const ConstBodyView views = view_of(std::as_const(bodies));
   const ConstView<Pair> pairs =
       candidates_.list(views, pair_finder_->find(bodies, margin), std::as_const(margin).view());
-  const Manifolds found = narrow_phase_.find(views, pairs, margin.view());
-  measure_penetration(found, views, findings_.penetration);
   findings_.squared_penetration = 0;
-  for (const ContactPoint& point : found.points)
-    findings_.squared_penetration += std::pow(std::min(point.gap, 0.0), 2);
+  std::vector<Overlap> overlaps;
+  for (const auto& [i, j] : pairs) {
+    Manifold found[max_pair_manifolds];
+    const int count = find_any_contacts({views.shape[i], solid_of(views, i)},
+                                        {views.shape[j], solid_of(views, j)}, {}, {.margin = 0}, found);
+    double depth = 0;
+    for (int m = 0; m < count; ++m) {
+      for (int k = 0; k < found[m].count; ++k) {
+        const double overlap = std::max(-found[m].points[k].gap, 0.0);
+        depth = std::max(depth, overlap);
+        findings_.squared_penetration += overlap * overlap;
+      }
+    }
+    if (depth > 0) overlaps.push_back({i, j, depth});
+  }
+  findings_.penetration = penetration_of(overlaps, views);
   findings_.worst_penetration = std::max(findings_.worst_penetration, findings_.penetration.max);
 }
 

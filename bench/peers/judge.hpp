@@ -3,7 +3,7 @@
 #pragma once
 
 #include "core/bodies.hpp"
-#include "narrowphase/narrow_phase.hpp"
+#include "narrowphase/candidates.hpp"
 #include "sim/observation.hpp"
 #include "sim/pair_finder.hpp"
 #include "sim/scene/scene.hpp"
@@ -42,7 +42,6 @@ class Judge {
   Vec3 first_place_;  // of the last body
   std::unique_ptr<PairFinder<Host>> pair_finder_;
   Candidates<Host> candidates_;
-  NarrowPhase narrow_phase_;
 };
 
 }  // namespace scree::bench

@@ -1,13 +1,12 @@
 // Steps of a settled scene: how long one takes, and with which error.
 //
 //   scree bench step SCENE [--settle S] [--steps N] [--within W] [--space auto|host|cuda] [--threads N]
-//                          [--set key=value;...] [--resident no|yes] [--calls no|yes]
+//                          [--set key=value;...] [--calls no|yes]
 //
 // Runs until S seconds have passed, then times N steps. One JSON object: medians over these steps, the memory
 // that its space then has in use, and the state after the last. Settling ends, wherever it is, after W
-// seconds of wall time, and so do the timed steps. With --resident yes Host too takes the steps as Device
-// does. With --calls yes ten more steps follow in which each parallel call is waited for: what they and the
-// stages take, which on Device cannot be told apart otherwise.
+// seconds of wall time, and so do the timed steps. With --calls yes ten more steps follow in which each
+// parallel call is waited for: what they and the stages take, which on Device cannot be told apart otherwise.
 #include "bench/options.hpp"
 #include "core/error.hpp"
 #include "core/space.hpp"
@@ -114,14 +113,12 @@ int run(int argc, char** argv) {
                                                {"--space", "auto"},
                                                {"--threads", "0"},
                                                {"--set", ""},
-                                               {"--resident", "no"},
                                                {"--calls", "no"}},
                                               &words);
   if (words.size() != 1) throw InputError("needs one scene; see --help");
   const Scene scene = scene_of(words.front(), options.at("--set"));
   const auto building = Clock::now();
-  Simulation simulation(scene, {space_of(options.at("--space")), std::stoi(options.at("--threads")),
-                                options.at("--resident") == "yes"});
+  Simulation simulation(scene, {space_of(options.at("--space")), std::stoi(options.at("--threads"))});
   const double built = seconds_since(building);
   const auto settling = Clock::now();
   const double within = std::stod(options.at("--within"));

@@ -206,7 +206,6 @@ CLI::App* add_verify(CLI::App& app, VerifyArguments& arguments) {
   add_variations(*command, arguments.variations);
   add_simulation(*command, arguments.simulation,
                  "Threads for each scene (default: 1, and as many scenes as cores)");
-  command->add_flag("--resident", arguments.simulation.resident, "Host takes the steps that the GPU takes");
   command->add_option("--json", arguments.json, "Write the table there too")->type_name("FILE");
   CLI::Option* label =
       command->add_option("--label", arguments.label, "Only scenes with this label")->type_name("LABEL");

@@ -116,7 +116,7 @@ SCREE_HD bool would_push_apart(const StruckFlights& struck, const Header& m, con
 
 }  // namespace detail
 
-/// Of a Manifold or a ManifoldHeader with its points. Two bodies that the rows would hold apart, though
+/// Of a Manifold. Two bodies that the rows would hold apart, though
 /// nothing else has touched them, may pass by each other: the normal of the midpoint says nothing of it. Or
 /// they meet later, in an impact that will bounce. `size`: the smaller smallest_size of the two (m);
 /// `loaded`: whether the pair's part carried an impulse in the last substep.

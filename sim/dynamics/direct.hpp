@@ -3,6 +3,7 @@
 
 #include "core/tolerances.hpp"
 #include "sim/dynamics/islands.hpp"
+#include "sim/dynamics/state.hpp"
 #include "sim/observation.hpp"
 
 #include <cmath>

@@ -4,7 +4,7 @@
 
 #include "core/array.hpp"
 #include "core/space_atomic.hpp"
-#include "narrowphase/narrow_phase.hpp"
+#include "narrowphase/candidates.hpp"
 #include "sim/dynamics/impact.hpp"
 #include "sim/dynamics/volley.hpp"
 
@@ -52,7 +52,9 @@ struct RoundCounts {
 
 /// What the threads of a flight tell each other, and the host at the end.
 struct ImpactProgress {
-  RoundCounts counts[2];   ///< of the even rounds and of the odd ones
+  RoundCounts counts[2];  ///< of the even rounds and of the odd ones
+  FirstMeeting first[2] = {{infinite, ~std::uint64_t{0}},
+                           {infinite, ~std::uint64_t{0}}};  ///< of all, likewise
   double harmless = 0;     ///< FlightStage::harmless; infinite where nobody is faster (m/s)
   std::uint64_t busy = 0;  ///< pairs of bodies that have joined
   std::uint64_t impacts = 0;
@@ -91,6 +93,7 @@ struct ImpactProgram {
   FlightStage stage;
   ConstView<Pair> pairs;
   ConstView<LoadedParts> loaded;  ///< of each pair; empty: none
+  bool one_by_one;                ///< in the order of their times, one a round
   ImpactProgress* progress;
   // Of each body:
   View<FirstMeeting> first;
@@ -302,6 +305,7 @@ struct ImpactProgram {
     const auto [i, j] = pairs[of.pair];
     if (counts_for(i, j)) lower(&first[i].time, ordered_bits(of.time));
     if (counts_for(j, i)) lower(&first[j].time, ordered_bits(of.time));
+    if (one_by_one) lower(&progress->first[state.round % 2].time, ordered_bits(of.time));
     if (is_of_heavy(i, j)) volleys[e] = {};
   }
 
@@ -309,7 +313,10 @@ struct ImpactProgram {
   SCREE_HD void resolve(const State& state, int phase, std::int64_t item) const {
     if (phase == 0) {
       // Nobody counts in those of the next round yet.
-      if (item == 0) progress->counts[(state.round + 1) % 2] = {};
+      if (item == 0) {
+        progress->counts[(state.round + 1) % 2] = {};
+        progress->first[(state.round + 1) % 2] = no_meeting;
+      }
       find_first_pairs(state, item);
       return;
     }
@@ -336,6 +343,7 @@ struct ImpactProgram {
   }
   /// All that are first; no two of them share a body but one that is heavy to both others.
   SCREE_HD bool is_first(const State& state, const Foreseen& of) const {
+    if (one_by_one) return progress->first[state.round % 2].pair == static_cast<std::uint64_t>(of.pair);
     const auto [i, j] = pairs[of.pair];
     return is_first_of(state, i, j, of) && is_first_of(state, j, i, of);
   }
@@ -354,6 +362,9 @@ struct ImpactProgram {
       of.next_of_wall = exchange(&walls_of[stage.is_free(i) ? i : j], static_cast<std::uint32_t>(e + 1));
     find_first_pair(i, j, of, static_cast<std::uint32_t>(e));
     find_first_pair(j, i, of, static_cast<std::uint32_t>(e));
+    FirstMeeting& of_all = progress->first[state.round % 2];
+    if (one_by_one && of_all.time == ordered_bits(of.time))
+      lower(&of_all.pair, static_cast<std::uint64_t>(of.pair));
   }
   SCREE_HD void find_first_pair(std::int32_t body, std::int32_t other, const Foreseen& of,
                                 std::uint32_t e) const {

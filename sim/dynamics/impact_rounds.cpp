@@ -155,6 +155,7 @@ ImpactProgram ImpactRounds<Space>::program(const FlightStage& stage, const Probl
   return {.stage = stage,
           .pairs = problem.pairs,
           .loaded = problem.loaded,
+          .one_by_one = problem.one_by_one,
           .progress = shared_progress_.data(),
           .first = first_.view(),
           .joined_in = joined_in_.view(),

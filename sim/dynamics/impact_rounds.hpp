@@ -24,13 +24,22 @@ struct FlightBounds {
 
 }  // namespace detail
 
-/// The same impacts as ImpactSolver's, with its bounds. In each round a meeting is resolved if no other of
-/// its two bodies is earlier, nor any that could drive a body into these before: what comes later in one
-/// place waits for what is earlier there, while places apart do not wait for each other. A chain that would
-/// run through two bodies and reach a third before its own meeting comes too late for that, and strikes it
-/// right after. Bodies that are not free change nothing, and nobody waits for them. A heavy body is struck by
-/// many light ones in one round, and between light ones it is as one that is not free. Results do not depend
-/// on the threads.
+/// An impact is the meeting of a pair that was not loaded before, bounces, and closes faster than the
+/// threshold; or of any pair whose approach would go on for more than tolerance::deep_approach by the end of
+/// the substep: the response, which sees the midpoint alone, could not tell which way to part them. A body in
+/// flight is, at the time s into the substep, at
+///   x(s) = x_mid + (s - step/2) v + g s^2 / 2,
+/// and turns freely; after an impact its midpoint is that from which its new velocity leads through the
+/// impact. So flight, bounce and energy are exact whatever the step (docs/method.md). The bodies are at the
+/// midpoint, with their velocities before gravity's kick. Chains run on until nothing meets; a body that has
+/// had its bound of impacts takes e = 0.
+///
+/// In each round a meeting is resolved if no other of its two bodies is earlier, nor any that could drive a
+/// body into these before: what comes later in one place waits for what is earlier there, while places apart
+/// do not wait for each other. A chain that would run through two bodies and reach a third before its own
+/// meeting comes too late for that, and strikes it right after. Bodies that are not free change nothing, and
+/// nobody waits for them. A heavy body is struck by many light ones in one round, and between light ones it
+/// is as one that is not free. Results do not depend on the threads.
 template <class Space>
 class ImpactRounds {
  public:
@@ -39,11 +48,12 @@ class ImpactRounds {
     ConstView<Pair> pairs;          ///< candidates, among which are all that may meet; each has a free body
     ConstView<LoadedParts> loaded;  ///< of each pair; empty: none
     FlightTerms terms;
+    bool one_by_one = false;  ///< strictly in the order of their times, whatever that costs
   };
 
   /// False if all are too slow for one in the flight, wherever they are.
   bool any_may_meet(const FlightTerms& terms, const ResponseParameters& parameters, BodyView bodies);
-  /// Finds and resolves the impacts of the flight, as ImpactSolver::resolve(). All views are of the space.
+  /// Finds and resolves the impacts of the flight. Returns what they moved. All views are of the space.
   Ledger resolve(const Problem& problem, const ResponseParameters& parameters, BodyView bodies);
   /// Puts the bodies back to where they were before the last resolve().
   void undo(BodyView bodies);

@@ -1,7 +1,7 @@
 // Islands: sets of free bodies that contacts connect. Each is a contact problem of its own.
 #pragma once
 
-#include "sim/dynamics/contact_set.hpp"
+#include "sim/dynamics/contact.hpp"
 
 #include <cstdint>
 #include <vector>

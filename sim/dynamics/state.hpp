@@ -34,7 +34,7 @@ struct ResponseParameters {
   /// forces.
   ConstView<Vec3> acceleration;
   ConstView<Vec3> torque;
-  ConstView<Guide> guides;  ///< on Host alone; empty without such bodies
+  ConstView<Guide> guides;  ///< by place; empty without such bodies
   /// Bound on how fast velocities of prescribed bodies' surfaces change, but for constant spin (m/s^2).
   double prescribed_acceleration = 0;
   bool friction = true;

@@ -129,13 +129,15 @@ class VolleyOutcome {
       : flight_(stage.flight(heavy)) {
     const VolleyUnits unit(stage, heavy, volley);
     momentum_ = value_of(volley.momentum, unit.momentum);
-    delayed_ = value_of(volley.delayed, unit.delayed);
     angular_ = value_of(volley.angular, unit.angular);
     turning_ = value_of(volley.turning, unit.energy);
     const double weight = value_of(volley.weight, unit.momentum);
     time_ = weight > 0 ? value_of(volley.delayed_weight, unit.delayed) / weight : flight_.midpoint;
     at_ = instant_of(flight_, time_);
     velocity_ = stage.bodies.inverse_mass[heavy] * momentum_;
+    delayed_velocity_ = stage.bodies.inverse_mass[heavy] * value_of(volley.delayed, unit.delayed);
+    hold_to_guide(stage.parameters.guides, heavy, velocity_);
+    hold_to_guide(stage.parameters.guides, heavy, delayed_velocity_);
     spin_ = world_inverse_inertia(at_.solid.orientation, flight_.inverse_inertia) * angular_;
     if (volley.impacts == 1) return;
     const double light = value_of(volley.light, unit.energy);
@@ -150,7 +152,7 @@ class VolleyOutcome {
   /// the angular momentum by which impacts at several times differ from one at their mean.
   SCREE_HD Ledger fly_on(const FlightStage& stage, std::int32_t heavy) const {
     Ledger moved;
-    const Vec3 back = scale_ * (stage.bodies.inverse_mass[heavy] * delayed_ - flight_.midpoint * velocity_);
+    const Vec3 back = scale_ * (delayed_velocity_ - flight_.midpoint * velocity_);
     stage.bodies.position[heavy] -= back;
     stage.bodies.velocity[heavy] += scale_ * velocity_;
     moved.angular_correction = -back.cross(scale_ * momentum_);
@@ -165,11 +167,11 @@ class VolleyOutcome {
 
  private:
   BodyFlight flight_;
-  Vec3 momentum_, delayed_, angular_;
+  Vec3 momentum_, angular_;
   double turning_;
   double time_;
   BodyInstant at_;
-  Vec3 velocity_, spin_;
+  Vec3 velocity_, delayed_velocity_, spin_;  // delayed: times the time
   double scale_ = 1;
 };
 

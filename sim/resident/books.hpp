@@ -18,13 +18,14 @@ namespace scree::resident {
 struct Books {
   double restitution = 0;  ///< dissipated (J)
   double friction = 0;
-  double work = 0;          ///< of bodies that are not free (J)
-  double gaps = 0;          ///< sum of |gap| of loaded points (m)
-  std::int64_t loaded = 0;  ///< points that carry an impulse
-  std::int64_t ends = 0;    ///< free bodies at loaded contacts
-  double deepest = 0;       ///< overlap at the end, of the cap
-  double gap_power = 0;     ///< of normal impulses on what they leave undone: 0 when all are found (J)
-  double kick_power = 0;    ///< of impulses on what they have changed (J)
+  double work = 0;           ///< of bodies that are not free (J)
+  double gaps = 0;           ///< sum of |gap| of loaded points (m)
+  std::int64_t loaded = 0;   ///< points that carry an impulse
+  std::int64_t ends = 0;     ///< free bodies at loaded contacts
+  std::int64_t gaining = 0;  ///< contacts without which no set of them gains energy (Moved::gains)
+  double deepest = 0;        ///< overlap at the end, of the cap
+  double gap_power = 0;      ///< of normal impulses on what they leave undone: 0 when all are found (J)
+  double kick_power = 0;     ///< of impulses on what they have changed (J)
 
   SCREE_HD friend Books operator+(const Books& a, const Books& b) {
     return {a.restitution + b.restitution,
@@ -33,9 +34,16 @@ struct Books {
             a.gaps + b.gaps,
             a.loaded + b.loaded,
             a.ends + b.ends,
+            a.gaining + b.gaining,
             a.deepest > b.deepest ? a.deepest : b.deepest,
             a.gap_power + b.gap_power,
             a.kick_power + b.kick_power};
+  }
+
+  /// What all impulses have moved.
+  SCREE_HD Moved moved() const {
+    const double square = 0.5 * kick_power;
+    return {-(restitution + friction) - square, square};
   }
 };
 
@@ -47,6 +55,19 @@ struct BookedPoint {
   double target;  ///< of the normal velocity (m/s)
 };
 
+/// Velocity of j relative to i at a point: before the substep's forces, with these but without contacts, and
+/// with both (m/s).
+struct PointMotion {
+  Vec3 before, free, after;
+};
+
+/// Share of what impulses move that is rounding where they gain it. That of a float is of the velocities,
+/// which may be thousands of times the changes.
+template <class Real>
+inline constexpr double response_gain = tolerance::response_gain;
+template <>
+inline constexpr double response_gain<float> = tolerance::mixed_response_gain;
+
 /// What all contacts have in common.
 template <class Real>
 struct BookStage {
@@ -57,6 +78,7 @@ struct BookStage {
   ResponseParameters parameters;
   double step;
   View<std::uint32_t> loads;  ///< bytes of candidates: a bit for each part that is loaded
+  bool again = false;         ///< the gaps at the end are set already
 
   /// Manifold::part of a slot's surface: the corners of a box all touch the one wall.
   SCREE_HD int part_of(const Slot& slot) const {
@@ -71,12 +93,17 @@ struct BookStage {
     set_bits(&loads[candidate / 4], 1u << (8 * (candidate % 4) + static_cast<std::uint32_t>(part)));
   }
 
+  SCREE_HD PointMotion motion_of(const Vec3& arm_i, const Vec3& arm_j, const Slot& slot,
+                                 const Ends& ends) const {
+    const Vec3 with_forces = velocity_of(free, ends.j, arm_j) - velocity_of(free, ends.i, arm_i);
+    return {with_forces - kick_of(slot.j, ends.j, arm_j) + kick_of(slot.i, ends.i, arm_i), with_forces,
+            velocity_of(solver, ends.j, arm_j) - velocity_of(solver, ends.i, arm_i)};
+  }
+
   /// Adds what a point's impulse has moved: account(), at the arms given.
   SCREE_HD void book(const BookedPoint& at, const Slot& slot, const Ends& ends, Books& books) const {
     const Vec3& p = at.impulse;
-    const Vec3 after = velocity_of(solver, ends.j, at.arm_j) - velocity_of(solver, ends.i, at.arm_i);
-    const Vec3 free_u = velocity_of(free, ends.j, at.arm_j) - velocity_of(free, ends.i, at.arm_i);
-    const Vec3 before = free_u - kick_of(slot.j, ends.j, at.arm_j) + kick_of(slot.i, ends.i, at.arm_i);
+    const auto [before, free_u, after] = motion_of(at.arm_i, at.arm_j, slot, ends);
     const double pn = p.dot(at.normal);
     const double through_mean = 0.5 * p.dot(before + after);
     const double normal_part = 0.5 * pn * at.normal.dot(before + after);
@@ -89,6 +116,10 @@ struct BookStage {
     books.kick_power += changed;
   }
   SCREE_HD bool is_free(std::int32_t end) const { return solver[end].inverse_mass > 0; }
+  /// Of one contact, whose points are booked.
+  SCREE_HD static void judge_gain(Books& books) {
+    books.gaining = books.moved().gains(response_gain<Real>) ? 1 : 0;
+  }
   SCREE_HD std::int64_t free_ends(const Ends& ends) const {
     return static_cast<int>(is_free(ends.i)) + static_cast<int>(is_free(ends.j));
   }
@@ -138,12 +169,13 @@ struct BookBalls {
       books.gaps = fabs(static_cast<double>(contacts.gaps.at(C::gap, c)));
       books.loaded = 1;
       books.ends = stage.free_ends(ends);
+      stage.judge_gain(books);
       if (stage.loads.size() > 0) stage.mark_loaded(slot, slot.surface);
     }
     Real& flown = contacts.gaps.at(C::flown, c);
     if (contacts.flags[c] == 0) {
       const V3<Real> u = stage.solver[ends.j].velocity - stage.solver[ends.i].velocity;
-      flown += static_cast<Real>(0.5 * stage.step) * dot(n, u);
+      if (!stage.again) flown += static_cast<Real>(0.5 * stage.step) * dot(n, u);
       books.deepest = fmax(0.0, static_cast<double>(-flown / contacts.gaps.at(C::cap, c)));
     } else if (passes(contacts.flags[c], loaded)) {
       flown = static_cast<Real>(HUGE_VAL);
@@ -184,11 +216,13 @@ struct BookPoints {
       if (passes(contacts.flags[c], loaded)) flown = static_cast<Real>(HUGE_VAL);
       if (contacts.flags[c] != 0) continue;
       const V3<Real> u = velocity_at(at, stage.solver[ends.i], stage.solver[ends.j]);
-      flown += static_cast<Real>(0.5 * stage.step) * dot(contacts.fields.vector(C::normal, c), u);
+      if (!stage.again)
+        flown += static_cast<Real>(0.5 * stage.step) * dot(contacts.fields.vector(C::normal, c), u);
       books.deepest = fmax(books.deepest, static_cast<double>(-flown) / cap);
     }
     if (books.loaded == 0) return books;
     books.ends = stage.free_ends(ends);
+    stage.judge_gain(books);
     if (stage.loads.size() > 0) stage.mark_loaded(slot, stage.part_of(slot));
     return books;
   }

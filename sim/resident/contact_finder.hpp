@@ -2,6 +2,7 @@
 #pragma once
 
 #include "core/array.hpp"
+#include "sim/resident/ball_blocks.hpp"
 #include "sim/resident/contact_store.hpp"
 #include "sim/resident/find_stage.hpp"
 #include "sim/resident/slots.hpp"
@@ -27,6 +28,7 @@ class ContactFinder {
   template <class Judge>
   void judge(const PassingList& passing, const Judge& judge);
 
+  Array<Reach, Host> reach_;  // of nobody, and of each body; where the kernels find contacts
   Array<std::int32_t, Space> passing_;
   Array<std::uint64_t, Space> passing_count_;
 };

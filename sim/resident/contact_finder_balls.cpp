@@ -1,3 +1,4 @@
+#include "sim/resident/ball_tiles.hpp"
 #include "sim/resident/contact_finder_passing.hpp"
 #include "sim/resident/find_balls.hpp"
 
@@ -11,7 +12,16 @@ void ContactFinder<Space, Real>::find_balls(const FindStage<Real>& stage, Slots<
   const PassingList passing = clear_passing(tiles * parallel::tile);
   const BallContacts<Real> contacts = store.balls();
   const FindBalls<Real> find{stage, contacts, slots.ball_memory(), solver, passing};
-  parallel::compact_tiles<Space>("contacts.find balls", tiles, find, store.ball_tiles().data());
+  if constexpr (visit_width<Space, Real> == 1) {
+    parallel::compact_tiles<Space>("contacts.find balls", tiles, find, store.ball_tiles().data());
+  } else {
+    constexpr std::int64_t few_tiles = 2;
+    reach_.resize(stage.mid.size() + 1);
+    Reach* const reach = reach_.data() + 1;
+    parallel::for_each<Host>("contacts.reach", reach_.size(), SetReach{stage, reach});
+    parallel::for_each<Host>("contacts.find balls", tiles,
+                             FindBallTile{find, reach, store.ball_tiles().data()}, few_tiles);
+  }
   judge(passing, JudgeBalls<Real>{stage, contacts});
 }
 

@@ -19,8 +19,8 @@ PassingList ContactFinder<Space, Real>::clear_passing(std::int64_t places) {
 template <class Space, class Real>
 template <class Judge>
 void ContactFinder<Space, Real>::judge(const PassingList& passing, const Judge& judge) {
-  parallel::for_each<Space>("contacts.passing", JudgePassing<Judge>::threads,
-                            JudgePassing<Judge>{passing, judge});
+  constexpr std::int64_t threads = JudgePassing<Judge>::template threads<Space>;
+  parallel::for_each<Space>("contacts.passing", threads, JudgePassing<Judge>{threads, passing, judge});
 }
 
 }  // namespace scree::resident

@@ -4,11 +4,14 @@
 #include "core/space_rounds.hpp"
 #include "core/space_tiles.hpp"
 #include "core/tolerances.hpp"
-#include "sim/resident/few_contacts.hpp"
+#include "sim/resident/ball_tiles.hpp"
+#include "sim/resident/contacts_on_host.hpp"
 #include "sim/resident/padding.hpp"
 #include "sim/resident/rounds.hpp"
+#include "sim/resident/scaling.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <type_traits>
 #include <utility>
 
@@ -18,6 +21,10 @@ namespace {
 
 constexpr int tile = parallel::tile;
 
+/// Places and bodies that are worth their way from Device to Host and back.
+constexpr std::int64_t few_places = 1 << 16;
+constexpr std::int64_t few_bodies = 1 << 14;
+
 }  // namespace
 
 template <class Space, class Real>
@@ -26,6 +33,7 @@ void ContactSolver<Space, Real>::take_candidates(ConstView<Pair> candidates,
                                                  const ConstBodyView& bodies, bool rolls) {
   slots_.build(candidates, place_before, bodies, rolls);
   make_places();
+  wall_sums_.take(slots_.places(), bodies);
   const std::int64_t balls = store_.ball_places();
   for (auto* loads : {&loads_, &next_loads_}) {
     loads->resize((candidates.size() + 3) / 4);
@@ -53,6 +61,7 @@ void ContactSolver<Space, Real>::archive(Archive& archive, const ConstBodyView& 
   archive("loads", loads_);
   if (!archive.is_loading()) return;
   make_places();
+  wall_sums_.take(slots_.places(), bodies);
   next_loads_.resize(loads_.size());
 }
 
@@ -67,14 +76,33 @@ void ContactSolver<Space, Real>::look_up_loads(ConstView<Pair> candidates,
 }
 
 template <class Space, class Real>
-Inspection<Real> ContactSolver<Space, Real>::inspect() const {
+Inspection<Real> ContactSolver<Space, Real>::inspect() {
   Inspection<Real> seen;
-  seen.places.resize(static_cast<std::size_t>(slots_.places().size()));
-  copy_bytes<Host, Space>(seen.places.data(), slots_.places().data(), seen.places.size() * sizeof(Slot));
-  copy(seen.free, free_);
-  seen.contacts.copy_from(store_);
+  seen.rolls = rolls();
   seen.first_wall_point = slots_.solver_bodies().first_wall_point();
   seen.step = step_;
+  if constexpr (std::is_same_v<Space, Host>) {
+    seen.places = slots_.places();
+    seen.free = std::as_const(free_).view();
+    seen.contacts = &store_;
+    seen.ball_rolling = rolling_of_balls();
+    seen.point_rolling = rolling_of_points();
+  } else {
+    seen.brought = std::make_shared<BroughtContacts<Real>>();
+    BroughtContacts<Real>& to = *seen.brought;
+    to.places.resize(static_cast<std::size_t>(slots_.places().size()));
+    copy_bytes<Host, Space>(to.places.data(), slots_.places().data(), to.places.size() * sizeof(Slot));
+    copy(to.free, free_);
+    to.store.copy_from(store_);
+    copy(to.ball_rolling, ball_rolling_);
+    copy(to.point_rolling, point_rolling_);
+    using R = decltype(RollingFields<Real>::fields);
+    seen.places = {to.places.data(), slots_.places().size()};
+    seen.free = {to.free.data(), free_.size()};
+    seen.contacts = &to.store;
+    seen.ball_rolling = {R(to.ball_rolling.data())};
+    seen.point_rolling = {R(to.point_rolling.data())};
+  }
   return seen;
 }
 
@@ -85,35 +113,20 @@ ConstView<Slot> ContactSolver<Space, Real>::places_of_points() const {
 }
 
 template <class Space, class Real>
-std::vector<WallImpulse> ContactSolver<Space, Real>::wall_impulses(ConstView<std::uint8_t> asked,
-                                                                   const FlightStage& flight) {
-  std::vector<WallImpulse> all;
-  if (counts_.contacts == 0) return all;
-  const ConstView<MidBody<Real>> mid = std::as_const(mid_).view();
-  list_wall_impulses(
-      ball_list_.size(),
-      AskedBalls<Real>{{asked, slots_.places(), mid, flight}, store_.balls(), ball_list_.places()}, all);
-  list_wall_impulses(
-      point_list_.size(),
-      AskedPoints<Real>{{asked, places_of_points(), mid, flight}, store_.points(), point_list_.places()},
-      all);
-  return all;
-}
-
-template <class Space, class Real>
-template <class Asked>
-void ContactSolver<Space, Real>::list_wall_impulses(std::int64_t contacts, const Asked& asked,
-                                                    std::vector<WallImpulse>& out) {
-  if (contacts == 0) return;
-  parallel::select("contacts.walls", contacts, asked, Asked::none, asked_contacts_);
-  wall_impulses_.resize(asked_contacts_.size());
-  parallel::for_each<Space>(
-      "contacts.walls", wall_impulses_.size(),
-      PutWallImpulse<Asked>{asked, std::as_const(asked_contacts_).view(), wall_impulses_.view()});
-  const std::size_t before = out.size();
-  out.resize(before + static_cast<std::size_t>(wall_impulses_.size()));
-  copy_bytes<Host, Space>(out.data() + before, wall_impulses_.data(),
-                          static_cast<std::size_t>(wall_impulses_.size()) * sizeof(WallImpulse));
+void ContactSolver<Space, Real>::add_wall_impulses(const FlightStage& flight) {
+  if (wall_sums_.is_empty() || counts_.contacts == 0) return;
+  WallContacts<Real> among{.entry_of = wall_sums_.entry_of_place(),
+                           .impulses = wall_sums_.clear_impulses(),
+                           .first_place = 0,
+                           .places = slots_.places(),
+                           .mid = std::as_const(mid_).view(),
+                           .flight = flight};
+  parallel::for_each<Space>("walls.impulses", ball_list_.size(),
+                            on_contacts(ball_list_, PutBallOnWall<Real>{among, store_.balls()}));
+  among.first_place = store_.ball_places();
+  parallel::for_each<Space>("walls.impulses", point_list_.size(),
+                            on_contacts(point_list_, PutPointsOnWall<Real>{among, store_.points()}));
+  wall_sums_.add_up();
 }
 
 template <class Space, class Real>
@@ -141,10 +154,11 @@ void ContactSolver<Space, Real>::load_bodies(const ConstBodyView& bodies, ConstV
 
 template <class Space, class Real>
 void ContactSolver<Space, Real>::find(ConstView<double> margin, double scale, const FlightStage& flight,
-                                      bool any_is_late) {
+                                      bool any_is_late, LibccdContacts* libccd) {
   step_ = flight.terms.step;
   const ConstBodyView bodies = read_only(flight.bodies);
   const ResponseParameters& parameters = flight.parameters;
+  list_guided(parameters.guides);
   load_bodies(bodies, margin, parameters);
   const FindStage<Real> stage{.places = slots_.places(),
                               .mid = mid_.view(),
@@ -156,14 +170,15 @@ void ContactSolver<Space, Real>::find(ConstView<double> margin, double scale, co
                               .scale = scale,
                               .noise = tolerance::parting_speed * step_ * parameters.gravity.norm(),
                               .struck = {flight},
-                              .any_is_late = any_is_late};
+                              .any_is_late = any_is_late,
+                              .libccd = libccd};
   finder_.find(stage, slots_, loads(), solver_.view(), store_);
-  copy(free_, solver_);
   constexpr int width = visit_width<Space, Real>;
   ball_list_.make(store_.ball_tiles(), width);
   point_list_.make(store_.point_tiles(), width);
   counts_ = {ball_list_.size(), ball_list_.size()};
   if (parameters.rolling_friction) start_rolling(stage);
+  copy(free_, solver_);
   if constexpr (width > 1) pad();
   if (point_list_.size() == 0) return;
   counts_.contacts += point_list_.size();
@@ -181,6 +196,24 @@ void ContactSolver<Space, Real>::pad() {
   parallel::for_each<Space>(
       "contacts.pad", store_.point_tiles().size(),
       PadPoints<Real>{store_.points(), rolling_of_points(), rolls(), store_.point_tiles().data(), nobody});
+}
+
+/// The parts of hubs, too.
+template <class Space, class Real>
+void ContactSolver<Space, Real>::list_guided(ConstView<Guide> guides) {
+  guides_.resize(static_cast<std::size_t>(guides.size()));
+  if (guides_.empty()) return guided_.resize(0);
+  copy_bytes<Host, Space>(guides_.data(), guides.data(), guides_.size() * sizeof(Guide));
+  std::vector<Hub> hubs(static_cast<std::size_t>(slots_.solver_bodies().hubs().size()));
+  copy_bytes<Host, Space>(hubs.data(), slots_.solver_bodies().hubs().data(), hubs.size() * sizeof(Hub));
+  std::vector<Guide> guided = guides_;
+  for (const Guide& guide : guides_) {
+    for (const Hub& hub : hubs) {
+      if (hub.body != guide.body) continue;
+      for (std::int32_t part = 0; part < hub.parts; ++part) guided.push_back({hub.first + part, guide.axis});
+    }
+  }
+  copy(guided_, guided);
 }
 
 template <class Space, class Real>
@@ -225,6 +258,7 @@ SweepState ContactSolver<Space, Real>::run_impulse_rounds(const SweepPlan& plan)
                                       .last = last_.data(),
                                       .body_count = slots_.solver_bodies().first_wall_point(),
                                       .hubs = join_hubs(solver_),
+                                      .guides = {guided_.view(), solver_.data()},
                                       .least = plan.least,
                                       .most = plan.most,
                                       .block_sweeps = plan.block_sweeps,
@@ -246,11 +280,15 @@ void ContactSolver<Space, Real>::find_impulses(const ResponseParameters& paramet
     if (parameters.iterations > 0) plan.least = std::min(plan.least, plan.most);
     plan.most = std::max(plan.most, plan.least);
   }
-  // Newton's method knows no couples.
-  const bool few = plan.direct && !rolls() && slots_.places().size() <= few_places &&
-                   slots_.solver_bodies().first_wall_point() <= few_bodies;
-  const bool converged = few ? solve_few(plan, counters) : sweep(plan, counters);
+  const bool islands = parameters.accurate || (plan.direct && fits_on_host());
+  const bool converged = islands ? solve_islands(plan, parameters.accurate, counters) : sweep(plan, counters);
   counters.unconverged += !converged;
+}
+
+template <class Space, class Real>
+bool ContactSolver<Space, Real>::fits_on_host() const {
+  return std::is_same_v<Space, Host> ||
+         (slots_.places().size() <= few_places && slots_.solver_bodies().first_wall_point() <= few_bodies);
 }
 
 /// The bodies of the solver are without contacts.
@@ -262,6 +300,15 @@ bool ContactSolver<Space, Real>::sweep(const SweepPlan& plan, Counters& counters
   return done.converged;
 }
 
+/// Velocities become what the impulses give: the rounding of many sweeps is none.
+template <class Space, class Real>
+void ContactSolver<Space, Real>::set_velocities() {
+  SweepPlan push{.least = 0, .most = 0, .block_sweeps = 1, .tolerance = 0, .direct = false};
+  Counters none;
+  copy(solver_, free_);
+  sweep(push, none);
+}
+
 template <class Space, class Real>
 LoadSpread ContactSolver<Space, Real>::spread_of_loads() {
   return parallel::sum_by_tiles<LoadSpread, Space>("sweeps.loads", ball_list_.size(),
@@ -270,32 +317,178 @@ LoadSpread ContactSolver<Space, Real>::spread_of_loads() {
              "sweeps.loads", point_list_.size(), on_contacts(point_list_, PointLoad<Real>{store_.points()}));
 }
 
-/// Sweeps; islands on which they creep go to Host's direct solver, as in Host's own steps.
+/// Sweeps; islands on which they creep go to the direct solver on Host. In the accurate mode all do whose
+/// natural residual is beyond the tolerance.
 template <class Space, class Real>
-bool ContactSolver<Space, Real>::solve_few(const SweepPlan& plan, Counters& counters) {
+bool ContactSolver<Space, Real>::solve_islands(const SweepPlan& plan, bool accurate, Counters& counters) {
   SweepPlan first = plan, rest = plan;
-  first.most = sweeps_before_direct(plan.most, counters);
+  if (plan.direct) first.most = sweeps_before_direct(plan.most, counters);
   rest.most = std::max(plan.most - first.most, few_sweeps);
-  const auto solve_islands = [&](const DirectLimits& limits, std::int64_t& solved, std::int64_t& failed) {
+  const auto solve_directly = [&](const DirectLimits& limits, std::int64_t& solved, std::int64_t& failed) {
     Inspection<Real> seen = inspect();
-    FewContacts<Real> contacts(seen);
+    ContactsOnHost<Real> contacts(seen, guides_);
     const bool all = contacts.solve(plan.tolerance, limits, solved, failed);
-    const std::vector<BodyRecord<Real>> bodies = contacts.put_back();
-    store_.copy_from(seen.contacts);
-    copy(solver_, bodies);
+    put_back(seen, contacts);
     return all;
   };
-  if (sweep(first, counters) && !spread_of_loads().is_wide(plan.tolerance)) return true;
-  if (solve_islands(quick_limits, counters.direct, counters.direct_failed)) return true;
-  copy(solver_, free_);
-  if (sweep(rest, counters)) return true;
-  return pays_patience(counters) && solve_islands(patient_limits, counters.patient, counters.patient_failed);
+  const auto sweep_many = [&](const SweepPlan& of) {
+    const std::int64_t before = counters.sweeps;
+    copy(solver_, free_);
+    const bool converged = sweep(of, counters);
+    if (counters.sweeps - before > few_sweeps) set_velocities();
+    return converged;
+  };
+  const bool converged = sweep_many(first);
+  if (!converged && !accurate && first.most == plan.most) return false;
+  if (converged &&
+      (accurate ? are_solved_one_by_one(plan.tolerance) : !spread_of_loads().is_wide(plan.tolerance)))
+    return true;
+  if (solve_directly(accurate ? thorough_limits : quick_limits, counters.direct, counters.direct_failed))
+    return true;
+  if (sweep_many(rest)) return true;
+  return !accurate && pays_patience(counters) &&
+         solve_directly(patient_limits, counters.patient, counters.patient_failed);
 }
 
 template <class Space, class Real>
-Ledger ContactSolver<Space, Real>::book(const ConstBodyView& bodies, const ResponseParameters& parameters) {
-  const BookStage<Real> stage{slots_.places(), bodies, free_.view(),      solver_.view(),
-                              parameters,      step_,  next_loads_.view()};
+void ContactSolver<Space, Real>::put_back(Inspection<Real>& seen, const ContactsOnHost<Real>& contacts) {
+  contacts.put_back();
+  if (seen.brought != nullptr) {
+    store_.copy_from(seen.brought->store);
+    copy(ball_rolling_, seen.brought->ball_rolling);
+    copy(point_rolling_, seen.brought->point_rolling);
+  }
+  set_velocities();
+}
+
+/// Sum of what `of` makes of the natural residual of each contact and of each couple.
+template <class Space, class Real>
+template <class Sum, class Of>
+Sum ContactSolver<Space, Real>::sum_residuals(const Of& of) {
+  using Balls = BallContacts<Real>;
+  using Points = PointContacts<Real>;
+  const ConstView<BodyRecord<Real>> solver = std::as_const(solver_).view();
+  const auto sum = [&of](const ContactList<Space>& list, const auto& residual) {
+    return parallel::sum_by_tiles<Sum, Space>("response.residual", list.size(),
+                                              on_contacts(list, of(residual)));
+  };
+  Sum total = sum(ball_list_, Residual<Real, Balls>{store_.balls(), solver}) +
+              sum(point_list_, Residual<Real, Points>{store_.points(), solver});
+  if (!rolls()) return total;
+  total =
+      total +
+      sum(ball_list_, RollingResidual<Real, Balls, TurnBalls>{store_.balls(), rolling_of_balls(), solver}) +
+      sum(point_list_,
+          RollingResidual<Real, Points, TurnPoints>{store_.points(), rolling_of_points(), solver});
+  return total;
+}
+
+/// Whether the natural residual of each contact is within the tolerance; then that of each island is.
+template <class Space, class Real>
+bool ContactSolver<Space, Real>::are_solved_one_by_one(double tolerance) {
+  return sum_residuals<std::int64_t>([tolerance](const auto& residual) {
+           return IsBeyond{residual, tolerance};
+         }) == 0;
+}
+
+/// What the natural map changes in all impulses, of their size.
+template <class Space, class Real>
+double ContactSolver<Space, Real>::residual() {
+  const auto left = sum_residuals<ImpulseChange>([](const auto& residual) { return residual; });
+  return left.size > 0 ? std::sqrt(left.step / left.size) : 0.0;
+}
+
+template <class Space, class Real>
+double ContactSolver<Space, Real>::find_slip_end(const BookStage<Real>& stage) {
+  const auto earliest = [](const ContactList<Space>& list, const auto& of) {
+    return parallel::sum_by_tiles<Earliest, Space>("response.slip", list.size(), on_contacts(list, of));
+  };
+  const Earliest end =
+      Earliest{1.0} +
+      earliest(ball_list_, SlipEnd<Real, BallContacts<Real>>{stage, 0, store_.balls(), loads()}) +
+      earliest(point_list_,
+               SlipEnd<Real, PointContacts<Real>>{stage, store_.ball_places(), store_.points(), loads()});
+  return end.time;
+}
+
+/// Bodies of the solver with the velocities that the bodies have.
+template <class Space, class Real>
+ReloadBody<Real> ContactSolver<Space, Real>::reload(const ConstBodyView& bodies,
+                                                    const Array<BodyRecord<Real>, Space>& from,
+                                                    Array<BodyRecord<Real>, Space>& to) {
+  const SolverBodies<Space>& all = slots_.solver_bodies();
+  return {bodies, all.hubs(), all.hub_of_parts(), all.first_part(), from.view(), to.view()};
+}
+
+/// Scales down impulses that would gain energy, to where they gain none: of each island where contacts are
+/// few, of a heap all alike, since it is one. Returns how many were scaled.
+template <class Space, class Real>
+int ContactSolver<Space, Real>::keep_from_gaining(const ConstBodyView& bodies) {
+  if (is_heap(counts_.points) || !fits_on_host()) {
+    const Moved moved = books_.moved();
+    if (!moved.gains(response_gain<Real>)) return 0;
+    copy(last_, solver_);
+    scale_impulses(moved.scale_without_gain());
+    fly_on_with_changes();
+    return 1;
+  }
+  Inspection<Real> seen = inspect();
+  ContactsOnHost<Real> contacts(seen, guides_);
+  before_.resize(free_.size());
+  parallel::for_each<Space>("books.before", before_.size(), reload(bodies, free_, before_));
+  const int scaled = contacts.keep_from_gaining(to_vector(before_));
+  if (scaled == 0) return 0;
+  copy(last_, solver_);
+  put_back(seen, contacts);
+  fly_on_with_changes();
+  return scaled;
+}
+
+template <class Space, class Real>
+void ContactSolver<Space, Real>::scale_impulses(double by) {
+  const auto real = static_cast<Real>(by);
+  parallel::for_each<Space>("response.scale", ball_list_.size(),
+                            on_contacts(ball_list_, ScaleBalls<Real>{store_.balls(), real}));
+  parallel::for_each<Space>("response.scale", point_list_.size(),
+                            on_contacts(point_list_, ScalePoints<Real>{store_.points(), real}));
+  if (rolls()) {
+    parallel::for_each<Space>("response.scale", ball_list_.size(),
+                              on_contacts(ball_list_, ScaleRolling<Real>{rolling_of_balls(), real}));
+    parallel::for_each<Space>("response.scale", point_list_.size(),
+                              on_contacts(point_list_, ScaleRolling<Real>{rolling_of_points(), real}));
+  }
+  parallel::for_each<Space>("response.scale", solver_.size(),
+                            ScaleVelocities<Real>{free_.view(), solver_.view(), real});
+}
+
+template <class Space, class Real>
+BookStage<Real> ContactSolver<Space, Real>::book_stage(const ConstBodyView& bodies,
+                                                       const ResponseParameters& parameters) {
+  return {slots_.places(), bodies, free_.view(), solver_.view(), parameters, step_, next_loads_.view()};
+}
+
+template <class Space, class Real>
+Books ContactSolver<Space, Real>::book_ball_blocks(const BookStage<Real>& stage) requires(
+    visit_width<Space, Real> > 1) {
+  before_.resize(free_.size());
+  parallel::for_each<Host>("books.before", before_.size(), reload(stage.bodies, free_, before_));
+  const BookBallBlocks book{.book = {.contacts = store_.balls(),
+                                     .before = before_.data(),
+                                     .free = free_.data(),
+                                     .solver = solver_.data(),
+                                     .step = stage.step,
+                                     .rounding = response_gain<Real>,
+                                     .again = stage.again},
+                            .blocks = ball_list_.visits(),
+                            .found = std::as_const(store_.ball_tiles()).view(),
+                            .stage = stage,
+                            .memory = slots_.ball_memory()};
+  constexpr std::int64_t together = BookBallBlocks::together;
+  return parallel::sum<Books, Host>("books.balls", (book.blocks.size() + together - 1) / together, book);
+}
+
+template <class Space, class Real>
+void ContactSolver<Space, Real>::book(const BookStage<Real>& stage) {
   // Both kinds are waited for once, and one that is not there costs nothing.
   books_totals_.resize(4);
   std::size_t kinds = 0;
@@ -304,7 +497,11 @@ Ledger ContactSolver<Space, Real>::book(const ConstBodyView& bodies, const Respo
     parallel::sum_into<Books, Space>(label, list.size(), on_contacts(list, book), books_scratch_,
                                      books_totals_.data() + kinds++);
   };
-  add_up("books.balls", ball_list_, BookBalls<Real>{stage, store_.balls(), slots_.ball_memory()});
+  if constexpr (visit_width<Space, Real> == 1) {
+    add_up("books.balls", ball_list_, BookBalls<Real>{stage, store_.balls(), slots_.ball_memory()});
+  } else if (ball_list_.size() > 0) {
+    books_totals_.view()[kinds++] = book_ball_blocks(stage);
+  }
   add_up("books.points", point_list_,
          BookPoints<Real>{stage, store_.ball_places(), store_.points(), slots_.point_memory()});
   if (rolls()) {
@@ -318,12 +515,6 @@ Ledger ContactSolver<Space, Real>::book(const ConstBodyView& bodies, const Respo
   Books of_kind[4];
   copy_bytes<Host, Space>(of_kind, books_totals_.data(), kinds * sizeof(Books));
   books_ = of_kind[0] + of_kind[1] + of_kind[2] + of_kind[3];
-  Ledger ledger;
-  ledger.restitution = books_.restitution;
-  ledger.friction = books_.friction;
-  ledger.work = books_.work;
-  patience_.judge(books_.gap_power, books_.kick_power);
-  return ledger;
 }
 
 template <class Space, class Real>
@@ -333,10 +524,28 @@ Ledger ContactSolver<Space, Real>::solve(const FlightStage& flight, bool any_is_
   const ConstBodyView bodies = read_only(flight.bodies);
   Ledger ledger;
   books_ = {};
+  slip_end_ = 1;
   parallel::fill("books.loads", next_loads_, 0u);
   if (counts_.contacts > 0) {
     find_impulses(parameters, share, counters);
-    ledger = book(bodies, parameters);
+    if (parameters.accurate) counters.residual = std::max(counters.residual, residual());
+    BookStage<Real> stage = book_stage(bodies, parameters);
+    book(stage);
+    if (books_.gaining > 0) {
+      if (const int scaled = keep_from_gaining(bodies); scaled > 0) {
+        counters.scaled += scaled;
+        parallel::fill("books.loads", next_loads_, 0u);
+        stage = book_stage(bodies, parameters);
+        stage.again = true;
+        book(stage);
+      }
+    }
+    ledger.restitution = books_.restitution;
+    ledger.friction = books_.friction;
+    ledger.work = books_.work;
+    patience_.judge(books_.gap_power, books_.kick_power, books_.restitution + books_.friction);
+    if (parameters.accurate && parameters.friction && !is_heap(counts_.points))
+      slip_end_ = find_slip_end(stage);
   }
   if (parameters.torque.size() > 0) {
     ledger.work += parallel::sum_by_tiles<double, Space>(
@@ -371,17 +580,32 @@ Ledger ContactSolver<Space, Real>::shift_late_bodies(const FlightStage& flight) 
 
 template <class Space, class Real>
 void ContactSolver<Space, Real>::take_velocities(const ConstBodyView& bodies) {
-  parallel::for_each<Space>(
-      "late.reload", solver_.size(),
-      ReloadBody<Real>{bodies, slots_.solver_bodies().hubs(), slots_.solver_bodies().hub_of_parts(),
-                       slots_.solver_bodies().first_part(), solver_.view(), last_.view()});
+  parallel::for_each<Space>("late.reload", solver_.size(), reload(bodies, solver_, last_));
+  solver_.swap(last_);
+  fly_on_with_changes();
+}
+
+/// Gaps at the end of the substep, since velocities are no longer those of `last_`.
+template <class Space, class Real>
+void ContactSolver<Space, Real>::fly_on_with_changes() {
   parallel::for_each<Space>(
       "late.fly", ball_list_.size(),
-      on_contacts(ball_list_, FlyBalls<Real>{store_.balls(), solver_.view(), last_.view(), step_}));
+      on_contacts(ball_list_, FlyBalls<Real>{store_.balls(), last_.view(), solver_.view(), step_}));
   parallel::for_each<Space>(
       "late.fly", point_list_.size(),
-      on_contacts(point_list_, FlyPoints<Real>{store_.points(), solver_.view(), last_.view(), step_}));
-  solver_.swap(last_);
+      on_contacts(point_list_, FlyPoints<Real>{store_.points(), last_.view(), solver_.view(), step_}));
+}
+
+template <class Space, class Real>
+void ContactSolver<Space, Real>::keep_memory() {
+  slots_.keep_memory();
+  kept_patience_ = patience_;
+}
+
+template <class Space, class Real>
+void ContactSolver<Space, Real>::recall_memory() {
+  slots_.recall_memory();
+  patience_ = kept_patience_;
 }
 
 template <class Space, class Real>
@@ -443,6 +667,7 @@ void ContactSolver<Space, Real>::run_parting_rounds(const PartingPlan& plan) {
                                       .turn = turn_.data(),
                                       .shifted_hubs = join_hubs(displacement_),
                                       .turned_hubs = join_hubs(turn_),
+                                      .guides = {guided_.view(), displacement_.data()},
                                       .share = static_cast<Real>(tolerance::correction_share),
                                       .least = plan.least,
                                       .most = plan.most,

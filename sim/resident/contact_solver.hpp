@@ -4,16 +4,18 @@
 #include "core/archive.hpp"
 #include "core/array.hpp"
 #include "core/bodies.hpp"
-#include "sim/dynamics/contact_set.hpp"
+#include "sim/dynamics/contact.hpp"
 #include "sim/dynamics/direct.hpp"
 #include "sim/dynamics/state.hpp"
-#include "sim/dynamics/sweeps.hpp"
+#include "sim/dynamics/sweep_plan.hpp"
+#include "sim/resident/accuracy.hpp"
 #include "sim/resident/bodies.hpp"
 #include "sim/resident/books.hpp"
 #include "sim/resident/contact_finder.hpp"
 #include "sim/resident/contact_list.hpp"
 #include "sim/resident/contact_store.hpp"
 #include "sim/resident/contact_sums.hpp"
+#include "sim/resident/contacts_on_host.hpp"
 #include "sim/resident/flights.hpp"
 #include "sim/resident/hubs.hpp"
 #include "sim/resident/inspection.hpp"
@@ -22,6 +24,8 @@
 #include "sim/resident/rolling_visits.hpp"
 #include "sim/resident/slots.hpp"
 #include "sim/resident/sweeps.hpp"
+#include "sim/resident/visit_kernels.hpp"
+#include "sim/resident/wall_sums.hpp"
 
 #include <cstdint>
 #include <vector>
@@ -47,13 +51,20 @@ class ContactSolver {
 
   /// Others of the bodies are free now; new candidates follow.
   void change_bodies() { slots_.forget_colors(); }
+  /// What the next substep starts from, kept for a substep that is taken again in parts: after the candidates
+  /// are taken and before find().
+  void keep_memory();
+  /// Back to it.
+  void recall_memory();
   /// What the next substep starts from; the contacts of the last are not among it.
   void archive(Archive& archive, const ConstBodyView& bodies);
 
   /// Contacts that may close by the next midpoint: gaps of at most the sum of the two margins (m). Impulses
   /// start from what they were, `scale` times.
   /// `flight`: the bodies after the impacts of the first half; `any_is_late`: one came after the midpoint.
-  void find(ConstView<double> margin, double scale, const FlightStage& flight, bool any_is_late);
+  /// `libccd`: to be asked as well, or instead; null: not at all.
+  void find(ConstView<double> margin, double scale, const FlightStage& flight, bool any_is_late,
+            LibccdContacts* libccd);
 
   /// Impulses with e = 0, by sweeps; the bodies get their velocities, and those that were struck late their
   /// places. `share`: of the step that the substep is. Returns what was moved.
@@ -69,6 +80,9 @@ class ContactSolver {
 
   /// Of the last solve().
   const Books& books() const { return books_; }
+  /// When the first contact that slid came to stick, as a share of the last substep; 1 if none did. For the
+  /// accurate mode, and not for heaps, in which something always does.
+  double slip_end() const { return slip_end_; }
   const ContactCounts& counts() const { return counts_; }
   /// For each candidate a bit for each part that is loaded.
   ConstView<LoadedParts> loads() const {
@@ -80,11 +94,12 @@ class ContactSolver {
                      Array<LoadedParts, Space>& loads) const;
   const Slots<Space, Real>& slots() const { return slots_; }
 
-  /// Of the last substep, brought to Host.
-  Inspection<Real> inspect() const;
-  /// What each loaded contact of the last solve() gave to the bodies that are `asked` about, which are not
-  /// free, by their places. Contacts of balls come first, in their order.
-  std::vector<WallImpulse> wall_impulses(ConstView<std::uint8_t> asked, const FlightStage& flight);
+  /// Of the last substep.
+  Inspection<Real> inspect();
+  /// Adds up what the contacts of the last solve() gave to bodies that are not free.
+  void add_wall_impulses(const FlightStage& flight);
+  /// Of the step.
+  WallSums<Space>& wall_sums() { return wall_sums_; }
 
  private:
   void make_places();
@@ -92,14 +107,23 @@ class ContactSolver {
   void load_bodies(const ConstBodyView& bodies, ConstView<double> margin,
                    const ResponseParameters& parameters);
   ConstView<Slot> places_of_points() const;
-  template <class Asked>
-  void list_wall_impulses(std::int64_t contacts, const Asked& asked, std::vector<WallImpulse>& out);
   template <class Record>
   JoinHubs<Record> join_hubs(Array<Record, Space>& bodies);
+  void list_guided(ConstView<Guide> guides);
+  bool fits_on_host() const;
   void find_impulses(const ResponseParameters& parameters, double share, Counters& counters);
   bool sweep(const SweepPlan& plan, Counters& counters);
-  bool solve_few(const SweepPlan& plan, Counters& counters);
+  bool solve_islands(const SweepPlan& plan, bool accurate, Counters& counters);
+  void set_velocities();
+  void put_back(Inspection<Real>& seen, const ContactsOnHost<Real>& contacts);
   LoadSpread spread_of_loads();
+  template <class Sum, class Of>
+  Sum sum_residuals(const Of& of);
+  bool are_solved_one_by_one(double tolerance);
+  double residual();
+  double find_slip_end(const BookStage<Real>& stage);
+  int keep_from_gaining(const ConstBodyView& bodies);
+  void scale_impulses(double by);
   template <bool only_balls>
   SweepState run_impulse_rounds(const SweepPlan& plan);
   void start_rolling(const FindStage<Real>& stage);
@@ -113,7 +137,12 @@ class ContactSolver {
   PartingPlan plan_parting() const;
   template <bool only_balls>
   void run_parting_rounds(const PartingPlan& plan);
-  Ledger book(const ConstBodyView& bodies, const ResponseParameters& parameters);
+  BookStage<Real> book_stage(const ConstBodyView& bodies, const ResponseParameters& parameters);
+  void book(const BookStage<Real>& stage);
+  Books book_ball_blocks(const BookStage<Real>& stage) requires(visit_width<Space, Real> > 1);
+  ReloadBody<Real> reload(const ConstBodyView& bodies, const Array<BodyRecord<Real>, Space>& from,
+                          Array<BodyRecord<Real>, Space>& to);
+  void fly_on_with_changes();
   Ledger shift_late_bodies(const FlightStage& flight);
   void fly_late(const FlightStage& flight);
 
@@ -121,7 +150,9 @@ class ContactSolver {
   double step_ = 0;
 
   Array<MidBody<Real>, Space> mid_;
-  Array<BodyRecord<Real>, Space> solver_, free_, last_;
+  Array<BodyRecord<Real>, Space> solver_, free_, last_, before_;
+  Array<Guide, Space> guided_;  // bodies of the solver that are in guides
+  std::vector<Guide> guides_;   // by place
   Array<CentreRecord<Real>, Space> displacement_, turn_;
   Array<PartsSum, Space> parts_sums_;
 
@@ -133,13 +164,13 @@ class ContactSolver {
   ContactCounts counts_;
   Books books_;
   double overlap_ = 0;
-  Patience patience_;
+  double slip_end_ = 1;
+  Patience patience_, kept_patience_;
   bool momentum_ = true;  // sweeps go on by what the last one has changed
   Array<std::uint32_t, Space> loads_, next_loads_;
 
   Array<Books, Space> books_scratch_, books_totals_;
-  Array<std::uint32_t, Space> asked_contacts_;
-  Array<WallImpulse, Space> wall_impulses_;  // of these
+  WallSums<Space> wall_sums_;
   Array<Ledger, Space> ledger_scratch_;
 };
 

@@ -1,5 +1,5 @@
 // What is asked of contacts beside what they have moved: how many points they have, how their loads are
-// spread, which candidates are loaded, and what they gave to one body.
+// spread, which candidates are loaded, and what they gave to bodies that are not free.
 #pragma once
 
 #include "sim/dynamics/direct.hpp"
@@ -7,6 +7,7 @@
 #include "sim/resident/books.hpp"
 #include "sim/resident/layout.hpp"
 #include "sim/resident/slots.hpp"
+#include "sim/resident/wall_sums.hpp"
 
 #include <cstdint>
 
@@ -53,22 +54,20 @@ struct PointLoad {
   }
 };
 
-/// What a contact gave to a body that is not free.
-struct WallImpulse {
-  std::int32_t body;     ///< its place
-  Vec3 impulse, moment;  ///< about its centre (N s, N m s)
-};
-
-/// Contacts with bodies that somebody asks about, and what they gave to these.
+/// Contacts with bodies that are not free, and what they give to these.
 template <class Real>
-struct AskedContacts {
-  ConstView<std::uint8_t> asked;  ///< of each body
-  ConstView<Slot> places;         ///< of contacts of this kind
+struct WallContacts {
+  ConstView<std::int32_t> entry_of;  ///< WallSums::entry_of_place()
+  View<WallImpulse> impulses;        ///< of entries
+  std::int64_t first_place;          ///< of contacts of this kind
+  ConstView<Slot> places;
   ConstView<MidBody<Real>> mid;
   FlightStage flight;
 
-  SCREE_HD bool is_asked(const Slot& slot) const { return asked[slot.i] != 0 || asked[slot.j] != 0; }
-  SCREE_HD const Slot& slot_of(std::int64_t c, std::uint8_t slot) const { return places[c - c % 256 + slot]; }
+  SCREE_HD std::int64_t place_of(std::int64_t c, std::uint8_t slot) const {
+    return first_place + c - c % 256 + slot;
+  }
+  SCREE_HD bool is_on_j(const Slot& slot) const { return !mid[slot.j].is_free(); }
   /// Where the centre of a body is when a contact is seen.
   SCREE_HD Vec3 centre(std::int32_t body, const Slot& slot, bool late) const {
     if (!late) return mid[body].position;
@@ -79,69 +78,49 @@ struct AskedContacts {
   }
 };
 
-/// The place of a contact of balls that is asked about and loaded, else none.
 template <class Real>
-struct AskedBalls {
-  static constexpr std::uint32_t none = 0xffffffffu;
-  AskedContacts<Real> among;
+struct PutBallOnWall {
+  WallContacts<Real> among;
   BallContacts<Real> contacts;
-  ConstView<std::int32_t> list;
 
-  SCREE_HD std::uint32_t operator()(std::int64_t k) const {
-    const std::int32_t c = list[k];
-    const bool loaded = !is_zero(contacts.fields.vector(BallContacts<Real>::impulse, c));
-    return loaded && among.is_asked(among.slot_of(c, contacts.slot[c])) ? static_cast<std::uint32_t>(c)
-                                                                        : none;
-  }
-  SCREE_HD WallImpulse of(std::int64_t c) const {
+  SCREE_HD void operator()(std::int64_t c) const {
     using C = BallContacts<Real>;
+    const std::int64_t place = among.place_of(c, contacts.slot[c]);
+    const std::int32_t entry = among.entry_of[place];
+    if (entry < 0) return;
     const auto& f = contacts.fields;
-    const Slot& slot = among.slot_of(c, contacts.slot[c]);
-    const bool on_j = among.asked[slot.j] != 0;
+    const Slot& slot = among.places[place];
+    const bool on_j = among.is_on_j(slot);
     const std::int32_t wall = on_j ? slot.j : slot.i, ball = on_j ? slot.i : slot.j;
     const bool late = (contacts.flags[c] & flag_late) != 0;
     const double arm = static_cast<double>(f.at(on_j ? C::arm_i : C::arm_j, c));
     const Vec3 point = among.centre(ball, slot, late) + arm * vec3(f.vector(C::normal, c));
     const Vec3 impulse = (on_j ? 1.0 : -1.0) * vec3(f.vector(C::impulse, c));
     const Vec3 lever = among.flight.bodies.period.nearest(point - among.centre(wall, slot, late));
-    return {wall, impulse, lever.cross(impulse)};
+    among.impulses[entry] = {impulse, lever.cross(impulse)};
   }
 };
 
-/// The same of other contacts.
 template <class Real>
-struct AskedPoints {
-  static constexpr std::uint32_t none = 0xffffffffu;
-  AskedContacts<Real> among;
+struct PutPointsOnWall {
+  WallContacts<Real> among;
   PointContacts<Real> contacts;
-  ConstView<std::int32_t> list;
 
-  SCREE_HD std::uint32_t operator()(std::int64_t k) const {
-    const std::int32_t c = list[k];
-    return among.is_asked(among.slot_of(c, contacts.slot[c])) ? static_cast<std::uint32_t>(c) : none;
-  }
-  SCREE_HD WallImpulse of(std::int64_t c) const {
+  SCREE_HD void operator()(std::int64_t c) const {
     using C = PointContacts<Real>;
-    const Slot& slot = among.slot_of(c, contacts.slot[c]);
-    const bool on_j = among.asked[slot.j] != 0;
-    WallImpulse sum{on_j ? slot.j : slot.i, Vec3::Zero(), Vec3::Zero()};
+    const std::int64_t place = among.place_of(c, contacts.slot[c]);
+    const std::int32_t entry = among.entry_of[place];
+    if (entry < 0) return;
+    const bool on_j = among.is_on_j(among.places[place]);
+    WallImpulse sum;
     for (int k = 0; k < contacts.points[c]; ++k) {
       const Vec3 impulse =
           (on_j ? 1.0 : -1.0) * vec3(contacts.point_fields.vector(C::at_point(k, C::impulse), c));
       const auto at = point_at<Scalar<Real>>(contacts, c, k);
-      sum.impulse += impulse;
-      sum.moment += vec3(on_j ? at.arm_j : at.arm_i).cross(impulse);
+      sum = sum + WallImpulse{impulse, vec3(on_j ? at.arm_j : at.arm_i).cross(impulse)};
     }
-    return sum;
+    among.impulses[entry] = sum;
   }
-};
-
-template <class Asked>
-struct PutWallImpulse {
-  Asked asked;
-  ConstView<std::uint32_t> contacts;
-  View<WallImpulse> out;
-  SCREE_HD void operator()(std::int64_t k) const { out[k] = asked.of(contacts[k]); }
 };
 
 /// What a slot remembers is what was loaded, when candidates are made anew.

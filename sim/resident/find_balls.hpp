@@ -106,6 +106,7 @@ struct FindBalls {
   View<BodyRecord<Real>> solver;  ///< gets the points of walls
   PassingList passing;
 
+  bool is_end(std::int64_t place) const { return stage.places[place].i == Slot::empty; }
   SCREE_HD bool find(std::int64_t place, Record& record) const {
     const Slot slot = stage.places[place];
     if (slot.i == Slot::empty) return false;

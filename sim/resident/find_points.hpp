@@ -18,6 +18,14 @@ SCREE_HD inline bool are_far(const FindStage<Real>& stage, const SlotBodies<Real
   return are_far_apart(stage.bodies.period.nearest(at.b.position - at.a.position), reach);
 }
 
+/// Body j of a slot, where it is nearest to body i.
+template <class Real>
+SCREE_HD inline Solid solid_near(const FindStage<Real>& stage, const SlotBodies<Real>& at, double lead) {
+  Solid b = stage.solid(at.slot.j, lead);
+  stage.bodies.period.bring_near(stage.solid(at.slot.i, lead).position, b.position);
+  return b;
+}
+
 /// What is rare must take no registers from the rest, and so it is called.
 template <class Real>
 [[gnu::noinline]] SCREE_HD bool meet_any(const FindStage<Real>& stage, const SlotBodies<Real>& at,
@@ -40,6 +48,10 @@ template <class Real>
 SCREE_HD inline bool find_points(const FindStage<Real>& stage, const SlotBodies<Real>& at, double lead,
                                  Manifold& out) {
   if (lead == 0 && are_far(stage, at)) return false;
+  SCREE_ON_HOST(
+      if (stage.libccd != nullptr && stage.libccd->decides(at.a.shape, at.b.shape)) return stage.libccd->find(
+          {at.a.shape, stage.solid(at.slot.i, lead)}, {at.b.shape, solid_near(stage, at, lead)},
+          stage.shapes_of(at.slot.i, at.slot.j), at.margin(), &out) > 0;)
   const bool box_a = at.a.shape == Shape::box;
   const bool box_b = at.b.shape == Shape::box;
   const bool plane = at.a.shape == Shape::plane || at.b.shape == Shape::plane;
@@ -78,11 +90,14 @@ struct FindPoints {
   ConstView<LoadedParts> loads;  ///< of candidates
   PassingList passing;
 
+  bool is_end(std::int64_t k) const { return stage.places[first_place + k].i == Slot::empty; }
   SCREE_HD bool find(std::int64_t k, Record& record) const {
     const Slot slot = stage.places[first_place + k];
     if (slot.i == Slot::empty) return false;
     record.lead = stage.lead_of(slot);
-    if (meet_points(stage, stage.load(slot), record.lead, record.manifold)) return true;
+    const SlotBodies<Real> at = stage.load(slot);
+    SCREE_ON_HOST(if (stage.libccd != nullptr) crosscheck(at, record.lead);)
+    if (meet_points(stage, at, record.lead, record.manifold)) return true;
     memory[k].count = 0;
     return false;
   }
@@ -149,6 +164,14 @@ struct FindPoints {
   }
 
  private:
+  /// Asks libccd about a slot that is one of those to be checked.
+  void crosscheck(const SlotBodies<Real>& at, double lead) const {
+    const auto number = [&](std::int32_t k) { return static_cast<std::int32_t>(stage.bodies.id[k]); };
+    const Slot& slot = at.slot;
+    if (stage.libccd->checks(at.a.shape, at.b.shape, number(slot.i), number(slot.j)))
+      stage.libccd->check({at.a.shape, stage.solid(slot.i, lead)}, {at.b.shape, solid_near(stage, at, lead)},
+                          stage.shapes_of(slot.i, slot.j));
+  }
   /// A look at a point's normal velocity tells of nearly all that they are not held apart
   /// (flight_of_contact).
   SCREE_HD bool may_hold_apart(double gap, double closing, double lead) const {

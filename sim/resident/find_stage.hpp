@@ -5,16 +5,18 @@
 #include "core/tolerances.hpp"
 #include "narrowphase/any_contacts.hpp"
 #include "narrowphase/contact.hpp"
+#include "narrowphase/libccd_contacts.hpp"
 #include "narrowphase/tube.hpp"
 #include "sim/dynamics/contact_flight.hpp"
+#include "sim/dynamics/contact_laws.hpp"
 #include "sim/dynamics/contact_row.hpp"
-#include "sim/dynamics/contact_set.hpp"
 #include "sim/dynamics/state.hpp"
 #include "sim/resident/layout.hpp"
 
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <type_traits>
 
 namespace scree::resident {
 
@@ -36,11 +38,12 @@ struct FindStage {
   ConstView<BodyRecord<Real>> solver;  ///< kicked
   ContactLaws laws;
   ResponseParameters parameters;
-  double step;           ///< s
-  double scale;          ///< of remembered impulses
-  double noise;          ///< parting speeds that count as none (m/s)
-  StruckFlights struck;  ///< the bodies after their impacts
-  bool any_is_late;      ///< one was struck after the midpoint
+  double step;                       ///< s
+  double scale;                      ///< of remembered impulses
+  double noise;                      ///< parting speeds that count as none (m/s)
+  StruckFlights struck;              ///< the bodies after their impacts
+  bool any_is_late;                  ///< one was struck after the midpoint
+  LibccdContacts* libccd = nullptr;  ///< on Host; null: it is not asked about anything
 
   SCREE_HD SlotBodies<Real> load(const Slot& slot) const { return {slot, mid[slot.i], mid[slot.j]}; }
   SCREE_HD const PairLaw& law_of(const SlotBodies<Real>& at) const {
@@ -188,14 +191,18 @@ struct PassingList {
 /// Decides on them: work of another kind than that on the many which touch, and so it is done apart.
 template <class Judge>
 struct JudgePassing {
-  static constexpr std::int64_t threads = 1 << 15;  ///< of which each takes one in so many
+  /// Of which each takes one in so many.
+  template <class Space>
+  static constexpr std::int64_t threads = std::is_same_v<Space, Host> ? 64 : 1 << 15;
+
+  std::int64_t stride;
 
   PassingList passing;
   Judge judge;
 
   SCREE_HD void operator()(std::int64_t thread) const {
     const auto count = static_cast<std::int64_t>(*passing.count);
-    for (std::int64_t k = thread; k < count; k += threads) judge(passing.places[k]);
+    for (std::int64_t k = thread; k < count; k += stride) judge(passing.places[k]);
   }
 };
 

@@ -15,17 +15,20 @@ ContactProblem problem_of(Inspection<Real>& seen, const BodyTable& bodies) {
   for (std::size_t k = 0; k < bodies.position.size(); ++k) {
     problem.bodies[index_of(bodies.id[k])] = {
         bodies.inverse_mass[k], world_inverse_inertia(bodies.orientation[k], bodies.inverse_inertia[k]),
-        vec3(seen.free[k].velocity), vec3(seen.free[k].spin)};
+        vec3(seen.free[static_cast<std::int64_t>(k)].velocity),
+        vec3(seen.free[static_cast<std::int64_t>(k)].spin)};
   }
   // Then the points of walls that turn.
   const auto first = static_cast<std::int32_t>(seen.first_wall_point - std::ssize(bodies.position));
-  for (auto k = static_cast<std::size_t>(seen.first_wall_point); k < seen.free.size(); ++k)
+  for (std::int64_t k = seen.first_wall_point; k < seen.free.size(); ++k)
     problem.bodies.push_back({0, Mat3::Zero(), vec3(seen.free[k].velocity), Vec3::Zero()});
   const auto number = [&](std::int32_t k) { return k >= seen.first_wall_point ? k - first : number_of(k); };
   for_each_contact(seen, [&](const SeenContact& c) {
     problem.contacts.push_back({number(c.i), number(c.j), static_cast<std::int64_t>(problem.points.size()),
-                                static_cast<std::int32_t>(c.points.size()), c.normal, c.friction, c.balls});
-    for (const SeenPoint& p : c.points) problem.points.push_back({p.arm_i, p.arm_j, p.target, p.impulse});
+                                c.count, c.normal, c.friction, c.balls});
+    for (int k = 0; k < c.count; ++k)
+      problem.points.push_back(
+          {c.points[k].arm_i, c.points[k].arm_j, c.points[k].target, c.points[k].impulse});
   });
   return problem;
 }
@@ -34,15 +37,13 @@ template <class Real>
 std::vector<ContactForce> forces_of(Inspection<Real>& seen, const BodyTable& bodies) {
   std::vector<ContactForce> forces;
   for_each_contact(seen, [&](const SeenContact& c) {
-    Vec3 impulse = Vec3::Zero();
-    for (const SeenPoint& p : c.points) impulse += p.impulse;
+    const Vec3 impulse = c.impulse();
     if (impulse.isZero(0)) return;
     // From the body that moves freely: the centre of a plane is nowhere near.
     const auto i = static_cast<std::size_t>(c.slot.i), j = static_cast<std::size_t>(c.slot.j);
     const bool from_j = bodies.mobility[j] == Mobility::free;
     Vec3 arm = Vec3::Zero();
-    for (const SeenPoint& p : c.points)
-      arm += (from_j ? p.arm_j : p.arm_i) / static_cast<double>(c.points.size());
+    for (int k = 0; k < c.count; ++k) arm += (from_j ? c.points[k].arm_j : c.points[k].arm_i) / c.count;
     forces.push_back({static_cast<std::int32_t>(bodies.id[i]), static_cast<std::int32_t>(bodies.id[j]),
                       impulse / seen.step, bodies.position[from_j ? j : i] + arm});
   });

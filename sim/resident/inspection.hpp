@@ -4,21 +4,37 @@
 #include "core/bodies.hpp"
 #include "sim/inspection.hpp"
 #include "sim/resident/contact_store.hpp"
+#include "sim/resident/rolling_visits.hpp"
+#include "sim/resident/slots.hpp"
 #include "sim/resident/sweeps.hpp"
 
 #include <cstdint>
+#include <memory>
+#include <utility>
 #include <vector>
 
 namespace scree::resident {
 
-/// Contacts, where they have been brought to Host.
+/// What is brought from Device.
+template <class Real>
+struct BroughtContacts {
+  std::vector<Slot> places;
+  std::vector<BodyRecord<Real>> free;
+  ContactStore<Host, Real> store;
+  Array<Real, Host> ball_rolling, point_rolling;
+};
+
+/// Contacts on Host, where they are or where they have been brought.
 template <class Real>
 struct Inspection {
-  std::vector<Slot> places;
-  std::vector<BodyRecord<Real>> free;  ///< bodies of the solver as they would be without contacts
-  ContactStore<Host, Real> contacts;
+  ConstView<Slot> places;
+  ConstView<BodyRecord<Real>> free;  ///< bodies of the solver as they would be without contacts
+  ContactStore<Host, Real>* contacts = nullptr;
+  RollingFields<Real> ball_rolling, point_rolling;
+  bool rolls = false;
   std::int64_t first_wall_point = 0;  ///< among the bodies of the solver
   double step = 0;                    ///< length of the substep (s)
+  std::shared_ptr<BroughtContacts<Real>> brought;
 };
 
 struct SeenPoint {
@@ -33,9 +49,18 @@ struct SeenContact {
   std::int64_t place;  ///< among those of its kind
   Vec3 normal;
   double friction;
+  double rolling_reach;  ///< couple against rolling for each normal impulse, at most (m)
+  Vec3 couple;           ///< on j (N m s)
   bool balls;
-  std::vector<SeenPoint> points;
+  std::int32_t count;  ///< of its points
+  SeenPoint points[Manifold::max_points];
   Mat3 inertia_i, inertia_j;  ///< inverse, world frame, unless it is of balls
+
+  Vec3 impulse() const {
+    Vec3 sum = Vec3::Zero();
+    for (int k = 0; k < count; ++k) sum += points[k].impulse;
+    return sum;
+  }
 };
 
 /// visit(contact) for all of them, in the order of their places, those of balls first.
@@ -43,64 +68,70 @@ template <class Real, class Visit>
 void for_each_contact(Inspection<Real>& seen, Visit visit) {
   using B = BallContacts<Real>;
   using P = PointContacts<Real>;
+  using R = RollingFields<Real>;
   const auto number = [](Real value) { return static_cast<double>(value); };
-  const B balls = seen.contacts.balls();
   const auto slot_of = [&](std::int64_t first, std::int64_t c, std::uint8_t slot) {
-    return seen.places[static_cast<std::size_t>(first + c - c % 256 + slot)];
+    return seen.places[first + c - c % 256 + slot];
   };
   const auto whole = [&](std::int32_t body, std::int32_t end) {
     return end >= seen.first_wall_point ? end : body;
   };
-  for (std::int64_t c = 0; c < seen.contacts.ball_places(); ++c) {
-    if (!has_contact(seen.contacts.ball_tiles().data(), c)) continue;
+  const auto set_rolling = [&](const RollingFields<Real>& rolling, std::int64_t c, SeenContact& contact) {
+    if (!seen.rolls) return;
+    contact.rolling_reach = number(rolling.fields.at(R::reach, c));
+    contact.couple = vec3(rolling.fields.vector(R::couple, c));
+  };
+  SeenContact contact{};
+  contact.couple.setZero();
+  contact.inertia_i.setZero();
+  contact.inertia_j.setZero();
+  contact.balls = true;
+  contact.count = 1;
+  const B balls = seen.contacts->balls();
+  for (std::int64_t c = 0; c < seen.contacts->ball_places(); ++c) {
+    if (!has_contact(seen.contacts->ball_tiles().data(), c)) continue;
     const auto& f = balls.fields;
-    const Vec3 normal = vec3(f.vector(B::normal, c));
-    const Slot slot = slot_of(0, c, balls.slot[c]);
-    visit(SeenContact{slot,
-                      whole(slot.i, slot.end_i),
-                      whole(slot.j, slot.end_j),
-                      c,
-                      normal,
-                      number(f.at(B::friction, c)),
-                      true,
-                      {{number(f.at(B::arm_i, c)) * normal, number(f.at(B::arm_j, c)) * normal,
-                        number(f.at(B::target, c)), vec3(f.vector(B::impulse, c))}},
-                      Mat3::Zero(),
-                      Mat3::Zero()});
+    contact.slot = slot_of(0, c, balls.slot[c]);
+    contact.i = whole(contact.slot.i, contact.slot.end_i);
+    contact.j = whole(contact.slot.j, contact.slot.end_j);
+    contact.place = c;
+    contact.normal = vec3(f.vector(B::normal, c));
+    contact.friction = number(f.at(B::friction, c));
+    contact.points[0] = {number(f.at(B::arm_i, c)) * contact.normal,
+                         number(f.at(B::arm_j, c)) * contact.normal, number(f.at(B::target, c)),
+                         vec3(f.vector(B::impulse, c))};
+    set_rolling(seen.ball_rolling, c, contact);
+    visit(std::as_const(contact));
   }
-  const P points = seen.contacts.points();
-  for (std::int64_t c = 0; c < seen.contacts.point_places(); ++c) {
-    if (!has_contact(seen.contacts.point_tiles().data(), c)) continue;
-    const Slot slot = slot_of(seen.contacts.ball_places(), c, points.slot[c]);
-    SeenContact contact{slot,
-                        slot.i,
-                        slot.j,
-                        c,
-                        vec3(points.fields.vector(P::normal, c)),
-                        number(points.fields.at(P::friction, c)),
-                        false,
-                        {},
-                        Mat3::Zero(),
-                        Mat3::Zero()};
+  contact.balls = false;
+  const P points = seen.contacts->points();
+  for (std::int64_t c = 0; c < seen.contacts->point_places(); ++c) {
+    if (!has_contact(seen.contacts->point_tiles().data(), c)) continue;
+    contact.slot = slot_of(seen.contacts->ball_places(), c, points.slot[c]);
+    contact.i = contact.slot.i;
+    contact.j = contact.slot.j;
+    contact.place = c;
+    contact.normal = vec3(points.fields.vector(P::normal, c));
+    contact.friction = number(points.fields.at(P::friction, c));
+    contact.count = points.points[c];
     const auto& f = points.point_fields;
-    for (int k = 0; k < points.points[c]; ++k) {
-      contact.points.push_back(
-          {vec3(f.vector(P::at_point(k, P::arm_i), c)), vec3(f.vector(P::at_point(k, P::arm_j), c)),
-           number(f.at(P::at_point(k, P::target), c)), vec3(f.vector(P::at_point(k, P::impulse), c))});
+    for (int k = 0; k < contact.count; ++k) {
+      contact.points[k] = {
+          vec3(f.vector(P::at_point(k, P::arm_i), c)), vec3(f.vector(P::at_point(k, P::arm_j), c)),
+          number(f.at(P::at_point(k, P::target), c)), vec3(f.vector(P::at_point(k, P::impulse), c))};
     }
     const auto whole_inertia = [&](std::int32_t body, std::int32_t end, int first) {
       const auto at = [&](int e) { return number(points.fields.at(first + e, c)); };
       Mat3 inertia;
       inertia << at(0), at(3), at(4), at(3), at(1), at(5), at(4), at(5), at(2);
       if (body == end || inertia.isZero(0)) return inertia;
-      const auto inverse_mass = [&](std::int32_t k) {
-        return number(seen.free[static_cast<std::size_t>(k)].inverse_mass);
-      };
+      const auto inverse_mass = [&](std::int32_t k) { return number(seen.free[k].inverse_mass); };
       return Mat3(inverse_mass(body) / inverse_mass(end) * inertia);
     };
-    contact.inertia_i = whole_inertia(slot.i, slot.end_i, P::inertia_i);
-    contact.inertia_j = whole_inertia(slot.j, slot.end_j, P::inertia_j);
-    visit(contact);
+    contact.inertia_i = whole_inertia(contact.slot.i, contact.slot.end_i, P::inertia_i);
+    contact.inertia_j = whole_inertia(contact.slot.j, contact.slot.end_j, P::inertia_j);
+    set_rolling(seen.point_rolling, c, contact);
+    visit(std::as_const(contact));
   }
 }
 

@@ -20,12 +20,12 @@ constexpr Degree degrees[] = {{stirring_power, 0},        {done_power, calm_powe
 /// Bodies that share several points, of which a sweep of degree 2 is 12 sweeps, do not stay at rest with
 /// less.
 constexpr int least_shared = 3, most_shared = 5;
-constexpr int most_degree = 6;
+constexpr int usual_degree = 2, most_degree = 6;
 
 }  // namespace
 
 int Patience::sweeps(int usual, bool shared, double share) {
-  const int least = shared ? least_shared : 0;
+  const int least = !shared ? 0 : moves_ ? usual_degree : least_shared;
   const int most = shared ? most_shared : most_degree;
   degree_ = std::clamp(degree_, least, most);
   // Substeps share the sweeps of a step: each starts from the impulses of the last.
@@ -35,17 +35,22 @@ int Patience::sweeps(int usual, bool shared, double share) {
 
 /// Over many substeps at once: the slow modes are oscillations, and a number of sweeps that goes up and down
 /// with them pumps them.
-void Patience::judge(double undone, double kicked) {
+void Patience::judge(double undone, double kicked, double dissipated) {
   constexpr int judged_together = 32;
+  constexpr double much = 4;
   undone_ += std::abs(undone);
   kicked_ += kicked;
+  dissipated_ += dissipated;
   if (++judged_ < judged_together) return;
-  if (undone_ > degrees[degree_].more * kicked_) {
-    ++degree_;
-  } else if (undone_ < degrees[degree_].less * kicked_) {
+  moves_ = dissipated_ > moving_power * kicked_;
+  const double most_undone =
+      degrees[degree_].more * kicked_ + undone_of_dissipated * std::max(dissipated_, 0.0);
+  if (undone_ > most_undone) {
+    degree_ = std::min(degree_ + (undone_ > much * most_undone ? 2 : 1), most_degree);
+  } else if (undone_ < degrees[degree_].less * kicked_ || (moves_ && degree_ > usual_degree)) {
     --degree_;
   }
-  undone_ = kicked_ = judged_ = 0;
+  undone_ = kicked_ = dissipated_ = judged_ = 0;
 }
 
 }  // namespace scree::resident

@@ -6,15 +6,17 @@
 namespace scree::resident {
 
 /// Sweeps see nothing of the slow modes of many layers. The power that normal impulses have on what they
-/// leave undone does, beside that of all impulses on all they change (docs/decisions/0024, 0029).
+/// leave undone does, beside that of all impulses on all they change (docs/decisions/0024, 0029). Where
+/// bodies move on one another, some is always left undone, a few hundredths of what is dissipated; of a slow
+/// mode it is a third and more (0046).
 class Patience {
  public:
   /// Least sweeps of the next substep, which is a share of its step; `usual`: plan_sweeps()'s. `shared`:
   /// bodies share several points.
   int sweeps(int usual, bool shared, double share);
 
-  /// After a substep: the powers (W).
-  void judge(double undone, double kicked);
+  /// After a substep: the powers (W), and what was dissipated.
+  void judge(double undone, double kicked, double dissipated);
 
   /// Nothing is left of slow modes.
   bool is_calm() const { return degree_ == 0; }
@@ -23,12 +25,15 @@ class Patience {
     archive("degree", degree_);
     archive("undone", undone_);
     archive("kicked", kicked_);
+    archive("dissipated", dissipated_);
+    archive("moves", moves_);
     archive("judged", judged_);
   }
 
  private:
   int degree_ = 2;  // 0, 1, 2... are 2, 3, 6, 12... sweeps of balls
-  double undone_ = 0, kicked_ = 0;
+  bool moves_ = false;
+  double undone_ = 0, kicked_ = 0, dissipated_ = 0;
   int judged_ = 0;  // substeps since it was last changed
 };
 

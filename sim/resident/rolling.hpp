@@ -38,8 +38,6 @@ struct StartRolling {
     if (stage.is_wall_point(at.b, slot.j, slot.end_j))
       solver[slot.end_j].spin = v3<Real>(stage.bodies.spin[slot.j]);
   }
-
- private:
 };
 
 /// What the couple of a contact has moved, which its place remembers: account_couple().
@@ -63,7 +61,10 @@ struct BookRolling {
     const Vec3 spin_i = vec3(stage.solver[ends.i].spin);
     const Vec3 spin_j = vec3(stage.solver[ends.j].spin);
     const Vec3 before = stage.bodies.spin[slot.j] - stage.bodies.spin[slot.i];
+    const Vec3 free = vec3(stage.free[ends.j].spin) - vec3(stage.free[ends.i].spin);
     books.friction = -0.5 * couple.dot(before + spin_j - spin_i);
+    books.kick_power = couple.dot(spin_j - spin_i - free);
+    stage.judge_gain(books);
     if (!stage.is_free(ends.i)) books.work += couple.dot(spin_i);
     if (!stage.is_free(ends.j)) books.work -= couple.dot(spin_j);
     return books;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "core/space_rounds.hpp"
+#include "sim/dynamics/state.hpp"
 #include "sim/resident/contact_list.hpp"
 #include "sim/resident/hubs.hpp"
 #include "sim/resident/layout.hpp"
@@ -107,9 +108,26 @@ struct RunOfItems {
   static constexpr bool by_kernels = visit_width<Host, Real> != 1;
 };
 
+/// Bodies of the solver that move along one axis alone do so, once the contacts have taken them for free
+/// ones. The last phase of a round, if there are any.
+template <class Record>
+struct HoldToGuides {
+  ConstView<Guide> guides;  ///< Guide::body is a body of the solver
+  Record* bodies;
+
+  SCREE_HD int phases() const { return guides.size() > 0 && bodies != nullptr ? 1 : 0; }
+  SCREE_HD void operator()(std::int64_t g) const {
+    using Real = decltype(Record::inverse_mass);
+    Record& body = bodies[guides[g].body];
+    Vec3 along = vec3(body.velocity);
+    guides[g].hold(along);
+    body.velocity = v3<Real>(along);
+  }
+};
+
 /// Finds impulses. The first round gives the bodies what their contacts remember, each other one is a sweep:
 /// the bodies go on by beta (with momentum), then each colour, then the couples of each colour if anything
-/// rolls, then the parts of hubs agree.
+/// rolls, then the parts of hubs agree, and bodies in guides are held to them.
 /// only_balls: there are no other contacts, whose laws ask for many registers.
 template <class Real, bool only_balls>
 struct ImpulseRounds {
@@ -128,15 +146,16 @@ struct ImpulseRounds {
   BodyRecord<Real>* last;
   std::int64_t body_count;
   JoinHubs<BodyRecord<Real>> hubs;
+  HoldToGuides<BodyRecord<Real>> guides;
   int least, most, block_sweeps;
   double tolerance;
   bool momentum;
 
   SCREE_HD bool goes_on(const State& state) const { return state.pushed && momentum; }
   SCREE_HD int phases(const State& state) const {
-    if (state.converged || state.sweeps >= most) return 0;
+    if (state.pushed && (state.converged || state.sweeps >= most)) return 0;
     return (goes_on(state) ? 1 : 0) + (rolls ? 2 : 1) * (ball_colors.count + point_colors.count) +
-           hubs.phases();
+           hubs.phases() + guides.phases();
   }
   SCREE_HD std::int64_t items(const State& state, int phase) const {
     if (goes_on(state) && phase-- == 0) return body_count;
@@ -150,7 +169,7 @@ struct ImpulseRounds {
       if (phase < point_colors.count) return point_colors.items(phase);
       phase -= point_colors.count;
     }
-    return hubs.items(phase);
+    return phase < hubs.phases() ? hubs.items(phase) : guides.guides.size();
   }
   std::int64_t most_items() const {
     return std::max({body_count, ball_colors.most_items(), point_colors.most_items()});
@@ -212,7 +231,13 @@ struct ImpulseRounds {
       }
       phase -= point_colors.count;
     }
-    items.each([&](std::int64_t item) { hubs(phase, item); });
+    items.each([&](std::int64_t item) {
+      if (phase < hubs.phases()) {
+        hubs(phase, item);
+      } else {
+        guides(item);
+      }
+    });
     return {};
   }
   SCREE_CALLS_ITS_ARGUMENTS
@@ -247,13 +272,15 @@ struct PartingRounds {
   CentreRecord<Real>* displacement;
   CentreRecord<Real>* turn;  ///< none if all contacts are of balls
   JoinHubs<CentreRecord<Real>> shifted_hubs, turned_hubs;
+  HoldToGuides<CentreRecord<Real>> guides;
   Real share;
   int least, most;
   float deepest, mean;  ///< that are left (of the cap)
 
   SCREE_HD int phases(const State& state) const {
     if (state.corrected || state.sweeps >= most) return 0;
-    return ball_colors.count + point_colors.count + shifted_hubs.phases() + turned_hubs.phases();
+    return ball_colors.count + point_colors.count + shifted_hubs.phases() + turned_hubs.phases() +
+           guides.phases();
   }
   SCREE_HD std::int64_t items(const State&, int phase) const {
     if (phase < ball_colors.count) return ball_colors.items(phase);
@@ -261,7 +288,8 @@ struct PartingRounds {
     if (phase < point_colors.count) return point_colors.items(phase);
     phase -= point_colors.count;
     if (phase < shifted_hubs.phases()) return shifted_hubs.items(phase);
-    return turned_hubs.items(phase - shifted_hubs.phases());
+    phase -= shifted_hubs.phases();
+    return phase < turned_hubs.phases() ? turned_hubs.items(phase) : guides.guides.size();
   }
   std::int64_t most_items() const { return std::max(ball_colors.most_items(), point_colors.most_items()); }
   SCREE_HD Sum operator()(const State&, int phase, std::int64_t item) const {
@@ -290,8 +318,10 @@ struct PartingRounds {
     items.each([&](std::int64_t item) {
       if (phase < shifted_hubs.phases()) {
         shifted_hubs(phase, item);
-      } else {
+      } else if (phase - shifted_hubs.phases() < turned_hubs.phases()) {
         turned_hubs(phase - shifted_hubs.phases(), item);
+      } else {
+        guides(item);
       }
     });
     return {};

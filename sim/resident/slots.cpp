@@ -362,6 +362,20 @@ void Slots<Space, Real>::recall(bool rolls) {
                    couples_.view()});
 }
 
+template <class Space, class Real>
+void Slots<Space, Real>::keep_memory() {
+  copy(kept_ball_memory_, ball_memory_);
+  copy(kept_point_memory_, point_memory_);
+  copy(kept_couples_, couples_);
+}
+
+template <class Space, class Real>
+void Slots<Space, Real>::recall_memory() {
+  copy(ball_memory_, kept_ball_memory_);
+  copy(point_memory_, kept_point_memory_);
+  copy(couples_, kept_couples_);
+}
+
 /// What follows from the candidates and the bodies is made again. If bodies have come or gone since, so may
 /// it be otherwise; but then the slots are built anew before anybody asks for it.
 template <class Space, class Real>

@@ -64,6 +64,9 @@ class Slots {
              bool rolls);
   /// Others of the bodies are free now: colours are not to be kept.
   void forget_colors() { keeps_colors_ = false; }
+  /// Keeps what the slots remember, for recall_memory(), which puts it back. No build() between.
+  void keep_memory();
+  void recall_memory();
   /// `bodies`: as they are saved.
   void archive(Archive& archive, const ConstBodyView& bodies);
 
@@ -99,6 +102,9 @@ class Slots {
   Array<BallMemory<Real>, Space> ball_memory_, old_ball_memory_;     // of each place
   Array<PointMemory<Real>, Space> point_memory_, old_point_memory_;  // of each place after those of balls
   Array<V3<Real>, Space> couples_, old_couples_;                     // of each place, if anything rolls
+  Array<BallMemory<Real>, Space> kept_ball_memory_;
+  Array<PointMemory<Real>, Space> kept_point_memory_;
+  Array<V3<Real>, Space> kept_couples_;
   std::int64_t old_ball_places_ = 0;
   SolverBodies<Space> solver_bodies_;
 };

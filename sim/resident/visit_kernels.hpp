@@ -3,6 +3,7 @@
 #pragma once
 
 #include "core/space.hpp"
+#include "sim/resident/ball_blocks.hpp"
 #include "sim/resident/rolling_visits.hpp"
 #include "sim/resident/sweeps.hpp"
 
@@ -39,6 +40,13 @@ struct VisitKernels {
   SweepChange<double> (*roll_points)(const RollPoints&, Blocks, double beta);
   Overlaps (*part_balls)(const PartBalls<double>&, Blocks);
   Overlaps (*part_points)(const PartPoints<double>&, Blocks);
+  /// A bit for each of `look` slots whose bodies come as close as they reach. `reach` knows -1, too, which
+  /// reaches nobody.
+  std::uint64_t (*near)(const Reach* reach, const Slot* slots, const Period* period);
+  /// Sets the fields of the contacts of a block, which begins at a place. A bit for each that is open, and
+  /// closes so fast that it may fly past.
+  std::uint32_t (*prepare_balls)(const PrepareBalls&, const BallBlock&, std::int64_t place);
+  BlockBooks (*book_balls)(const BookBlocks&, Blocks);
   /// Of the bodies from the first to the last.
   void (*accelerate)(const Accelerate<double>&, std::int64_t begin, std::int64_t end, double beta);
 

@@ -16,6 +16,7 @@ TYPED_TEST_SUITE(TilesTest, test::Spaces, test::SpaceName);
 struct EveryThird {
   using Record = std::int64_t;
   View<std::int64_t> out;
+  bool is_end(std::int64_t) const { return false; }
   SCREE_HD bool find(std::int64_t item, Record& record) const {
     record = 10 * item;
     return item % 3 == 0;

@@ -130,12 +130,9 @@ TEST_P(EmissionTest, TheMassThatEndsIsThatOfTheBodies) {
 
 INSTANTIATE_TEST_SUITE_P(Ways, EmissionTest,
                          testing::Values(SimulationOptions{SpaceChoice::host, 1},
-                                         SimulationOptions{SpaceChoice::host, 1, true},
-                                         SimulationOptions{SpaceChoice::cuda, 1, true}),
+                                         SimulationOptions{SpaceChoice::cuda, 1}),
                          [](const auto& way) {
-                           return std::string(way.param.space == SpaceChoice::cuda ? "device"
-                                              : way.param.resident                 ? "resident"
-                                                                                   : "host");
+                           return std::string(way.param.space == SpaceChoice::cuda ? "device" : "host");
                          });
 
 }  // namespace

@@ -1,4 +1,4 @@
-// The ways to take a step, for tests that hold in each: in which space, by which stepper, how precisely.
+// The ways to take a step, for tests that hold in each: in which space, how precisely.
 #pragma once
 
 #include "tests/sim/dynamics/simulations.hpp"
@@ -30,11 +30,11 @@ class WayTest : public testing::TestWithParam<Way> {
 inline std::string way_name(const testing::TestParamInfo<Way>& way) { return way.param.name; }
 
 inline std::vector<Way> double_ways() {
-  return {
-      {"host", {SpaceChoice::host, 1}, "precision: double"},
-      {"host_accurate", {SpaceChoice::host, 1}, "response: {mode: accurate}"},
-      {"host_resident", {.space = SpaceChoice::host, .threads = 1, .resident = true}, "precision: double"},
-      {"cuda", {SpaceChoice::cuda}, "precision: double"}};
+  return {{"host", {SpaceChoice::host, 1}, "precision: double"},
+          {"host_accurate", {SpaceChoice::host, 1}, "response: {mode: accurate}"},
+          {"host_threads", {SpaceChoice::host, 2}, "precision: double"},
+          {"cuda", {SpaceChoice::cuda}, "precision: double"},
+          {"cuda_accurate", {SpaceChoice::cuda}, "response: {mode: accurate}"}};
 }
 
 inline std::vector<Way> all_ways() {

@@ -104,12 +104,9 @@ TEST_P(WorldTest, ItStopsBeforeTheStepThatLeads) {
 
 INSTANTIATE_TEST_SUITE_P(Ways, WorldTest,
                          testing::Values(SimulationOptions{SpaceChoice::host, 1},
-                                         SimulationOptions{SpaceChoice::host, 1, true},
                                          SimulationOptions{SpaceChoice::cuda}),
                          [](const auto& way) {
-                           return std::string(way.param.space == SpaceChoice::cuda ? "cuda"
-                                              : way.param.resident                 ? "host_resident"
-                                                                                   : "host");
+                           return std::string(way.param.space == SpaceChoice::cuda ? "cuda" : "host");
                          });
 
 }  // namespace

@@ -94,22 +94,6 @@ struct PointLaw {
   typename A::V target, normal_mass, tangent_mass;
 };
 
-/// delassus_share()
-template <class A>
-SCREE_LAW Symmetric<A> delassus_share(const typename A::V& inverse_mass, const Symmetric<A>& inertia,
-                                      const V3<A>& arm) {
-  const typename A::V zero{};
-  const V3<A> x = {zero, arm.z, zero - arm.y}, y = {zero - arm.z, zero, arm.x},
-              z = {arm.y, zero - arm.x, zero};  // arm x each axis
-  const V3<A> turn_x = inertia * x, turn_y = inertia * y, turn_z = inertia * z;
-  return {inverse_mass + dot(x, turn_x),
-          inverse_mass + dot(y, turn_y),
-          inverse_mass + dot(z, turn_z),
-          dot(x, turn_y),
-          dot(x, turn_z),
-          dot(y, turn_z)};
-}
-
 /// Two directions in the plane across a normal: of tangent_of(), and at right angles to it.
 template <class A>
 struct Tangents {
@@ -137,98 +121,46 @@ SCREE_LAW typename A::V largest_across(const Symmetric<A>& w, const V3<A>& n) {
   return 0.5 * (tt + bb) + A::root(half_difference * half_difference + tb * tb);
 }
 
-/// The law with the masses of make_row(), by the Delassus matrix of the point. Where it is 0, nothing moves.
-template <class A>
-SCREE_LAW PointLaw<A> law_of(const Symmetric<A>& w, const V3<A>& n, const typename A::V& target) {
-  using V = typename A::V;
-  const V zero{};
-  const auto moves = w.xx + w.yy + w.zz > 0;
-  const V3<A> wn = w * n;
-  const V largest = largest_across(w, n);
-  // Cofactors over the determinant.
-  const V xx = w.yy * w.zz - w.yz * w.yz, xy = w.xz * w.yz - w.xy * w.zz, xz = w.xy * w.yz - w.xz * w.yy;
-  const V determinant = w.xx * xx + w.xy * xy + w.xz * xz;
-  const V inverse = moves ? 1.0 / determinant : zero;
-  return {{xx * inverse, (w.xx * w.zz - w.xz * w.xz) * inverse, (w.xx * w.yy - w.xy * w.xy) * inverse,
-           xy * inverse, xz * inverse, (w.xy * w.xz - w.xx * w.yz) * inverse},
-          wn,
-          target,
-          moves ? 1.0 / dot(n, wn) : zero + 1.0,
-          moves ? 1.0 / largest : zero};
-}
-
-/// The transpose of Cholesky's factor L of an inverse inertia, L L^T.
-template <class A>
-struct Root {
-  typename A::V xx, xy, yy, xz, yz, zz;
-
-  SCREE_LAW friend V3<A> operator*(const Root& m, const V3<A>& a) {
-    return {m.xx * a.x + m.xy * a.y + m.xz * a.z, m.yy * a.y + m.yz * a.z, m.zz * a.z};
-  }
-};
-
-/// How two balls, or a ball and a plane, face each other.
-template <class A>
-struct Facing {
-  V3<A> normal;  ///< unit, from i to j
-  typename A::V gap;
-};
-
-/// `offset`: from the centre of i to that of j, or to or from a point of the plane; `reach`: the sum of the
-/// radii; `up`: normal of the plane, turned from i to j, 0 for two balls.
-template <class A>
-SCREE_LAW Facing<A> facing(const V3<A>& offset, const typename A::V& reach, const V3<A>& up) {
-  using V = typename A::V;
-  const V zero{};
-  const V distance = A::root(dot(offset, offset));
-  const auto plane = dot(up, up) > 0;
-  // Coincident centres have no direction of their own; any one does, if it is always the same.
-  const V3<A> direction =
-      where(distance > tolerance::coincident * reach, offset / distance, V3<A>{zero, zero, zero + 1.0});
-  return {where(plane, up, direction), (plane ? dot(up, offset) : distance) - reach};
-}
-
 /// What a contact of balls is besides its law.
 template <class A>
 struct BallContact {
   Balls<A> law;
-  typename A::V gap, bend;  ///< of ContactRow
+  typename A::V gap, bend;  ///< the acceleration of the gap by the turning of the normal (m/s^2)
 };
 
-/// A ball, or a plane that does not turn.
+/// A ball at the midpoint.
 template <class A>
 struct Round {
-  typename A::V radius;  ///< 0: of a plane
-  V3<A> velocity;        ///< before the substep's kick
+  typename A::V radius;
+  V3<A> velocity;  ///< before the substep's kick
   typename A::V inverse_mass, inverse_inertia;
 };
 
-/// A contact of balls as PrepareRows prepares it. `kick`: what the substep's forces add to the velocity of j
-/// relative to i; `flies`: where it does.
-template <class A, class Condition>
-SCREE_LAW BallContact<A> contact_of(const Facing<A>& at, const typename A::V& friction, const Round<A>& i,
-                                    const Round<A>& j, const V3<A>& kick, double step, double noise,
-                                    const Condition& flies) {
+/// A contact of two balls. `offset`: from the centre of i to that of j; `kick`: what the substep's forces add
+/// to the velocity of j relative to i.
+template <class A>
+SCREE_LAW BallContact<A> contact_of(const V3<A>& offset, const typename A::V& friction, const Round<A>& i,
+                                    const Round<A>& j, const V3<A>& kick, double step, double noise) {
   using V = typename A::V;
   const V zero{};
-  const V arm_i = i.radius + 0.5 * at.gap;
-  const V arm_j = -(j.radius + 0.5 * at.gap);
+  const V reach = i.radius + j.radius;
+  const V distance = A::root(dot(offset, offset));
+  // Coincident centres have no direction of their own; any one does, if it is always the same.
+  const V3<A> normal =
+      where(distance > tolerance::coincident * reach, offset / distance, V3<A>{zero, zero, zero + 1.0});
+  const V gap = distance - reach;
+  const V arm_i = i.radius + 0.5 * gap;
+  const V arm_j = -(j.radius + 0.5 * gap);
   const V3<A> before = j.velocity - i.velocity;
   const V3<A> w = before + kick;
-  const V closing = dot(w, at.normal);
-  const V3<A> across = w - closing * at.normal;
-  const auto balls = (i.radius > 0) & (j.radius > 0);
-  const V bend = balls ? dot(across, across) / (i.radius + j.radius) : zero;
-  V target = (at.gap > 0 ? -at.gap / step : zero) - 0.5 * step * bend;
-  const V parting = noise - dot(before, at.normal);
-  target = parting < target ? parting : target;
-  const V flight = closing - tolerance::flight_margin * (closing < 0 ? -closing : closing);
-  target = (flies & (flight < target)) ? flight : target;
+  const V3<A> across = w - dot(w, normal) * normal;
+  const V bend = dot(across, across) / reach;
+  const V closing = (gap > 0 ? -gap / step : zero) - 0.5 * step * bend;
+  const V parting = noise - dot(before, normal);
+  const V target = parting < closing ? parting : closing;
   const V masses = i.inverse_mass + j.inverse_mass;
   const V turning = i.inverse_inertia * (arm_i * arm_i) + j.inverse_inertia * (arm_j * arm_j);
-  const V normal_mass = masses > 0 ? 1.0 / masses : zero + 1.0;
-  const V tangent_mass = masses > 0 ? 1.0 / (masses + turning) : zero;
-  return {{at.normal, arm_i, arm_j, friction, target, normal_mass, tangent_mass}, at.gap, bend};
+  return {{normal, arm_i, arm_j, friction, target, 1.0 / masses, 1.0 / (masses + turning)}, gap, bend};
 }
 
 /// A vector cut to the disc of a radius, which may be 0: then it is 0, even where its square underflows.
@@ -283,25 +215,6 @@ SCREE_LAW V3<A> in_cone(const V3<A>& p, const V3<A>& n, const typename A::V& fri
   return where(pn > 0, on_disc(pn, p - pn * n, n, friction), V3<A>{});
 }
 
-/// account() of a contact that carries p: the bodies halfway between before and after.
-template <class A>
-struct Booked {
-  typename A::V restitution, friction, work;
-
-  SCREE_LAW friend Booked operator+(const Booked& a, const Booked& b) {
-    return {a.restitution + b.restitution, a.friction + b.friction, a.work + b.work};
-  }
-};
-template <class A>
-SCREE_LAW Booked<A> booked(const Balls<A>& c, const V3<A>& p, const Moving<A>& i, const Moving<A>& j) {
-  using V = typename A::V;
-  const V3<A> mean = velocity_at(c, i, j);
-  const V normal_part = dot(p, c.normal) * dot(mean, c.normal);
-  const V of_i = i.inverse_mass > 0 ? V{} : dot(p, i.velocity);
-  const V of_j = j.inverse_mass > 0 ? V{} : dot(p, j.velocity);
-  return {-normal_part, normal_part - dot(p, mean), of_i - of_j};
-}
-
 /// natural_map() of a contact that carries `last`; for balls it is the exact local solution.
 template <class A>
 SCREE_LAW V3<A> impulse_of(const Balls<A>& c, const V3<A>& last, const Moving<A>& i, const Moving<A>& j) {
@@ -315,28 +228,9 @@ SCREE_LAW V3<A> impulse_of(const Balls<A>& c, const V3<A>& last, const Moving<A>
   return on_disc(pn, pt, n, c.friction);
 }
 
-/// The same without friction.
-template <class A>
-SCREE_LAW V3<A> smooth_impulse_of(const V3<A>& n, const typename A::V& target,
-                                  const typename A::V& normal_mass, const V3<A>& last,
-                                  const typename A::V& un) {
-  return above_zero<A>(dot(last, n) - (un - target) * normal_mass) * n;
-}
-
 template <class A>
 SCREE_LAW V3<A> velocity_at(const Point<A>& at, const Moving<A>& i, const Moving<A>& j) {
   return j.velocity + cross(j.spin, at.arm_j) - i.velocity - cross(i.spin, at.arm_i);
-}
-
-template <class A>
-SCREE_LAW Booked<A> booked(const Point<A>& at, const V3<A>& n, const V3<A>& p, const Moving<A>& i,
-                           const Moving<A>& j) {
-  using V = typename A::V;
-  const V3<A> mean = velocity_at(at, i, j);
-  const V normal_part = dot(p, n) * dot(mean, n);
-  const V of_i = i.inverse_mass > 0 ? V{} : dot(p, i.velocity + cross(i.spin, at.arm_i));
-  const V of_j = j.inverse_mass > 0 ? V{} : dot(p, j.velocity + cross(j.spin, at.arm_j));
-  return {-normal_part, normal_part - dot(p, mean), of_i - of_j};
 }
 
 /// The parts of coulomb_update() of a point that carries p, given its relative velocity u: what would make it

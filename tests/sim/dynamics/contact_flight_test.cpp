@@ -1,12 +1,12 @@
-// What impacts mean for contacts and bodies: found pair by pair and body by body in a space, as the host's
-// stages find it contact by contact.
+// What impacts mean for contacts and bodies, in any space: the same after rounds of impacts as after those in
+// the order of their times.
 #include "sim/dynamics/contact_flight.hpp"
 
 #include "core/parallel.hpp"
 #include "core/tolerances.hpp"
 #include "sim/dynamics/impact_rounds.hpp"
-#include "sim/dynamics/impact_solver.hpp"
 #include "tests/core/spaces.hpp"
+#include "tests/sim/dynamics/event_queue.hpp"
 #include "tests/sim/dynamics/flight_scenes.hpp"
 
 #include <gtest/gtest.h>
@@ -90,95 +90,85 @@ FlightScene falling_crowd() {
   return scene;
 }
 
-TYPED_TEST(ContactFlights, AsTheHostsStages) {
+/// What a contact in each pair knows of its flight, and how the bodies are shifted by impulses that it might
+/// have, once the impacts of a flight are over.
+template <class Space>
+struct AfterImpacts {
+  std::vector<Seen> seen;
+  Ledger shifted;
+  BodyTable bodies;
+
+  AfterImpacts(const FlightStage& stage, const FlightScene& scene, const std::vector<Pair>& pairs,
+               const Bodies<Space>& all) {
+    Array<Pair, Space> list;
+    Array<double, Space> margin;
+    copy(list, pairs);
+    copy(margin, std::vector<double>(scene.bodies.position.size(), 0.02));
+    Array<Seen, Space> found(list.size());
+    parallel::for_each<Space>("test.see", list.size(),
+                              SeePair{{stage}, list.view(), margin.view(), found.view()});
+    seen = to_vector(found);
+    std::vector<Vec3> total(scene.bodies.position.size(), Vec3::Zero());
+    std::vector<Vec3> led = total;
+    for (std::size_t k = 0; k < pairs.size(); ++k) {
+      Random random(22, k);
+      for (int p = 0; p < seen[k].points; ++p) {
+        const Vec3 impulse = vector_in(random, 0.3);
+        for (const auto& [body, sign] : {std::pair(pairs[k].i, -1.0), std::pair(pairs[k].j, 1.0)}) {
+          total[static_cast<std::size_t>(body)] += sign * impulse;
+          led[static_cast<std::size_t>(body)] += sign * seen[k].flight.lead * impulse;
+        }
+      }
+    }
+    Array<Vec3, Space> totals, leds;
+    copy(totals, total);
+    copy(leds, led);
+    Array<Ledger, Space> moved(totals.size());
+    parallel::for_each<Space>("test.shift", totals.size(),
+                              ShiftBody{stage, totals.view(), leds.view(), moved.view()});
+    for (const Ledger& each : to_vector(moved)) shifted = shifted + each;
+    copy_bodies(bodies, all);
+  }
+};
+
+TYPED_TEST(ContactFlights, AsAfterTheImpactsInTheOrderOfTheirTimes) {
   const FlightScene scene = falling_crowd();
   const std::vector<Pair> pairs = scene.pairs(0.1);
-  const ConstView<Pair> candidates{pairs.data(), static_cast<std::int64_t>(pairs.size())};
-  const std::vector<double> margins(scene.bodies.position.size(), 0.02);
 
-  // The host's stages.
   World<Host> host(scene);
-  const ImpulseMemory memory;
-  const ImpactProblem problem{.pairs = candidates, .memory = memory, .terms = host.terms(0)};
-  ImpactSolver solver;
-  const BodyView bodies = view_of(host.bodies);
-  solver.resolve(problem, scene.parameters, bodies);
-  NarrowPhase narrow_phase(NarrowPhaseSettings{});
-  const Manifolds manifolds = narrow_phase.find(view_of(std::as_const(host.bodies)), candidates,
-                                                {margins.data(), static_cast<std::int64_t>(margins.size())},
-                                                solver.late_bodies(problem, scene.parameters, bodies));
-  ContactSet set;
-  prepare_contacts(manifolds, problem.terms.laws, memory, 1, scene.parameters, set);
-  BallPairs balls;
-  solver.mark_flights(problem, scene.parameters, manifolds, bodies, set, balls);
+  test::EventQueue queue;
+  queue.resolve({pairs.data(), static_cast<std::int64_t>(pairs.size())}, host.terms(0), scene.parameters,
+                view_of(host.bodies));
+  const AfterImpacts<Host> expected(queue.stage(host.terms(0), scene.parameters, view_of(host.bodies)), scene,
+                                    pairs, host.bodies);
 
-  // All at once, pair by pair.
   World<TypeParam> world(scene);
   Array<Pair, TypeParam> list;
-  Array<double, TypeParam> margin;
   copy(list, pairs);
-  copy(margin, margins);
   ImpactRounds<TypeParam> rounds;
   rounds.resolve({std::as_const(list).view(), {}, world.terms(0)}, scene.parameters, view_of(world.bodies));
   ASSERT_TRUE(rounds.any_is_late());
-  const FlightStage stage = rounds.stage(world.terms(0), scene.parameters, view_of(world.bodies));
-  Array<Seen, TypeParam> seen(list.size());
-  parallel::for_each<TypeParam>("test.see", list.size(),
-                                SeePair{{stage}, list.view(), margin.view(), seen.view()});
+  const AfterImpacts<TypeParam> got(rounds.stage(world.terms(0), scene.parameters, view_of(world.bodies)),
+                                    scene, pairs, world.bodies);
 
-  const std::vector<Seen> all = to_vector(seen);
-  std::int64_t c = 0;
-  int flying = 0;
-  int late = 0;
-  for (std::size_t k = 0; k < all.size(); ++k) {
-    if (all[k].points == 0) continue;
-    ASSERT_LT(c, set.contacts.size());
-    const Contact& contact = set.contacts.view()[c++];
-    ASSERT_EQ(contact.i, pairs[k].i);
-    ASSERT_EQ(contact.j, pairs[k].j);
-    EXPECT_EQ(all[k].points, contact.count);
-    EXPECT_NEAR(all[k].flight.lead, contact.lead, 1e-12 * scene.step);
-    EXPECT_EQ(all[k].flight.flying, contact.flying) << contact.i << " " << contact.j;
-    flying += contact.flying ? 1 : 0;
-    late += contact.lead > 0 ? 1 : 0;
+  int contacts = 0, flying = 0, late = 0;
+  for (std::size_t k = 0; k < pairs.size(); ++k) {
+    ASSERT_EQ(got.seen[k].points, expected.seen[k].points) << k;
+    if (got.seen[k].points == 0) continue;
+    EXPECT_NEAR(got.seen[k].flight.lead, expected.seen[k].flight.lead, 1e-12 * scene.step);
+    EXPECT_EQ(got.seen[k].flight.flying, expected.seen[k].flight.flying) << pairs[k].i << " " << pairs[k].j;
+    ++contacts;
+    flying += got.seen[k].flight.flying ? 1 : 0;
+    late += got.seen[k].flight.lead > 0 ? 1 : 0;
   }
-  EXPECT_EQ(c, set.contacts.size());
   EXPECT_GT(flying, 20);
   EXPECT_GT(late, 20);
-  EXPECT_GT(c - flying, 20);
-
-  // What the response might give: the shift of the bodies, contact by contact and body by body.
-  std::vector<Vec3> total(scene.bodies.position.size(), Vec3::Zero());
-  std::vector<Vec3> led = total;
-  for (std::int64_t k = 0; k < set.contacts.size(); ++k) {
-    const Contact& contact = set.contacts.view()[k];
-    Random random(22, static_cast<std::uint64_t>(k));
-    for (int p = 0; p < contact.count; ++p) {
-      const Vec3 impulse = vector_in(random, 0.3);
-      set.rows.view()[contact.first_row + p].impulse = impulse;
-      for (const auto& [body, sign] : {std::pair(contact.i, -1.0), std::pair(contact.j, 1.0)}) {
-        total[static_cast<std::size_t>(body)] += sign * impulse;
-        led[static_cast<std::size_t>(body)] += sign * contact.lead * impulse;
-      }
-    }
-  }
-  const Ledger expected = solver.shift_late(problem, scene.parameters, bodies, set);
-  Array<Vec3, TypeParam> totals, leds;
-  copy(totals, total);
-  copy(leds, led);
-  Array<Ledger, TypeParam> moved(totals.size());
-  parallel::for_each<TypeParam>("test.shift", totals.size(),
-                                ShiftBody{stage, totals.view(), leds.view(), moved.view()});
-  Ledger got;
-  for (const Ledger& each : to_vector(moved)) got = got + each;
-  EXPECT_NEAR(got.correction, expected.correction, 1e-12);
-  EXPECT_LE((got.angular_correction - expected.angular_correction).norm(), 1e-12);
-  EXPECT_GT(expected.angular_correction.norm(), 1e-4);
-  BodyTable here, there;
-  copy_bodies(here, world.bodies);
-  copy_bodies(there, host.bodies);
-  for (std::size_t k = 0; k < here.position.size(); ++k)
-    ASSERT_LE((here.position[k] - there.position[k]).norm(), 1e-12) << k;
+  EXPECT_GT(contacts - flying, 20);
+  EXPECT_NEAR(got.shifted.correction, expected.shifted.correction, 1e-12);
+  EXPECT_LE((got.shifted.angular_correction - expected.shifted.angular_correction).norm(), 1e-12);
+  EXPECT_GT(expected.shifted.angular_correction.norm(), 1e-4);
+  for (std::size_t k = 0; k < got.bodies.position.size(); ++k)
+    ASSERT_LE((got.bodies.position[k] - expected.bodies.position[k]).norm(), 1e-12) << k;
 }
 
 }  // namespace

@@ -2,7 +2,6 @@
 #pragma once
 
 #include "core/rng.hpp"
-#include "narrowphase/narrow_phase.hpp"
 #include "sim/dynamics/flight_stage.hpp"
 
 #include <cmath>

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "sim/dynamics/impact_rounds.hpp"
-#include "sim/dynamics/impact_solver.hpp"
+#include "tests/sim/dynamics/event_queue.hpp"
 #include "tests/sim/dynamics/flight_scenes.hpp"
 
 #include <gtest/gtest.h>
@@ -23,15 +23,12 @@ struct Outcome {
 
 inline Outcome in_time_order(const FlightScene& scene, const std::vector<Pair>& pairs) {
   World<Host> world(scene);
-  const ImpulseMemory memory;
-  const ImpactProblem problem{.pairs = {pairs.data(), static_cast<std::int64_t>(pairs.size())},
-                              .memory = memory,
-                              .terms = world.terms(0)};
-  ImpactSolver solver;
+  test::EventQueue queue;
   Outcome outcome;
-  outcome.moved = solver.resolve(problem, scene.parameters, view_of(world.bodies));
-  outcome.impacts = solver.impacts();
-  outcome.late = solver.late_bodies(problem, scene.parameters, view_of(world.bodies)) != nullptr;
+  outcome.moved = queue.resolve({pairs.data(), static_cast<std::int64_t>(pairs.size())}, world.terms(0),
+                                scene.parameters, view_of(world.bodies));
+  outcome.impacts = queue.impacts();
+  outcome.late = queue.any_is_late(world.terms(0));
   copy_bodies(outcome.bodies, world.bodies);
   return outcome;
 }
@@ -43,17 +40,17 @@ std::vector<Impact> impacts_of(const ImpactRounds<Space>& rounds) {
   return impacts;
 }
 
-/// The pairs in another order than the solver's.
+/// The pairs in another order than the queue's. `one_by_one`: strictly in the order of times.
 template <class Space>
-Outcome in_rounds(const FlightScene& scene, std::vector<Pair> pairs) {
+Outcome in_rounds(const FlightScene& scene, std::vector<Pair> pairs, bool one_by_one = false) {
   World<Space> world(scene);
   std::reverse(pairs.begin(), pairs.end());
   Array<Pair, Space> candidates;
   copy(candidates, pairs);
   ImpactRounds<Space> rounds;
   Outcome outcome;
-  outcome.moved = rounds.resolve({std::as_const(candidates).view(), {}, world.terms(0)}, scene.parameters,
-                                 view_of(world.bodies));
+  outcome.moved = rounds.resolve({std::as_const(candidates).view(), {}, world.terms(0), one_by_one},
+                                 scene.parameters, view_of(world.bodies));
   outcome.impacts = impacts_of(rounds);
   outcome.rounds = rounds.rounds();
   outcome.late = rounds.any_is_late();

@@ -114,6 +114,20 @@ TYPED_TEST(Rounds, OfADenseGasHardlyDiffer) {
   EXPECT_LE(differ, 10u);  // of 60,000
 }
 
+TYPED_TEST(Rounds, OfADenseGasAreThoseOfTheQueueOneByOne) {
+  FlightScene scene = gas(0.4);
+  scene.parameters.rotation = false;
+  for (int substep = 0; substep < 5; ++substep) {
+    scene.fly(0.5 * scene.step);
+    const std::vector<Pair> pairs = scene.pairs(0.05);
+    const Outcome outcome = in_rounds<TypeParam>(scene, pairs, true);
+    ASSERT_NO_FATAL_FAILURE(expect_same(outcome, in_time_order(scene, pairs), 1e-9)) << substep;
+    EXPECT_EQ(outcome.rounds, static_cast<std::int64_t>(outcome.impacts.size()));
+    scene.bodies = outcome.bodies;
+    scene.fly(0.5 * scene.step);
+  }
+}
+
 TYPED_TEST(Rounds, BallsOnAPlaneDoNotWaitForEachOther) {
   FlightScene scene;
   scene.law = {.restitution = 0.7, .friction = 0.3};
@@ -271,19 +285,16 @@ TYPED_TEST(Rounds, TheSecondHalfGoesOnFromTheFirst) {
   World<Host> host(scene);
   Array<Pair, TypeParam> candidates;
   copy(candidates, pairs);
-  const ImpulseMemory memory;
   ImpactRounds<TypeParam> rounds;
-  ImpactSolver solver;
+  test::EventQueue queue;
   Outcome outcome, order;
   for (const double from : {0.0, 0.5 * scene.step}) {
     outcome.moved = rounds.resolve({std::as_const(candidates).view(), {}, world.terms(from)},
                                    scene.parameters, view_of(world.bodies));
-    order.moved = solver.resolve({.pairs = {pairs.data(), static_cast<std::int64_t>(pairs.size())},
-                                  .memory = memory,
-                                  .terms = host.terms(from)},
-                                 scene.parameters, view_of(host.bodies));
+    order.moved = queue.resolve({pairs.data(), static_cast<std::int64_t>(pairs.size())}, host.terms(from),
+                                scene.parameters, view_of(host.bodies));
     outcome.impacts = impacts_of(rounds);
-    order.impacts = solver.impacts();
+    order.impacts = queue.impacts();
     copy_bodies(outcome.bodies, world.bodies);
     copy_bodies(order.bodies, host.bodies);
     ASSERT_NO_FATAL_FAILURE(expect_same(outcome, order, 1e-11)) << "from " << from;

@@ -10,8 +10,8 @@ namespace {
 constexpr int balls = 6, boxes = 12;  // of plan_sweeps()
 
 /// As many substeps as are judged together, `times` times.
-void judge(Patience& patience, int times, double undone) {
-  for (int k = 0; k < 32 * times; ++k) patience.judge(k % 2 == 0 ? undone : -undone, 1.0);
+void judge(Patience& patience, int times, double undone, double dissipated = 0) {
+  for (int k = 0; k < 32 * times; ++k) patience.judge(k % 2 == 0 ? undone : -undone, 1.0, dissipated);
 }
 
 TEST(Patience, AHeapIsSweptAsUsualAtFirst) {
@@ -46,9 +46,25 @@ TEST(Patience, LittleAsksForFewer) {
   EXPECT_EQ(of_boxes.sweeps(boxes, true, 1.0), 24);
 }
 
+TEST(Patience, AHeapThatMovesIsSweptAsUsual) {
+  Patience of_balls, of_boxes;
+  of_boxes.sweeps(boxes, true, 1.0);
+  judge(of_balls, 3, 0.08, 0.9);
+  judge(of_boxes, 3, 0.05, 0.6);
+  EXPECT_EQ(of_balls.sweeps(balls, false, 1.0), balls);
+  EXPECT_EQ(of_boxes.sweeps(boxes, true, 1.0), boxes);
+  // Whatever it was swept before; and a slow mode that dissipates as much is none of that.
+  judge(of_balls, 1, 1.0);
+  EXPECT_EQ(of_balls.sweeps(balls, false, 1.0), 24) << "much is left undone";
+  judge(of_balls, 2, 0.08, 0.9);
+  EXPECT_EQ(of_balls.sweeps(balls, false, 1.0), balls);
+  judge(of_balls, 1, 0.3, 0.9);
+  EXPECT_EQ(of_balls.sweeps(balls, false, 1.0), 12);
+}
+
 TEST(Patience, OneSubstepDecidesNothing) {
   Patience patience;
-  patience.judge(1.0, 1.0);
+  patience.judge(1.0, 1.0, 0.0);
   EXPECT_EQ(patience.sweeps(balls, false, 1.0), balls);
 }
 

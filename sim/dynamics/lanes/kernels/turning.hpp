@@ -1,11 +1,20 @@
 // Bodies that turn freely.
 #pragma once
 
-#include "sim/dynamics/lanes/kernels/batch_vectors.hpp"
+#include "sim/dynamics/lanes/kernels/vectors.hpp"
 
 namespace scree::lanes::SCREE_LANES {
 
 namespace {
+
+V get(const Lane& lane) { return *reinterpret_cast<const V*>(lane.at); }
+void set(Lane& lane, const V& value) { *reinterpret_cast<V*>(lane.at) = value; }
+V3 get(const LaneVec& lanes) { return {get(lanes.x), get(lanes.y), get(lanes.z)}; }
+void set(LaneVec& lanes, const V3& value) {
+  set(lanes.x, value.x);
+  set(lanes.y, value.y);
+  set(lanes.z, value.z);
+}
 
 void turn(Tops& tops, double dt, bool fourth_order) {
   const V3 inverse_inertia = get(tops.inverse_inertia);
@@ -16,7 +25,7 @@ void turn(Tops& tops, double dt, bool fourth_order) {
   const auto hardly = turn < tolerance::hardly_a_turn;
   const auto splits = (turn >= tolerance::hardly_a_turn) & (turn <= tolerance::split_turn);
   tops.far = static_cast<std::int32_t>(bits_of(turn > tolerance::split_turn));
-  V drift = all(0);
+  V drift{};
   const Top<Lanes> before = top;
   if (Lanes::any(hardly)) {
     Top<Lanes> turned = before;

@@ -56,6 +56,13 @@ template <int size>
   }
 }
 
+/// A bit for each lane in which a condition holds.
+[[gnu::always_inline]] inline std::uint32_t bits_of(const decltype(V{} > V{}) & condition) {
+  std::uint32_t bits = 0;
+  for (int l = 0; l < width; ++l) bits |= static_cast<std::uint32_t>(condition[l] & 1) << l;
+  return bits;
+}
+
 constexpr int half = width / 2;
 using Half [[gnu::vector_size(sizeof(Lane) / 2), gnu::may_alias]] = double;
 

@@ -1,13 +1,13 @@
-// The narrow phase as a whole against a double loop over all pairs.
-#include "narrowphase/narrow_phase.hpp"
-
+// The contacts of pairs of all shapes, by cases, by the search along axes and by libccd.
 #include "core/geometry.hpp"
 #include "core/parallel_loops.hpp"
 #include "core/rng.hpp"
+#include "narrowphase/any_contacts.hpp"
 #include "narrowphase/box_box.hpp"
 #include "narrowphase/box_plane.hpp"
 #include "narrowphase/box_tube.hpp"
 #include "narrowphase/candidates.hpp"
+#include "narrowphase/libccd_contacts.hpp"
 #include "narrowphase/sphere_box.hpp"
 #include "narrowphase/sphere_plane.hpp"
 #include "narrowphase/sphere_sphere.hpp"
@@ -97,15 +97,45 @@ ConstView<Pair> view_of(const std::vector<Pair>& pairs) {
   return {pairs.data(), static_cast<std::int64_t>(pairs.size())};
 }
 
-std::vector<Manifold> in_full(const Manifolds& found) {
-  std::vector<Manifold> all;
-  for (const ManifoldHeader& header : found.headers) {
-    Manifold m{.i = header.i, .j = header.j, .part = header.part, .normal = header.normal, .points = {}};
-    for (; m.count < header.count; ++m.count) m.points[m.count] = found.points_of(header)[m.count];
-    all.push_back(m);
+/// All contacts of some pairs, one pair after the other.
+class PairContacts {
+ public:
+  explicit PairContacts(const NarrowPhaseSettings& settings, ConstView<ShapeData> shapes = {})
+      : libccd_(settings), shapes_(shapes) {}
+
+  std::vector<Manifold> find(const ConstBodyView& bodies, ConstView<Pair> pairs, ConstView<double> margin) {
+    libccd_.start_search();
+    std::vector<Manifold> all;
+    for (const auto& [i, j] : pairs) {
+      const auto shaped = [&bodies](std::int32_t k) {
+        return ShapedSolid{bodies.shape[k], {bodies.position[k], bodies.orientation[k], bodies.size[k]}};
+      };
+      const auto data = [this](std::int32_t k) { return shapes_.size() > 0 ? &shapes_[k] : nullptr; };
+      const Shape a = bodies.shape[i], b = bodies.shape[j];
+      const PairShapes shapes{data(i), data(j)};
+      const double reach = margin[i] + margin[j];
+      Manifold found[max_pair_manifolds];
+      const int count = libccd_.decides(a, b)
+                            ? libccd_.find(shaped(i), shaped(j), shapes, reach, found)
+                            : find_any_contacts(shaped(i), shaped(j), shapes, {.margin = reach}, found);
+      if (libccd_.checks(a, b, i, j)) libccd_.check(shaped(i), shaped(j), shapes);
+      for (int m = 0; m < count; ++m) {
+        found[m].i = i;
+        found[m].j = j;
+        all.push_back(found[m]);
+      }
+    }
+    stats_ = libccd_.take_stats();
+    return all;
   }
-  return all;
-}
+  /// Of the last search.
+  const NarrowPhaseStats& stats() const { return stats_; }
+
+ private:
+  LibccdContacts libccd_;
+  ConstView<ShapeData> shapes_;
+  NarrowPhaseStats stats_;
+};
 
 /// The contacts of two bodies, by cases.
 std::vector<Manifold> contacts(const ConstBodyView& b, std::int64_t i, std::int64_t j, double margin) {
@@ -142,11 +172,11 @@ void expect_same(const Manifold& a, const Manifold& b) {
   }
 }
 
-TEST(NarrowPhase, FindsWhatADoubleLoopFindsInOrder) {
+TEST(PairContacts, FindsWhatADoubleLoopFindsInOrder) {
   const Scene scene = crowd(300);
   const ConstBodyView bodies = view_of(scene.bodies);
-  NarrowPhase narrow({});
-  const auto found = in_full(narrow.find(bodies, view_of(all_pairs(scene.bodies)), scene.margin.view()));
+  PairContacts narrow({});
+  const auto found = narrow.find(bodies, view_of(all_pairs(scene.bodies)), scene.margin.view());
 
   std::size_t next = 0;
   for (std::int64_t i = 0; i < bodies.count(); ++i) {
@@ -167,7 +197,7 @@ TEST(NarrowPhase, FindsWhatADoubleLoopFindsInOrder) {
 }
 
 // As many manifolds as there can be from every pair, then pairs with one each in their places.
-TEST(NarrowPhase, HoldsPairsFullOfManifolds) {
+TEST(PairContacts, HoldsPairsFullOfManifolds) {
   Scene scene;
   BodyTable table;
   constexpr int count = 100;
@@ -180,9 +210,8 @@ TEST(NarrowPhase, HoldsPairsFullOfManifolds) {
   std::vector<Pair> pairs;
   for (std::int32_t n = 1; n <= count; ++n) pairs.push_back({0, n});
   for (std::int32_t n = 2; n <= count; ++n) pairs.push_back({1, n});
-  NarrowPhase narrow({});
-  const auto found =
-      in_full(narrow.find(view_of(std::as_const(scene.bodies)), view_of(pairs), scene.margin.view()));
+  PairContacts narrow({});
+  const auto found = narrow.find(view_of(std::as_const(scene.bodies)), view_of(pairs), scene.margin.view());
   ASSERT_EQ(found.size(), count * max_pair_manifolds + count - 1);
   for (std::size_t k = 1; k < found.size(); ++k) {
     ASSERT_LE(std::tuple(found[k - 1].i, found[k - 1].j, found[k - 1].part),
@@ -193,34 +222,16 @@ TEST(NarrowPhase, HoldsPairsFullOfManifolds) {
   }
 }
 
-TEST(NarrowPhase, ThreadsDoNotChangeTheResult) {
-  const Scene scene = crowd(1500);
-  const std::vector<Pair> pairs = all_pairs(scene.bodies);
-  const ConstView<Pair> pair_view = view_of(pairs);
-  std::vector<Manifold> first;
-  for (const int threads : {1, 2, 7}) {
-    const tbb::global_control limit(tbb::global_control::max_allowed_parallelism,
-                                    static_cast<std::size_t>(threads));
-    NarrowPhase narrow({});
-    for (int again = 0; again < 2; ++again) {  // with and without growing buffers
-      const auto found = in_full(narrow.find(view_of(scene.bodies), pair_view, scene.margin.view()));
-      if (first.empty()) first = found;
-      ASSERT_EQ(found.size(), first.size());
-      for (std::size_t k = 0; k < found.size(); ++k) expect_same(found[k], first[k]);
-    }
-  }
-}
-
-TEST(NarrowPhase, EveryMethodFindsTheSamePairs) {
+TEST(PairContacts, EveryMethodFindsTheSamePairs) {
   const Scene scene = crowd(300);
   const std::vector<Pair> pairs = all_pairs(scene.bodies);
   const ConstView<Pair> pair_view = view_of(pairs);
-  NarrowPhase sat({BoxBoxMethod::sat});
-  const auto expected = in_full(sat.find(view_of(scene.bodies), pair_view, scene.margin.view()));
+  PairContacts sat({BoxBoxMethod::sat});
+  const auto expected = sat.find(view_of(scene.bodies), pair_view, scene.margin.view());
   EXPECT_EQ(sat.stats().ccd_calls, 0);
   for (const BoxBoxMethod method : {BoxBoxMethod::automatic, BoxBoxMethod::ccd_gjk, BoxBoxMethod::ccd_mpr}) {
-    NarrowPhase narrow({method});
-    const auto found = in_full(narrow.find(view_of(scene.bodies), pair_view, scene.margin.view()));
+    PairContacts narrow({method});
+    const auto found = narrow.find(view_of(scene.bodies), pair_view, scene.margin.view());
     ASSERT_EQ(found.size(), expected.size());
     for (std::size_t k = 0; k < found.size(); ++k) {
       ASSERT_EQ(found[k].i, expected[k].i);
@@ -263,22 +274,22 @@ struct Particles {
     parallel::fill("margin", scene.margin, 0.01);
   }
 
-  NarrowPhase by(const NarrowPhaseSettings& settings) const {
-    return NarrowPhase(settings, {data.data(), static_cast<std::int64_t>(data.size())});
+  PairContacts by(const NarrowPhaseSettings& settings) const {
+    return PairContacts(settings, {data.data(), static_cast<std::int64_t>(data.size())});
   }
 };
 
-TEST(NarrowPhase, EveryMethodOfConvexParticlesFindsTheSamePairs) {
+TEST(PairContacts, EveryMethodOfConvexParticlesFindsTheSamePairs) {
   const Particles particles(300);
   const Scene& scene = particles.scene;
   const std::vector<Pair> pairs = all_pairs(scene.bodies);
-  NarrowPhase axes = particles.by({.convex = ConvexMethod::axes});
-  const auto expected = in_full(axes.find(view_of(scene.bodies), view_of(pairs), scene.margin.view()));
+  PairContacts axes = particles.by({.convex = ConvexMethod::axes});
+  const auto expected = axes.find(view_of(scene.bodies), view_of(pairs), scene.margin.view());
   EXPECT_GT(expected.size(), 300);
   EXPECT_EQ(axes.stats().ccd_calls, 0);
   for (const ConvexMethod method : {ConvexMethod::automatic, ConvexMethod::ccd_gjk, ConvexMethod::ccd_mpr}) {
-    NarrowPhase narrow = particles.by({.convex = method});
-    const auto found = in_full(narrow.find(view_of(scene.bodies), view_of(pairs), scene.margin.view()));
+    PairContacts narrow = particles.by({.convex = method});
+    const auto found = narrow.find(view_of(scene.bodies), view_of(pairs), scene.margin.view());
     ASSERT_EQ(found.size(), expected.size());
     for (std::size_t k = 0; k < found.size(); ++k) {
       ASSERT_EQ(found[k].i, expected[k].i);
@@ -290,13 +301,13 @@ TEST(NarrowPhase, EveryMethodOfConvexParticlesFindsTheSamePairs) {
   }
 }
 
-TEST(NarrowPhase, ACrosscheckAsksAboutConvexParticlesTooAndChangesNothing) {
+TEST(PairContacts, ACrosscheckAsksAboutConvexParticlesTooAndChangesNothing) {
   const Particles particles(300);
   const Scene& scene = particles.scene;
   const std::vector<Pair> pairs = all_pairs(scene.bodies);
-  NarrowPhase unchecked = particles.by({}), checked = particles.by({.crosscheck = 1});
-  const auto expected = in_full(unchecked.find(view_of(scene.bodies), view_of(pairs), scene.margin.view()));
-  const auto found = in_full(checked.find(view_of(scene.bodies), view_of(pairs), scene.margin.view()));
+  PairContacts unchecked = particles.by({}), checked = particles.by({.crosscheck = 1});
+  const auto expected = unchecked.find(view_of(scene.bodies), view_of(pairs), scene.margin.view());
+  const auto found = checked.find(view_of(scene.bodies), view_of(pairs), scene.margin.view());
   ASSERT_EQ(found.size(), expected.size());
   for (std::size_t k = 0; k < found.size(); ++k) expect_same(found[k], expected[k]);
   // All but spheres with spheres, boxes and capsules, which are closed forms.
@@ -310,12 +321,12 @@ TEST(NarrowPhase, ACrosscheckAsksAboutConvexParticlesTooAndChangesNothing) {
   EXPECT_EQ(unchecked.stats().crosscheck.asked, 0);
 }
 
-TEST(NarrowPhase, ACrosscheckAsksTheSameShareWhateverTheThreadsAndChangesNothing) {
+TEST(PairContacts, ACrosscheckAsksTheShareAndChangesNothing) {
   const Scene scene = crowd(1500);
   const std::vector<Pair> pairs = all_pairs(scene.bodies);
   const ConstView<Pair> pair_view = view_of(pairs);
-  NarrowPhase unchecked({});
-  const auto expected = in_full(unchecked.find(view_of(scene.bodies), pair_view, scene.margin.view()));
+  PairContacts unchecked({});
+  const auto expected = unchecked.find(view_of(scene.bodies), pair_view, scene.margin.view());
   EXPECT_EQ(unchecked.stats().crosscheck.asked, 0);
 
   const auto box_pairs = std::count_if(pairs.begin(), pairs.end(), [&](const Pair& pair) {
@@ -323,32 +334,24 @@ TEST(NarrowPhase, ACrosscheckAsksTheSameShareWhateverTheThreadsAndChangesNothing
     return b.shape[pair.i] == Shape::box && b.shape[pair.j] == Shape::box &&
            (b.mobility[pair.i] == Mobility::free || b.mobility[pair.j] == Mobility::free);
   });
-  std::vector<std::int64_t> first;
-  for (const int threads : {1, 2, 7}) {
-    const tbb::global_control limit(tbb::global_control::max_allowed_parallelism,
-                                    static_cast<std::size_t>(threads));
-    NarrowPhase narrow({.crosscheck = 0.01});
-    std::vector<std::int64_t> counts;
-    for (int search = 0; search < 3; ++search) {
-      const auto found = in_full(narrow.find(view_of(scene.bodies), pair_view, scene.margin.view()));
-      ASSERT_EQ(found.size(), expected.size());
-      for (std::size_t k = 0; k < found.size(); ++k) expect_same(found[k], expected[k]);
-      const CrosscheckStats& check = narrow.stats().crosscheck;
-      EXPECT_NEAR(static_cast<double>(check.asked), 0.01 * static_cast<double>(box_pairs),
-                  5 * std::sqrt(0.01 * static_cast<double>(box_pairs)));
-      counts.push_back(check.asked);
-      counts.insert(counts.end(), check.ccd_deeper.count.begin(), check.ccd_deeper.count.end());
-    }
-    EXPECT_NE(counts[0], counts[counts.size() / 3]);  // another choice in the next search
-    if (first.empty()) first = counts;
-    EXPECT_EQ(counts, first);
+  PairContacts narrow({.crosscheck = 0.01});
+  std::int64_t last = -1;
+  for (int search = 0; search < 3; ++search) {
+    const auto found = narrow.find(view_of(scene.bodies), pair_view, scene.margin.view());
+    ASSERT_EQ(found.size(), expected.size());
+    for (std::size_t k = 0; k < found.size(); ++k) expect_same(found[k], expected[k]);
+    const std::int64_t asked = narrow.stats().crosscheck.asked;
+    EXPECT_NEAR(static_cast<double>(asked), 0.01 * static_cast<double>(box_pairs),
+                5 * std::sqrt(0.01 * static_cast<double>(box_pairs)));
+    EXPECT_NE(asked, last);  // another choice in the next search
+    last = asked;
   }
 }
 
-TEST(NarrowPhase, ACrosscheckOfEveryPairFindsLibccdAtFaultAlone) {
+TEST(PairContacts, ACrosscheckOfEveryPairFindsLibccdAtFaultAlone) {
   const Scene scene = crowd(1500);
   const std::vector<Pair> pairs = all_pairs(scene.bodies);
-  NarrowPhase narrow({.crosscheck = 1});
+  PairContacts narrow({.crosscheck = 1});
   narrow.find(view_of(scene.bodies), view_of(pairs), scene.margin.view());
   const CrosscheckStats& check = narrow.stats().crosscheck;
   EXPECT_GT(check.ccd_deeper.total(), 100);  // MPR's portal is not the shortest way out of a deep overlap
@@ -365,12 +368,6 @@ TEST(Disagreements, CountByDecadeFromTheLeastThatCounts) {
   Disagreements sum = d;
   sum += d;
   EXPECT_EQ(sum.total(), 14);
-}
-
-TEST(NarrowPhase, NothingInNothingOut) {
-  Scene scene;
-  NarrowPhase narrow({});
-  EXPECT_EQ(narrow.find(view_of(std::as_const(scene.bodies)), {}, scene.margin.view()).size(), 0);
 }
 
 }  // namespace

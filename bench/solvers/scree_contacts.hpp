@@ -1,0 +1,57 @@
+// A captured problem in the contact store of scree's step on Host.
+#pragma once
+
+#include "bench/solvers/problem.hpp"
+#include "sim/dynamics/direct.hpp"
+#include "sim/dynamics/sweep_plan.hpp"
+#include "sim/inspection.hpp"
+#include "sim/resident/contact_list.hpp"
+#include "sim/resident/contact_store.hpp"
+#include "sim/resident/inspection.hpp"
+
+#include <cstdint>
+#include <vector>
+
+namespace scree::bench {
+
+class ScreeContacts {
+ public:
+  explicit ScreeContacts(const ContactProblem& problem);
+
+  /// Takes all impulses away.
+  void reset();
+  /// From the impulses that there are. False if they have not converged.
+  bool sweep(const SweepPlan& plan);
+  /// Of islands whose natural residual is beyond the tolerance. False if one is left.
+  bool solve_islands(double tolerance, const DirectLimits& limits, std::int64_t& solved,
+                     std::int64_t& failed);
+
+  std::int64_t contacts() const { return static_cast<std::int64_t>(problem_.contacts.size()); }
+  std::int64_t points() const { return static_cast<std::int64_t>(problem_.points.size()); }
+  /// Of each point, in the frame of its contact.
+  PointVectors impulses();
+
+ private:
+  /// Where a contact is among those of its kind.
+  struct Place {
+    bool balls;
+    std::int64_t at;
+  };
+
+  std::vector<int> color_contacts(bool balls);
+  bool is_of_balls(const ContactProblem::Contact& contact) const;
+  void place_contacts();
+  void fill_ball(const ContactProblem::Contact& contact, std::int64_t to);
+  void fill_points(const ContactProblem::Contact& contact, std::int64_t to);
+  SolverBody body(std::int32_t k) const;
+
+  const ContactProblem& problem_;
+  std::vector<Place> place_;  // of each contact
+  std::vector<resident::Slot> slots_;
+  resident::ContactStore<Host, double> store_;
+  resident::ContactList<Host> ball_list_, point_list_;
+  std::int32_t nobody_;
+  Array<resident::BodyRecord<double>, Host> free_, solver_, last_;
+};
+
+}  // namespace scree::bench

@@ -1,0 +1,52 @@
+// How often the contacts of a substep are swept.
+#pragma once
+
+#include "core/tolerances.hpp"
+#include "sim/dynamics/contact.hpp"
+#include "sim/dynamics/state.hpp"
+
+#include <algorithm>
+#include <cstdint>
+
+namespace scree {
+
+/// How often contacts are swept.
+struct SweepPlan {
+  int least, most;
+  int block_sweeps;  ///< over the points of a contact at each visit
+  double tolerance;  ///< change of the impulses in one sweep (of their size) at which they have converged
+  bool direct;       ///< islands on which sweeps creep are for the direct solver
+};
+
+/// Few contacts are solved to the tolerance whatever it takes, since they cost nothing. Of a heap each visit
+/// sweeps a point once, since news travels one contact per sweep however well each is solved, and the least
+/// number of sweeps sees to the slow modes, of which one sweep's change tells nothing (docs/decisions/0005,
+/// 0014).
+inline SweepPlan plan_sweeps(const ResponseParameters& parameters, std::int64_t contacts,
+                             std::int64_t all_points) {
+  constexpr std::int64_t visits = 400000;  // of points in a substep
+  constexpr std::int64_t fewest = 60, most = 10000;
+  const bool heap = is_heap(all_points);
+  SweepPlan plan{
+      .least = !heap                                ? 1
+               : shares_loads(contacts, all_points) ? 12
+                                                    : 6,
+      .most = 0,
+      .block_sweeps = heap ? 1 : 4,
+      .tolerance = heap && !parameters.accurate ? tolerance::heap_change : tolerance::response_change,
+      .direct = !heap};
+  const std::int64_t points = std::max<std::int64_t>(all_points, 1);
+  plan.most = static_cast<int>(std::clamp(visits / (plan.block_sweeps * points), fewest, most));
+  if (parameters.block_sweeps > 0) plan.block_sweeps = parameters.block_sweeps;
+  if (parameters.iterations > 0) {
+    plan.most = parameters.iterations;
+    plan.least = std::min(plan.least, plan.most);
+  }
+  if (parameters.tolerance > 0) {
+    plan.tolerance = parameters.tolerance;
+    plan.least = 1;
+  }
+  return plan;
+}
+
+}  // namespace scree
