@@ -417,6 +417,8 @@ void ResidentStepper<Space, Real>::archive(Archive& archive) {
   archive("counters", counters);
   archive.part("bodies", bodies_);
   if (archive.is_loading()) {
+    struck_.clear();
+    have_moved_ = false;
     archive.expect(are_numbers(to_vector(bodies_.id)), "bodies/id");
     find_places<Space>(bodies_);
     find_shapes();
@@ -632,11 +634,12 @@ void ResidentStepper<Space, Real>::measure_contacts(std::int64_t free_bodies, Ob
   out.coordination_mean = mean(static_cast<double>(books.ends), free_bodies);
 }
 
-}  // namespace
-
+/// Whether a scene has what is known on Host alone: general shapes, and contacts by libccd.
 bool needs_host(const Scene& scene) {
   return scene.geometry != nullptr || LibccdContacts(scene.narrowphase).is_needed();
 }
+
+}  // namespace
 
 std::unique_ptr<Stepper> make_resident_stepper(const Scene& scene, const TimeGrid& grid,
                                                const PathTable& paths, bool on_device, const Vec3& origin) {

@@ -232,9 +232,9 @@ std::string box_words(const Scene& scene) {
     case BoxBoxMethod::sat:
       return "closed forms; boxes by separating axes";
     case BoxBoxMethod::ccd_gjk:
-      return "closed forms; boxes by libccd's GJK and EPA";
+      return "closed forms; boxes by libccd's GJK and EPA, on the host";
     case BoxBoxMethod::ccd_mpr:
-      return "closed forms; boxes by libccd's MPR";
+      return "closed forms; boxes by libccd's MPR, on the host";
   }
   return "closed forms; boxes by the measured best way";
 }

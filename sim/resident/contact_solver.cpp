@@ -60,6 +60,8 @@ void ContactSolver<Space, Real>::archive(Archive& archive, const ConstBodyView& 
   archive.part("patience", patience_);
   archive("loads", loads_);
   if (!archive.is_loading()) return;
+  step_ = 0;
+  counts_ = {};
   make_places();
   wall_sums_.take(slots_.places(), bodies);
   next_loads_.resize(loads_.size());

@@ -83,7 +83,6 @@ class ContactSolver {
   /// When the first contact that slid came to stick, as a share of the last substep; 1 if none did. For the
   /// accurate mode, and not for heaps, in which something always does.
   double slip_end() const { return slip_end_; }
-  const ContactCounts& counts() const { return counts_; }
   /// For each candidate a bit for each part that is loaded.
   ConstView<LoadedParts> loads() const {
     static_assert(sizeof(LoadedParts) == 1);

@@ -36,6 +36,7 @@ ContactProblem problem_of(Inspection<Real>& seen, const BodyTable& bodies) {
 template <class Real>
 std::vector<ContactForce> forces_of(Inspection<Real>& seen, const BodyTable& bodies) {
   std::vector<ContactForce> forces;
+  if (seen.step == 0) return forces;
   for_each_contact(seen, [&](const SeenContact& c) {
     const Vec3 impulse = c.impulse();
     if (impulse.isZero(0)) return;
