@@ -16,7 +16,6 @@
 #include <fstream>
 #include <functional>
 #include <iterator>
-#include <mutex>
 #include <span>
 #include <string_view>
 #include <utility>
@@ -76,6 +75,7 @@ std::string directory_of(const SavedState& state, const std::vector<haddr_t>& pl
 /// The whole file in memory: so a disk that is full is told by the system's words, and never by the library
 /// half way.
 std::string file_of(const SavedState& state) {
+  const hdf5::Session session;
   constexpr std::size_t most_overhead = 1 << 20;
   constexpr std::size_t least_head = 512;  // HDF5's readers look there, and wherever it is twice as far
   const std::size_t most = state.bytes() + most_overhead;
@@ -100,14 +100,6 @@ std::string file_of(const SavedState& state) {
         "finish the file");
   std::ranges::copy(first_line_of(std::string_view(bytes).substr(first_line_bytes)), bytes.begin());
   return bytes;
-}
-
-/// HDF5 is for one thread at a time.
-std::string file_in_turn(const SavedState& state) {
-  static std::mutex turn;
-  const std::lock_guard lock(turn);
-  hdf5::start();
-  return file_of(state);
 }
 
 std::string bytes_of(const fs::path& file) {
@@ -158,12 +150,10 @@ void prepare_checkpoints() {
   Archive archive = Archive::saving(little);
   double number = 0;
   archive("number", number);
-  file_in_turn(little);
+  file_of(little);
 }
 
-void write_checkpoint(const fs::path& file, const SavedState& state) {
-  write_file(file, file_in_turn(state));
-}
+void write_checkpoint(const fs::path& file, const SavedState& state) { write_file(file, file_of(state)); }
 
 SavedState read_checkpoint(const fs::path& file) try {
   const std::string bytes = bytes_of(file);

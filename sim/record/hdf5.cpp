@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <cstddef>
+#include <mutex>
 #include <new>
 
 namespace scree::hdf5 {
@@ -27,6 +28,9 @@ namespace {
   throw RunError(fmt::format("HDF5 cannot {}", what));
 }
 
+/// Held by the one Session that there is.
+std::mutex of_all_threads;
+
 }  // namespace
 
 Handle::Handle(hid_t id, Close close, const char* what) : id_(id), close_(close) {
@@ -37,7 +41,7 @@ void check(herr_t status, const char* what) {
   if (status < 0) fail(what);
 }
 
-void start() {
+Session::Session() : lock_(of_all_threads) {
   static const herr_t told = H5dont_atexit();
   check(told, "start");
   H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);

@@ -4,6 +4,7 @@
 #include "core/archive.hpp"
 
 #include <hdf5.h>
+#include <mutex>
 
 namespace scree::hdf5 {
 
@@ -26,10 +27,18 @@ class Handle {
 /// Throws RunError if the library says that it failed, and std::bad_alloc if for want of memory.
 void check(herr_t status, const char* what);
 
-/// To be called first. The library's own messages would go to stderr; and at the program's end it would try
-/// again to write what it could not, and crash. It keeps the memory of what it has closed for what it opens
-/// next: it crashes where it gets none for the cache of a file.
-void start();
+/// Whoever uses the library holds one of these from before its first handle until after its last; any other
+/// thread waits. So one file is open at a time. The library crashes where it gets no memory for the cache of
+/// a file; but it keeps the cache of the file that was closed last for the one that is opened next.
+/// The first Session also turns off the library's own messages to stderr, and its attempt at the program's
+/// end to write again what it could not, in which it crashes. Throws as check().
+class Session {
+ public:
+  Session();
+
+ private:
+  std::lock_guard<std::mutex> lock_;
+};
 
 /// Of one number, little-endian; of a record, its bytes.
 Handle type_of(const FieldType& type);

@@ -237,6 +237,7 @@ void write_steps(hid_t root, const TrajectoryIndex& index, const CellKinds& kind
 /// Returns where the chunks have come to lie.
 std::vector<TrajectoryChunk> write_hdf5(const fs::path& part, const TrajectoryIndex& index, Cells cells,
                                         const fs::path& journal) {
+  const hdf5::Session session;
   const Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose, "make settings");
   check(H5Pset_libver_bounds(access, H5F_LIBVER_V18, H5F_LIBVER_V110), "make settings");
   const Handle settings = make_settings(H5P_FILE_CREATE);
@@ -270,7 +271,6 @@ void discard(const fs::path& part) {
 }  // namespace
 
 void write_vtkhdf(const fs::path& file, const TrajectoryIndex& index, Cells cells, const fs::path& journal) {
-  hdf5::start();
   const fs::path part = fs::path(file) += ".part";
   TrajectoryIndex of_file = index;
   try {
