@@ -16,8 +16,10 @@
 #include <thrust/iterator/transform_iterator.h>
 #include <thrust/scan.h>
 
+#include <algorithm>
 #include <cstdint>
 #include <type_traits>
+#include <vector>
 
 namespace scree::parallel {
 
@@ -94,22 +96,30 @@ std::int64_t exclusive_scan(const char* label, const Array<T, Space>& counts,
   return total;
 }
 
-/// Those f(i), 0 <= i < n, that are not `none`, in their order. f is asked more than once.
+/// Those f(i), 0 <= i < n, that are not `none`, in their order. On Device f is asked more than once.
 template <class Space, class T, class F>
 void select(const char* label, std::int64_t n, F f, T none, Array<T, Space>& found) {
-  const timing::Call<Space> call(label);
   if constexpr (std::is_same_v<Space, Host>) {
-    if (n < few) {
-      found.resize(n);
-      std::int64_t count = 0;
-      for (std::int64_t i = 0; i < n; ++i) {
-        const T value = f(i);
-        if (value != none) found.data()[count++] = value;
-      }
-      found.resize(count);
-      return;
-    }
+    // Block by block, so that f is asked once.
+    constexpr std::int64_t block = 4096;
+    std::vector<std::vector<T>> of_block(static_cast<std::size_t>((n + block - 1) / block));
+    for_each<Host>(
+        label, std::ssize(of_block),
+        [&](std::int64_t b) {
+          for (std::int64_t i = b * block; i < std::min((b + 1) * block, n); ++i) {
+            const T value = f(i);
+            if (value != none) of_block[static_cast<std::size_t>(b)].push_back(value);
+          }
+        },
+        2);
+    std::int64_t count = 0;
+    for (const std::vector<T>& list : of_block) count += std::ssize(list);
+    found.resize(count);
+    T* to = found.data();
+    for (const std::vector<T>& list : of_block) to = std::copy(list.begin(), list.end(), to);
+    return;
   }
+  const timing::Call<Space> call(label);
   const auto first = thrust::make_transform_iterator(thrust::counting_iterator<std::int64_t>(0), f);
   const detail::IsNot<T> some{none};
   found.resize(thrust::count_if(scree::detail::policy(Space{}), first, first + n, some));

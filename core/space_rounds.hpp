@@ -3,6 +3,7 @@
 #pragma once
 
 #include "core/array.hpp"
+#include "core/block_limit.hpp"
 #include "core/crew.hpp"
 #include "core/space_tiles.hpp"
 #include "core/timing.hpp"
@@ -60,26 +61,28 @@ typename Program::State run(Host, const char* label, const Program& program, typ
   constexpr std::int64_t most_runs = 128;
   constexpr std::int64_t fewest = 16;   // items that are worth sharing out, some 2 us
   constexpr std::int64_t together = 4;  // of which a run has at least so many
+  const bool shared = program.most_items() >= fewest;
+  const std::int64_t runs_at_most = shared ? std::min(program.most_items() / together, most_runs) : 1;
   const timing::Call<Host> call(label);
   std::vector<Sum> sums;
   for (int phases = program.phases(state); phases > 0; phases = program.phases(state)) {
-    sums.assign(static_cast<std::size_t>(phases * most_runs), Sum{});
+    sums.assign(static_cast<std::size_t>(phases * runs_at_most), Sum{});
     const auto runs_of = [&](int phase) {
       const std::int64_t items = program.items(state, phase);
-      return items < fewest ? 1 : std::min(items / together, most_runs);
+      return items < fewest ? 1 : std::min(items / together, runs_at_most);
     };
     const auto work = [&](int phase, std::int64_t first, std::int64_t last) {
       const std::int64_t items = program.items(state, phase);
       const std::int64_t runs = runs_of(phase);
       for (std::int64_t r = first; r < last; ++r) {
-        sums[static_cast<std::size_t>(phase * most_runs + r)] =
+        sums[static_cast<std::size_t>(phase * runs_at_most + r)] =
             program.over(state, phase, items * r / runs, items * (r + 1) / runs);
       }
     };
-    if (program.most_items() < fewest) {
-      for (int phase = 0; phase < phases; ++phase) work(phase, 0, 1);
-    } else {
+    if (shared) {
       scree::detail::Crew::get().share_phases(phases, runs_of, work);
+    } else {
+      for (int phase = 0; phase < phases; ++phase) work(phase, 0, 1);
     }
     Sum total{};
     for (const Sum& sum : sums) total = total + sum;
@@ -169,8 +172,9 @@ int most_blocks() {
 template <class Program>
 typename Program::State run(Device, const char* label, Program program, typename Program::State state) {
   const timing::Call<Device> call(label);
-  const auto blocks = static_cast<unsigned>(std::clamp<std::int64_t>(
-      (program.most_items() + Program::threads - 1) / Program::threads, 1, most_blocks<Program>()));
+  const auto blocks = static_cast<unsigned>(
+      std::clamp<std::int64_t>((program.most_items() + Program::threads - 1) / Program::threads, 1,
+                               std::min(most_blocks<Program>(), block_limit.load())));
   Array<typename Program::Sum, Device> sums(2 * std::int64_t{blocks});
   Array<typename Program::State, Device> out(1);
   auto* sums_data = sums.data();
@@ -192,7 +196,7 @@ typename Program::State run(Device, const char* label, Program program, typename
 /// the round), and no phase is left where phases() is 0. More threads than program.most_items() would not
 /// help. Program::threads make a block, a power of 2: fewer and larger blocks wait for one another more
 /// quickly, if registers suffice. On Device all rounds are one launch, in which a phase costs some
-/// microseconds; the sums depend on the GPU's size, and are the same from run to run.
+/// microseconds; the order of the additions depends on the GPU's size, and is the same from run to run.
 template <class Space, class Program>
 typename Program::State run_rounds(const char* label, const Program& program,
                                    const typename Program::State& start) {

@@ -35,6 +35,16 @@ struct CompactTile {
 };
 
 template <class F>
+void visit_found(Host, const char* label, std::int64_t tiles, const std::int32_t* counts, const F& f) {
+  constexpr std::int64_t few_tiles = 16;
+  parallel::for_each<Host>(
+      label, tiles,
+      [counts, f](std::int64_t t) {
+        for (std::int32_t k = 0; k < counts[t]; ++k) f(t, k);
+      },
+      few_tiles);
+}
+template <class F>
 void compact(Host, const char* label, std::int64_t tiles, const F& f, std::int32_t* counts) {
   constexpr std::int64_t few_tiles = 2;
   parallel::for_each<Host>(label, tiles, CompactTile<F>{f, counts}, few_tiles);
@@ -98,6 +108,19 @@ __global__ void __launch_bounds__(tile, blocks_at_once<F>())
 }
 
 template <class F>
+__global__ void __launch_bounds__(tile)
+    visit_found_of_tile(const __grid_constant__ F f, const std::int32_t* counts) {
+  const auto k = static_cast<std::int32_t>(threadIdx.x);
+  if (k < counts[blockIdx.x]) f(std::int64_t{blockIdx.x}, k);
+}
+
+template <class F>
+void visit_found(Device, const char* label, std::int64_t tiles, const std::int32_t* counts, const F& f) {
+  const timing::Call<Device> call(label);
+  visit_found_of_tile<<<static_cast<unsigned>(tiles), tile>>>(f, counts);
+  scree::detail::require_launched(label);
+}
+template <class F>
 void compact(Device, const char* label, std::int64_t tiles, const F& f, std::int32_t* counts) {
   const timing::Call<Device> call(label);
   compact_tile<<<static_cast<unsigned>(tiles), tile>>>(f, counts);
@@ -126,6 +149,12 @@ void add_up(Device, const char* label, std::int64_t n, const F& f, Array<T, Devi
 template <class Space, class F>
 void compact_tiles(const char* label, std::int64_t tiles, const F& f, std::int32_t* counts) {
   if (tiles > 0) detail::compact(Space{}, label, tiles, f, counts);
+}
+
+/// f(t, k) for 0 <= k < counts[t] (at most `tile`), for each of so many tiles.
+template <class Space, class F>
+void for_each_found(const char* label, std::int64_t tiles, const std::int32_t* counts, const F& f) {
+  if (tiles > 0) detail::visit_found(Space{}, label, tiles, counts, f);
 }
 
 /// *out = sum of f(i) over 0 <= i < n, as T with an operator +, T{} for n = 0; out is in the space, and so

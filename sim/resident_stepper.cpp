@@ -45,18 +45,19 @@ bool are_numbers(std::vector<BodyNumber> list) {
 template <class Space, class Real>
 class ResidentStepper final : public Stepper {
  public:
-  /// `pairs_on_device`: the PCS of bodies on Host is made there.
-  ResidentStepper(const Scene& scene, const TimeGrid& grid, const PathTable& paths, bool pairs_on_device,
-                  const Vec3& origin)
+  /// With options.on_device the PCS of bodies on Host is made there.
+  ResidentStepper(const Scene& scene, const TimeGrid& grid, const PathTable& paths,
+                  const StepperOptions& options)
       : grid_(grid),
+        steps_in_order_(options.steps_in_order),
         geometry_(scene.geometry),
         paths_(paths),
         parameters_(response_parameters_of(scene)),
         forces_(scene, grid),
         gravity_(scene),
-        order_(scene.bodies, origin),
-        kept_pairs_(scene.broadphase, pairs_on_device, origin),
-        seen_pairs_(scene.broadphase, pairs_on_device, origin),
+        order_(scene.bodies, options.origin),
+        kept_pairs_(scene.broadphase, options.on_device, options.origin),
+        seen_pairs_(scene.broadphase, options.on_device, options.origin),
         libccd_(scene.narrowphase) {
     copy_bodies(bodies_, scene.bodies);
     find_places<Space>(bodies_);
@@ -74,7 +75,7 @@ class ResidentStepper final : public Stepper {
     start_ledger_ = ledger;
     start_gravity_ = parameters_.gravity;
     start_.save(bodies_);
-    if (step % steps_in_order == 0) {
+    if (step % steps_in_order_ == 0) {
       sort_bodies();  // where there is no memory for it, the bodies stay where they are, and are saved
       start_.save(bodies_);
     }
@@ -160,8 +161,6 @@ class ResidentStepper final : public Stepper {
 
  private:
   static constexpr bool is_device = !std::is_same_v<Space, Host>;
-  /// After so many the bodies are put in order anew. Most still have their old neighbours by then.
-  static constexpr std::int64_t steps_in_order = 64;
 
   BodyView views() { return view_of(bodies_); }
   /// What was found for the places that the bodies had goes with them, but for what contacts remember. New
@@ -264,6 +263,7 @@ class ResidentStepper final : public Stepper {
   ConstView<Pair> pairs_now();
   const KeptPairs<Space>& pairs_seen() const { return sees_kept_ ? kept_pairs_ : seen_pairs_; }
   TimeGrid grid_;
+  std::int64_t steps_in_order_;
   std::shared_ptr<const Geometry> geometry_;
   std::int64_t step_ = 0;
   Bodies<Space> bodies_;
@@ -432,7 +432,7 @@ void ResidentStepper<Space, Real>::archive(Archive& archive) {
   archive.part("seen_pairs", seen_pairs_);
   archive("sees_kept", sees_kept_);
   archive("pairs_taken", pairs_taken_);
-  archive.part("contacts", contacts_, view_of(std::as_const(bodies_)));
+  archive.part("contacts", contacts_, view_of(std::as_const(bodies_)), parameters_);
   gravity_.archive(archive, parameters_);
   if (!archive.is_loading()) return;
   forces_.forget();
@@ -444,8 +444,7 @@ template <class Space, class Real>
 void ResidentStepper<Space, Real>::give_candidates(ConstView<Pair> pairs) {
   if (pairs_taken_ == kept_pairs_.times_made()) return;
   const timing::Region region("slots");
-  contacts_.take_candidates(pairs, place_before(), view_of(std::as_const(bodies_)),
-                            parameters_.rolling_friction);
+  contacts_.take_candidates(pairs, place_before(), view_of(std::as_const(bodies_)), parameters_);
   have_moved_ = false;
   pairs_taken_ = kept_pairs_.times_made();
 }
@@ -608,7 +607,7 @@ std::vector<BodyPair> ResidentStepper<Space, Real>::pairs() {
 
 template <class Space, class Real>
 ContactProblem ResidentStepper<Space, Real>::contact_problem() const {
-  resident::Inspection<Real> seen = contacts_.inspect();
+  resident::Inspection<Real> seen = contacts_.inspect(view_of(bodies_));
   BodyTable bodies;
   copy_bodies(bodies, bodies_);
   return problem_of(seen, bodies);
@@ -616,7 +615,7 @@ ContactProblem ResidentStepper<Space, Real>::contact_problem() const {
 
 template <class Space, class Real>
 std::vector<ContactForce> ResidentStepper<Space, Real>::contact_forces() const {
-  resident::Inspection<Real> seen = contacts_.inspect();
+  resident::Inspection<Real> seen = contacts_.inspect(view_of(bodies_));
   BodyTable bodies;
   copy_bodies(bodies, bodies_);
   std::vector<ContactForce> forces = forces_of(seen, bodies);
@@ -642,19 +641,19 @@ bool needs_host(const Scene& scene) {
 }  // namespace
 
 std::unique_ptr<Stepper> make_resident_stepper(const Scene& scene, const TimeGrid& grid,
-                                               const PathTable& paths, bool on_device, const Vec3& origin) {
+                                               const PathTable& paths, const StepperOptions& options) {
   if (needs_host(scene)) {
     if (scene.precision == Precision::mixed)
       throw InputError(
           "meshes, capsules, cylinders, polyhedra and what asks libccd are stepped on the host, in double "
           "precision: leave out `precision: mixed`");
-    return std::make_unique<ResidentStepper<Host, double>>(scene, grid, paths, on_device, origin);
+    return std::make_unique<ResidentStepper<Host, double>>(scene, grid, paths, options);
   }
-  return in_chosen_space(on_device, [&](auto space) -> std::unique_ptr<Stepper> {
+  return in_chosen_space(options.on_device, [&](auto space) -> std::unique_ptr<Stepper> {
     using Space = decltype(space);
     if (scene.precision == Precision::mixed)
-      return std::make_unique<ResidentStepper<Space, float>>(scene, grid, paths, on_device, origin);
-    return std::make_unique<ResidentStepper<Space, double>>(scene, grid, paths, on_device, origin);
+      return std::make_unique<ResidentStepper<Space, float>>(scene, grid, paths, options);
+    return std::make_unique<ResidentStepper<Space, double>>(scene, grid, paths, options);
   });
 }
 

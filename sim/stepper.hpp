@@ -1,5 +1,5 @@
-// What a running scene asks of whoever takes its bodies through a step, in whatever space they are. Free of
-// Thrust, so that any part of the program can include it.
+// What a running scene asks of whoever takes its bodies through a step: their state, the step, and a look at
+// pairs and contacts. Free of Thrust, so that any part of the program can include it.
 #pragma once
 
 #include "core/archive.hpp"
@@ -30,10 +30,37 @@ struct SteppedBody {
   Vec3 contact_moment;   ///< of these impulses about its centre, on a triangle (N m s)
 };
 
-/// The bodies, and the stages that move them. Bodies are known by their numbers, in whatever places they lie.
-class Stepper {
+/// The bodies between two steps. They are known by their numbers, in whatever places and space they lie.
+class StepState {
  public:
-  virtual ~Stepper() = default;
+  virtual ~StepState() = default;
+
+  virtual void copy_state(BodyTable& out) const = 0;  ///< in the order of numbers
+  virtual SteppedBody body(BodyNumber number) const = 0;
+  virtual Vec3 gravity() const = 0;  ///< of the last substep, or of the start (m/s^2)
+  virtual Energies energies(const Vec3& reference) const = 0;
+  virtual Totals totals(const Vec3& reference) const = 0;
+  virtual double largest_speed() const = 0;
+  virtual RegionContents contents_of(const Region& region) const = 0;
+  /// The free bodies whose centre is outside of the world, in the order of their numbers.
+  virtual std::vector<BodyNumber> bodies_beyond(const World& world) const = 0;
+  /// The free bodies whose centre is in a region, in the order of their numbers.
+  virtual std::vector<BodyNumber> bodies_in(const Region& region) const = 0;
+  /// The bodies that are there and may reach into a box (m), planes and tubes included.
+  virtual BodyTable bodies_near(const Vec3& low, const Vec3& high) const = 0;
+
+  /// Lets bodies come, go, or become others. It may copy all of them to Host and back.
+  virtual void change_bodies(const std::function<void(Bodies<Host>&)>& change) = 0;
+  /// Takes out bodies, which are few, and returns them as they were.
+  virtual BodyTable take_out(const std::vector<BodyNumber>& numbers) = 0;
+  /// Brings in bodies, which are few.
+  virtual void bring_in(const BodyTable& bodies) = 0;
+};
+
+/// The step itself: free flight, impacts, contacts, impulses and correction, substep by substep.
+class Step {
+ public:
+  virtual ~Step() = default;
 
   /// To be called at the start of each step: keeps the state, which is that of `step`, and sets the forces
   /// that act from there to the next.
@@ -45,50 +72,41 @@ class Stepper {
   /// Back to the state at the start of the step, ledger included. What the steps before have left of pairs,
   /// contacts and impulses is forgotten: the step that failed may have spoilt it.
   virtual void undo_step() = 0;
-  /// Lets bodies come, go, or become others between two steps. It may copy all of them to Host and back.
-  virtual void change_bodies(const std::function<void(Bodies<Host>&)>& change) = 0;
-  /// The same for bodies that go, which are few: they are returned as they were.
-  virtual BodyTable take_out(const std::vector<BodyNumber>& numbers) = 0;
-  /// And for bodies that come.
-  virtual void bring_in(const BodyTable& bodies) = 0;
 
-  /// What the next step starts from. The contacts of the last substep are not among it: after loading there
-  /// are none until the next.
-  virtual void archive(Archive& archive) = 0;
+  Ledger ledger;
+  Counters counters;
+};
 
-  // The state.
-  virtual void copy_state(BodyTable& out) const = 0;  ///< in the order of numbers
-  virtual SteppedBody body(BodyNumber number) const = 0;
-  virtual Vec3 gravity() const = 0;  ///< of the last substep, or of the start (m/s^2)
-  virtual Energies energies(const Vec3& reference) const = 0;
-  virtual Totals totals(const Vec3& reference) const = 0;
-  virtual double largest_speed() const = 0;
-  virtual RegionContents contents_of(const Region& region) const = 0;
-  /// The free bodies whose centre is outside of the world, in the order of their numbers.
-  virtual std::vector<BodyNumber> bodies_beyond(const World& world) const = 0;
-  /// And those whose centre is in a region.
-  virtual std::vector<BodyNumber> bodies_in(const Region& region) const = 0;
-  /// The bodies that are there and may reach into a box (m), planes and tubes included.
-  virtual BodyTable bodies_near(const Vec3& low, const Vec3& high) const = 0;
+/// What is asked of pairs and contacts by whoever watches a run. Who does not ask pays nothing, and asking
+/// changes nothing.
+class StepInspection {
+ public:
+  virtual ~StepInspection() = default;
 
-  // The pairs that may touch, for the state as it is; and the boxes in which the last broad phase looked for
-  // them, in the order of numbers.
+  /// The pairs that may touch, for the state as it is.
   virtual std::vector<BodyPair> pairs() = 0;
   virtual GridOccupancy grid_occupancy() = 0;
+  /// The boxes in which the last broad phase looked for pairs, in the order of the bodies' numbers.
   virtual std::vector<BodyBox> boxes() const = 0;
   /// The penetration, and the size of the PCS.
   virtual void measure_overlaps(Observation& out) = 0;
 
-  // The contacts of the last substep: all that the response has solved, and those that carried a force.
+  /// The contacts of the last substep that the response has solved.
   virtual ContactProblem contact_problem() const = 0;
+  /// Those of them that carried a force, and the impacts.
   virtual std::vector<ContactForce> contact_forces() const = 0;
-  /// Counts and gaps of the latter.
+  /// Counts and gaps of the contacts that carried a force.
   virtual void measure_contacts(std::int64_t free_bodies, Observation& out) const = 0;
 
   virtual const char* space_name() const = 0;  ///< of the broad phase
+};
 
-  Ledger ledger;
-  Counters counters;
+/// A running scene's bodies and the stages that move them, in whatever space they are.
+class Stepper : public StepState, public Step, public StepInspection {
+ public:
+  /// What the next step starts from. The contacts of the last substep are not among it: after loading there
+  /// are none until the next.
+  virtual void archive(Archive& archive) = 0;
 };
 
 }  // namespace scree

@@ -27,9 +27,6 @@ struct ContactLaws {
   ConstView<ShapeData> shapes = {};  ///< of each body, on Host; empty if no body's shape is general
 
   SCREE_HD bool is_free(std::int32_t body) const { return mobility[body] == Mobility::free; }
-  SCREE_HD bool acts_as_ball(std::int32_t body) const {
-    return shape[body] == Shape::sphere || !is_free(body);
-  }
   /// The smaller smallest_size of two bodies (m).
   SCREE_HD double smaller_size(std::int32_t i, std::int32_t j) const {
     return fmin(smallest_size(shape[i], size[i]), smallest_size(shape[j], size[j]));

@@ -236,15 +236,6 @@ struct WorkOfForce {
   }
 };
 
-struct LoadSolverBody {
-  ConstBodyView bodies;
-  View<SolverBody> solver;
-  SCREE_HD void operator()(std::int64_t k) const {
-    solver[k] = {bodies.velocity[k], bodies.spin[k], bodies.inverse_mass[k],
-                 world_inverse_inertia(bodies.orientation[k], bodies.inverse_inertia[k])};
-  }
-};
-
 struct BodyEnergies {
   ConstBodyView bodies;
   Vec3 gravity;
@@ -360,12 +351,6 @@ double work_of_forces(const Bodies<Space>& bodies, const Array<Vec3, Space>& sta
 }
 
 template <class Space>
-void load_solver_bodies(const Bodies<Space>& bodies, Array<SolverBody, Space>& solver) {
-  solver.resize(bodies.count());
-  parallel::for_each<Space>("motion.load", bodies.count(), LoadSolverBody{view_of(bodies), solver.view()});
-}
-
-template <class Space>
 Energies energies_of(const Bodies<Space>& bodies, const Vec3& gravity, const Vec3& reference) {
   return parallel::sum_by_tiles<Energies, Space>("motion.energies", bodies.count(),
                                                  BodyEnergies{view_of(bodies), gravity, reference});
@@ -389,7 +374,6 @@ double largest_speed(const Bodies<Space>& bodies) {
   template double largest_margin<Space>(const Array<double, Space>&);                               \
   template class FatBoxes<Space>;                                                                   \
   template double work_of_forces(const Bodies<Space>&, const Array<Vec3, Space>&, ConstView<Vec3>); \
-  template void load_solver_bodies(const Bodies<Space>&, Array<SolverBody, Space>&);                \
   template Energies energies_of<Space>(const Bodies<Space>&, const Vec3&, const Vec3&);             \
   template Totals totals_of<Space>(const Bodies<Space>&, const Vec3&, const Vec3&);                 \
   template double largest_speed<Space>(const Bodies<Space>&);

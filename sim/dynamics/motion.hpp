@@ -58,10 +58,6 @@ template <class Space>
 double work_of_forces(const Bodies<Space>& bodies, const Array<Vec3, Space>& start,
                       ConstView<Vec3> acceleration);
 
-/// Velocities and inverse masses at the present orientation, as the solver wants them.
-template <class Space>
-void load_solver_bodies(const Bodies<Space>& bodies, Array<SolverBody, Space>& solver);
-
 /// Sums over the free bodies: what every step asks for,
 struct Energies {
   double kinetic_linear = 0;

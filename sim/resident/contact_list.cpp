@@ -19,14 +19,11 @@ struct CountVisits {
 };
 
 struct ListVisits {
-  ConstView<std::int32_t> counts;
   ConstView<std::int64_t> number;
   std::int32_t width;
   View<std::int32_t> places;
-  SCREE_HD void operator()(std::int64_t k) const {
-    const std::int64_t t = k / tile;
-    const auto visit = static_cast<std::int32_t>(k % tile);
-    if (visit < counts[t]) places[number[t] + visit] = static_cast<std::int32_t>(t * tile) + visit * width;
+  SCREE_HD void operator()(std::int64_t t, std::int32_t visit) const {
+    places[number[t] + visit] = static_cast<std::int32_t>(t * tile) + visit * width;
   }
 };
 
@@ -64,9 +61,8 @@ void ContactList<Space>::make(const Array<std::int32_t, Space>& found, int width
   parallel::for_each<Space>("contacts.list", found.size(), CountVisits{found.data(), width, counts_.view()});
   parallel::exclusive_scan_into("contacts.list", counts_, number_);
   list.places.resize(tile * found.size());
-  parallel::for_each<Space>(
-      "contacts.list", list.places.size(),
-      ListVisits{std::as_const(counts_).view(), std::as_const(number_).view(), width, list.places.view()});
+  parallel::for_each_found<Space>("contacts.list", counts_.size(), counts_.data(),
+                                  ListVisits{std::as_const(number_).view(), width, list.places.view()});
   first_.resize(tile_.size());
   parallel::for_each<Space>(
       "contacts.list", tile_.size(),

@@ -30,8 +30,10 @@ constexpr std::int64_t few_bodies = 1 << 14;
 template <class Space, class Real>
 void ContactSolver<Space, Real>::take_candidates(ConstView<Pair> candidates,
                                                  ConstView<std::int32_t> place_before,
-                                                 const ConstBodyView& bodies, bool rolls) {
-  slots_.build(candidates, place_before, bodies, rolls);
+                                                 const ConstBodyView& bodies,
+                                                 const ResponseParameters& parameters) {
+  slots_.build(candidates, place_before, bodies, parameters.rolling_friction);
+  list_guided(parameters.guides);
   make_places();
   wall_sums_.take(slots_.places(), bodies);
   const std::int64_t balls = store_.ball_places();
@@ -55,13 +57,15 @@ void ContactSolver<Space, Real>::make_places() {
 }
 
 template <class Space, class Real>
-void ContactSolver<Space, Real>::archive(Archive& archive, const ConstBodyView& bodies) {
+void ContactSolver<Space, Real>::archive(Archive& archive, const ConstBodyView& bodies,
+                                         const ResponseParameters& parameters) {
   archive.part("slots", slots_, bodies);
   archive.part("patience", patience_);
   archive("loads", loads_);
   if (!archive.is_loading()) return;
   step_ = 0;
   counts_ = {};
+  list_guided(parameters.guides);
   make_places();
   wall_sums_.take(slots_.places(), bodies);
   next_loads_.resize(loads_.size());
@@ -78,13 +82,14 @@ void ContactSolver<Space, Real>::look_up_loads(ConstView<Pair> candidates,
 }
 
 template <class Space, class Real>
-Inspection<Real> ContactSolver<Space, Real>::inspect() {
+Inspection<Real> ContactSolver<Space, Real>::inspect(const ConstBodyView& bodies) {
   Inspection<Real> seen;
   seen.rolls = rolls();
   seen.first_wall_point = slots_.solver_bodies().first_wall_point();
   seen.step = step_;
   if constexpr (std::is_same_v<Space, Host>) {
     seen.places = slots_.places();
+    seen.number = bodies.id;
     seen.free = std::as_const(free_).view();
     seen.contacts = &store_;
     seen.ball_rolling = rolling_of_balls();
@@ -94,12 +99,15 @@ Inspection<Real> ContactSolver<Space, Real>::inspect() {
     BroughtContacts<Real>& to = *seen.brought;
     to.places.resize(static_cast<std::size_t>(slots_.places().size()));
     copy_bytes<Host, Space>(to.places.data(), slots_.places().data(), to.places.size() * sizeof(Slot));
+    to.number.resize(static_cast<std::size_t>(bodies.id.size()));
+    copy_bytes<Host, Space>(to.number.data(), bodies.id.data(), to.number.size() * sizeof(BodyNumber));
     copy(to.free, free_);
     to.store.copy_from(store_);
     copy(to.ball_rolling, ball_rolling_);
     copy(to.point_rolling, point_rolling_);
     using R = decltype(RollingFields<Real>::fields);
     seen.places = {to.places.data(), slots_.places().size()};
+    seen.number = {to.number.data(), bodies.id.size()};
     seen.free = {to.free.data(), free_.size()};
     seen.contacts = &to.store;
     seen.ball_rolling = {R(to.ball_rolling.data())};
@@ -160,7 +168,6 @@ void ContactSolver<Space, Real>::find(ConstView<double> margin, double scale, co
   step_ = flight.terms.step;
   const ConstBodyView bodies = read_only(flight.bodies);
   const ResponseParameters& parameters = flight.parameters;
-  list_guided(parameters.guides);
   load_bodies(bodies, margin, parameters);
   const FindStage<Real> stage{.places = slots_.places(),
                               .mid = mid_.view(),
@@ -270,7 +277,8 @@ SweepState ContactSolver<Space, Real>::run_impulse_rounds(const SweepPlan& plan)
 }
 
 template <class Space, class Real>
-void ContactSolver<Space, Real>::find_impulses(const ResponseParameters& parameters, double share,
+void ContactSolver<Space, Real>::find_impulses(const ConstBodyView& bodies,
+                                               const ResponseParameters& parameters, double share,
                                                Counters& counters) {
   SweepPlan plan = plan_sweeps(parameters, counts_.contacts, counts_.points);
   if (std::is_same_v<Real, float>) plan.tolerance = std::max(plan.tolerance, tolerance::mixed_change);
@@ -283,7 +291,8 @@ void ContactSolver<Space, Real>::find_impulses(const ResponseParameters& paramet
     plan.most = std::max(plan.most, plan.least);
   }
   const bool islands = parameters.accurate || (plan.direct && fits_on_host());
-  const bool converged = islands ? solve_islands(plan, parameters.accurate, counters) : sweep(plan, counters);
+  const bool converged =
+      islands ? solve_islands(bodies, plan, parameters.accurate, counters) : sweep(plan, counters);
   counters.unconverged += !converged;
 }
 
@@ -322,12 +331,13 @@ LoadSpread ContactSolver<Space, Real>::spread_of_loads() {
 /// Sweeps; islands on which they creep go to the direct solver on Host. In the accurate mode all do whose
 /// natural residual is beyond the tolerance.
 template <class Space, class Real>
-bool ContactSolver<Space, Real>::solve_islands(const SweepPlan& plan, bool accurate, Counters& counters) {
+bool ContactSolver<Space, Real>::solve_islands(const ConstBodyView& bodies, const SweepPlan& plan,
+                                               bool accurate, Counters& counters) {
   SweepPlan first = plan, rest = plan;
   if (plan.direct) first.most = sweeps_before_direct(plan.most, counters);
   rest.most = std::max(plan.most - first.most, few_sweeps);
   const auto solve_directly = [&](const DirectLimits& limits, std::int64_t& solved, std::int64_t& failed) {
-    Inspection<Real> seen = inspect();
+    Inspection<Real> seen = inspect(bodies);
     ContactsOnHost<Real> contacts(seen, guides_);
     const bool all = contacts.solve(plan.tolerance, limits, solved, failed);
     put_back(seen, contacts);
@@ -430,11 +440,13 @@ int ContactSolver<Space, Real>::keep_from_gaining(const ConstBodyView& bodies) {
     const Moved moved = books_.moved();
     if (!moved.gains(response_gain<Real>)) return 0;
     copy(last_, solver_);
-    scale_impulses(moved.scale_without_gain());
+    // Rounded down, so that the scale does not hang on the order in which the sums were added up.
+    constexpr double levels = 1 << 20;
+    scale_impulses(std::floor(levels * moved.scale_without_gain()) / levels);
     fly_on_with_changes();
     return 1;
   }
-  Inspection<Real> seen = inspect();
+  Inspection<Real> seen = inspect(bodies);
   ContactsOnHost<Real> contacts(seen, guides_);
   before_.resize(free_.size());
   parallel::for_each<Space>("books.before", before_.size(), reload(bodies, free_, before_));
@@ -529,7 +541,7 @@ Ledger ContactSolver<Space, Real>::solve(const FlightStage& flight, bool any_is_
   slip_end_ = 1;
   parallel::fill("books.loads", next_loads_, 0u);
   if (counts_.contacts > 0) {
-    find_impulses(parameters, share, counters);
+    find_impulses(bodies, parameters, share, counters);
     if (parameters.accurate) counters.residual = std::max(counters.residual, residual());
     BookStage<Real> stage = book_stage(bodies, parameters);
     book(stage);

@@ -44,10 +44,10 @@ struct PartingPlan {
 template <class Space, class Real>
 class ContactSolver {
  public:
-  /// The candidates have been made anew; impulses are remembered, and couples if anything `rolls`.
-  /// `place_before`: as for Slots::build().
+  /// The candidates have been made anew; impulses are remembered, and couples if anything rolls.
+  /// `place_before`: as for Slots::build(). The bodies in guides stay where they are until the next call.
   void take_candidates(ConstView<Pair> candidates, ConstView<std::int32_t> place_before,
-                       const ConstBodyView& bodies, bool rolls);
+                       const ConstBodyView& bodies, const ResponseParameters& parameters);
 
   /// Others of the bodies are free now; new candidates follow.
   void change_bodies() { slots_.forget_colors(); }
@@ -57,7 +57,7 @@ class ContactSolver {
   /// Back to it.
   void recall_memory();
   /// What the next substep starts from; the contacts of the last are not among it.
-  void archive(Archive& archive, const ConstBodyView& bodies);
+  void archive(Archive& archive, const ConstBodyView& bodies, const ResponseParameters& parameters);
 
   /// Contacts that may close by the next midpoint: gaps of at most the sum of the two margins (m). Impulses
   /// start from what they were, `scale` times.
@@ -94,7 +94,7 @@ class ContactSolver {
   const Slots<Space, Real>& slots() const { return slots_; }
 
   /// Of the last substep.
-  Inspection<Real> inspect();
+  Inspection<Real> inspect(const ConstBodyView& bodies);
   /// Adds up what the contacts of the last solve() gave to bodies that are not free.
   void add_wall_impulses(const FlightStage& flight);
   /// Of the step.
@@ -110,9 +110,10 @@ class ContactSolver {
   JoinHubs<Record> join_hubs(Array<Record, Space>& bodies);
   void list_guided(ConstView<Guide> guides);
   bool fits_on_host() const;
-  void find_impulses(const ResponseParameters& parameters, double share, Counters& counters);
+  void find_impulses(const ConstBodyView& bodies, const ResponseParameters& parameters, double share,
+                     Counters& counters);
   bool sweep(const SweepPlan& plan, Counters& counters);
-  bool solve_islands(const SweepPlan& plan, bool accurate, Counters& counters);
+  bool solve_islands(const ConstBodyView& bodies, const SweepPlan& plan, bool accurate, Counters& counters);
   void set_velocities();
   void put_back(Inspection<Real>& seen, const ContactsOnHost<Real>& contacts);
   LoadSpread spread_of_loads();

@@ -5,6 +5,8 @@
 #include "sim/resident/books.hpp"
 
 #include <algorithm>
+#include <numeric>
+#include <tuple>
 #include <utility>
 
 namespace scree::resident {
@@ -15,47 +17,70 @@ ContactsOnHost<Real>::ContactsOnHost(Inspection<Real>& seen, const std::vector<G
   bodies_.resize(n);
   velocity_.resize(n);
   spin_.resize(n);
+  index_.resize(static_cast<std::size_t>(n));
+  std::iota(index_.begin(), index_.end(), 0);
+  for (std::int64_t k = 0; k < seen.number.size(); ++k)
+    index_[static_cast<std::size_t>(k)] = static_cast<std::int32_t>(seen.number[k]);
+  const auto index = [this](std::int32_t body) { return index_[static_cast<std::size_t>(body)]; };
   copy(guides_, guides);
-  for (std::int64_t k = 0; k < n; ++k) {
+  for (Guide& guide : guides_.view()) guide.body = index(guide.body);
+  for (std::int32_t k = 0; k < n; ++k) {
     const BodyRecord<Real>& free = seen.free[k];
-    SolverBody& body = bodies_.view()[k];
+    SolverBody& body = bodies_.view()[index(k)];
     body = {vec3(free.velocity), vec3(free.spin), static_cast<double>(free.inverse_mass),
             static_cast<double>(free.inverse_inertia) * Mat3::Identity()};
-    velocity_.view()[k] = body.velocity;
-    spin_.view()[k] = body.spin;
+    velocity_.view()[index(k)] = body.velocity;
+    spin_.view()[index(k)] = body.spin;
   }
+  struct Place {
+    std::int32_t i, j, surface, count;  // i, j: the bodies' numbers
+    std::int64_t nth;                   // in the order in which the contacts are seen
+  };
+  std::vector<Place> order;
   for_each_contact(seen, [&](const SeenContact& c) {
+    order.push_back({index(c.slot.i), index(c.slot.j), c.slot.surface, c.count, std::ssize(order)});
     if (c.balls) return;
-    bodies_.view()[c.i].inverse_inertia = c.inertia_i;
-    bodies_.view()[c.j].inverse_inertia = c.inertia_j;
+    bodies_.view()[index(c.i)].inverse_inertia = c.inertia_i;
+    bodies_.view()[index(c.j)].inverse_inertia = c.inertia_j;
   });
-  std::vector<Contact> contacts;
-  std::vector<ContactRow> rows;
+  std::ranges::sort(order, {}, [](const Place& at) { return std::tuple(at.i, at.j, at.surface); });
+  std::vector<std::int64_t> to(order.size());
+  contacts_.resize(std::ssize(order));
+  place_.resize(order.size());
+  couples_.resize(order.size());
+  std::int64_t rows = 0;
+  for (std::size_t k = 0; k < order.size(); ++k) {
+    to[static_cast<std::size_t>(order[k].nth)] = static_cast<std::int64_t>(k);
+    contacts_.view()[static_cast<std::int64_t>(k)].first_row = rows;
+    rows += order[k].count;
+  }
+  rows_.resize(rows);
+  std::size_t seen_so_far = 0;
   for_each_contact(seen, [&](const SeenContact& c) {
-    SolverBody& i = bodies_.view()[c.i];
-    SolverBody& j = bodies_.view()[c.j];
-    contacts.push_back({.i = c.i,
-                        .j = c.j,
-                        .first_row = static_cast<std::int64_t>(rows.size()),
-                        .count = c.count,
-                        .balls = c.balls,
-                        .normal = c.normal,
-                        .friction = c.friction,
-                        .rolling_reach = c.rolling_reach});
-    place_.push_back(c.place);
-    couples_.push_back(c.couple);
-    for (int k = 0; k < c.count; ++k) {
-      const SeenPoint& point = c.points[k];
+    const std::int64_t k = to[seen_so_far++];
+    const SolverBody& i = bodies_.view()[index(c.i)];
+    const SolverBody& j = bodies_.view()[index(c.j)];
+    Contact& contact = contacts_.view()[k];
+    contact = {.i = index(c.i),
+               .j = index(c.j),
+               .first_row = contact.first_row,
+               .count = c.count,
+               .balls = c.balls,
+               .normal = c.normal,
+               .friction = c.friction,
+               .rolling_reach = c.rolling_reach};
+    place_[static_cast<std::size_t>(k)] = c.place;
+    couples_[static_cast<std::size_t>(k)] = c.couple;
+    for (int p = 0; p < c.count; ++p) {
+      const SeenPoint& point = c.points[p];
       RowCoupling coupling;
-      ContactRow& row =
-          rows.emplace_back(c.balls ? make_ball_row(point.arm_i, point.arm_j, 0, i, j)
-                                    : make_row(c.normal, point.arm_i, point.arm_j, 0, i, j, coupling));
+      ContactRow& row = rows_.view()[contact.first_row + p];
+      row = c.balls ? make_ball_row(point.arm_i, point.arm_j, 0, i, j)
+                    : make_row(c.normal, point.arm_i, point.arm_j, 0, i, j, coupling);
       row.target = point.target;
       row.impulse = point.impulse;
     }
   });
-  copy(contacts_, contacts);
-  copy(rows_, rows);
   set_velocities();
   islands_.find(std::as_const(contacts_).view(), std::as_const(bodies_).view());
 }
@@ -133,7 +158,10 @@ bool ContactsOnHost<Real>::solve(double tolerance, const DirectLimits& limits, s
 }
 
 template <class Real>
-int ContactsOnHost<Real>::keep_from_gaining(const std::vector<BodyRecord<Real>>& before) {
+int ContactsOnHost<Real>::keep_from_gaining(const std::vector<BodyRecord<Real>>& before_by_place) {
+  std::vector<BodyRecord<Real>> before(before_by_place.size());
+  for (std::size_t k = 0; k < before.size(); ++k)
+    before[static_cast<std::size_t>(index_[k])] = before_by_place[k];
   int scaled = 0;
   for (std::int64_t island = 0; island < islands_.count(); ++island) {
     Moved moved;

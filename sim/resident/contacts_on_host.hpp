@@ -14,7 +14,8 @@ namespace scree::resident {
 template <class Real>
 class ContactsOnHost {
  public:
-  /// As sweeps have left them. `guides`: of bodies by place.
+  /// As sweeps have left them; in the order of the bodies' numbers, so that what is found does not hang on
+  /// where bodies lie. `guides`: of bodies by place.
   ContactsOnHost(Inspection<Real>& seen, const std::vector<Guide>& guides);
 
   /// Solves the islands whose natural residual is beyond the tolerance. Adds to `solved` and `failed`; true
@@ -32,6 +33,7 @@ class ContactsOnHost {
   void set_velocities();
 
   Inspection<Real>& seen_;
+  std::vector<std::int32_t> index_;  // of each body of the solver in what follows
   std::vector<std::int64_t> place_;  // of each contact
   Array<Contact, Host> contacts_;
   Array<ContactRow, Host> rows_;

@@ -19,6 +19,7 @@ namespace scree::resident {
 template <class Real>
 struct BroughtContacts {
   std::vector<Slot> places;
+  std::vector<BodyNumber> number;
   std::vector<BodyRecord<Real>> free;
   ContactStore<Host, Real> store;
   Array<Real, Host> ball_rolling, point_rolling;
@@ -28,6 +29,7 @@ struct BroughtContacts {
 template <class Real>
 struct Inspection {
   ConstView<Slot> places;
+  ConstView<BodyNumber> number;      ///< of each body, by place
   ConstView<BodyRecord<Real>> free;  ///< bodies of the solver as they would be without contacts
   ContactStore<Host, Real>* contacts = nullptr;
   RollingFields<Real> ball_rolling, point_rolling;

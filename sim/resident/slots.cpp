@@ -50,13 +50,16 @@ struct ListSlots {
   }
 };
 
-/// A slot's rank among its neighbours: as good as random, and never the same twice.
-SCREE_HD std::uint64_t rank_of(std::int64_t slot) {
-  auto x = static_cast<std::uint64_t>(slot) * 0x9e3779b97f4a7c15u;
+/// A slot's rank among its neighbours: as good as random, never the same twice (each step can be undone), and
+/// a matter of the bodies' numbers alone. There are fewer than 2^30 bodies, since each takes some 100 bytes.
+SCREE_HD std::uint64_t rank_of(const Slot& slot, ConstView<BodyNumber> number) {
+  const auto bits_of = [&](std::int32_t body) { return static_cast<std::uint64_t>(number[body]); };
+  std::uint64_t x = bits_of(slot.i) << 34 | bits_of(slot.j) << 4 | static_cast<std::uint64_t>(slot.surface);
   x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9u;
-  x ^= x >> 31;
-  return (x & 0xffffffff00000000u) | static_cast<std::uint32_t>(slot);
+  x = (x ^ (x >> 27)) * 0x94d049bb133111ebu;
+  return x ^ (x >> 31);
 }
+static_assert(box_tube_surfaces <= 16);
 
 /// Whether a slot is on a part of a hub.
 SCREE_HD bool is_on_part(ConstView<Mobility> mobility, const Slot& slot) {
@@ -117,20 +120,23 @@ struct Stand {
   ConstView<std::uint32_t> list;
   ConstView<Slot> slots;
   ConstView<Mobility> mobility;
+  ConstView<BodyNumber> number;
   ConstView<std::uint8_t> color;
   View<std::uint64_t> standing;
   SCREE_HD void operator()(std::int64_t k) const {
     const std::int64_t s = list[k];
     if (color[s] != uncolored) return;
     const Slot& slot = slots[s];
-    if (mobility[slot.i] == Mobility::free) lower(&standing[slot.end_i], rank_of(s));
-    if (mobility[slot.j] == Mobility::free) lower(&standing[slot.end_j], rank_of(s));
+    const std::uint64_t rank = rank_of(slot, number);
+    if (mobility[slot.i] == Mobility::free) lower(&standing[slot.end_i], rank);
+    if (mobility[slot.j] == Mobility::free) lower(&standing[slot.end_j], rank);
   }
 };
 struct TakeColor {
   ConstView<std::uint32_t> list;
   ConstView<Slot> slots;
   ConstView<Mobility> mobility;
+  ConstView<BodyNumber> number;
   View<std::uint8_t> color;
   View<std::uint64_t> standing;
   View<std::uint64_t> taken;
@@ -140,8 +146,8 @@ struct TakeColor {
     const Slot& slot = slots[s];
     const bool free_i = mobility[slot.i] == Mobility::free;
     const bool free_j = mobility[slot.j] == Mobility::free;
-    if ((free_i && standing[slot.end_i] != rank_of(s)) || (free_j && standing[slot.end_j] != rank_of(s)))
-      return;
+    const std::uint64_t rank = rank_of(slot, number);
+    if ((free_i && standing[slot.end_i] != rank) || (free_j && standing[slot.end_j] != rank)) return;
     const std::uint64_t used = (free_i ? taken[slot.end_i] : 0) | (free_j ? taken[slot.end_j] : 0);
     int lowest = 0;
     while ((used >> lowest & 1) != 0) ++lowest;
@@ -300,10 +306,10 @@ void Slots<Space, Real>::color_slots(const ConstBodyView& bodies) {
     for (int round = 0; round < rounds_at_once; ++round) {
       parallel::for_each<Space>(
           "slots.color", left.size(),
-          Stand{left, slots, bodies.mobility, std::as_const(color_).view(), standing.view()});
+          Stand{left, slots, bodies.mobility, bodies.id, std::as_const(color_).view(), standing.view()});
       parallel::for_each<Space>(
           "slots.color", left.size(),
-          TakeColor{left, slots, bodies.mobility, color_.view(), standing.view(), taken.view()});
+          TakeColor{left, slots, bodies.mobility, bodies.id, color_.view(), standing.view(), taken.view()});
     }
     parallel::select("slots.color", left.size(), StillUncolored{uncolored_slots, left}, Uncolored::none,
                      shorter);

@@ -80,22 +80,35 @@ struct MarkHubEnds {
     on_hub[e] = number[body + 1] > number[body] ? 1 : 0;
   }
 };
-/// In the order of hubs, and those on the heaviest bodies first: the bits of a float that is not negative are
-/// in the order of such floats.
+/// The ends on hubs, and the numbers of the other bodies, by which they are sorted first: the order of a
+/// hub's ends does not hang on where bodies lie.
 struct ListHubEnds {
   ConstBodyView bodies;
   ConstView<Slot> slots;
-  ConstView<std::int64_t> number;
   ConstView<std::int64_t> to;
   View<std::uint64_t> key;
   View<std::uint64_t> ends;
   SCREE_HD void operator()(std::int64_t e) const {
     if (to[e] == to[e + 1]) return;
     const Slot& slot = slots[e / 2];
+    key[to[e]] = static_cast<std::uint64_t>(bodies.id[e % 2 == 0 ? slot.j : slot.i]);
+    ends[to[e]] = static_cast<std::uint64_t>(e);
+  }
+};
+/// Then they are sorted by their hubs, and those on the heaviest bodies come first: the bits of a float that
+/// is not negative are in the order of such floats.
+struct KeyOfHubEnd {
+  ConstBodyView bodies;
+  ConstView<Slot> slots;
+  ConstView<std::int64_t> number;
+  ConstView<std::uint64_t> ends;
+  View<std::uint64_t> key;
+  SCREE_HD void operator()(std::int64_t k) const {
+    const auto e = static_cast<std::int64_t>(ends[k]);
+    const Slot& slot = slots[e / 2];
     const std::int32_t body = e % 2 == 0 ? slot.i : slot.j;
     const auto lightness = static_cast<float>(bodies.inverse_mass[e % 2 == 0 ? slot.j : slot.i]);
-    key[to[e]] = static_cast<std::uint64_t>(number[body]) << 32 | std::bit_cast<std::uint32_t>(lightness);
-    ends[to[e]] = static_cast<std::uint64_t>(e);
+    key[k] = static_cast<std::uint64_t>(number[body]) << 32 | std::bit_cast<std::uint32_t>(lightness);
   }
 };
 /// The ends of a hub, in their order, are dealt to its parts. Adds up what they weigh for each, but each at
@@ -226,8 +239,11 @@ void SolverBodies<Space>::split_hubs(const ConstBodyView& bodies, View<Slot> slo
   const std::int64_t on_hubs = parallel::exclusive_scan("slots.hub ends", marks, to);
   Array<std::uint64_t, Space> key(on_hubs), end(on_hubs);
   parallel::for_each<Space>("slots.hub ends", ends,
-                            ListHubEnds{bodies, slots, std::as_const(number).view(), std::as_const(to).view(),
-                                        key.view(), end.view()});
+                            ListHubEnds{bodies, slots, std::as_const(to).view(), key.view(), end.view()});
+  parallel::sort_by_key("slots.hub ends", key, end, std::bit_width(static_cast<std::uint64_t>(n)));
+  parallel::for_each<Space>(
+      "slots.hub ends", on_hubs,
+      KeyOfHubEnd{bodies, slots, std::as_const(number).view(), std::as_const(end).view(), key.view()});
   parallel::sort_by_key("slots.hub ends", key, end,
                         32 + std::bit_width(static_cast<std::uint64_t>(hubs_.size())));
   Array<std::int64_t, Space> weight(hub_of_.size()), before;

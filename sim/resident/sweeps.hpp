@@ -12,22 +12,32 @@ namespace scree::resident {
 /// What the sweeps of a substep know of one another.
 struct SweepState {
   double last_step = 0;
-  double beta = 0;  ///< by how much the next sweep goes on
+  double beta = 0;  ///< by how much the next sweep goes on, rounded
   std::int32_t sweeps = 0;
   bool pushed = false;  ///< the bodies have what the contacts remember
   bool converged = false;
 };
 
-/// Change of the impulses by a sweep, and their size: as ImpulseChange.
+/// Change of the impulses by a sweep, and their size: as ImpulseChange. In double, since what is decided by
+/// these sums (ImpulseRounds::judge) must not hang on the order of their terms.
+struct SweepChange {
+  double step = 0, size = 0;
+  SCREE_HD friend SweepChange operator+(const SweepChange& a, const SweepChange& b) {
+    return {a.step + b.step, a.size + b.size};
+  }
+};
+
+/// The same by a visit.
 template <class A>
 struct ChangeOf {
   typename A::V step{}, size{};
   SCREE_LAW friend ChangeOf operator+(const ChangeOf& a, const ChangeOf& b) {
     return {a.step + b.step, a.size + b.size};
   }
+  SCREE_LAW operator SweepChange() const requires(A::width == 1) {
+    return {static_cast<double>(step), static_cast<double>(size)};
+  }
 };
-template <class Real>
-using SweepChange = ChangeOf<Scalar<Real>>;
 
 template <class A, class Real>
 SCREE_LAW lanes::Balls<A> balls_at(const BallContacts<Real>& contacts, std::int64_t c) {
@@ -231,12 +241,12 @@ struct Accelerate {
 /// Overlaps as a sweep has found them, of the cap.
 struct Overlaps {
   float deepest = 0;
-  float sum = 0;
-  float count = 0;
+  double sum = 0;
+  double count = 0;
 
   SCREE_HD static Overlaps of_gap(float gap) {
     if (!(gap < 0)) return {};
-    return {-gap, -gap, 1};
+    return {-gap, -static_cast<double>(gap), 1};
   }
   SCREE_HD friend Overlaps operator+(const Overlaps& a, const Overlaps& b) {
     return {a.deepest > b.deepest ? a.deepest : b.deepest, a.sum + b.sum, a.count + b.count};

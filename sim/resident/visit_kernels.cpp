@@ -90,12 +90,12 @@ void push_over(const Visit& given, Blocks blocks) {
 }
 
 template <class Visit>
-SweepChange<double> sweep_over(const Visit& given, Blocks blocks, double beta) {
+SweepChange sweep_over(const Visit& given, Blocks blocks, double beta) {
   const Visit visit = given;
   ChangeOf<Lanes> sum;
   for (std::int64_t k = 0; k < blocks.count; ++k)
     sum = sum + visit.template visit<Lanes>(blocks.places[k], beta);
-  SweepChange<double> total;
+  SweepChange total;
   for (int l = 0; l < width; ++l) {
     total.step += sum.step[l];
     total.size += sum.size[l];
@@ -118,8 +118,8 @@ Overlaps part_over(const Visit& given, Blocks blocks) {
   for (int l = 0; l < width; ++l) {
     const auto depth = static_cast<float>(deepest[l]);
     total.deepest = total.deepest > depth ? total.deepest : depth;
-    total.sum += static_cast<float>(sum[l]);
-    total.count += static_cast<float>(count[l]);
+    total.sum += sum[l];
+    total.count += count[l];
   }
   return total;
 }

@@ -34,10 +34,10 @@ struct VisitKernels {
   void (*push_points)(const PushPoints<double>&, Blocks);
   void (*push_rolling_balls)(const PushRollingBalls&, Blocks);
   void (*push_rolling_points)(const PushRollingPoints&, Blocks);
-  SweepChange<double> (*sweep_balls)(const SweepBalls<double>&, Blocks, double beta);
-  SweepChange<double> (*sweep_points)(const SweepPoints<double>&, Blocks, double beta);
-  SweepChange<double> (*roll_balls)(const RollBalls&, Blocks, double beta);
-  SweepChange<double> (*roll_points)(const RollPoints&, Blocks, double beta);
+  SweepChange (*sweep_balls)(const SweepBalls<double>&, Blocks, double beta);
+  SweepChange (*sweep_points)(const SweepPoints<double>&, Blocks, double beta);
+  SweepChange (*roll_balls)(const RollBalls&, Blocks, double beta);
+  SweepChange (*roll_points)(const RollPoints&, Blocks, double beta);
   Overlaps (*part_balls)(const PartBalls<double>&, Blocks);
   Overlaps (*part_points)(const PartPoints<double>&, Blocks);
   /// A bit for each of `look` slots whose bodies come as close as they reach. `reach` knows -1, too, which
@@ -54,16 +54,16 @@ struct VisitKernels {
   void operator()(const PushPoints<double>& visit, Blocks blocks) const { push_points(visit, blocks); }
   void operator()(const PushRollingBalls& visit, Blocks blocks) const { push_rolling_balls(visit, blocks); }
   void operator()(const PushRollingPoints& visit, Blocks blocks) const { push_rolling_points(visit, blocks); }
-  SweepChange<double> operator()(const SweepBalls<double>& visit, Blocks blocks, double beta) const {
+  SweepChange operator()(const SweepBalls<double>& visit, Blocks blocks, double beta) const {
     return sweep_balls(visit, blocks, beta);
   }
-  SweepChange<double> operator()(const SweepPoints<double>& visit, Blocks blocks, double beta) const {
+  SweepChange operator()(const SweepPoints<double>& visit, Blocks blocks, double beta) const {
     return sweep_points(visit, blocks, beta);
   }
-  SweepChange<double> operator()(const RollBalls& visit, Blocks blocks, double beta) const {
+  SweepChange operator()(const RollBalls& visit, Blocks blocks, double beta) const {
     return roll_balls(visit, blocks, beta);
   }
-  SweepChange<double> operator()(const RollPoints& visit, Blocks blocks, double beta) const {
+  SweepChange operator()(const RollPoints& visit, Blocks blocks, double beta) const {
     return roll_points(visit, blocks, beta);
   }
   Overlaps operator()(const PartBalls<double>& visit, Blocks blocks) const {

@@ -137,21 +137,6 @@ TYPED_TEST(MotionTest, BoxesHoldUntilABodyLeavesIts) {
     ASSERT_NEAR(after[k] - before[k], k == 999 ? tolerance::pair_skin * start.size[k].x() : 0, 1e-14);
 }
 
-TYPED_TEST(MotionTest, SolverBodiesAreThoseOfTheFormula) {
-  const BodyTable table = crowd();
-  Array<SolverBody, TypeParam> solver;
-  load_solver_bodies(in_space<TypeParam>(table), solver);
-  const std::vector<SolverBody> bodies = to_vector(solver);
-  for (std::size_t k = 0; k < count; ++k) {
-    const Mat3 turn = table.orientation[k].toRotationMatrix();
-    const Mat3 inertia = rotated_diagonal(turn, table.inverse_inertia[k]);
-    ASSERT_EQ(bodies[k].velocity, table.velocity[k]);
-    ASSERT_EQ(bodies[k].spin, table.spin[k]);
-    ASSERT_EQ(bodies[k].inverse_mass, table.inverse_mass[k]);
-    ASSERT_LT((Mat3(bodies[k].inverse_inertia) - inertia).norm(), 1e-14);
-  }
-}
-
 TYPED_TEST(MotionTest, WorkIsForceTimesWay) {
   const BodyTable table = crowd();
   Bodies<TypeParam> bodies = in_space<TypeParam>(table);

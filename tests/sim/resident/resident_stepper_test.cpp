@@ -1,6 +1,7 @@
 // The step in both spaces and precisions, beside closed forms and beside one another.
 #include "sim/resident_stepper.hpp"
 
+#include "core/block_limit.hpp"
 #include "sim/dynamics/prescribed.hpp"
 #include "sim/scene/time_grid.hpp"
 #include "sim/simulation.hpp"
@@ -10,6 +11,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <limits>
 
 namespace scree {
 namespace {
@@ -125,8 +128,8 @@ precision: )" + GetParam().precision +
     order[k] = static_cast<std::int32_t>((17 * k + 11) % order.size());
   permute(elsewhere.bodies, order);
   const bool on_device = GetParam().options.space == SpaceChoice::cuda;
-  const auto here = make_resident_stepper(scene, grid, paths, on_device, Vec3::Zero());
-  const auto there = make_resident_stepper(elsewhere, grid, paths, on_device, Vec3::Zero());
+  const auto here = make_resident_stepper(scene, grid, paths, {.on_device = on_device});
+  const auto there = make_resident_stepper(elsewhere, grid, paths, {.on_device = on_device});
   constexpr BodyNumber drum{1}, ball{39};
   const std::int64_t steps = 150;  // in which the bodies are put in order three times
   for (std::int64_t step = 0; step < steps; ++step) {
@@ -161,6 +164,112 @@ precision: )" + GetParam().precision +
     ASSERT_EQ(here->bodies_near(low.from, low.to).id, there->bodies_near(low.from, low.to).id);
   }
   EXPECT_EQ(here->energies(Vec3::Zero()).kinetic(), there->energies(Vec3::Zero()).kinetic());
+}
+
+/// Whether the states of the bodies are the same, bit by bit, where they stay in the order of their numbers
+/// and where they lie in disorder.
+void expect_no_matter_of_places(const Scene& scene, bool on_device, std::int64_t steps) {
+  const TimeGrid grid(scene.time);
+  const PathTable paths = prescribed_paths(scene);
+  Scene elsewhere = scene;
+  std::vector<std::int32_t> order(scene.bodies.id.size());
+  for (std::size_t k = 0; k < order.size(); ++k)
+    order[k] = static_cast<std::int32_t>((7919 * k + 11) % order.size());
+  permute(elsewhere.bodies, order);
+  constexpr std::int64_t never = std::int64_t{1} << 40;
+  const StepperOptions options{.on_device = on_device, .steps_in_order = never};
+  const auto in_order = make_resident_stepper(scene, grid, paths, options);
+  const auto in_disorder = make_resident_stepper(elsewhere, grid, paths, options);
+  for (std::int64_t step = 0; step < steps; ++step) {
+    std::vector<std::uint64_t> hashes;
+    for (Stepper* stepper : {in_order.get(), in_disorder.get()}) {
+      // They would be put in order at the start of step 0.
+      stepper->start_step(step + 1);
+      stepper->substep(grid.length(step + 2), 0);
+      BodyTable bodies;
+      stepper->copy_state(bodies);
+      hashes.push_back(hash_of(bodies));
+    }
+    ASSERT_EQ(hashes[0], hashes[1]) << "step " << step;
+  }
+}
+
+TEST_P(ResidentStep, WhereBodiesLieDoesNotMatter) {
+  const bool on_device = GetParam().options.space == SpaceChoice::cuda;
+  const std::string precision = std::string("\nprecision: ") + GetParam().precision + "\n";
+  const std::string floor = R"(
+gravity: [0, 0, -9.81]
+time: {end: 1, step: 0.004}
+bodies:
+  - {plane: {normal: [0, 0, 1], offset: 0}, material: stone}
+  - {plane: {normal: [1, 0, 0], offset: -0.3}, material: stone}
+  - {plane: {normal: [-1, 0, 0], offset: -0.3}, material: stone}
+  - {plane: {normal: [0, 1, 0], offset: -0.3}, material: stone}
+  - {plane: {normal: [0, -1, 0], offset: -0.3}, material: stone})";
+  const std::string bouncing = "materials: {stone: {density: 1000, restitution: 0.4, friction: 0.5}}\n";
+  const std::string rolling =
+      "materials: {stone: {density: 1000, restitution: 0.1, friction: 0.5, rolling_friction: 0.05}}\n";
+  const std::string heap = R"(
+  - sphere: {radius: {uniform: [0.02, 0.03]}}
+    at: [-0.27, -0.27, 0.04]
+    repeat: {count: [8, 8, 5], spacing: [0.067, 0.067, 0.067], jitter: 0.003}
+    material: stone)";
+  const std::string hub = "\n  - {sphere: {radius: 0.2}, at: [0, 0, 0.8], mass: 30, material: stone}";
+  const std::string rubble = R"(
+  - box: {size: {uniform: [[0.04, 0.04, 0.04], [0.07, 0.06, 0.05]]}}
+    at: [-0.25, -0.25, 0.04]
+    repeat: {count: [4, 4, 3], spacing: [0.1, 0.1, 0.1], jitter: 0.01}
+    material: stone
+  - sphere: {radius: 0.02}
+    at: [-0.2, -0.2, 0.09]
+    repeat: {count: [4, 4, 3], spacing: [0.1, 0.1, 0.1], jitter: 0.01}
+    material: stone)";
+  const std::string few = R"(
+  - box: {size: {uniform: [[0.04, 0.04, 0.04], [0.07, 0.06, 0.05]]}}
+    at: [-0.04, -0.04, 0.04]
+    repeat: {count: [2, 2, 2], spacing: [0.075, 0.07, 0.07], jitter: 0.002}
+    material: stone
+response: {mode: accurate})";
+  const std::string equal = R"(
+  - sphere: {radius: 0.025}
+    at: [-0.25, -0.25, 0.03]
+    repeat: {count: [5, 5, 6], spacing: [0.07, 0.07, 0.07]}
+    material: stone)";  // all at once, so that many meetings have the same time
+  for (const std::string& text :
+       {bouncing + floor + heap + hub, rolling + floor + heap, bouncing + floor + rubble,
+        bouncing + floor + few, bouncing + floor + equal}) {
+    if (is_mixed() && text.find("accurate") != std::string::npos) continue;
+    SCOPED_TRACE(text);
+    expect_no_matter_of_places(scene_of(text + precision), on_device, 50);
+  }
+  expect_no_matter_of_places(scene_of(std::string(everything) + precision), on_device, 50);
+}
+
+/// As on GPUs of other sizes: sums are added up in another order, and what hangs on them is the same.
+TEST_P(ResidentStep, TheSizeOfTheGpuDoesNotMatter) {
+  if (GetParam().options.space != SpaceChoice::cuda) GTEST_SKIP() << "of GPUs alone";
+  const std::string heap = std::string(grain) + R"(
+gravity: [0, 0, -9.81]
+time: {end: 0.2, step: 0.004}
+bodies:
+  - {plane: {normal: [0, 0, 1], offset: 0}, material: stone}
+  - sphere: {radius: {uniform: [0.02, 0.03]}}
+    at: [0, 0, 0.04]
+    repeat: {count: [16, 16, 10], spacing: [0.061, 0.061, 0.061], jitter: 0.001}
+    material: stone
+  - box: {size: {uniform: [[0.04, 0.04, 0.04], [0.05, 0.06, 0.05]]}}
+    at: [0, 0, 0.7]
+    repeat: {count: [12, 12, 4], spacing: [0.08, 0.08, 0.07], jitter: 0.005}
+    material: stone)";
+  const auto hash_with = [&](int blocks) {
+    parallel::block_limit = blocks;
+    Simulation run = simulate(heap);
+    run_to_end(run);
+    parallel::block_limit = std::numeric_limits<int>::max();
+    return run.state_hash();
+  };
+  const std::uint64_t whole = hash_with(std::numeric_limits<int>::max());
+  for (const int blocks : {1, 2, 7}) EXPECT_EQ(hash_with(blocks), whole) << blocks;
 }
 
 /// A heap, on both ways of taking a step: the same centre of mass within what chaos leaves, no overlap.

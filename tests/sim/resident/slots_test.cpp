@@ -36,7 +36,7 @@ BodyTable balls(std::size_t n, bool drum) {
   bodies.shape.assign(n, Shape::sphere);
   bodies.mobility.assign(n, Mobility::free);
   bodies.material.assign(n, 0);
-  bodies.id.resize(n);
+  for (std::size_t k = 0; k < n; ++k) bodies.id.push_back(BodyNumber{static_cast<std::int32_t>(k)});
   bodies.shape[0] = Shape::plane;
   bodies.mobility[0] = Mobility::fixed;
   if (drum) {

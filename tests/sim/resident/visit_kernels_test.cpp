@@ -197,9 +197,7 @@ std::vector<double> visit_all(Problem& problem, const Over& over) {
   const Rolling ball_rolling = problem.ball_rolling(), point_rolling = problem.point_rolling();
   constexpr int b = Problem::balls_found, p = Problem::points_found;
   std::vector<double> sums;
-  const auto sum = [&](const SweepChange<double>& change) {
-    sums.insert(sums.end(), {change.step, change.size});
-  };
+  const auto sum = [&](const SweepChange& change) { sums.insert(sums.end(), {change.step, change.size}); };
   over(PushBalls<double>{balls, bodies}, b);
   over(PushPoints<double>{points, bodies}, p);
   over(PushRollingBalls{balls, ball_rolling, bodies}, b);
@@ -265,7 +263,7 @@ TEST_P(VisitKernelsTest, VisitsToSeveralAreVisitsToEach) {
   const std::vector<double> expected = each.numbers(), found = several.numbers();
   ASSERT_EQ(expected.size(), found.size());
   for (std::size_t k = 0; k < expected.size(); ++k) ASSERT_EQ(expected[k], found[k]) << k;
-  // Sums are added up in another order, and those of overlaps in float.
+  // Sums are added up in another order.
   ASSERT_EQ(sums.size(), sums_of_several.size());
   for (std::size_t k = 0; k < sums.size(); ++k)
     EXPECT_NEAR(sums[k], sums_of_several[k], float_sums * (1 + sums[k])) << k;
