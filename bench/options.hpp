@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <exception>
 #include <map>
+#include <set>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -20,10 +21,11 @@ struct Help {
 };
 
 /// The options, by their names with the dashes, at their defaults but for what the command line gives; what
-/// is no option goes to `words`. Throws InputError for an option that is not among them, and for a word where
-/// none are wanted; and Help, with the options and their defaults if it has no `usage`.
+/// is no option goes to `words`. Throws InputError for an option that is not among them or is given twice,
+/// and for a word where none are wanted; and Help, with the options and their defaults if it has no `usage`.
 inline Options parse(int argc, char** argv, Options options, std::vector<std::string>* words = nullptr,
                      std::string usage = "") {
+  std::set<std::string> given;
   for (int k = 1; k < argc; ++k) {
     const std::string word = argv[k];
     const auto option = options.find(word);
@@ -38,6 +40,8 @@ inline Options parse(int argc, char** argv, Options options, std::vector<std::st
       words->push_back(word);
     } else if (option == options.end() || k + 1 == argc) {
       throw InputError(word + ": not an option, or without a value; see --help");
+    } else if (!given.insert(word).second) {
+      throw InputError(word + ": given twice");
     } else {
       option->second = argv[++k];
     }

@@ -3,6 +3,7 @@
 #include "core/parallel.hpp"
 #include "core/space_tiles.hpp"
 
+#include <algorithm>
 #include <utility>
 
 namespace scree::resident {
@@ -41,18 +42,18 @@ void ContactList<Space>::take(const ColorTiles& colors) {
   std::vector<std::int64_t> tiles;
   for (const std::int64_t t : colors.begin) tiles.push_back(t - colors.begin.front());
   copy(tile_, tiles);
-  for (List* list : {&contacts_, &blocks_}) {
+  for (List* list : {&contacts_, &visits_}) {
     list->places.resize(0);
-    list->begin.assign(tiles.size(), 0);
+    list->begin.assign(1, 0);
   }
 }
 
 template <class Space>
 void ContactList<Space>::make(const Array<std::int32_t, Space>& found, int width) {
-  width_ = width;
+  own_visits_ = width > 1;
   if (found.empty()) return;
   make(found, 1, contacts_);
-  if (width > 1) make(found, width, blocks_);
+  if (own_visits_) make(found, width, visits_);
 }
 
 template <class Space>
@@ -69,6 +70,18 @@ void ContactList<Space>::make(const Array<std::int32_t, Space>& found, int width
       FirstOfColor{std::as_const(number_).view(), std::as_const(tile_).view(), first_.view()});
   copy(list.begin, first_);
   list.places.resize(list.begin.back());
+  // A colour without contacts is no phase.
+  list.begin.erase(std::unique(list.begin.begin(), list.begin.end()), list.begin.end());
+}
+
+template <class Space>
+void ContactList<Space>::set_visits(Array<std::int32_t, Space> places,
+                                    const std::vector<std::uint32_t>& counts) {
+  own_visits_ = true;
+  visits_.places.swap(places);
+  visits_.begin.assign(1, 0);
+  for (const std::uint32_t count : counts)
+    if (count > 0) visits_.begin.push_back(visits_.begin.back() + count);
 }
 
 #define SCREE_INSTANTIATE(Space) template class ContactList<Space>;

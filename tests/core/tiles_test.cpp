@@ -43,6 +43,24 @@ TYPED_TEST(TilesTest, WhatIsFoundIsAtTheFrontOfItsTileInOrder) {
   }
 }
 
+struct CountVisits {
+  View<std::int32_t> visits;
+  SCREE_HD void operator()(std::int64_t t, std::int32_t k) const { ++visits[t * parallel::tile + k]; }
+};
+
+TYPED_TEST(TilesTest, WhatIsFoundIsVisitedOnce) {
+  const std::vector<std::int32_t> found{0, 1, 7, parallel::tile, 0, 200};
+  Array<std::int32_t, TypeParam> counts, visits(std::ssize(found) * parallel::tile);
+  copy(counts, found);
+  parallel::fill("test", visits, 0);
+  parallel::for_each_found<TypeParam>("test", counts.size(), counts.data(), CountVisits{visits.view()});
+  parallel::for_each_found<TypeParam>("test", 0, counts.data(), CountVisits{visits.view()});
+  const std::vector<std::int32_t> seen = to_vector(visits);
+  for (std::size_t k = 0; k < seen.size(); ++k)
+    EXPECT_EQ(seen[k], static_cast<std::int32_t>(k % parallel::tile) < found[k / parallel::tile] ? 1 : 0)
+        << k;
+}
+
 struct Number {
   double value = 0;
   SCREE_HD friend Number operator+(const Number& a, const Number& b) { return {a.value + b.value}; }

@@ -54,7 +54,7 @@ TEST(Patience, AHeapThatMovesIsSweptAsUsual) {
   EXPECT_EQ(of_balls.sweeps(balls, false, 1.0), balls);
   EXPECT_EQ(of_boxes.sweeps(boxes, true, 1.0), boxes);
   // Whatever it was swept before; and a slow mode that dissipates as much is none of that.
-  judge(of_balls, 1, 1.0);
+  judge(of_balls, 1, 0.4);
   EXPECT_EQ(of_balls.sweeps(balls, false, 1.0), 24) << "much is left undone";
   judge(of_balls, 2, 0.08, 0.9);
   EXPECT_EQ(of_balls.sweeps(balls, false, 1.0), balls);
@@ -64,8 +64,25 @@ TEST(Patience, AHeapThatMovesIsSweptAsUsual) {
 
 TEST(Patience, OneSubstepDecidesNothing) {
   Patience patience;
-  patience.judge(1.0, 1.0, 0.0);
+  patience.judge(0.4, 1.0, 0.0);
   EXPECT_EQ(patience.sweeps(balls, false, 1.0), balls);
+}
+
+TEST(Patience, AHeapThatHasJustFallenIsSweptAtOnce) {
+  Patience of_balls, of_boxes;
+  of_balls.judge(0.6, 1.0, 0.2);
+  EXPECT_EQ(of_balls.sweeps(balls, false, 1.0), 96);
+  of_boxes.judge(-0.6, 1.0, 0.2);
+  EXPECT_EQ(of_boxes.sweeps(boxes, true, 1.0), 96);
+  // Where all moves, that much is left undone however often it is swept.
+  Patience of_flow;
+  of_flow.judge(1.0, 1.0, 2.0);
+  EXPECT_EQ(of_flow.sweeps(balls, false, 1.0), balls);
+  // And as soon as little is left, there are fewer again.
+  for (const int expected : {48, 24, 12, 6}) {
+    judge(of_balls, 1, 0.01, 0.9);
+    EXPECT_EQ(of_balls.sweeps(balls, false, 1.0), expected);
+  }
 }
 
 TEST(Patience, SubstepsShareTheSweepsOfAStep) {
