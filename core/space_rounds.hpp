@@ -111,7 +111,8 @@ typename Program::State run(Host, const char* label, const Program& program, typ
 
 #if SCREE_WITH_CUDA
 
-/// All blocks are on the GPU at once, and wait for each other between phases. Each keeps the state itself and
+/// All blocks are on the GPU at once, and wait for each other between phases. The items of a phase are dealt
+/// to them warp by warp, so that few items keep all processors busy. Each block keeps the state itself and
 /// judges alike, from the sums of all blocks, of which there are two sets: one may still be read by blocks
 /// that are behind.
 template <class Program>
@@ -121,6 +122,7 @@ __global__ void __launch_bounds__(Program::threads, blocks_at_once<Program>())
   using Sum = typename Program::Sum;
   constexpr bool adds_up = !std::is_empty_v<Sum>;
   constexpr int threads = Program::threads;
+  constexpr int warp = 32;
   __shared__ BlockRoom<Sum, threads> room;
   __shared__ BlockRoom<typename Program::State, 1> state_room;
   typename Program::State& state = *state_room.data();
@@ -135,8 +137,9 @@ __global__ void __launch_bounds__(Program::threads, blocks_at_once<Program>())
       if (phase > 0) grid.sync();
       const std::int64_t items = program.items(state, phase);
       const std::int64_t stride = std::int64_t{gridDim.x} * threads;
-      for (std::int64_t i = std::int64_t{blockIdx.x} * threads + threadIdx.x; i < items; i += stride)
-        mine = mine + program(state, phase, i);
+      const std::int64_t first =
+          (std::int64_t{threadIdx.x / warp} * gridDim.x + blockIdx.x) * warp + threadIdx.x % warp;
+      for (std::int64_t i = first; i < items; i += stride) mine = mine + program(state, phase, i);
     }
     if constexpr (adds_up) {
       const Sum sum = sum_over_block<threads>(mine, room.data());
@@ -171,10 +174,10 @@ int most_blocks() {
 
 template <class Program>
 typename Program::State run(Device, const char* label, Program program, typename Program::State state) {
+  constexpr std::int64_t least = 64;  // items of a block
   const timing::Call<Device> call(label);
-  const auto blocks = static_cast<unsigned>(
-      std::clamp<std::int64_t>((program.most_items() + Program::threads - 1) / Program::threads, 1,
-                               std::min(most_blocks<Program>(), block_limit.load())));
+  const auto blocks = static_cast<unsigned>(std::clamp<std::int64_t>(
+      (program.most_items() + least - 1) / least, 1, std::min(most_blocks<Program>(), block_limit.load())));
   Array<typename Program::Sum, Device> sums(2 * std::int64_t{blocks});
   Array<typename Program::State, Device> out(1);
   auto* sums_data = sums.data();

@@ -42,7 +42,7 @@ void ContactList<Space>::take(const ColorTiles& colors) {
   std::vector<std::int64_t> tiles;
   for (const std::int64_t t : colors.begin) tiles.push_back(t - colors.begin.front());
   copy(tile_, tiles);
-  for (List* list : {&contacts_, &visits_}) {
+  for (List* list : {&contacts_, &blocks_}) {
     list->places.resize(0);
     list->begin.assign(1, 0);
   }
@@ -50,10 +50,10 @@ void ContactList<Space>::take(const ColorTiles& colors) {
 
 template <class Space>
 void ContactList<Space>::make(const Array<std::int32_t, Space>& found, int width) {
-  own_visits_ = width > 1;
+  width_ = width;
   if (found.empty()) return;
   make(found, 1, contacts_);
-  if (own_visits_) make(found, width, visits_);
+  if (width > 1) make(found, width, blocks_);
 }
 
 template <class Space>
@@ -70,18 +70,8 @@ void ContactList<Space>::make(const Array<std::int32_t, Space>& found, int width
       FirstOfColor{std::as_const(number_).view(), std::as_const(tile_).view(), first_.view()});
   copy(list.begin, first_);
   list.places.resize(list.begin.back());
-  // A colour without contacts is no phase.
+  // A colour without contacts would be a wait for nothing.
   list.begin.erase(std::unique(list.begin.begin(), list.begin.end()), list.begin.end());
-}
-
-template <class Space>
-void ContactList<Space>::set_visits(Array<std::int32_t, Space> places,
-                                    const std::vector<std::uint32_t>& counts) {
-  own_visits_ = true;
-  visits_.places.swap(places);
-  visits_.begin.assign(1, 0);
-  for (const std::uint32_t count : counts)
-    if (count > 0) visits_.begin.push_back(visits_.begin.back() + count);
 }
 
 #define SCREE_INSTANTIATE(Space) template class ContactList<Space>;

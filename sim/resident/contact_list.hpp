@@ -23,14 +23,10 @@ class ContactList {
   /// Counted from the first tile, colour by colour.
   ConstView<std::int32_t> places() const { return contacts_.places.view(); }
 
-  /// The first place of each visit, colour by colour.
-  ConstView<std::int32_t> visits() const { return (own_visits_ ? visits_ : contacts_).places.view(); }
-  /// The first visit of each colour that has any; one more than colours.
-  const std::vector<std::int64_t>& visits_begin() const { return (own_visits_ ? visits_ : contacts_).begin; }
-  std::int64_t colors() const { return std::ssize(visits_begin()) - 1; }
-  /// Until the next make() visits are to single contacts, in other colours: their places colour by colour,
-  /// and how many each colour has.
-  void set_visits(Array<std::int32_t, Space> places, const std::vector<std::uint32_t>& counts);
+  /// The first place of each visit, and
+  ConstView<std::int32_t> visits() const { return (width_ > 1 ? blocks_ : contacts_).places.view(); }
+  /// the first visit of each colour that has any; one more than these.
+  const std::vector<std::int64_t>& visits_begin() const { return (width_ > 1 ? blocks_ : contacts_).begin; }
 
  private:
   struct List {
@@ -39,11 +35,11 @@ class ContactList {
   };
   void make(const Array<std::int32_t, Space>& found, int width, List& list);
 
-  List contacts_, visits_;
-  bool own_visits_ = false;                  // or they are the contacts
+  int width_ = 1;
+  List contacts_, blocks_;
   Array<std::int32_t, Space> counts_;        // of each tile
   Array<std::int64_t, Space> number_;        // of the first of each tile
-  Array<std::int64_t, Space> tile_, first_;  // of each colour of slots
+  Array<std::int64_t, Space> tile_, first_;  // of each colour
 };
 
 /// f(place) for the contacts of a list.

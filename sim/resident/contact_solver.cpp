@@ -290,39 +290,10 @@ void ContactSolver<Space, Real>::find_impulses(const ConstBodyView& bodies,
     if (parameters.iterations > 0) plan.least = std::min(plan.least, plan.most);
     plan.most = std::max(plan.most, plan.least);
   }
-  recolor_where_it_pays(bodies, plan);
   const bool islands = parameters.accurate || (plan.direct && fits_on_host());
   const bool converged =
       islands ? solve_islands(bodies, plan, parameters.accurate, counters) : sweep(plan, counters);
   counters.unconverged += !converged;
-}
-
-/// On a GPU a phase costs some 4 us, and to colour contacts anew as much as 40 phases.
-template <class Space, class Real>
-void ContactSolver<Space, Real>::recolor_where_it_pays(const ConstBodyView& bodies, const SweepPlan& plan) {
-  if constexpr (std::is_same_v<Space, Host>) return;
-  constexpr std::int64_t needed = 13;  // colours, of contacts that bear load
-  constexpr std::int64_t costs = 40;
-  const auto pays = [&](const ContactList<Space>& list) {
-    return (list.colors() - needed) * plan.least > costs;
-  };
-  const std::int64_t all = slots_.solver_bodies().first_wall_point();
-  if (pays(ball_list_)) {
-    ball_colors_.color({.places = slots_.places(),
-                        .slot = store_.balls().slot,
-                        .ends = store_.balls().ends,
-                        .solver = std::as_const(solver_).view(),
-                        .number = bodies.id},
-                       all, ball_list_);
-  }
-  if (pays(point_list_)) {
-    point_colors_.color({.places = places_of_points(),
-                         .slot = store_.points().slot,
-                         .ends = store_.points().ends,
-                         .solver = std::as_const(solver_).view(),
-                         .number = bodies.id},
-                        all, point_list_);
-  }
 }
 
 template <class Space, class Real>

@@ -11,7 +11,6 @@
 #include "sim/resident/accuracy.hpp"
 #include "sim/resident/bodies.hpp"
 #include "sim/resident/books.hpp"
-#include "sim/resident/contact_colors.hpp"
 #include "sim/resident/contact_finder.hpp"
 #include "sim/resident/contact_list.hpp"
 #include "sim/resident/contact_store.hpp"
@@ -114,7 +113,6 @@ class ContactSolver {
   void find_impulses(const ConstBodyView& bodies, const ResponseParameters& parameters, double share,
                      Counters& counters);
   bool sweep(const SweepPlan& plan, Counters& counters);
-  void recolor_where_it_pays(const ConstBodyView& bodies, const SweepPlan& plan);
   bool solve_islands(const ConstBodyView& bodies, const SweepPlan& plan, bool accurate, Counters& counters);
   void set_velocities();
   void put_back(Inspection<Real>& seen, const ContactsOnHost<Real>& contacts);
@@ -161,7 +159,6 @@ class ContactSolver {
   ContactStore<Space, Real> store_;
   Array<Real, Space> ball_rolling_, point_rolling_;  // RollingFields; empty if nothing rolls
   ContactList<Space> ball_list_, point_list_;
-  ContactColors<Space, Real> ball_colors_, point_colors_;
   ContactFinder<Space, Real> finder_;
 
   ContactCounts counts_;

@@ -13,10 +13,12 @@ ContactProblem problem_of(Inspection<Real>& seen, const BodyTable& bodies) {
   };
   problem.bodies.resize(bodies.position.size());
   for (std::size_t k = 0; k < bodies.position.size(); ++k) {
-    problem.bodies[index_of(bodies.id[k])] = {
-        bodies.inverse_mass[k], world_inverse_inertia(bodies.orientation[k], bodies.inverse_inertia[k]),
-        vec3(seen.free[static_cast<std::int64_t>(k)].velocity),
-        vec3(seen.free[static_cast<std::int64_t>(k)].spin)};
+    // Rounding leaves the two halves of the inertia different in their last bits.
+    const Mat3 inertia = world_inverse_inertia(bodies.orientation[k], bodies.inverse_inertia[k]);
+    problem.bodies[index_of(bodies.id[k])] = {bodies.inverse_mass[k],
+                                              Mat3(inertia.selfadjointView<Eigen::Lower>()),
+                                              vec3(seen.free[static_cast<std::int64_t>(k)].velocity),
+                                              vec3(seen.free[static_cast<std::int64_t>(k)].spin)};
   }
   // Then the points of walls that turn.
   const auto first = static_cast<std::int32_t>(seen.first_wall_point - std::ssize(bodies.position));

@@ -50,7 +50,16 @@ struct ListSlots {
   }
 };
 
-static_assert(box_tube_surfaces <= surfaces_at_most);
+/// A slot's rank among its neighbours: as good as random, never the same twice (each step can be undone), and
+/// a matter of the bodies' numbers alone. There are fewer than 2^30 bodies, since each takes some 100 bytes.
+SCREE_HD std::uint64_t rank_of(const Slot& slot, ConstView<BodyNumber> number) {
+  const auto bits_of = [&](std::int32_t body) { return static_cast<std::uint64_t>(number[body]); };
+  std::uint64_t x = bits_of(slot.i) << 34 | bits_of(slot.j) << 4 | static_cast<std::uint64_t>(slot.surface);
+  x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9u;
+  x = (x ^ (x >> 27)) * 0x94d049bb133111ebu;
+  return x ^ (x >> 31);
+}
+static_assert(box_tube_surfaces <= 16);
 
 /// Whether a slot is on a part of a hub.
 SCREE_HD bool is_on_part(ConstView<Mobility> mobility, const Slot& slot) {

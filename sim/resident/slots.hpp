@@ -43,18 +43,6 @@ struct ListedPairs {
   SCREE_HD static Pair ordered(const Pair& pair) { return pair.i < pair.j ? pair : Pair{pair.j, pair.i}; }
 };
 
-inline constexpr int surfaces_at_most = 16;  ///< of a pair
-
-/// A slot's rank among its neighbours: as good as random, never the same twice (each step can be undone), and
-/// a matter of the bodies' numbers alone. There are fewer than 2^30 bodies, since each takes some 100 bytes.
-SCREE_HD inline std::uint64_t rank_of(const Slot& slot, ConstView<BodyNumber> number) {
-  const auto bits_of = [&](std::int32_t body) { return static_cast<std::uint64_t>(number[body]); };
-  std::uint64_t x = bits_of(slot.i) << 34 | bits_of(slot.j) << 4 | static_cast<std::uint64_t>(slot.surface);
-  x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9u;
-  x = (x ^ (x >> 27)) * 0x94d049bb133111ebu;
-  return x ^ (x >> 31);
-}
-
 /// Tiles of one colour after the other: slots of one colour share no free body.
 struct ColorTiles {
   std::vector<std::int64_t> begin;  ///< first tile of each colour; one more than colours
