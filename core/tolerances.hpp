@@ -135,6 +135,8 @@ inline constexpr double least_slide = 1e-9;
 /// Energy that the impulses of an island may gain before they are scaled down, as a share of half p.W p: what
 /// the tolerance of the response leaves.
 inline constexpr double response_gain = 1e-10;
+/// The same where impulses are found in float: the rounding of velocities may be thousands of times that of
+/// what impulses change. Larger: gains of energy pass. Smaller: rounding is taken for a gain.
 inline constexpr double mixed_response_gain = 1e-3;
 
 /// By how much contacts in flight may close faster than they do before they count as touched, relative.
