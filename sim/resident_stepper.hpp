@@ -16,8 +16,8 @@ struct StepperOptions {
   bool on_device = false;      ///< in Device's memory
   Vec3 origin = Vec3::Zero();  ///< local origin of the broad phase (m)
   /// After so many steps the bodies are put in order along a curve anew, and their pairs are found anew. Most
-  /// still have their old neighbours by then. Where bodies lie does not change a bit of their states, but
-  /// where impacts come at exactly the same time (docs/decisions/0047).
+  /// still have their old neighbours by then. Where bodies lie does not change a bit of their states
+  /// (docs/decisions/0047).
   std::int64_t steps_in_order = 64;
 };
 

@@ -26,7 +26,18 @@ struct Foreseen {
 /// The first meeting of a body: the earliest, of equal ones that of the first pair.
 struct FirstMeeting {
   std::uint64_t time;  ///< its bits, which are in the order of times
-  std::uint64_t pair;
+  std::uint64_t pair;  ///< the numbers of its bodies: PairNumbers
+};
+
+/// The order of pairs, which is that of their bodies' numbers: it does not hang on where bodies lie.
+struct PairNumbers {
+  std::uint64_t bits;
+
+  SCREE_HD static PairNumbers of(BodyNumber i, BodyNumber j) {
+    return {static_cast<std::uint64_t>(i) << 32 | static_cast<std::uint64_t>(j)};
+  }
+  SCREE_HD BodyNumber i() const { return BodyNumber{static_cast<std::int32_t>(bits >> 32)}; }
+  SCREE_HD BodyNumber j() const { return BodyNumber{static_cast<std::int32_t>(bits & 0xffffffffu)}; }
 };
 
 /// An impact, and what it moved.
@@ -186,6 +197,10 @@ struct ImpactProgram {
   SCREE_HD Foreseen& meeting(const State& state, std::int64_t e) const {
     return meetings[state.round % 2][e];
   }
+  SCREE_HD PairNumbers numbers_of(std::int64_t pair) const {
+    const auto [i, j] = pairs[pair];
+    return PairNumbers::of(stage.bodies.id[i], stage.bodies.id[j]);
+  }
   SCREE_HD LoadedParts loads_of(std::int64_t pair) const {
     return loaded.size() > 0 ? loaded[pair] : LoadedParts{};
   }
@@ -343,14 +358,14 @@ struct ImpactProgram {
   }
   /// All that are first; no two of them share a body but one that is heavy to both others.
   SCREE_HD bool is_first(const State& state, const Foreseen& of) const {
-    if (one_by_one) return progress->first[state.round % 2].pair == static_cast<std::uint64_t>(of.pair);
+    if (one_by_one) return progress->first[state.round % 2].pair == numbers_of(of.pair).bits;
     const auto [i, j] = pairs[of.pair];
     return is_first_of(state, i, j, of) && is_first_of(state, j, i, of);
   }
   SCREE_HD bool is_first_of(const State& state, std::int32_t body, std::int32_t other,
                             const Foreseen& of) const {
     if (!counts_for(body, other)) return true;
-    return first[body].pair == static_cast<std::uint64_t>(of.pair) && waits_in[body] != state.round;
+    return first[body].pair == numbers_of(of.pair).bits && waits_in[body] != state.round;
   }
   SCREE_HD Volley& volley(std::int32_t heavy) const { return volleys[volley_of[heavy]]; }
 
@@ -363,15 +378,14 @@ struct ImpactProgram {
     find_first_pair(i, j, of, static_cast<std::uint32_t>(e));
     find_first_pair(j, i, of, static_cast<std::uint32_t>(e));
     FirstMeeting& of_all = progress->first[state.round % 2];
-    if (one_by_one && of_all.time == ordered_bits(of.time))
-      lower(&of_all.pair, static_cast<std::uint64_t>(of.pair));
+    if (one_by_one && of_all.time == ordered_bits(of.time)) lower(&of_all.pair, numbers_of(of.pair).bits);
   }
   SCREE_HD void find_first_pair(std::int32_t body, std::int32_t other, const Foreseen& of,
                                 std::uint32_t e) const {
     if (stage.is_heavy_to(body, other)) {
       lower(&volley_of[body], e);
     } else if (first[body].time == ordered_bits(of.time)) {
-      lower(&first[body].pair, static_cast<std::uint64_t>(of.pair));
+      lower(&first[body].pair, numbers_of(of.pair).bits);
     }
   }
 
@@ -388,12 +402,13 @@ struct ImpactProgram {
     const bool i_goes = of_i.time < of_j.time || (of_i.time == of_j.time && of_i.pair < of_j.pair);
     const std::int32_t goes = i_goes ? i : j;
     const std::int32_t waits = i_goes ? j : i;
-    const bool with_it = first[goes].pair == static_cast<std::uint64_t>(k);
+    const bool with_it = first[goes].pair == numbers_of(k).bits;
     if (with_it || may_meet_before(goes, waits)) raise(&waits_in[waits], state.round);
   }
   /// Whether a body may meet another one between its first meeting and the other's.
   SCREE_HD bool may_meet_before(std::int32_t body, std::int32_t other) const {
-    const auto [i, j] = pairs[static_cast<std::int64_t>(first[body].pair)];
+    const PairNumbers of{first[body].pair};
+    const std::int32_t i = stage.bodies.place(of.i()), j = stage.bodies.place(of.j());
     const double from = std::bit_cast<double>(first[body].time);
     const double until = std::bit_cast<double>(first[other].time);
     const double driven =
@@ -426,7 +441,7 @@ struct ImpactProgram {
                       solved))
       return;
     const std::int32_t heavy = stage.is_heavy_to(i, j) ? i : j;
-    add_to_volley(stage, heavy, solved, of.pair, volley(heavy));
+    add_to_volley(stage, heavy, solved, numbers_of(of.pair).bits, volley(heavy));
   }
 
   SCREE_HD void resolve_first(const State& state, std::int64_t e) const {
@@ -449,8 +464,7 @@ struct ImpactProgram {
       Volley& with = volley(heavy);
       const double scale = VolleyOutcome(stage, heavy, with).scale();
       resolved[place].moved = fly_on_scaled(stage, heavy, solved, scale, resolved[place].impact);
-      if (with.first_missing == ~static_cast<std::uint64_t>(of.pair))
-        with.place = static_cast<std::uint64_t>(place);
+      if (with.first_missing == ~numbers_of(of.pair).bits) with.place = static_cast<std::uint64_t>(place);
     } else {
       resolved[place].moved = fly_on(stage, solved, resolved[place].impact);
     }
@@ -480,17 +494,23 @@ struct ImpactProgram {
       const bool free_i = program.stage.is_free(i);
       if (free_i == program.stage.is_free(j)) return;
       const std::int32_t body = free_i ? i : j;
-      for (const Foreseen* of = after(body, -1); of != nullptr; of = after(body, of->pair)) {
+      const Foreseen* of = from(body, 0);
+      for (; of != nullptr; of = from(body, program.numbers_of(of->pair).bits + 1)) {
         const auto [first, second] = program.pairs[of->pair];
         if (of->pair != pair) then(first == body ? second : first, of->part);
       }
     }
-    /// The first of a body's after a pair; null if there is none.
-    SCREE_HD const Foreseen* after(std::int32_t body, std::int64_t last) const {
+    /// The first of a body's from a pair on; null if there is none.
+    SCREE_HD const Foreseen* from(std::int32_t body, std::uint64_t least) const {
       const Foreseen* next = nullptr;
+      std::uint64_t of_next = ~std::uint64_t{0};
       for (std::uint32_t e = program.walls_of[body]; e != 0;) {
         const Foreseen& of = program.meeting(state, e - 1);
-        if (of.pair > last && (next == nullptr || of.pair < next->pair)) next = &of;
+        const std::uint64_t numbers = program.numbers_of(of.pair).bits;
+        if (numbers >= least && numbers < of_next) {
+          next = &of;
+          of_next = numbers;
+        }
         e = of.next_of_wall;
       }
       return next;

@@ -34,7 +34,7 @@ struct Volley {
   std::uint64_t weight;          ///< sizes of impulses
   std::uint64_t delayed_weight;  ///< the same times the time
   std::uint64_t impacts;
-  std::uint64_t first_missing;  ///< of the pairs that are in it the first, as ~pair: 0 for none
+  std::uint64_t first_missing;  ///< of the pairs that are in it the first, as ~PairNumbers: 0 for none
   std::uint64_t place;          ///< of that one's impact among all resolved
 };
 
@@ -98,7 +98,7 @@ struct HeavySide {
 
 /// Adds an impact.
 SCREE_HD inline void add_to_volley(const FlightStage& stage, std::int32_t heavy, const SolvedImpact& solved,
-                                   std::int64_t pair, Volley& volley) {
+                                   std::uint64_t pair, Volley& volley) {
   const VolleyUnits unit(stage, heavy, volley);
   const HeavySide side(solved, solved.i == heavy);
   double square = 0;
@@ -119,7 +119,7 @@ SCREE_HD inline void add_to_volley(const FlightStage& stage, std::int32_t heavy,
   add_units(&volley.weight, side.momentum.norm(), unit.momentum);
   add_units(&volley.delayed_weight, side.momentum.norm() * solved.time, unit.delayed);
   count_up(&volley.impacts);
-  raise(&volley.first_missing, ~static_cast<std::uint64_t>(pair));
+  raise(&volley.first_missing, ~pair);
 }
 
 /// What a volley does to its heavy body.

@@ -130,8 +130,9 @@ struct FindPoints {
     for (int p = 0; p < m.count; ++p) {
       const ContactPoint& point = m.points[p];
       RowCoupling coupling;
-      const ContactRow row = make_row(m.normal, arm_of(slot.i, point.position),
-                                      arm_of(slot.j, point.position), point.gap, i, j, coupling);
+      const ContactRow row =
+          make_row(m.normal, stage.arm(pair.a, slot.i, lead, point.position),
+                   stage.arm(pair.b, slot.j, lead, point.position), point.gap, i, j, coupling);
       now.feature[p] = point.feature;
       V3<Real> last{};
       for (int q = 0; q < old.count; ++q)
@@ -177,9 +178,6 @@ struct FindPoints {
   SCREE_HD bool may_hold_apart(double gap, double closing, double lead) const {
     return gap > 0 && (lead > 0 || closing * stage.step > tolerance::likely_closing * gap);
   }
-  SCREE_HD Vec3 arm_of(std::int32_t body, const Vec3& point) const {
-    return stage.bodies.period.nearest(point - stage.bodies.position[body]);
-  }
   SCREE_HD void put_inertia(int first, std::int64_t to, const Mat3& m) const {
     const double elements[] = {m(0, 0), m(1, 1), m(2, 2), m(0, 1), m(0, 2), m(1, 2)};
     for (int e = 0; e < 6; ++e) contacts.fields.at(first + e, to) = static_cast<Real>(elements[e]);
@@ -207,14 +205,15 @@ struct JudgePoints {
     const Slot slot = stage.places[first_place + c - c % 256 + contacts.slot[c]];
     const SlotBodies<Real> at = stage.load(slot);
     Manifold m;
-    if (!meet_points(stage, at, stage.lead_of(slot), m)) return;
+    const double lead = stage.lead_of(slot);
+    if (!meet_points(stage, at, lead, m)) return;
     m.i = slot.i;
     m.j = slot.j;
     if (!flight_of_contact(stage.struck, m, m.points, at.size(), false).flying) return;
     contacts.flags[c] |= flag_flying;
     const auto velocity_at = [&](const MidBody<Real>& at_mid, std::int32_t body, const Vec3& point) {
-      const Vec3 arm = stage.bodies.period.nearest(point - stage.bodies.position[body]);
-      return Vec3(stage.bodies.velocity[body] + stage.bodies.spin[body].cross(arm) +
+      return Vec3(stage.bodies.velocity[body] +
+                  stage.bodies.spin[body].cross(stage.arm(at_mid, body, lead, point)) +
                   stage.kick_of(at_mid, body));
     };
     for (int p = 0; p < m.count; ++p) {

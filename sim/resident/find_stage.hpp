@@ -97,6 +97,10 @@ struct FindStage {
   SCREE_HD Vec3 centre(const MidBody<Real>& body, std::int32_t k, double lead) const {
     return lead > 0 ? Vec3(body.position + lead * kicked_velocity(body, k)) : body.position;
   }
+  /// From there to a point of a contact (m).
+  SCREE_HD Vec3 arm(const MidBody<Real>& body, std::int32_t k, double lead, const Vec3& point) const {
+    return bodies.period.nearest(point - centre(body, k, lead));
+  }
   SCREE_HD Vec3 remembered(const V3<Real>& impulse, const Vec3& normal, double friction) const {
     if (!parameters.warm_start) return Vec3::Zero();
     return project_on_cone(scale * vec3(impulse), normal, friction);
