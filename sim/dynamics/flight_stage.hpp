@@ -188,6 +188,13 @@ struct FlightStage {
     return limits.may_count(fastest(i, j));
   }
 
+  /// Of two bodies that may_meet(), whether they come near each other, told by one look at their shapes.
+  /// Balls are not looked at, since next() costs as little.
+  [[gnu::noinline]] SCREE_HD bool come_near(std::int32_t i, std::int32_t j) const {
+    if (bodies.shape[i] == Shape::sphere && bodies.shape[j] == Shape::sphere) return true;
+    return may_touch(pair_of(i, j, terms.step), std::max(clock[i], clock[j]));
+  }
+
   /// The next impact of two bodies, of which one is free. `loads` are those of the pair, as LoadedParts.
   template <class Loads>
   SCREE_HD Meeting next(std::int32_t i, std::int32_t j, const Loads& loads) const {

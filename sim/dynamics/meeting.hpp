@@ -73,6 +73,20 @@ SCREE_HD inline Meeting next_of_ball_in_tube(const PairFlight& pair, const BodyF
 
 }  // namespace detail
 
+/// Whether two bodies may touch at `earliest` (s) or later, told from how they lie at the midpoint: nothing
+/// has to be turned for that look, and they are no farther from there than half a substep's approach.
+SCREE_HD inline bool may_touch(const PairFlight& pair, double earliest) {
+  const double midpoint = pair.i.midpoint;
+  const double reach = fastest_approach(pair) * std::max(midpoint - earliest, pair.until - midpoint) +
+                       2 * tolerance::touching_gap * pair.smaller_size();
+  const auto solid = [midpoint](const BodyFlight& body) {
+    return Solid{body.position_at(midpoint), body.orientation, body.size};
+  };
+  Manifold manifolds[max_pair_manifolds];
+  return find_any_contacts({pair.i.shape, solid(pair.i)}, {pair.j.shape, solid(pair.j)}, pair.shapes,
+                           {.margin = reach, .hidden = true}, manifolds) > 0;
+}
+
 /// The first meeting that counts, at `earliest` (s) or later. Balls, and balls with planes and tubes that do
 /// not turn over, have closed forms; for the others it is a search.
 SCREE_HD inline Meeting next_meeting(const PairFlight& pair, double earliest) {

@@ -107,6 +107,24 @@ TEST_P(Meetings, AreTheFirst) {
   EXPECT_GT(met, 10);
 }
 
+/// The look at the midpoint leaves out only what never meets.
+TEST_P(Meetings, WhatMeetsMayTouch) {
+  int met = 0, left_out = 0;
+  for (std::uint64_t item = 0; item < 2000; ++item) {
+    const double speed = item % 3 == 0 ? 2.0 : item % 3 == 1 ? 20.0 : 100.0;
+    const PairFlight p = pair(item, speed);
+    for (const double earliest : {0.0, 0.3 * step, 0.7 * step}) {
+      const bool meets = next_meeting(p, earliest).time <= step;
+      ASSERT_TRUE(!meets || may_touch(p, earliest)) << item << " from " << earliest;
+      met += meets;
+      left_out += !may_touch(p, earliest);
+    }
+  }
+  EXPECT_GT(met, 100);
+  const bool is_far_at_times = !is_boundary(GetParam().first) && !is_boundary(GetParam().second);
+  EXPECT_GT(left_out, is_far_at_times ? 500 : -1);
+}
+
 TEST_P(Meetings, NothingPassesThroughAtAnySpeed) {
   // Each is aimed at the other's centre, so that they must meet, however thin they are against their travel.
   for (std::uint64_t item = 0; item < 200; ++item) {
