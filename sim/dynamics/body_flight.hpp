@@ -122,7 +122,14 @@ SCREE_HD inline double fastest_turn(const BodyFlight& flight) {
 }
 
 /// Bound on how fast any two points of the bodies near one another approach, until the search ends (m/s).
-SCREE_HD inline double fastest_approach(const PairFlight& pair) {
+struct ApproachBound {
+  double linear;                ///< of the centres
+  double turning_i, turning_j;  ///< of the surfaces about them
+
+  SCREE_HD double turning() const { return turning_i + turning_j; }
+  SCREE_HD double speed() const { return linear + turning_i + turning_j; }
+};
+SCREE_HD inline ApproachBound bound_approach(const PairFlight& pair) {
   // To a plane that keeps its normal, only what is along it.
   Vec3 normal = Vec3::Zero();
   for (const BodyFlight* body : {&pair.i, &pair.j}) {
@@ -137,7 +144,8 @@ SCREE_HD inline double fastest_approach(const PairFlight& pair) {
                                       : (pair.j.position - pair.i.position).norm() + linear * pair.until +
                                             bounding_radius(partner.shape, partner.size);
   };
-  return linear + fastest_turn(pair.i, far(pair.j)) + fastest_turn(pair.j, far(pair.i));
+  return {linear, fastest_turn(pair.i, far(pair.j)), fastest_turn(pair.j, far(pair.i))};
 }
+SCREE_HD inline double fastest_approach(const PairFlight& pair) { return bound_approach(pair).speed(); }
 
 }  // namespace scree

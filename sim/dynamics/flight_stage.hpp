@@ -188,11 +188,14 @@ struct FlightStage {
     return limits.may_count(fastest(i, j));
   }
 
-  /// Of two bodies that may_meet(), whether they come near each other, told by one look at their shapes.
-  /// Balls are not looked at, since next() costs as little.
-  [[gnu::noinline]] SCREE_HD bool come_near(std::int32_t i, std::int32_t j) const {
+  /// Of two bodies that may_meet(), whether an impact may count with these loads and they come near each
+  /// other, told by one look at their shapes. Balls are not looked at, since next() costs as little.
+  template <class Loads>
+  [[gnu::noinline]] SCREE_HD bool come_near(std::int32_t i, std::int32_t j, const ImpactLimits& limits,
+                                            const Loads& loads) const {
+    if (!may_count(i, j, limits, loads, fastest(i, j))) return false;
     if (bodies.shape[i] == Shape::sphere && bodies.shape[j] == Shape::sphere) return true;
-    return may_touch(pair_of(i, j, terms.step), std::max(clock[i], clock[j]));
+    return may_touch(pair_of(i, j, terms.step), limits.earliest);
   }
 
   /// The next impact of two bodies, of which one is free. `loads` are those of the pair, as LoadedParts.
@@ -202,7 +205,7 @@ struct FlightStage {
     if (!may_meet(i, j, limits)) return {};
     PairFlight pair = pair_of(i, j, terms.step);
     const double speed = fastest_approach(pair);
-    if (!limits.may_count(speed)) return {};
+    if (!may_count(i, j, limits, loads, speed)) return {};
     if (limits.may_bounce(speed)) {
       for (int part = 0; part < PairFlight::parts; ++part) {
         if (!loads.is_loaded(part)) pair.slowest[part] = limits.slowest;
@@ -215,6 +218,18 @@ struct FlightStage {
   }
 
  private:
+  /// Whether an approach at this speed may go deep, or bounce on a part that bears no load.
+  template <class Loads>
+  SCREE_HD bool may_count(std::int32_t i, std::int32_t j, const ImpactLimits& limits, const Loads& loads,
+                          double speed) const {
+    if (limits.may_go_deep(speed)) return true;
+    if (!limits.may_bounce(speed)) return false;
+    const bool has_tube = bodies.shape[i] == Shape::tube || bodies.shape[j] == Shape::tube;
+    bool all_loaded = true;
+    for (int part = 0; part < (has_tube ? PairFlight::parts : 1); ++part)
+      all_loaded = all_loaded && loads.is_loaded(part);
+    return !all_loaded;
+  }
   /// Bound on how fast two bodies come closer in the substep (m/s).
   SCREE_HD double fastest(std::int32_t i, std::int32_t j) const {
     Vec3 velocity = bodies.velocity[j] - bodies.velocity[i];

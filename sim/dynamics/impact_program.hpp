@@ -274,7 +274,7 @@ struct ImpactProgram {
   SCREE_HD void suspect(const State& state, std::int64_t k) const {
     const auto [i, j] = pairs[k];
     ImpactLimits limits;
-    if (!stage.may_meet(i, j, limits) || !stage.come_near(i, j)) return;
+    if (!stage.may_meet(i, j, limits) || !stage.come_near(i, j, limits, loads_of(k))) return;
     const auto place = static_cast<std::int64_t>(count_up(&progress->counts[state.round % 2].suspects));
     if (place < suspects.size()) suspects[place] = k;
   }

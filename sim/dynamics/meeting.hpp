@@ -73,14 +73,18 @@ SCREE_HD inline Meeting next_of_ball_in_tube(const PairFlight& pair, const BodyF
 
 }  // namespace detail
 
-/// Whether two bodies may touch at `earliest` (s) or later, told from how they lie at the midpoint: nothing
-/// has to be turned for that look, and they are no farther from there than half a substep's approach.
+/// Whether two bodies may touch at `earliest` (s) or later, told by one look at the middle of that time, with
+/// both turned as they are at the midpoint: nothing has to be turned for it. True for surfaces: they have one
+/// side, and do not see what has passed through them by then.
 SCREE_HD inline bool may_touch(const PairFlight& pair, double earliest) {
-  const double midpoint = pair.i.midpoint;
-  const double reach = fastest_approach(pair) * std::max(midpoint - earliest, pair.until - midpoint) +
+  if (is_surface(pair.i.shape) || is_surface(pair.j.shape)) return true;
+  const ApproachBound approach = bound_approach(pair);
+  const double middle = 0.5 * (earliest + pair.until);
+  const double reach = approach.speed() * (pair.until - middle) +
+                       approach.turning() * fabs(middle - pair.i.midpoint) +
                        2 * tolerance::touching_gap * pair.smaller_size();
-  const auto solid = [midpoint](const BodyFlight& body) {
-    return Solid{body.position_at(midpoint), body.orientation, body.size};
+  const auto solid = [middle](const BodyFlight& body) {
+    return Solid{body.position_at(middle), body.orientation, body.size};
   };
   Manifold manifolds[max_pair_manifolds];
   return find_any_contacts({pair.i.shape, solid(pair.i)}, {pair.j.shape, solid(pair.j)}, pair.shapes,

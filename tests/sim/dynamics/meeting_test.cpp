@@ -121,7 +121,7 @@ TEST_P(Meetings, WhatMeetsMayTouch) {
     }
   }
   EXPECT_GT(met, 100);
-  const bool is_far_at_times = !is_boundary(GetParam().first) && !is_boundary(GetParam().second);
+  const bool is_far_at_times = !is_surface(GetParam().first) && !is_surface(GetParam().second);
   EXPECT_GT(left_out, is_far_at_times ? 500 : -1);
 }
 
