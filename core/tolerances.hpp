@@ -111,13 +111,6 @@ inline constexpr double stirring_power = 0.001;
 /// What is dissipated in a heap that flows leaves 0.01 to 0.08 of it undone; slow modes 0.3 to 1. Larger:
 /// heaps come to rest later. Smaller: heaps in motion are swept more often, which changes nothing in them.
 inline constexpr double undone_of_dissipated = 0.1;
-/// So many times as much undone as a heap may leave is far too much: it is swept as often as any at once.
-/// Smaller: flows are swept that often now and then. Larger: heaps that have just fallen sink in.
-inline constexpr double far_too_much_undone = 2;
-/// One substep that leaves so much undone, of the power of its impulses and of what it dissipates beside,
-/// has a heap fall on its ground. In flows it is 0.005 to 0.09 of the power.
-inline constexpr double fallen_power = 0.5;
-inline constexpr double fallen_of_dissipated = 0.4;
 /// Of the power of all impulses, what is dissipated in a heap that moves: 0.5 to 1 where it flows, under 0.1
 /// at rest.
 inline constexpr double moving_power = 0.25;

@@ -21,7 +21,7 @@ constexpr Degree degrees[] = {{stirring_power, 0},        {done_power, calm_powe
 /// less.
 constexpr int least_shared = 3, most_shared = 5;
 constexpr int usual_degree = 2, most_degree = 6;
-constexpr int substeps_judged = 32, few_substeps = 8;
+constexpr double all_undone = 0.5;  ///< of the power of a substep's impulses
 
 }  // namespace
 
@@ -35,28 +35,28 @@ int Patience::sweeps(int usual, bool shared, double share) {
 }
 
 /// Over many substeps at once: the slow modes are oscillations, and a number of sweeps that goes up and down
-/// with them pumps them. But where a few leave far too much undone, or one as much as its impulses do, since
-/// a heap has just fallen on its ground, all sweeps follow at once: what sinks in meanwhile takes seconds to
-/// come out again.
+/// with them pumps them. But where a substep leaves as much undone as its impulses do, as when a heap has
+/// just fallen on its ground, all sweeps follow at once: what sinks in meanwhile takes seconds to come out
+/// again.
 void Patience::judge(double undone, double kicked, double dissipated) {
-  undone = std::abs(undone);
-  dissipated = std::max(dissipated, 0.0);
-  const bool has_fallen = undone > fallen_power * kicked + fallen_of_dissipated * dissipated;
-  undone_ += undone;
+  constexpr int judged_together = 32;
+  constexpr double much = 4;
+  const auto of = [](double loss) { return undone_of_dissipated * std::max(loss, 0.0); };
+  if (std::abs(undone) > all_undone * kicked + much * of(dissipated)) {
+    degree_ = most_degree;
+    undone_ = kicked_ = dissipated_ = judged_ = 0;
+    return;
+  }
+  undone_ += std::abs(undone);
   kicked_ += kicked;
   dissipated_ += dissipated;
-  ++judged_;
-  const double of_dissipated = undone_of_dissipated * dissipated_;
-  const double most_undone = degrees[degree_].more * kicked_ + of_dissipated;
-  const bool is_far_off = judged_ >= few_substeps && undone_ > far_too_much_undone * most_undone;
-  if (judged_ < substeps_judged && !has_fallen && !is_far_off) return;
+  if (++judged_ < judged_together) return;
   moves_ = dissipated_ > moving_power * kicked_;
-  if (has_fallen || is_far_off) {
-    degree_ = most_degree;
-  } else if (undone_ > most_undone) {
-    degree_ = std::min(degree_ + 1, most_degree);
+  const double most_undone = degrees[degree_].more * kicked_ + of(dissipated_);
+  if (undone_ > most_undone) {
+    degree_ = std::min(degree_ + (undone_ > much * most_undone ? 2 : 1), most_degree);
   } else if (undone_ < degrees[degree_].less * kicked_ ||
-             (moves_ && degree_ > usual_degree && undone_ < of_dissipated)) {
+             (moves_ && degree_ > usual_degree && undone_ < of(dissipated_))) {
     --degree_;
   }
   undone_ = kicked_ = dissipated_ = judged_ = 0;

@@ -300,7 +300,7 @@ bodies:
 }
 
 /// 60 layers: with 6 sweeps always (response.iterations: 6) they still overlap by 8e-4 on average, and swing.
-/// As it is, four seeds on Host come to 2e-5 to 1.5e-4, and by 3.5 s to 1.3e-5 to 1e-4.
+/// As it is, four seeds on Host come to 8e-5 to 1.5e-4 (a GPU to 1.6e-4), and by 3.5 s to 3e-5 to 9e-5.
 TEST_P(ResidentStep, ATallColumnComesToRest) {
   if (is_mixed()) GTEST_SKIP() << "sweeps go by the same rule";
   Simulation run = simulate(R"(
@@ -325,7 +325,7 @@ bodies:
     material: stone)");
   run_to_end(run);
   const Observation& seen = run.observe();
-  EXPECT_LT(seen.penetration.relative_mean, 2e-4);
+  EXPECT_LT(seen.penetration.relative_mean, 3e-4);
   EXPECT_LT(seen.speed_rms, 6e-3);
   EXPECT_LT(std::abs(seen.unexplained), 1e-12);
 }
