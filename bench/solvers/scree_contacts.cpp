@@ -192,7 +192,7 @@ bool ScreeContacts::sweep(const SweepPlan& plan) {
                                             .most = plan.most,
                                             .block_sweeps = plan.block_sweeps,
                                             .tolerance = plan.tolerance,
-                                            .momentum = true};
+                                            .first_with_momentum = plan.first_with_momentum};
   return parallel::run_rounds<Host>("sweeps", rounds, SweepState{}).converged;
 }
 

@@ -16,6 +16,7 @@ struct SweepPlan {
   int block_sweeps;  ///< over the points of a contact at each visit
   double tolerance;  ///< change of the impulses in one sweep (of their size) at which they have converged
   bool direct;       ///< islands on which sweeps creep are for the direct solver
+  int first_with_momentum = 0;  ///< sweep, counted from 0: a few plain ones are cheaper
 };
 
 /// Few contacts are solved to the tolerance whatever it takes, since they cost nothing. Of a heap each visit

@@ -51,13 +51,20 @@ SCREE_HD inline ContactRow row_of(const PointContacts<Real>& contacts, std::int6
   return row;
 }
 
-/// What the natural map changes in the impulses of a contact as they are (natural_map()).
-template <class Real, class Contacts>
+/// What the natural map changes in the impulses of a contact as they are, and in its couple (natural_map()).
+template <class Real, class Contacts, class Turn>
 struct Residual {
   Contacts contacts;
+  bool rolls;  ///< else there are no couples
+  RollingFields<Real> rolling;
   ConstView<BodyRecord<Real>> solver;
 
   SCREE_HD ImpulseChange operator()(std::int64_t c) const {
+    return rolls ? of_impulses(c) + of_couple(c) : of_impulses(c);
+  }
+
+ private:
+  SCREE_HD ImpulseChange of_impulses(std::int64_t c) const {
     const Vec3 normal = vec3(contacts.fields.vector(Contacts::normal, c));
     const auto friction = static_cast<double>(contacts.fields.at(Contacts::friction, c));
     const BodyRecord<Real>& i = solver[contacts.ends[c].i];
@@ -70,16 +77,7 @@ struct Residual {
     }
     return residual;
   }
-};
-
-/// And in its couple.
-template <class Real, class Contacts, class Turn>
-struct RollingResidual {
-  Contacts contacts;
-  RollingFields<Real> rolling;
-  ConstView<BodyRecord<Real>> solver;
-
-  SCREE_HD ImpulseChange operator()(std::int64_t c) const {
+  SCREE_HD ImpulseChange of_couple(std::int64_t c) const {
     using A = Scalar<Real>;
     const auto two = bodies_of<A>(solver.data(), contacts.ends + c);
     const auto turning = Turn::template of<A>(contacts, c, two);
@@ -91,14 +89,6 @@ struct RollingResidual {
     const V3<Real> change = lanes::couple_of<A>(n, most, mass, couple, two.j.spin - two.i.spin) - couple;
     return {static_cast<double>(dot(change, change) / mass), static_cast<double>(dot(couple, couple) / mass)};
   }
-};
-
-/// 1 for a contact whose residual is beyond the tolerance.
-template <class Residual>
-struct IsBeyond {
-  Residual residual;
-  double tolerance;
-  SCREE_HD std::int64_t operator()(std::int64_t c) const { return residual(c).within(tolerance) ? 0 : 1; }
 };
 
 /// The earliest of some times.

@@ -272,7 +272,7 @@ SweepState ContactSolver<Space, Real>::run_impulse_rounds(const SweepPlan& plan)
                                       .most = plan.most,
                                       .block_sweeps = plan.block_sweeps,
                                       .tolerance = plan.tolerance,
-                                      .momentum = momentum_},
+                                      .first_with_momentum = plan.first_with_momentum},
       SweepState{});
 }
 
@@ -282,13 +282,11 @@ void ContactSolver<Space, Real>::find_impulses(const ConstBodyView& bodies,
                                                Counters& counters) {
   SweepPlan plan = plan_sweeps(parameters, counts_.contacts, counts_.points);
   if (std::is_same_v<Real, float>) plan.tolerance = std::max(plan.tolerance, tolerance::mixed_change);
-  momentum_ = true;
   if (is_heap(counts_.points)) {
     plan.least = patience_.sweeps(plan.least, shares_loads(counts_.contacts, counts_.points), share);
-    // Who asks for a tolerance may get many sweeps.
-    momentum_ = !patience_.is_calm() || parameters.tolerance > 0;
     if (parameters.iterations > 0) plan.least = std::min(plan.least, plan.most);
     plan.most = std::max(plan.most, plan.least);
+    if (patience_.is_calm()) plan.first_with_momentum = plan.least;
   }
   const bool islands = parameters.accurate || (plan.direct && fits_on_host());
   const bool converged =
@@ -352,8 +350,7 @@ bool ContactSolver<Space, Real>::solve_islands(const ConstBodyView& bodies, cons
   };
   const bool converged = sweep_many(first);
   if (!converged && !accurate && first.most == plan.most) return false;
-  if (converged &&
-      (accurate ? are_solved_one_by_one(plan.tolerance) : !spread_of_loads().is_wide(plan.tolerance)))
+  if (converged && (accurate ? are_solved(plan.tolerance) : !spread_of_loads().is_wide(plan.tolerance)))
     return true;
   if (solve_directly(accurate ? thorough_limits : quick_limits, counters.direct, counters.direct_failed))
     return true;
@@ -373,40 +370,45 @@ void ContactSolver<Space, Real>::put_back(Inspection<Real>& seen, const Contacts
   set_velocities();
 }
 
-/// Sum of what `of` makes of the natural residual of each contact and of each couple.
 template <class Space, class Real>
-template <class Sum, class Of>
-Sum ContactSolver<Space, Real>::sum_residuals(const Of& of) {
-  using Balls = BallContacts<Real>;
-  using Points = PointContacts<Real>;
-  const ConstView<BodyRecord<Real>> solver = std::as_const(solver_).view();
-  const auto sum = [&of](const ContactList<Space>& list, const auto& residual) {
-    return parallel::sum_by_tiles<Sum, Space>("response.residual", list.size(),
-                                              on_contacts(list, of(residual)));
-  };
-  Sum total = sum(ball_list_, Residual<Real, Balls>{store_.balls(), solver}) +
-              sum(point_list_, Residual<Real, Points>{store_.points(), solver});
-  if (!rolls()) return total;
-  total =
-      total +
-      sum(ball_list_, RollingResidual<Real, Balls, TurnBalls>{store_.balls(), rolling_of_balls(), solver}) +
-      sum(point_list_,
-          RollingResidual<Real, Points, TurnPoints>{store_.points(), rolling_of_points(), solver});
-  return total;
+Residual<Real, BallContacts<Real>, TurnBalls> ContactSolver<Space, Real>::residual_of_balls() {
+  return {store_.balls(), rolls(), rolling_of_balls(), std::as_const(solver_).view()};
+}
+template <class Space, class Real>
+Residual<Real, PointContacts<Real>, TurnPoints> ContactSolver<Space, Real>::residual_of_points() {
+  return {store_.points(), rolls(), rolling_of_points(), std::as_const(solver_).view()};
 }
 
-/// Whether the natural residual of each contact is within the tolerance; then that of each island is.
+/// Sums of what `of_balls` and `of_points` make of their contacts.
 template <class Space, class Real>
-bool ContactSolver<Space, Real>::are_solved_one_by_one(double tolerance) {
-  return sum_residuals<std::int64_t>([tolerance](const auto& residual) {
-           return IsBeyond{residual, tolerance};
-         }) == 0;
+template <class Sum, class OfBalls, class OfPoints>
+IslandSums<Space, Sum> ContactSolver<Space, Real>::sum_by_island(const OfBalls& of_balls,
+                                                                 const OfPoints& of_points) {
+  const ConstView<Slot> places = slots_.places();
+  const ConstView<BodyRecord<Real>> solver = std::as_const(solver_).view();
+  IslandSums<Space, Sum> sums(slots_.solver_bodies().first_wall_point());
+  sums.add(ball_list_,
+           TermOfIsland<Real, BallContacts<Real>, OfBalls>{places, 0, store_.balls(), solver, of_balls});
+  sums.add(point_list_, TermOfIsland<Real, PointContacts<Real>, OfPoints>{
+                            places, store_.ball_places(), store_.points(), solver, of_points});
+  return sums;
+}
+
+/// Whether the natural residual of each island is within the tolerance.
+template <class Space, class Real>
+bool ContactSolver<Space, Real>::are_solved(double tolerance) {
+  return sum_by_island<ImpulseChange>(residual_of_balls(), residual_of_points())
+      .all([tolerance](const ImpulseChange& residual) { return residual.within(tolerance); });
 }
 
 /// What the natural map changes in all impulses, of their size.
 template <class Space, class Real>
 double ContactSolver<Space, Real>::residual() {
-  const auto left = sum_residuals<ImpulseChange>([](const auto& residual) { return residual; });
+  const auto sum = [](const ContactList<Space>& list, const auto& residual) {
+    return parallel::sum_by_tiles<ImpulseChange, Space>("response.residual", list.size(),
+                                                        on_contacts(list, residual));
+  };
+  const ImpulseChange left = sum(ball_list_, residual_of_balls()) + sum(point_list_, residual_of_points());
   return left.size > 0 ? std::sqrt(left.step / left.size) : 0.0;
 }
 
@@ -435,7 +437,7 @@ ReloadBody<Real> ContactSolver<Space, Real>::reload(const ConstBodyView& bodies,
 /// Scales down impulses that would gain energy, to where they gain none: of each island where contacts are
 /// few, of a heap all alike, since it is one. Returns how many were scaled.
 template <class Space, class Real>
-int ContactSolver<Space, Real>::keep_from_gaining(const ConstBodyView& bodies) {
+int ContactSolver<Space, Real>::keep_from_gaining(const BookStage<Real>& stage) {
   if (is_heap(counts_.points) || !fits_on_host()) {
     const Moved moved = books_.moved();
     if (!moved.gains(response_gain<Real>)) return 0;
@@ -446,16 +448,26 @@ int ContactSolver<Space, Real>::keep_from_gaining(const ConstBodyView& bodies) {
     fly_on_with_changes();
     return 1;
   }
-  Inspection<Real> seen = inspect(bodies);
+  if (no_island_gains(stage)) return 0;
+  Inspection<Real> seen = inspect(stage.bodies);
   ContactsOnHost<Real> contacts(seen, guides_);
   before_.resize(free_.size());
-  parallel::for_each<Space>("books.before", before_.size(), reload(bodies, free_, before_));
+  parallel::for_each<Space>("books.before", before_.size(), reload(stage.bodies, free_, before_));
   const int scaled = contacts.keep_from_gaining(to_vector(before_));
   if (scaled == 0) return 0;
   copy(last_, solver_);
   put_back(seen, contacts);
   fly_on_with_changes();
   return scaled;
+}
+
+/// Whether the impulses of no island gain energy: what each contact moves is booked once more.
+template <class Space, class Real>
+bool ContactSolver<Space, Real>::no_island_gains(BookStage<Real> stage) {
+  stage.again = true;
+  return sum_by_island<Moved>(MovedBy{rolls(), book_balls(stage), book_rolling_balls(stage)},
+                              MovedBy{rolls(), book_points(stage), book_rolling_points(stage)})
+      .all([](const Moved& moved) { return !moved.gains(response_gain<Real>); });
 }
 
 template <class Space, class Real>
@@ -479,6 +491,25 @@ template <class Space, class Real>
 BookStage<Real> ContactSolver<Space, Real>::book_stage(const ConstBodyView& bodies,
                                                        const ResponseParameters& parameters) {
   return {slots_.places(), bodies, free_.view(), solver_.view(), parameters, step_, next_loads_.view()};
+}
+
+template <class Space, class Real>
+BookBalls<Real> ContactSolver<Space, Real>::book_balls(const BookStage<Real>& stage) {
+  return {stage, store_.balls(), slots_.ball_memory()};
+}
+template <class Space, class Real>
+BookPoints<Real> ContactSolver<Space, Real>::book_points(const BookStage<Real>& stage) {
+  return {stage, store_.ball_places(), store_.points(), slots_.point_memory()};
+}
+template <class Space, class Real>
+BookRolling<Real, BallContacts<Real>> ContactSolver<Space, Real>::book_rolling_balls(
+    const BookStage<Real>& stage) {
+  return {stage, 0, store_.balls(), rolling_of_balls(), slots_.couples()};
+}
+template <class Space, class Real>
+BookRolling<Real, PointContacts<Real>> ContactSolver<Space, Real>::book_rolling_points(
+    const BookStage<Real>& stage) {
+  return {stage, store_.ball_places(), store_.points(), rolling_of_points(), slots_.couples()};
 }
 
 template <class Space, class Real>
@@ -512,19 +543,14 @@ void ContactSolver<Space, Real>::book(const BookStage<Real>& stage) {
                                      books_totals_.data() + kinds++);
   };
   if constexpr (visit_width<Space, Real> == 1) {
-    add_up("books.balls", ball_list_, BookBalls<Real>{stage, store_.balls(), slots_.ball_memory()});
+    add_up("books.balls", ball_list_, book_balls(stage));
   } else if (ball_list_.size() > 0) {
     books_totals_.view()[kinds++] = book_ball_blocks(stage);
   }
-  add_up("books.points", point_list_,
-         BookPoints<Real>{stage, store_.ball_places(), store_.points(), slots_.point_memory()});
+  add_up("books.points", point_list_, book_points(stage));
   if (rolls()) {
-    add_up("books.rolling", ball_list_,
-           BookRolling<Real, BallContacts<Real>>{stage, 0, store_.balls(), rolling_of_balls(),
-                                                 slots_.couples()});
-    add_up("books.rolling", point_list_,
-           BookRolling<Real, PointContacts<Real>>{stage, store_.ball_places(), store_.points(),
-                                                  rolling_of_points(), slots_.couples()});
+    add_up("books.rolling", ball_list_, book_rolling_balls(stage));
+    add_up("books.rolling", point_list_, book_rolling_points(stage));
   }
   Books of_kind[4];
   copy_bytes<Host, Space>(of_kind, books_totals_.data(), kinds * sizeof(Books));
@@ -546,7 +572,7 @@ Ledger ContactSolver<Space, Real>::solve(const FlightStage& flight, bool any_is_
     BookStage<Real> stage = book_stage(bodies, parameters);
     book(stage);
     if (books_.gaining > 0) {
-      if (const int scaled = keep_from_gaining(bodies); scaled > 0) {
+      if (const int scaled = keep_from_gaining(stage); scaled > 0) {
         counters.scaled += scaled;
         parallel::fill("books.loads", next_loads_, 0u);
         stage = book_stage(bodies, parameters);

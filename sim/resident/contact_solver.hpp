@@ -19,6 +19,7 @@
 #include "sim/resident/flights.hpp"
 #include "sim/resident/hubs.hpp"
 #include "sim/resident/inspection.hpp"
+#include "sim/resident/island_sums.hpp"
 #include "sim/resident/patience.hpp"
 #include "sim/resident/rolling.hpp"
 #include "sim/resident/rolling_visits.hpp"
@@ -117,12 +118,15 @@ class ContactSolver {
   void set_velocities();
   void put_back(Inspection<Real>& seen, const ContactsOnHost<Real>& contacts);
   LoadSpread spread_of_loads();
-  template <class Sum, class Of>
-  Sum sum_residuals(const Of& of);
-  bool are_solved_one_by_one(double tolerance);
+  template <class Sum, class OfBalls, class OfPoints>
+  IslandSums<Space, Sum> sum_by_island(const OfBalls& of_balls, const OfPoints& of_points);
+  Residual<Real, BallContacts<Real>, TurnBalls> residual_of_balls();
+  Residual<Real, PointContacts<Real>, TurnPoints> residual_of_points();
+  bool are_solved(double tolerance);
   double residual();
   double find_slip_end(const BookStage<Real>& stage);
-  int keep_from_gaining(const ConstBodyView& bodies);
+  int keep_from_gaining(const BookStage<Real>& stage);
+  bool no_island_gains(BookStage<Real> stage);
   void scale_impulses(double by);
   template <bool only_balls>
   SweepState run_impulse_rounds(const SweepPlan& plan);
@@ -139,6 +143,10 @@ class ContactSolver {
   void run_parting_rounds(const PartingPlan& plan);
   BookStage<Real> book_stage(const ConstBodyView& bodies, const ResponseParameters& parameters);
   void book(const BookStage<Real>& stage);
+  BookBalls<Real> book_balls(const BookStage<Real>& stage);
+  BookPoints<Real> book_points(const BookStage<Real>& stage);
+  BookRolling<Real, BallContacts<Real>> book_rolling_balls(const BookStage<Real>& stage);
+  BookRolling<Real, PointContacts<Real>> book_rolling_points(const BookStage<Real>& stage);
   Books book_ball_blocks(const BookStage<Real>& stage) requires(visit_width<Space, Real> > 1);
   ReloadBody<Real> reload(const ConstBodyView& bodies, const Array<BodyRecord<Real>, Space>& from,
                           Array<BodyRecord<Real>, Space>& to);
@@ -166,7 +174,6 @@ class ContactSolver {
   double overlap_ = 0;
   double slip_end_ = 1;
   Patience patience_, kept_patience_;
-  bool momentum_ = true;  // sweeps go on by what the last one has changed
   Array<std::uint32_t, Space> loads_, next_loads_;
 
   Array<Books, Space> books_scratch_, books_totals_;

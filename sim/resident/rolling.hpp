@@ -71,4 +71,15 @@ struct BookRolling {
   }
 };
 
+/// What the impulses of a contact and its couple move: `Book` is BookBalls or BookPoints.
+template <class Book, class Rolling>
+struct MovedBy {
+  bool rolls;
+  Book book;
+  Rolling rolling;
+  SCREE_HD Moved operator()(std::int64_t c) const {
+    return rolls ? book(c).moved() + rolling(c).moved() : book(c).moved();
+  }
+};
+
 }  // namespace scree::resident

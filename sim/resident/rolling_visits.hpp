@@ -90,7 +90,7 @@ struct Roll {
   Contacts contacts;
   RollingFields<Real> rolling;
   BodyRecord<Real>* bodies;
-  bool momentum;  ///< as of SweepBalls
+  bool remembers;  ///< as of SweepBalls
 
   template <class A>
   SCREE_LAW ChangeOf<A> visit(std::int64_t c, Real beta) const {
@@ -103,7 +103,7 @@ struct Roll {
     auto two = bodies_of<A>(bodies, ends);
     const auto turning = Turn::template of<A>(contacts, c, two);
     const V3 before = f.template vector<A>(R::couple, c);
-    const V3 last = momentum ? f.template vector<A>(R::last, c) : before;
+    const V3 last = remembers ? f.template vector<A>(R::last, c) : before;
     const V3 ahead = before + A::all(beta) * (before - last);
     const V3 n = contacts.fields.template vector<A>(Contacts::normal, c);
     const auto mass = Turn::template mass<A>(turning.i + turning.j, n);
@@ -112,7 +112,7 @@ struct Roll {
     const V3 change = couple - ahead;
     turn_by<A>(turning, change, two);
     store<A>(two, bodies, ends);
-    if (momentum) f.template put<A>(R::last, c, before);
+    if (remembers) f.template put<A>(R::last, c, before);
     f.template put<A>(R::couple, c, couple);
     const auto inverse = mass > 0 ? 1 / mass : typename A::V{};
     return {dot(change, change) * inverse, dot(couple, couple) * inverse};

@@ -149,9 +149,11 @@ struct ImpulseRounds {
   HoldToGuides<BodyRecord<Real>> guides;
   int least, most, block_sweeps;
   double tolerance;
-  bool momentum;
+  int first_with_momentum;  ///< sweep, counted from 0; those before it are plain
 
-  SCREE_HD bool goes_on(const State& state) const { return state.pushed && momentum; }
+  SCREE_HD bool goes_on(const State& state) const {
+    return state.pushed && state.sweeps >= first_with_momentum;
+  }
   SCREE_HD int phases(const State& state) const {
     if (state.pushed && (state.converged || state.sweeps >= most)) return 0;
     return (goes_on(state) ? 1 : 0) + (rolls ? 2 : 1) * (ball_colors.count + point_colors.count) +
@@ -186,9 +188,10 @@ struct ImpulseRounds {
       state.pushed = true;
       return state;
     }
+    const bool remembered = goes_on(state);
     ++state.sweeps;
     state.converged = state.sweeps >= least && change.step <= tolerance * tolerance * change.size;
-    const double ratio = goes_on(state) && state.sweeps > 1 ? change.step / state.last_step : 0.0;
+    const double ratio = remembered && state.sweeps > 1 ? change.step / state.last_step : 0.0;
     state.beta = ratio < 1.0 ? rounded(ratio) : 0.0;
     state.last_step = change.step;
     return state;
@@ -208,13 +211,14 @@ struct ImpulseRounds {
   template <class Items>
   SCREE_HD Sum work(const State& state, int phase, const Items& items) const {
     const auto beta = static_cast<Real>(state.beta);
-    if (goes_on(state) && phase-- == 0) {
+    const bool remembers = goes_on(state);
+    if (remembers && phase-- == 0) {
       items.accelerate(Accelerate<Real>{bodies, last}, beta);
       return {};
     }
     if (phase < ball_colors.count) {
       if (state.pushed)
-        return items.visit(ball_colors, phase, SweepBalls<Real>{balls, bodies, momentum}, beta);
+        return items.visit(ball_colors, phase, SweepBalls<Real>{balls, bodies, remembers}, beta);
       items.visit(ball_colors, phase, PushBalls<Real>{balls, bodies});
       return {};
     }
@@ -252,7 +256,7 @@ struct ImpulseRounds {
   SCREE_HD Sum roll(const State& state, int color, const ColorPhases& colors, const Contacts& contacts,
                     const RollingFields<Real>& rolling, const Turn&, const Items& items) const {
     if (state.pushed)
-      return items.visit(colors, color, Roll<Real, Contacts, Turn>{contacts, rolling, bodies, momentum},
+      return items.visit(colors, color, Roll<Real, Contacts, Turn>{contacts, rolling, bodies, goes_on(state)},
                          static_cast<Real>(state.beta));
     items.visit(colors, color, PushRolling<Real, Contacts, Turn>{contacts, rolling, bodies});
     return {};

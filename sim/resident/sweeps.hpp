@@ -143,7 +143,7 @@ template <class Real>
 struct SweepBalls {
   BallContacts<Real> contacts;
   BodyRecord<Real>* bodies;
-  bool momentum;  ///< else beta is 0, and the last sweep is not remembered
+  bool remembers;  ///< what the sweep changes; else beta is 0
 
   template <class A>
   SCREE_LAW ChangeOf<A> visit(std::int64_t c, Real beta) const {
@@ -152,7 +152,7 @@ struct SweepBalls {
     const Ends* const ends = contacts.ends + c;
     auto two = bodies_of<A>(bodies, ends);
     const lanes::V3<A> before = f.template vector<A>(C::impulse, c);
-    const lanes::V3<A> last = momentum ? f.template vector<A>(C::last, c) : before;
+    const lanes::V3<A> last = remembers ? f.template vector<A>(C::last, c) : before;
     const lanes::V3<A> ahead = before + A::all(beta) * (before - last);
     // Many contacts are open and stay so: they need no more. Several side by side seldom are.
     if constexpr (A::width == 1) {
@@ -166,7 +166,7 @@ struct SweepBalls {
     const lanes::V3<A> change = p - ahead;
     push(balls, change, two.i, two.j);
     store<A>(two, bodies, ends);
-    if (momentum) f.template put<A>(C::last, c, before);
+    if (remembers) f.template put<A>(C::last, c, before);
     f.template put<A>(C::impulse, c, p);
     return {dot(change, change) / balls.normal_mass, dot(p, p) / balls.normal_mass};
   }

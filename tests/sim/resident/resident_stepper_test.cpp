@@ -354,6 +354,30 @@ bodies:
   EXPECT_LT(seen.penetration.relative_max, 2e-2);
 }
 
+/// Balls fall on a heap, which is swept until its impulses have converged: with momentum, since plain sweeps
+/// would take twice as many (the heap is calm, so that its first two sweeps are plain).
+TEST_P(ResidentStep, AFallOntoAHeapTakesFewSweeps) {
+  Simulation run = simulate(std::string(grain) + R"(
+gravity: [0, 0, -9.81]
+time: {end: 0.7, step: 0.004166666666666667}
+bodies:
+  - {plane: {normal: [0, 0, 1], offset: 0}, material: stone}
+  - {plane: {normal: [1, 0, 0], offset: -0.4}, material: stone}
+  - {plane: {normal: [-1, 0, 0], offset: -0.4}, material: stone}
+  - {plane: {normal: [0, 1, 0], offset: -0.4}, material: stone}
+  - {plane: {normal: [0, -1, 0], offset: -0.4}, material: stone}
+  - sphere: {radius: {uniform: [0.04, 0.06]}}
+    at: [-0.3333333, -0.3333333, 0.0666667]
+    repeat: {count: [6, 6, 40], spacing: [0.1333333, 0.1333333, 0.1333333], jitter: 0.005}
+    material: stone)");
+  while (run.time() < 0.6) run.step();
+  const Counters before = run.observe(false).counters;
+  run_to_end(run);
+  const Counters& after = run.observe(false).counters;
+  const auto sweeps = static_cast<double>(after.sweeps - before.sweeps);
+  EXPECT_LT(sweeps / static_cast<double>(after.substeps - before.substeps), 50);
+}
+
 /// Boxes that fly into each other and turn: many are struck after the midpoint of the one substep, and their
 /// contacts are seen then.
 TEST_P(ResidentStep, BoxesThatAreStruckLateKeepTheirMomenta) {

@@ -1,0 +1,83 @@
+// Sums over the contacts of each island, without putting its contact problem together.
+#pragma once
+
+#include "core/array.hpp"
+#include "core/parallel_loops.hpp"
+#include "sim/dynamics/islands.hpp"
+#include "sim/resident/contact_list.hpp"
+#include "sim/resident/layout.hpp"
+#include "sim/resident/sweeps.hpp"
+
+#include <algorithm>
+#include <cstdint>
+#include <vector>
+
+namespace scree::resident {
+
+/// What a contact adds, and the bodies by which it belongs to an island: -1 where one is not free.
+template <class Sum>
+struct IslandTerm {
+  std::int32_t i, j;
+  Sum sum;
+};
+
+template <class Real, class Contacts, class Of>
+struct TermOfIsland {
+  ConstView<Slot> places;
+  std::int64_t first_place;  ///< of contacts of this kind
+  Contacts contacts;
+  ConstView<BodyRecord<Real>> solver;
+  Of of;
+
+  SCREE_HD auto operator()(std::int64_t c) const {
+    const Slot& slot = places[first_place + c - c % 256 + contacts.slot[c]];
+    const Ends ends = contacts.ends[c];
+    const auto free = [&](std::int32_t body, std::int32_t end) {
+      return solver[end].inverse_mass > 0 ? body : -1;
+    };
+    return IslandTerm<decltype(of(c))>{free(slot.i, ends.i), free(slot.j, ends.j), of(c)};
+  }
+};
+
+template <class Term, class Of>
+struct StoreTerm {
+  OnContacts<Of> of;
+  Term* terms;
+  SCREE_HD void operator()(std::int64_t k) const { terms[k] = of(k); }
+};
+
+template <class Space, class Sum>
+class IslandSums {
+ public:
+  explicit IslandSums(std::int64_t bodies) : sums_(static_cast<std::size_t>(bodies)) {
+    islands_.start(bodies);
+  }
+  /// `term`: TermOfIsland of the contacts in the list.
+  template <class Of>
+  void add(const ContactList<Space>& list, const Of& term) {
+    using Term = IslandTerm<Sum>;
+    Array<Term, Space> terms(list.size());
+    parallel::for_each<Space>("islands.terms", list.size(),
+                              StoreTerm<Term, Of>{on_contacts(list, term), terms.data()});
+    for (const Term& at : to_vector(terms)) {
+      if (at.i >= 0 && at.j >= 0) islands_.unite(at.i, at.j);
+      terms_.push_back(at);
+    }
+  }
+  /// Whether `of(sum)` holds for each island.
+  template <class Of>
+  bool all(const Of& of) {
+    for (const IslandTerm<Sum>& at : terms_) {
+      Sum& sum = sums_[static_cast<std::size_t>(islands_.root(at.i >= 0 ? at.i : at.j))];
+      sum = sum + at.sum;
+    }
+    return std::ranges::all_of(sums_, of);
+  }
+
+ private:
+  Islands islands_;
+  std::vector<IslandTerm<Sum>> terms_;
+  std::vector<Sum> sums_;  // of each body, those of an island at its root
+};
+
+}  // namespace scree::resident
