@@ -114,6 +114,12 @@ inline constexpr double undone_of_dissipated = 0.1;
 /// Of the power of all impulses, what is dissipated in a heap that moves: 0.5 to 1 where it flows, under 0.1
 /// at rest.
 inline constexpr double moving_power = 0.25;
+/// Of the power of one substep's impulses, what is undone as it is when a heap has just fallen on its ground;
+/// where it flows, 0.005 to 0.09. Larger: deep heaps sink in while they land. Smaller: what only moves is
+/// swept as often as any.
+inline constexpr double all_undone = 0.5;
+/// What is that many times too much is followed at once, or by two degrees.
+inline constexpr double much_undone = 4;
 /// The least change with impulses in float, whose rounding is 1e-7.
 inline constexpr double mixed_change = 2e-6;
 

@@ -189,7 +189,8 @@ struct FlightStage {
   }
 
   /// Of two bodies that may_meet(), whether an impact may count with these loads and they come near each
-  /// other, told by one look at their shapes. Balls are not looked at, since next() costs as little.
+  /// other, told by one look at their shapes. Balls are not looked at, since next() costs as little. It is
+  /// called, so that its many registers are not taken from searches.
   template <class Loads>
   [[gnu::noinline]] SCREE_HD bool come_near(std::int32_t i, std::int32_t j, const ImpactLimits& limits,
                                             const Loads& loads) const {

@@ -11,6 +11,7 @@ namespace scree::resident {
 namespace {
 
 constexpr std::int64_t tile = parallel::tile;
+static_assert(tile == tile_size);
 
 struct CountVisits {
   const std::int32_t* found;

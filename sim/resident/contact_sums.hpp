@@ -65,7 +65,7 @@ struct WallContacts {
   FlightStage flight;
 
   SCREE_HD std::int64_t place_of(std::int64_t c, std::uint8_t slot) const {
-    return first_place + c - c % 256 + slot;
+    return first_place + place_of_slot(c, slot);
   }
   SCREE_HD bool is_on_j(const Slot& slot) const { return !mid[slot.j].is_free(); }
   /// Where the centre of a body is when a contact is seen.

@@ -145,7 +145,7 @@ struct FindBalls {
                           (record.lead > 0 || closing * stage.step > tolerance::likely_closing * record.gap);
     const BallMasses masses = stage.masses_of(at, record.arm_i, record.arm_j);
     contacts.ends[to] = {slot.end_i, slot.end_j};
-    contacts.slot[to] = static_cast<std::uint8_t>(place % 256);
+    contacts.slot[to] = static_cast<std::uint8_t>(place % tile_size);
     contacts.flags[to] = static_cast<std::uint8_t>(record.lead > 0 ? flag_late : 0);
     if (may_pass) passing.add(to);
     const auto& f = contacts.fields;
@@ -194,7 +194,7 @@ struct JudgeBalls {
 
   SCREE_HD void operator()(std::int64_t c) const {
     using C = BallContacts<Real>;
-    SlotBodies<Real> at = stage.load(stage.places[c - c % 256 + contacts.slot[c]]);
+    SlotBodies<Real> at = stage.load(stage.places[place_of_slot(c, contacts.slot[c])]);
     Manifold m;
     if (!meet<true>(stage, at, stage.lead_of(at.slot), m)) return;
     m.i = at.slot.i;

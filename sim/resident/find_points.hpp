@@ -116,7 +116,7 @@ struct FindPoints {
     PointMemory<Real> old = memory[k];
     PointMemory<Real>& now = memory[k];
     contacts.ends[to] = {slot.end_i, slot.end_j};
-    contacts.slot[to] = static_cast<std::uint8_t>(k % 256);
+    contacts.slot[to] = static_cast<std::uint8_t>(k % tile_size);
     contacts.flags[to] = static_cast<std::uint8_t>(lead > 0 ? flag_late : 0);
     contacts.points[to] = m.count;
     contacts.fields.set(C::normal, to, v3<Real>(m.normal));
@@ -202,7 +202,7 @@ struct JudgePoints {
 
   SCREE_HD void operator()(std::int64_t c) const {
     using C = PointContacts<Real>;
-    const Slot slot = stage.places[first_place + c - c % 256 + contacts.slot[c]];
+    const Slot slot = stage.places[first_place + place_of_slot(c, contacts.slot[c])];
     const SlotBodies<Real> at = stage.load(slot);
     Manifold m;
     const double lead = stage.lead_of(slot);

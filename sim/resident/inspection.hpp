@@ -73,7 +73,7 @@ void for_each_contact(Inspection<Real>& seen, Visit visit) {
   using R = RollingFields<Real>;
   const auto number = [](Real value) { return static_cast<double>(value); };
   const auto slot_of = [&](std::int64_t first, std::int64_t c, std::uint8_t slot) {
-    return seen.places[first + c - c % 256 + slot];
+    return seen.places[first + place_of_slot(c, slot)];
   };
   const auto whole = [&](std::int32_t body, std::int32_t end) {
     return end >= seen.first_wall_point ? end : body;

@@ -30,7 +30,7 @@ struct TermOfIsland {
   Of of;
 
   SCREE_HD auto operator()(std::int64_t c) const {
-    const Slot& slot = places[first_place + c - c % 256 + contacts.slot[c]];
+    const Slot& slot = places[first_place + place_of_slot(c, contacts.slot[c])];
     const Ends ends = contacts.ends[c];
     const auto free = [&](std::int32_t body, std::int32_t end) {
       return solver[end].inverse_mass > 0 ? body : -1;

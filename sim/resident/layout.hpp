@@ -230,9 +230,16 @@ struct PointContacts {
   SCREE_LAW static int at_point(int k, GapField field) { return k * gap_count + field; }
 };
 
+/// Slots and contacts are in tiles of so many (parallel::tile).
+inline constexpr std::int64_t tile_size = 256;
+
+/// The place of the slot that contact c comes from, by its number in the tile (BallContacts::slot), which is
+/// that of both.
+SCREE_LAW std::int64_t place_of_slot(std::int64_t c, std::uint8_t slot) { return c - c % tile_size + slot; }
+
 /// True if there is a contact in a place: `found` in each tile, at its front.
 SCREE_HD inline bool has_contact(const std::int32_t* found, std::int64_t place) {
-  return place % 256 < found[place / 256];
+  return place % tile_size < found[place / tile_size];
 }
 
 /// Of contacts.

@@ -23,7 +23,7 @@ struct PadBalls {
 
   SCREE_HD void operator()(std::int64_t t) const {
     using C = BallContacts<Real>;
-    const std::int64_t end = t * 256 + found[t];
+    const std::int64_t end = t * tile_size + found[t];
     for (std::int64_t c = end; c % lanes::width != 0; ++c) {
       contacts.ends[c] = {nobody, nobody};
       for (int field = 0; field < C::count; ++field) contacts.fields.at(field, c) = 0;
@@ -48,7 +48,7 @@ struct PadPoints {
 
   SCREE_HD void operator()(std::int64_t t) const {
     using C = PointContacts<Real>;
-    const std::int64_t begin = t * 256;
+    const std::int64_t begin = t * tile_size;
     const std::int64_t end = begin + found[t];
     for (std::int64_t c = end; c % lanes::width != 0; ++c) {
       contacts.ends[c] = {nobody, nobody};

@@ -21,7 +21,6 @@ constexpr Degree degrees[] = {{stirring_power, 0},        {done_power, calm_powe
 /// less.
 constexpr int least_shared = 3, most_shared = 5;
 constexpr int usual_degree = 2, most_degree = 6;
-constexpr double all_undone = 0.5;  ///< of the power of a substep's impulses
 
 }  // namespace
 
@@ -40,9 +39,8 @@ int Patience::sweeps(int usual, bool shared, double share) {
 /// again.
 void Patience::judge(double undone, double kicked, double dissipated) {
   constexpr int judged_together = 32;
-  constexpr double much = 4;
   const auto of = [](double loss) { return undone_of_dissipated * std::max(loss, 0.0); };
-  if (std::abs(undone) > all_undone * kicked + much * of(dissipated)) {
+  if (std::abs(undone) > all_undone * kicked + much_undone * of(dissipated)) {
     degree_ = most_degree;
     undone_ = kicked_ = dissipated_ = judged_ = 0;
     return;
@@ -54,7 +52,7 @@ void Patience::judge(double undone, double kicked, double dissipated) {
   moves_ = dissipated_ > moving_power * kicked_;
   const double most_undone = degrees[degree_].more * kicked_ + of(dissipated_);
   if (undone_ > most_undone) {
-    degree_ = std::min(degree_ + (undone_ > much * most_undone ? 2 : 1), most_degree);
+    degree_ = std::min(degree_ + (undone_ > much_undone * most_undone ? 2 : 1), most_degree);
   } else if (undone_ < degrees[degree_].less * kicked_ ||
              (moves_ && degree_ > usual_degree && undone_ < of(dissipated_))) {
     --degree_;
