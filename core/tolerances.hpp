@@ -98,9 +98,6 @@ inline constexpr double impact_gain = 1e-12;
 /// replaces both. Larger: towers rock; heaps come to rest too dense.
 inline constexpr double response_change = 1e-10;
 inline constexpr double heap_change = 3e-3;
-/// The same of a heap that flows (Patience::flows). Larger: heaps come to rest later, and deep ones sink in
-/// while they land. Smaller: what flows is swept more often, which changes nothing in it.
-inline constexpr double flow_change = 1e-2;
 /// Power that normal impulses have on what they leave undone (of that on all they change), over which a heap
 /// is swept twice as often in the next substeps, and under which half as often: it shows slow modes of many
 /// layers, of which one sweep's change tells nothing. Smaller: heaps come to rest sooner, and cost more until

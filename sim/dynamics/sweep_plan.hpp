@@ -23,21 +23,19 @@ struct SweepPlan {
 /// sweeps a point once, since news travels one contact per sweep however well each is solved, and the least
 /// number of sweeps sees to the slow modes, of which one sweep's change tells nothing (docs/decisions/0005,
 /// 0014).
-/// `flows`: a heap that does is solved less closely (docs/decisions/0051).
 inline SweepPlan plan_sweeps(const ResponseParameters& parameters, std::int64_t contacts,
-                             std::int64_t all_points, bool flows = false) {
+                             std::int64_t all_points) {
   constexpr std::int64_t visits = 400000;  // of points in a substep
   constexpr std::int64_t fewest = 60, most = 10000;
   const bool heap = is_heap(all_points);
-  SweepPlan plan{.least = !heap                                ? 1
-                          : shares_loads(contacts, all_points) ? 12
-                                                               : 6,
-                 .most = 0,
-                 .block_sweeps = heap ? 1 : 4,
-                 .tolerance = !heap || parameters.accurate ? tolerance::response_change
-                              : flows                      ? tolerance::flow_change
-                                                           : tolerance::heap_change,
-                 .direct = !heap};
+  SweepPlan plan{
+      .least = !heap                                ? 1
+               : shares_loads(contacts, all_points) ? 12
+                                                    : 6,
+      .most = 0,
+      .block_sweeps = heap ? 1 : 4,
+      .tolerance = heap && !parameters.accurate ? tolerance::heap_change : tolerance::response_change,
+      .direct = !heap};
   const std::int64_t points = std::max<std::int64_t>(all_points, 1);
   plan.most = static_cast<int>(std::clamp(visits / (plan.block_sweeps * points), fewest, most));
   if (parameters.block_sweeps > 0) plan.block_sweeps = parameters.block_sweeps;

@@ -280,7 +280,7 @@ template <class Space, class Real>
 void ContactSolver<Space, Real>::find_impulses(const ConstBodyView& bodies,
                                                const ResponseParameters& parameters, double share,
                                                Counters& counters) {
-  SweepPlan plan = plan_sweeps(parameters, counts_.contacts, counts_.points, patience_.flows());
+  SweepPlan plan = plan_sweeps(parameters, counts_.contacts, counts_.points);
   if (std::is_same_v<Real, float>) plan.tolerance = std::max(plan.tolerance, tolerance::mixed_change);
   if (is_heap(counts_.points)) {
     plan.least = patience_.sweeps(plan.least, shares_loads(counts_.contacts, counts_.points), share);

@@ -40,7 +40,6 @@ int Patience::sweeps(int usual, bool shared, double share) {
 void Patience::judge(double undone, double kicked, double dissipated) {
   constexpr int judged_together = 32;
   const auto of = [](double loss) { return undone_of_dissipated * std::max(loss, 0.0); };
-  flows_ = dissipated > moving_power * kicked && std::abs(undone) < of(dissipated);
   if (std::abs(undone) > all_undone * kicked + much_undone * of(dissipated)) {
     degree_ = most_degree;
     undone_ = kicked_ = dissipated_ = judged_ = 0;

@@ -18,8 +18,6 @@ class Patience {
   /// After a substep: the powers (W), and what was dissipated.
   void judge(double undone, double kicked, double dissipated);
 
-  /// In the last substep what moved dissipated much and left little of it undone.
-  bool flows() const { return flows_; }
   /// Nothing is left of slow modes.
   bool is_calm() const { return degree_ == 0; }
 
@@ -30,13 +28,11 @@ class Patience {
     archive("dissipated", dissipated_);
     archive("moves", moves_);
     archive("judged", judged_);
-    archive("flows", flows_);
   }
 
  private:
   int degree_ = 2;  // 0, 1, 2... are 2, 3, 6, 12... sweeps of balls
   bool moves_ = false;
-  bool flows_ = false;
   double undone_ = 0, kicked_ = 0, dissipated_ = 0;
   int judged_ = 0;  // substeps since it was last changed
 };

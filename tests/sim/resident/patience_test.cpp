@@ -99,18 +99,4 @@ TEST(Patience, SubstepsShareTheSweepsOfAStep) {
 }
 
 }  // namespace
-/// What dissipates much flows, but not where much of it is undone, as when a heap lands.
-TEST(Patience, WhatLandsOrRestsDoesNotFlow) {
-  struct Case {
-    double undone, kicked, dissipated;
-    bool flows;
-  };
-  for (const Case& at : {Case{0.02, 1, 0.6, true}, Case{0.3, 1, 0.6, false}, Case{0.001, 1, 0.05, false},
-                         Case{0, 0, 0, false}}) {
-    Patience patience;
-    patience.judge(at.undone, at.kicked, at.dissipated);
-    EXPECT_EQ(patience.flows(), at.flows) << at.undone << ' ' << at.dissipated;
-  }
-}
-
 }  // namespace scree::resident
