@@ -21,6 +21,7 @@ struct IslandTerm {
   Sum sum;
 };
 
+/// The term of contact c, whose sum is of(c). Each contact has at least one free body.
 template <class Real, class Contacts, class Of>
 struct TermOfIsland {
   ConstView<Slot> places;
@@ -46,6 +47,7 @@ struct StoreTerm {
   SCREE_HD void operator()(std::int64_t k) const { terms[k] = of(k); }
 };
 
+/// For few contacts: their terms are brought to Host, where the islands are found.
 template <class Space, class Sum>
 class IslandSums {
  public:
