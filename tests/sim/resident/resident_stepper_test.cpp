@@ -39,6 +39,14 @@ class ResidentStep : public testing::TestWithParam<Way> {
 
 constexpr const char* grain = "materials: {stone: {density: 1000, restitution: 0, friction: 0.5}}\n";
 
+/// Floor and walls of stone, `half` from the middle to a wall (m).
+std::string open_box(double half) {
+  std::string planes = "\n  - {plane: {normal: [0, 0, 1], offset: 0}, material: stone}";
+  for (const char* normal : {"1, 0", "-1, 0", "0, 1", "0, -1"})
+    planes += fmt::format("\n  - {{plane: {{normal: [{}, 0], offset: {}}}, material: stone}}", normal, -half);
+  return planes;
+}
+
 TEST_P(ResidentStep, ABallRollsAtFiveSeventhsOfItsSpeed) {
   Simulation run = simulate(std::string(grain) + R"(
 gravity: [0, 0, -9.81]
@@ -201,12 +209,7 @@ TEST_P(ResidentStep, WhereBodiesLieDoesNotMatter) {
   const std::string floor = R"(
 gravity: [0, 0, -9.81]
 time: {end: 1, step: 0.004}
-bodies:
-  - {plane: {normal: [0, 0, 1], offset: 0}, material: stone}
-  - {plane: {normal: [1, 0, 0], offset: -0.3}, material: stone}
-  - {plane: {normal: [-1, 0, 0], offset: -0.3}, material: stone}
-  - {plane: {normal: [0, 1, 0], offset: -0.3}, material: stone}
-  - {plane: {normal: [0, -1, 0], offset: -0.3}, material: stone})";
+bodies:)" + open_box(0.3);
   const std::string bouncing = "materials: {stone: {density: 1000, restitution: 0.4, friction: 0.5}}\n";
   const std::string rolling =
       "materials: {stone: {density: 1000, restitution: 0.1, friction: 0.5, rolling_friction: 0.05}}\n";
@@ -278,12 +281,8 @@ TEST_P(ResidentStep, AHeapComesToRestAsOnHost) {
   const std::string heap = std::string(grain) + R"(
 gravity: [0, 0, -9.81]
 time: {end: 1, step: 0.004166666666666667}
-bodies:
-  - {plane: {normal: [0, 0, 1], offset: 0}, material: stone}
-  - {plane: {normal: [1, 0, 0], offset: -0.4}, material: stone}
-  - {plane: {normal: [-1, 0, 0], offset: -0.4}, material: stone}
-  - {plane: {normal: [0, 1, 0], offset: -0.4}, material: stone}
-  - {plane: {normal: [0, -1, 0], offset: -0.4}, material: stone}
+bodies:)" + open_box(0.4) +
+                           R"(
   - sphere: {radius: {uniform: [0.04, 0.06]}}
     at: [-0.33, -0.33, 0.07]
     repeat: {count: [6, 6, 12], spacing: [0.133, 0.133, 0.133], jitter: 0.005}
@@ -360,12 +359,8 @@ TEST_P(ResidentStep, AFallOntoAHeapTakesFewSweeps) {
   Simulation run = simulate(std::string(grain) + R"(
 gravity: [0, 0, -9.81]
 time: {end: 0.7, step: 0.004166666666666667}
-bodies:
-  - {plane: {normal: [0, 0, 1], offset: 0}, material: stone}
-  - {plane: {normal: [1, 0, 0], offset: -0.4}, material: stone}
-  - {plane: {normal: [-1, 0, 0], offset: -0.4}, material: stone}
-  - {plane: {normal: [0, 1, 0], offset: -0.4}, material: stone}
-  - {plane: {normal: [0, -1, 0], offset: -0.4}, material: stone}
+bodies:)" + open_box(0.4) +
+                            R"(
   - sphere: {radius: {uniform: [0.04, 0.06]}}
     at: [-0.3333333, -0.3333333, 0.0666667]
     repeat: {count: [6, 6, 40], spacing: [0.1333333, 0.1333333, 0.1333333], jitter: 0.005}
