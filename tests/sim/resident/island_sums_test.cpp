@@ -1,6 +1,7 @@
 // Sums over the contacts of each island.
 #include "sim/resident/island_sums.hpp"
 
+#include "core/parallel.hpp"
 #include "tests/core/spaces.hpp"
 
 #include <gtest/gtest.h>
