@@ -149,10 +149,32 @@ inline auto policy(Device) {
 
 namespace scree {
 
+namespace detail {
+
+inline constexpr int threads_of_loop = 256;
+
+template <class F>
+__global__ void __launch_bounds__(threads_of_loop, F::blocks_at_once)
+    call_for_each(const __grid_constant__ F f, std::int64_t n) {
+  const std::int64_t i = std::int64_t{blockIdx.x} * threads_of_loop + threadIdx.x;
+  if (i < n) f(i);
+}
+
+}  // namespace detail
+
 /// What loops and reductions (core/parallel_loops.hpp) do on Device, where they find it by their argument.
+/// F::blocks_at_once: how many blocks share a processor at least, for work that would take too many
+/// registers.
 template <class F>
 void launch_for_each(Device, std::int64_t n, const F& f) {
-  thrust::for_each_n(detail::policy(Device{}), thrust::counting_iterator<std::int64_t>(0), n, f);
+  if constexpr (requires { F::blocks_at_once; }) {
+    if (n <= 0) return;
+    const auto blocks = static_cast<unsigned>((n + detail::threads_of_loop - 1) / detail::threads_of_loop);
+    detail::call_for_each<<<blocks, detail::threads_of_loop>>>(f, n);
+    detail::require_launched("a loop");
+  } else {
+    thrust::for_each_n(detail::policy(Device{}), thrust::counting_iterator<std::int64_t>(0), n, f);
+  }
 }
 template <class T, class F, class Join>
 T launch_reduce(Device, std::int64_t n, const F& f, const T& neutral, const Join& join) {

@@ -159,25 +159,40 @@ __global__ void __launch_bounds__(Program::threads, blocks_at_once<Program>())
 }
 
 /// Blocks that the GPU can hold at once.
+struct GpuRoom {
+  int processors = 0, on_each = 0;
+};
 template <class Program>
-int most_blocks() {
-  static const int most = [] {
-    int device = 0, processors = 0, on_each = 0;
+GpuRoom room_for() {
+  static const GpuRoom room = [] {
+    int device = 0;
+    GpuRoom found;
     cudaGetDevice(&device);
-    cudaDeviceGetAttribute(&processors, cudaDevAttrMultiProcessorCount, device);
-    cudaOccupancyMaxActiveBlocksPerMultiprocessor(&on_each, run_phases<Program>, Program::threads, 0);
+    cudaDeviceGetAttribute(&found.processors, cudaDevAttrMultiProcessorCount, device);
+    cudaOccupancyMaxActiveBlocksPerMultiprocessor(&found.on_each, run_phases<Program>, Program::threads, 0);
     scree::detail::require_launched("the rounds' first");
-    return std::max(processors * on_each, 1);
+    return GpuRoom{std::max(found.processors, 1), std::max(found.on_each, 1)};
   }();
-  return most;
+  return room;
+}
+
+/// Fewer blocks wait for one another more quickly: one on each processor, as long as its threads have few
+/// items.
+template <class Program>
+unsigned blocks_for(std::int64_t items) {
+  constexpr std::int64_t least = 64;  // items of a block
+  constexpr std::int64_t few = 2;     // items of a thread
+  const GpuRoom room = room_for<Program>();
+  const bool alone = items <= few * room.processors * Program::threads;
+  const std::int64_t most = room.processors * (alone ? 1 : room.on_each);
+  return static_cast<unsigned>(std::clamp<std::int64_t>((items + least - 1) / least, 1,
+                                                        std::min<std::int64_t>(most, block_limit.load())));
 }
 
 template <class Program>
 typename Program::State run(Device, const char* label, Program program, typename Program::State state) {
-  constexpr std::int64_t least = 64;  // items of a block
   const timing::Call<Device> call(label);
-  const auto blocks = static_cast<unsigned>(std::clamp<std::int64_t>(
-      (program.most_items() + least - 1) / least, 1, std::min(most_blocks<Program>(), block_limit.load())));
+  const unsigned blocks = blocks_for<Program>(program.most_items());
   Array<typename Program::Sum, Device> sums(2 * std::int64_t{blocks});
   Array<typename Program::State, Device> out(1);
   auto* sums_data = sums.data();

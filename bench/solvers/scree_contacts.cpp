@@ -1,7 +1,6 @@
 #include "bench/solvers/scree_contacts.hpp"
 
 #include "core/space_rounds.hpp"
-#include "core/space_tiles.hpp"
 #include "sim/resident/contacts_on_host.hpp"
 #include "sim/resident/padding.hpp"
 #include "sim/resident/rounds.hpp"
@@ -66,27 +65,24 @@ std::vector<int> ScreeContacts::color_contacts(bool balls) {
 }
 
 void ScreeContacts::place_contacts() {
-  constexpr std::int64_t tile = parallel::tile;
   place_.resize(problem_.contacts.size());
-  ColorTiles tiles[2] = {{{0}}, {{0}}};
-  std::vector<std::int32_t> found[2];
+  ColorRanges ranges[2];
   for (const bool balls : {true, false}) {
     const std::vector<int> colors = color_contacts(balls);
     const int count = colors.empty() ? 0 : *std::ranges::max_element(colors) + 1;
     for (int color = 0; color < count; ++color) {
-      std::int64_t next = tiles[balls].begin.back() * tile;
+      std::int64_t next = ranges[balls].places();
       for (std::size_t c = 0; c < colors.size(); ++c)
         if (colors[c] == color) place_[c] = {balls, next++};
-      for (std::int64_t left = next - tiles[balls].begin.back() * tile; left > 0; left -= tile)
-        found[balls].push_back(static_cast<std::int32_t>(std::min(left, tile)));
-      tiles[balls].begin.push_back(static_cast<std::int64_t>(found[balls].size()));
+      ranges[balls].add(next - ranges[balls].places());
     }
   }
-  const std::int64_t balls = tiles[true].tiles() * tile;
-  store_.resize(balls, tiles[false].tiles() * tile, static_cast<int>(tile));
-  copy(store_.ball_tiles(), found[true]);
-  copy(store_.point_tiles(), found[false]);
-  slots_.resize(static_cast<std::size_t>(balls + store_.point_places()));
+  store_.take_balls(ranges[true]);
+  store_.take_points(ranges[false]);
+  const std::int64_t balls = ranges[true].places();
+  slots_.resize(static_cast<std::size_t>(balls + ranges[false].places()));
+  for (const View<std::int32_t>& slots : {store_.balls().slot, store_.points().slot})
+    std::ranges::fill(slots, Slot::empty);
   for (std::size_t c = 0; c < place_.size(); ++c) {
     const ContactProblem::Contact& contact = problem_.contacts[c];
     const auto [of_balls, at] = place_[c];
@@ -98,14 +94,10 @@ void ScreeContacts::place_contacts() {
       fill_points(contact, at);
     }
   }
-  for (std::int64_t t = 0; t < store_.ball_tiles().size(); ++t)
-    PadBalls<double>{store_.balls(), {}, false, store_.ball_tiles().data(), nobody_}(t);
-  for (std::int64_t t = 0; t < store_.point_tiles().size(); ++t)
-    PadPoints<double>{store_.points(), {}, false, store_.point_tiles().data(), nobody_}(t);
-  for (const auto& [list, of_kind] : {std::pair(&ball_list_, true), std::pair(&point_list_, false)}) {
-    list->take(tiles[of_kind]);
-    list->make(of_kind ? store_.ball_tiles() : store_.point_tiles(), lanes::width);
-  }
+  for (std::int64_t b = 0; b < balls / lanes::width; ++b)
+    PadBalls<double>{store_.balls(), {}, false, nobody_}(b);
+  for (std::int64_t b = 0; b < ranges[false].places() / lanes::width; ++b)
+    PadPoints<double>{store_.points(), {}, false, nobody_}(b);
 }
 
 void ScreeContacts::fill_ball(const ContactProblem::Contact& contact, std::int64_t to) {
@@ -114,7 +106,7 @@ void ScreeContacts::fill_ball(const ContactProblem::Contact& contact, std::int64
   const ContactProblem::Point& point = problem_.points[static_cast<std::size_t>(contact.first_point)];
   const ContactRow row = make_ball_row(point.arm_i, point.arm_j, 0, body(contact.i), body(contact.j));
   all.ends[to] = {contact.i, contact.j};
-  all.slot[to] = static_cast<std::uint8_t>(to % parallel::tile);
+  all.slot[to] = static_cast<std::int32_t>(to);
   all.flags[to] = 0;
   all.fields.set(C::normal, to, v3<double>(contact.normal));
   all.fields.at(C::arm_i, to) = point.arm_i.dot(contact.normal);
@@ -134,7 +126,7 @@ void ScreeContacts::fill_points(const ContactProblem::Contact& contact, std::int
     for (int e = 0; e < 6; ++e) fields.at(first + e, to) = elements[e];
   };
   all.ends[to] = {contact.i, contact.j};
-  all.slot[to] = static_cast<std::uint8_t>(to % parallel::tile);
+  all.slot[to] = static_cast<std::int32_t>(to);
   all.flags[to] = 0;
   all.points[to] = contact.count;
   all.fields.set(C::normal, to, v3<double>(contact.normal));
@@ -176,8 +168,8 @@ void ScreeContacts::reset() {
 
 bool ScreeContacts::sweep(const SweepPlan& plan) {
   copy(solver_, free_);
-  const ImpulseRounds<double, false> rounds{.ball_colors = ColorPhases(ball_list_),
-                                            .point_colors = ColorPhases(point_list_),
+  const ImpulseRounds<double, false> rounds{.ball_colors = ColorPhases(store_.ball_colors(), lanes::width),
+                                            .point_colors = ColorPhases(store_.point_colors(), lanes::width),
                                             .balls = store_.balls(),
                                             .points = store_.points(),
                                             .rolls = false,
@@ -203,6 +195,7 @@ bool ScreeContacts::solve_islands(double tolerance, const DirectLimits& limits, 
   seen.free = std::as_const(free_).view();
   seen.contacts = &store_;
   seen.first_wall_point = free_.size();
+  seen.first_place = store_.ball_colors().places();
   ContactsOnHost<double> contacts(seen, {});
   const bool all = contacts.solve(tolerance, limits, solved, failed);
   contacts.put_back();

@@ -5,7 +5,6 @@
 #include "sim/dynamics/direct.hpp"
 #include "sim/dynamics/sweep_plan.hpp"
 #include "sim/inspection.hpp"
-#include "sim/resident/contact_list.hpp"
 #include "sim/resident/contact_store.hpp"
 #include "sim/resident/inspection.hpp"
 
@@ -49,7 +48,6 @@ class ScreeContacts {
   std::vector<Place> place_;  // of each contact
   std::vector<resident::Slot> slots_;
   resident::ContactStore<Host, double> store_;
-  resident::ContactList<Host> ball_list_, point_list_;
   std::int32_t nobody_;
   Array<resident::BodyRecord<double>, Host> free_, solver_, last_;
 };

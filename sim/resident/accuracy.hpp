@@ -109,7 +109,7 @@ struct SlipEnd {
   ConstView<LoadedParts> loads;  ///< of candidates in the last substep
 
   SCREE_HD Earliest operator()(std::int64_t c) const {
-    const Slot& slot = stage.places[first_place + place_of_slot(c, contacts.slot[c])];
+    const Slot& slot = stage.places[first_place + contacts.slot[c]];
     const bool flying = (contacts.flags[c] & flag_flying) != 0;
     if (flying || !loads[slot.candidate].is_loaded(stage.part_of(slot))) return {1.0};
     const Vec3 normal = vec3(contacts.fields.vector(Contacts::normal, c));

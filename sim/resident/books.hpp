@@ -151,7 +151,7 @@ struct BookBalls {
 
   SCREE_HD Books operator()(std::int64_t c) const {
     using C = BallContacts<Real>;
-    const std::int64_t place = place_of_slot(c, contacts.slot[c]);
+    const std::int64_t place = contacts.slot[c];
     const Ends ends = contacts.ends[c];
     const auto& f = contacts.fields;
     const V3<Real> n = f.vector(C::normal, c);
@@ -194,7 +194,7 @@ struct BookPoints {
 
   SCREE_HD Books operator()(std::int64_t c) const {
     using C = PointContacts<Real>;
-    const std::int64_t place = place_of_slot(c, contacts.slot[c]);
+    const std::int64_t place = contacts.slot[c];
     const Slot& slot = stage.places[first_place + place];
     const Ends ends = contacts.ends[c];
     const Vec3 n = vec3(contacts.fields.vector(C::normal, c));

@@ -7,22 +7,37 @@ namespace scree::resident {
 template <class Space, class Real>
 void ContactFinder<Space, Real>::find_balls(const FindStage<Real>& stage, Slots<Space, Real>& slots,
                                             View<BodyRecord<Real>> solver, ContactStore<Space, Real>& store) {
-  const std::int64_t tiles = slots.balls().tiles();
-  if (tiles == 0) return;
-  const PassingList passing = clear_passing(tiles * parallel::tile);
-  const BallContacts<Real> contacts = store.balls();
-  const FindBalls<Real> find{stage, contacts, slots.ball_memory(), solver, passing};
-  if constexpr (visit_width<Space, Real> == 1) {
-    parallel::compact_tiles<Space>("contacts.find balls", tiles, find, store.ball_tiles().data());
-  } else {
-    constexpr std::int64_t few_tiles = 2;
+  const std::int64_t tiles = slots.ball_tiles();
+  if (tiles == 0) return store.take_balls({});
+  constexpr bool one_by_one = visit_width<Space, Real> == 1;
+  constexpr std::int64_t few_tiles = 2, few_blocks = 32;
+  found_.start(tiles);
+  FindBalls<Real> find{stage, {}, slots.ball_memory(), solver, {}};
+  if constexpr (!one_by_one) {
     reach_.resize(stage.mid.size() + 1);
     Reach* const reach = reach_.data() + 1;
     parallel::for_each<Host>("contacts.reach", reach_.size(), SetReach{stage, reach});
     parallel::for_each<Host>("contacts.find balls", tiles,
-                             FindBallTile{find, reach, store.ball_tiles().data()}, few_tiles);
+                             FindBallTile{find, reach, found_.places(), found_.counts()}, few_tiles);
+  } else {
+    parallel::compact_tiles<Space>("contacts.find balls", tiles,
+                                   FindSlots<FindBalls<Real>>{find, found_.places()}, found_.counts());
   }
-  judge(passing, JudgeBalls<Real>{stage, contacts});
+  found_.join();
+  ball_colors_.find(found_.all(), slots.places_of_balls(), stage.bodies,
+                    slots.solver_bodies().first_wall_point(), slots.ball_colors());
+  if (!ball_colors_.are_same()) store.take_balls(ball_colors_.ranges());
+  find.contacts = store.balls();
+  if (!ball_colors_.are_same()) ball_colors_.place(find.contacts.slot);
+  const std::int64_t contacts = find.contacts.slot.size();
+  find.passing = clear_passing(contacts);
+  if constexpr (!one_by_one) {
+    parallel::for_each<Host>("contacts.make balls", contacts / lanes::width,
+                             MakeBallBlock{find, reach_.data() + 1}, few_blocks);
+  } else {
+    parallel::for_each<Space>("contacts.make balls", contacts, MakeContacts<FindBalls<Real>>{find});
+  }
+  judge(find.passing, JudgeBalls<Real>{stage, find.contacts});
 }
 
 #define SCREE_INSTANTIATE(Space)                                                                          \

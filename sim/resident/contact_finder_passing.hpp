@@ -9,8 +9,8 @@
 namespace scree::resident {
 
 template <class Space, class Real>
-PassingList ContactFinder<Space, Real>::clear_passing(std::int64_t places) {
-  passing_.resize(places);
+PassingList ContactFinder<Space, Real>::clear_passing(std::int64_t contacts) {
+  passing_.resize(contacts);
   passing_count_.resize(1);
   parallel::fill("contacts.passing", passing_count_, std::uint64_t{0});
   return {passing_.view(), passing_count_.data()};

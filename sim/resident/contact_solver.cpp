@@ -19,8 +19,6 @@ namespace scree::resident {
 
 namespace {
 
-constexpr int tile = parallel::tile;
-
 /// Places and bodies that are worth their way from Device to Host and back.
 constexpr std::int64_t few_places = 1 << 16;
 constexpr std::int64_t few_bodies = 1 << 14;
@@ -33,40 +31,40 @@ void ContactSolver<Space, Real>::take_candidates(ConstView<Pair> candidates,
                                                  const ConstBodyView& bodies,
                                                  const ResponseParameters& parameters) {
   slots_.build(candidates, place_before, bodies, parameters.rolling_friction);
+  forget_contacts();
   list_guided(parameters.guides);
-  make_places();
   wall_sums_.take(slots_.places(), bodies);
-  const std::int64_t balls = store_.ball_places();
   for (auto* loads : {&loads_, &next_loads_}) {
     loads->resize((candidates.size() + 3) / 4);
     parallel::fill("contacts.loads", *loads, 0u);
   }
   const BookStage<Real> stage{slots_.places(), bodies, {}, {}, {}, 0, loads_.view()};
-  parallel::for_each<Space>("contacts.loads", balls, MarkBallLoads<Real>{stage, slots_.ball_memory()});
-  parallel::for_each<Space>("contacts.loads", store_.point_places(),
-                            MarkPointLoads<Real>{stage, balls, slots_.point_memory()});
+  parallel::for_each<Space>("contacts.loads", slots_.ball_places(),
+                            MarkBallLoads<Real>{stage, slots_.ball_memory()});
+  parallel::for_each<Space>("contacts.loads", slots_.places_of_others().size(),
+                            MarkPointLoads<Real>{stage, slots_.ball_places(), slots_.point_memory()});
 }
 
-/// For the contacts that the slots may have.
+/// Those of the last substep were of other slots.
 template <class Space, class Real>
-void ContactSolver<Space, Real>::make_places() {
-  const std::int64_t balls = slots_.balls().tiles() * tile;
-  store_.resize(balls, slots_.places().size() - balls, tile);
-  ball_list_.take(slots_.balls());
-  point_list_.take(slots_.others());
+void ContactSolver<Space, Real>::forget_contacts() {
+  store_.take_balls({});
+  store_.take_points({});
+  finder_.forget_slots();
+  counts_ = {};
 }
 
 template <class Space, class Real>
 void ContactSolver<Space, Real>::archive(Archive& archive, const ConstBodyView& bodies,
                                          const ResponseParameters& parameters) {
   archive.part("slots", slots_, bodies);
+  archive.part("finder", finder_);
   archive.part("patience", patience_);
   archive("loads", loads_);
   if (!archive.is_loading()) return;
   step_ = 0;
-  counts_ = {};
+  forget_contacts();
   list_guided(parameters.guides);
-  make_places();
   wall_sums_.take(slots_.places(), bodies);
   next_loads_.resize(loads_.size());
 }
@@ -86,6 +84,7 @@ Inspection<Real> ContactSolver<Space, Real>::inspect(const ConstBodyView& bodies
   Inspection<Real> seen;
   seen.rolls = rolls();
   seen.first_wall_point = slots_.solver_bodies().first_wall_point();
+  seen.first_place = slots_.ball_places();
   seen.step = step_;
   if constexpr (std::is_same_v<Space, Host>) {
     seen.places = slots_.places();
@@ -116,10 +115,29 @@ Inspection<Real> ContactSolver<Space, Real>::inspect(const ConstBodyView& bodies
   return seen;
 }
 
+/// f(c) for the contacts of balls, or for the others.
 template <class Space, class Real>
-ConstView<Slot> ContactSolver<Space, Real>::places_of_points() const {
-  const std::int64_t first = store_.ball_places();
-  return {slots_.places().data() + first, slots_.places().size() - first};
+template <class F>
+void ContactSolver<Space, Real>::for_balls(const char* label, const F& f) {
+  const BallContacts<Real> balls = store_.balls();
+  parallel::for_each<Space>(label, balls.slot.size(), on_contacts(balls, f));
+}
+template <class Space, class Real>
+template <class F>
+void ContactSolver<Space, Real>::for_points(const char* label, const F& f) {
+  const PointContacts<Real> points = store_.points();
+  parallel::for_each<Space>(label, points.slot.size(), on_contacts(points, f));
+}
+
+/// Sum over all contacts of what `of_balls` and `of_points` make of them.
+template <class Space, class Real>
+template <class Sum, class OfBalls, class OfPoints>
+Sum ContactSolver<Space, Real>::sum_over_contacts(const char* label, const OfBalls& of_balls,
+                                                  const OfPoints& of_points) {
+  const auto sum = [label](const auto& contacts, const auto& of) {
+    return parallel::sum_by_tiles<Sum, Space>(label, contacts.slot.size(), on_contacts(contacts, of));
+  };
+  return sum(store_.balls(), of_balls) + sum(store_.points(), of_points);
 }
 
 template <class Space, class Real>
@@ -131,11 +149,9 @@ void ContactSolver<Space, Real>::add_wall_impulses(const FlightStage& flight) {
                            .places = slots_.places(),
                            .mid = std::as_const(mid_).view(),
                            .flight = flight};
-  parallel::for_each<Space>("walls.impulses", ball_list_.size(),
-                            on_contacts(ball_list_, PutBallOnWall<Real>{among, store_.balls()}));
-  among.first_place = store_.ball_places();
-  parallel::for_each<Space>("walls.impulses", point_list_.size(),
-                            on_contacts(point_list_, PutPointsOnWall<Real>{among, store_.points()}));
+  for_balls("walls.impulses", PutBallOnWall<Real>{among, store_.balls()});
+  among.first_place = slots_.ball_places();
+  for_points("walls.impulses", PutPointsOnWall<Real>{among, store_.points()});
   wall_sums_.add_up();
 }
 
@@ -147,7 +163,7 @@ void ContactSolver<Space, Real>::load_bodies(const ConstBodyView& bodies, ConstV
   mid_.resize(n);
   for (auto* records : {&solver_, &free_, &last_}) records->resize(all);
   displacement_.resize(all);
-  const bool only_balls = slots_.others().tiles() == 0;
+  const bool only_balls = slots_.other_tiles() == 0;
   turn_.resize(only_balls ? 0 : all);
   parallel::for_each<Space>("contacts.bodies", n,
                             LoadBody<Real>{bodies, margin, parameters, step_, mid_.view(), solver_.view()});
@@ -182,29 +198,25 @@ void ContactSolver<Space, Real>::find(ConstView<double> margin, double scale, co
                               .any_is_late = any_is_late,
                               .libccd = libccd};
   finder_.find(stage, slots_, loads(), solver_.view(), store_);
-  constexpr int width = visit_width<Space, Real>;
-  ball_list_.make(store_.ball_tiles(), width);
-  point_list_.make(store_.point_tiles(), width);
-  counts_ = {ball_list_.size(), ball_list_.size()};
+  counts_.contacts = counts_.points = store_.ball_colors().contacts();
   if (parameters.rolling_friction) start_rolling(stage);
   copy(free_, solver_);
-  if constexpr (width > 1) pad();
-  if (point_list_.size() == 0) return;
-  counts_.contacts += point_list_.size();
-  counts_.points += parallel::sum_by_tiles<std::int64_t, Space>(
-      "contacts.count", point_list_.size(), on_contacts(point_list_, CountPoints<Real>{store_.points()}));
+  if constexpr (visit_width < Space, Real >> 1) pad();
+  if (store_.point_colors().contacts() == 0) return;
+  counts_.contacts += store_.point_colors().contacts();
+  const CountPoints<Real> count{store_.points()};
+  counts_.points += parallel::sum_by_tiles<std::int64_t, Space>("contacts.count", count.contacts.slot.size(),
+                                                                on_contacts(count.contacts, count));
 }
 
 /// What visits to several contacts at once find where there are fewer.
 template <class Space, class Real>
 void ContactSolver<Space, Real>::pad() {
   const std::int32_t nobody = slots_.solver_bodies().nobody();
-  parallel::for_each<Space>(
-      "contacts.pad", store_.ball_tiles().size(),
-      PadBalls<Real>{store_.balls(), rolling_of_balls(), rolls(), store_.ball_tiles().data(), nobody});
-  parallel::for_each<Space>(
-      "contacts.pad", store_.point_tiles().size(),
-      PadPoints<Real>{store_.points(), rolling_of_points(), rolls(), store_.point_tiles().data(), nobody});
+  const PadBalls<Real> balls{store_.balls(), rolling_of_balls(), rolls(), nobody};
+  const PadPoints<Real> points{store_.points(), rolling_of_points(), rolls(), nobody};
+  parallel::for_each<Space>("contacts.pad", balls.contacts.slot.size() / lanes::width, balls);
+  parallel::for_each<Space>("contacts.pad", points.contacts.slot.size() / lanes::width, points);
 }
 
 /// The parts of hubs, too.
@@ -228,17 +240,14 @@ void ContactSolver<Space, Real>::list_guided(ConstView<Guide> guides) {
 template <class Space, class Real>
 void ContactSolver<Space, Real>::start_rolling(const FindStage<Real>& stage) {
   using R = RollingFields<Real>;
-  ball_rolling_.resize(decltype(R::fields)::size(store_.ball_places()));
-  point_rolling_.resize(decltype(R::fields)::size(store_.point_places()));
+  ball_rolling_.resize(decltype(R::fields)::size(store_.ball_colors().places()));
+  point_rolling_.resize(decltype(R::fields)::size(store_.point_colors().places()));
   const ConstView<V3<Real>> couples = slots_.couples();
-  parallel::for_each<Space>(
-      "rolling.start", ball_list_.size(),
-      on_contacts(ball_list_, StartRolling<Real, BallContacts<Real>>{
-                                  stage, 0, store_.balls(), rolling_of_balls(), couples, solver_.view()}));
-  parallel::for_each<Space>("rolling.start", point_list_.size(),
-                            on_contacts(point_list_, StartRolling<Real, PointContacts<Real>>{
-                                                         stage, store_.ball_places(), store_.points(),
-                                                         rolling_of_points(), couples, solver_.view()}));
+  for_balls("rolling.start", StartRolling<Real, BallContacts<Real>>{
+                                 stage, 0, store_.balls(), rolling_of_balls(), couples, solver_.view()});
+  for_points("rolling.start",
+             StartRolling<Real, PointContacts<Real>>{stage, slots_.ball_places(), store_.points(),
+                                                     rolling_of_points(), couples, solver_.view()});
 }
 
 template <class Space, class Real>
@@ -256,23 +265,24 @@ template <bool only_balls>
 SweepState ContactSolver<Space, Real>::run_impulse_rounds(const SweepPlan& plan) {
   return parallel::run_rounds<Space>(
       "sweeps",
-      ImpulseRounds<Real, only_balls>{.ball_colors = ColorPhases(ball_list_),
-                                      .point_colors = ColorPhases(point_list_),
-                                      .balls = store_.balls(),
-                                      .points = store_.points(),
-                                      .rolls = rolls(),
-                                      .ball_rolling = rolling_of_balls(),
-                                      .point_rolling = rolling_of_points(),
-                                      .bodies = solver_.data(),
-                                      .last = last_.data(),
-                                      .body_count = slots_.solver_bodies().first_wall_point(),
-                                      .hubs = join_hubs(solver_),
-                                      .guides = {guided_.view(), solver_.data()},
-                                      .least = plan.least,
-                                      .most = plan.most,
-                                      .block_sweeps = plan.block_sweeps,
-                                      .tolerance = plan.tolerance,
-                                      .first_with_momentum = plan.first_with_momentum},
+      ImpulseRounds<Real, only_balls>{
+          .ball_colors = ColorPhases(store_.ball_colors(), visit_width<Space, Real>),
+          .point_colors = ColorPhases(store_.point_colors(), visit_width<Space, Real>),
+          .balls = store_.balls(),
+          .points = store_.points(),
+          .rolls = rolls(),
+          .ball_rolling = rolling_of_balls(),
+          .point_rolling = rolling_of_points(),
+          .bodies = solver_.data(),
+          .last = last_.data(),
+          .body_count = slots_.solver_bodies().first_wall_point(),
+          .hubs = join_hubs(solver_),
+          .guides = {guided_.view(), solver_.data()},
+          .least = plan.least,
+          .most = plan.most,
+          .block_sweeps = plan.block_sweeps,
+          .tolerance = plan.tolerance,
+          .first_with_momentum = plan.first_with_momentum},
       SweepState{});
 }
 
@@ -304,7 +314,7 @@ bool ContactSolver<Space, Real>::fits_on_host() const {
 template <class Space, class Real>
 bool ContactSolver<Space, Real>::sweep(const SweepPlan& plan, Counters& counters) {
   const SweepState done =
-      store_.point_places() == 0 ? run_impulse_rounds<true>(plan) : run_impulse_rounds<false>(plan);
+      store_.point_colors().colors() == 0 ? run_impulse_rounds<true>(plan) : run_impulse_rounds<false>(plan);
   counters.sweeps += done.sweeps;
   return done.converged;
 }
@@ -320,10 +330,8 @@ void ContactSolver<Space, Real>::set_velocities() {
 
 template <class Space, class Real>
 LoadSpread ContactSolver<Space, Real>::spread_of_loads() {
-  return parallel::sum_by_tiles<LoadSpread, Space>("sweeps.loads", ball_list_.size(),
-                                                   on_contacts(ball_list_, BallLoad<Real>{store_.balls()})) +
-         parallel::sum_by_tiles<LoadSpread, Space>(
-             "sweeps.loads", point_list_.size(), on_contacts(point_list_, PointLoad<Real>{store_.points()}));
+  return sum_over_contacts<LoadSpread>("sweeps.loads", BallLoad<Real>{store_.balls()},
+                                       PointLoad<Real>{store_.points()});
 }
 
 /// Sweeps; islands on which they creep go to the direct solver on Host. In the accurate mode all do whose
@@ -387,10 +395,9 @@ IslandSums<Space, Sum> ContactSolver<Space, Real>::sum_by_island(const OfBalls& 
   const ConstView<Slot> places = slots_.places();
   const ConstView<BodyRecord<Real>> solver = std::as_const(solver_).view();
   IslandSums<Space, Sum> sums(slots_.solver_bodies().first_wall_point());
-  sums.add(ball_list_,
-           TermOfIsland<Real, BallContacts<Real>, OfBalls>{places, 0, store_.balls(), solver, of_balls});
-  sums.add(point_list_, TermOfIsland<Real, PointContacts<Real>, OfPoints>{
-                            places, store_.ball_places(), store_.points(), solver, of_points});
+  sums.add(TermOfIsland<Real, BallContacts<Real>, OfBalls>{places, 0, store_.balls(), solver, of_balls});
+  sums.add(TermOfIsland<Real, PointContacts<Real>, OfPoints>{places, slots_.ball_places(), store_.points(),
+                                                             solver, of_points});
   return sums;
 }
 
@@ -404,24 +411,16 @@ bool ContactSolver<Space, Real>::are_solved(double tolerance) {
 /// What the natural map changes in all impulses, of their size.
 template <class Space, class Real>
 double ContactSolver<Space, Real>::residual() {
-  const auto sum = [](const ContactList<Space>& list, const auto& residual) {
-    return parallel::sum_by_tiles<ImpulseChange, Space>("response.residual", list.size(),
-                                                        on_contacts(list, residual));
-  };
-  const ImpulseChange left = sum(ball_list_, residual_of_balls()) + sum(point_list_, residual_of_points());
+  const auto left =
+      sum_over_contacts<ImpulseChange>("response.residual", residual_of_balls(), residual_of_points());
   return left.size > 0 ? std::sqrt(left.step / left.size) : 0.0;
 }
 
 template <class Space, class Real>
 double ContactSolver<Space, Real>::find_slip_end(const BookStage<Real>& stage) {
-  const auto earliest = [](const ContactList<Space>& list, const auto& of) {
-    return parallel::sum_by_tiles<Earliest, Space>("response.slip", list.size(), on_contacts(list, of));
-  };
-  const Earliest end =
-      Earliest{1.0} +
-      earliest(ball_list_, SlipEnd<Real, BallContacts<Real>>{stage, 0, store_.balls(), loads()}) +
-      earliest(point_list_,
-               SlipEnd<Real, PointContacts<Real>>{stage, store_.ball_places(), store_.points(), loads()});
+  const SlipEnd<Real, BallContacts<Real>> of_balls{stage, 0, store_.balls(), loads()};
+  const SlipEnd<Real, PointContacts<Real>> of_points{stage, slots_.ball_places(), store_.points(), loads()};
+  const Earliest end = Earliest{1.0} + sum_over_contacts<Earliest>("response.slip", of_balls, of_points);
   return end.time;
 }
 
@@ -473,15 +472,11 @@ bool ContactSolver<Space, Real>::no_island_gains(BookStage<Real> stage) {
 template <class Space, class Real>
 void ContactSolver<Space, Real>::scale_impulses(double by) {
   const auto real = static_cast<Real>(by);
-  parallel::for_each<Space>("response.scale", ball_list_.size(),
-                            on_contacts(ball_list_, ScaleBalls<Real>{store_.balls(), real}));
-  parallel::for_each<Space>("response.scale", point_list_.size(),
-                            on_contacts(point_list_, ScalePoints<Real>{store_.points(), real}));
+  for_balls("response.scale", ScaleBalls<Real>{store_.balls(), real});
+  for_points("response.scale", ScalePoints<Real>{store_.points(), real});
   if (rolls()) {
-    parallel::for_each<Space>("response.scale", ball_list_.size(),
-                              on_contacts(ball_list_, ScaleRolling<Real>{rolling_of_balls(), real}));
-    parallel::for_each<Space>("response.scale", point_list_.size(),
-                              on_contacts(point_list_, ScaleRolling<Real>{rolling_of_points(), real}));
+    for_balls("response.scale", ScaleRolling<Real>{rolling_of_balls(), real});
+    for_points("response.scale", ScaleRolling<Real>{rolling_of_points(), real});
   }
   parallel::for_each<Space>("response.scale", solver_.size(),
                             ScaleVelocities<Real>{free_.view(), solver_.view(), real});
@@ -499,7 +494,7 @@ BookBalls<Real> ContactSolver<Space, Real>::book_balls(const BookStage<Real>& st
 }
 template <class Space, class Real>
 BookPoints<Real> ContactSolver<Space, Real>::book_points(const BookStage<Real>& stage) {
-  return {stage, store_.ball_places(), store_.points(), slots_.point_memory()};
+  return {stage, slots_.ball_places(), store_.points(), slots_.point_memory()};
 }
 template <class Space, class Real>
 BookRolling<Real, BallContacts<Real>> ContactSolver<Space, Real>::book_rolling_balls(
@@ -509,7 +504,7 @@ BookRolling<Real, BallContacts<Real>> ContactSolver<Space, Real>::book_rolling_b
 template <class Space, class Real>
 BookRolling<Real, PointContacts<Real>> ContactSolver<Space, Real>::book_rolling_points(
     const BookStage<Real>& stage) {
-  return {stage, store_.ball_places(), store_.points(), rolling_of_points(), slots_.couples()};
+  return {stage, slots_.ball_places(), store_.points(), rolling_of_points(), slots_.couples()};
 }
 
 template <class Space, class Real>
@@ -524,12 +519,9 @@ Books ContactSolver<Space, Real>::book_ball_blocks(const BookStage<Real>& stage)
                                      .step = stage.step,
                                      .rounding = response_gain<Real>,
                                      .again = stage.again},
-                            .blocks = ball_list_.visits(),
-                            .found = std::as_const(store_.ball_tiles()).view(),
                             .stage = stage,
                             .memory = slots_.ball_memory()};
-  constexpr std::int64_t together = BookBallBlocks::together;
-  return parallel::sum<Books, Host>("books.balls", (book.blocks.size() + together - 1) / together, book);
+  return parallel::sum<Books, Host>("books.balls", book.runs(), book);
 }
 
 template <class Space, class Real>
@@ -537,20 +529,21 @@ void ContactSolver<Space, Real>::book(const BookStage<Real>& stage) {
   // Both kinds are waited for once, and one that is not there costs nothing.
   books_totals_.resize(4);
   std::size_t kinds = 0;
-  const auto add_up = [&](const char* label, const ContactList<Space>& list, const auto& book) {
-    if (list.size() == 0) return;
-    parallel::sum_into<Books, Space>(label, list.size(), on_contacts(list, book), books_scratch_,
+  const auto add_up = [&](const char* label, const auto& book) {
+    const std::int64_t contacts = book.contacts.slot.size();
+    if (contacts == 0) return;
+    parallel::sum_into<Books, Space>(label, contacts, on_contacts(book.contacts, book), books_scratch_,
                                      books_totals_.data() + kinds++);
   };
   if constexpr (visit_width<Space, Real> == 1) {
-    add_up("books.balls", ball_list_, book_balls(stage));
-  } else if (ball_list_.size() > 0) {
+    add_up("books.balls", book_balls(stage));
+  } else if (store_.ball_colors().contacts() > 0) {
     books_totals_.view()[kinds++] = book_ball_blocks(stage);
   }
-  add_up("books.points", point_list_, book_points(stage));
+  add_up("books.points", book_points(stage));
   if (rolls()) {
-    add_up("books.rolling", ball_list_, book_rolling_balls(stage));
-    add_up("books.rolling", point_list_, book_rolling_points(stage));
+    add_up("books.rolling", book_rolling_balls(stage));
+    add_up("books.rolling", book_rolling_points(stage));
   }
   Books of_kind[4];
   copy_bytes<Host, Space>(of_kind, books_totals_.data(), kinds * sizeof(Books));
@@ -602,14 +595,13 @@ template <class Space, class Real>
 Ledger ContactSolver<Space, Real>::shift_late_bodies(const FlightStage& flight) {
   const LateMoments<Real> moments{flight, free_.view(), solver_.view()};
   Array<Ledger, Space> totals(3);
-  parallel::sum_into<Ledger, Space>(
-      "late.moments", ball_list_.size(),
-      on_contacts(ball_list_, LateBallMoments<Real>{moments, store_.balls(), slots_.places()}),
-      ledger_scratch_, totals.data());
-  parallel::sum_into<Ledger, Space>(
-      "late.moments", point_list_.size(),
-      on_contacts(point_list_, LatePointMoments<Real>{moments, store_.points(), places_of_points()}),
-      ledger_scratch_, totals.data() + 1);
+  const LateBallMoments<Real> of_balls{moments, store_.balls(), slots_.places()};
+  const LatePointMoments<Real> of_points{moments, store_.points(), slots_.places_of_others()};
+  parallel::sum_into<Ledger, Space>("late.moments", of_balls.contacts.slot.size(),
+                                    on_contacts(of_balls.contacts, of_balls), ledger_scratch_, totals.data());
+  parallel::sum_into<Ledger, Space>("late.moments", of_points.contacts.slot.size(),
+                                    on_contacts(of_points.contacts, of_points), ledger_scratch_,
+                                    totals.data() + 1);
   parallel::sum_into<Ledger, Space>("late.shift", flight.bodies.count(),
                                     ShiftLate<Real>{flight, free_.view(), solver_.view()}, ledger_scratch_,
                                     totals.data() + 2);
@@ -628,12 +620,8 @@ void ContactSolver<Space, Real>::take_velocities(const ConstBodyView& bodies) {
 /// Gaps at the end of the substep, since velocities are no longer those of `last_`.
 template <class Space, class Real>
 void ContactSolver<Space, Real>::fly_on_with_changes() {
-  parallel::for_each<Space>(
-      "late.fly", ball_list_.size(),
-      on_contacts(ball_list_, FlyBalls<Real>{store_.balls(), last_.view(), solver_.view(), step_}));
-  parallel::for_each<Space>(
-      "late.fly", point_list_.size(),
-      on_contacts(point_list_, FlyPoints<Real>{store_.points(), last_.view(), solver_.view(), step_}));
+  for_balls("late.fly", FlyBalls<Real>{store_.balls(), last_.view(), solver_.view(), step_});
+  for_points("late.fly", FlyPoints<Real>{store_.points(), last_.view(), solver_.view(), step_});
 }
 
 template <class Space, class Real>
@@ -645,18 +633,15 @@ void ContactSolver<Space, Real>::keep_memory() {
 template <class Space, class Real>
 void ContactSolver<Space, Real>::recall_memory() {
   slots_.recall_memory();
+  finder_.forget_slots();
   patience_ = kept_patience_;
 }
 
 template <class Space, class Real>
 void ContactSolver<Space, Real>::fly_late(const FlightStage& flight) {
   const ConstBodyView bodies = read_only(flight.bodies);
-  parallel::for_each<Space>("late.fly", ball_list_.size(),
-                            on_contacts(ball_list_, FlyLateBalls<Real>{store_.balls(), slots_.places(),
-                                                                       solver_.view(), bodies, flight}));
-  parallel::for_each<Space>(
-      "late.fly", point_list_.size(),
-      on_contacts(point_list_, FlyLatePoints<Real>{store_.points(), places_of_points(), bodies, flight}));
+  for_balls("late.fly", FlyLateBalls<Real>{store_.balls(), slots_.places(), solver_.view(), bodies, flight});
+  for_points("late.fly", FlyLatePoints<Real>{store_.points(), slots_.places_of_others(), bodies, flight});
 }
 
 template <class Space, class Real>
@@ -669,7 +654,7 @@ Ledger ContactSolver<Space, Real>::correct(const FlightStage& flight, bool any_i
   parallel::for_each<Space>("correction.start", displacement_.size(),
                             ResetDisplacement<Real>{solver_.view(), displacement_.view(), turn_.view()});
   const PartingPlan plan = plan_parting();
-  if (store_.point_places() == 0) {
+  if (store_.point_colors().colors() == 0) {
     run_parting_rounds<true>(plan);
   } else {
     run_parting_rounds<false>(plan);
@@ -699,20 +684,21 @@ template <bool only_balls>
 void ContactSolver<Space, Real>::run_parting_rounds(const PartingPlan& plan) {
   parallel::run_rounds<Space>(
       "correction",
-      PartingRounds<Real, only_balls>{.ball_colors = ColorPhases(ball_list_),
-                                      .point_colors = ColorPhases(point_list_),
-                                      .balls = store_.balls(),
-                                      .points = store_.points(),
-                                      .displacement = displacement_.data(),
-                                      .turn = turn_.data(),
-                                      .shifted_hubs = join_hubs(displacement_),
-                                      .turned_hubs = join_hubs(turn_),
-                                      .guides = {guided_.view(), displacement_.data()},
-                                      .share = static_cast<Real>(tolerance::correction_share),
-                                      .least = plan.least,
-                                      .most = plan.most,
-                                      .deepest = static_cast<float>(plan.deepest / tolerance::correction_cap),
-                                      .mean = static_cast<float>(plan.mean / tolerance::correction_cap)},
+      PartingRounds<Real, only_balls>{
+          .ball_colors = ColorPhases(store_.ball_colors(), visit_width<Space, Real>),
+          .point_colors = ColorPhases(store_.point_colors(), visit_width<Space, Real>),
+          .balls = store_.balls(),
+          .points = store_.points(),
+          .displacement = displacement_.data(),
+          .turn = turn_.data(),
+          .shifted_hubs = join_hubs(displacement_),
+          .turned_hubs = join_hubs(turn_),
+          .guides = {guided_.view(), displacement_.data()},
+          .share = static_cast<Real>(tolerance::correction_share),
+          .least = plan.least,
+          .most = plan.most,
+          .deepest = static_cast<float>(plan.deepest / tolerance::correction_cap),
+          .mean = static_cast<float>(plan.mean / tolerance::correction_cap)},
       PartingState{});
 }
 

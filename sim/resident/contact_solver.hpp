@@ -12,7 +12,6 @@
 #include "sim/resident/bodies.hpp"
 #include "sim/resident/books.hpp"
 #include "sim/resident/contact_finder.hpp"
-#include "sim/resident/contact_list.hpp"
 #include "sim/resident/contact_store.hpp"
 #include "sim/resident/contact_sums.hpp"
 #include "sim/resident/contacts_on_host.hpp"
@@ -102,11 +101,16 @@ class ContactSolver {
   WallSums<Space>& wall_sums() { return wall_sums_; }
 
  private:
-  void make_places();
+  void forget_contacts();
   void pad();
   void load_bodies(const ConstBodyView& bodies, ConstView<double> margin,
                    const ResponseParameters& parameters);
-  ConstView<Slot> places_of_points() const;
+  template <class F>
+  void for_balls(const char* label, const F& f);
+  template <class F>
+  void for_points(const char* label, const F& f);
+  template <class Sum, class OfBalls, class OfPoints>
+  Sum sum_over_contacts(const char* label, const OfBalls& of_balls, const OfPoints& of_points);
   template <class Record>
   JoinHubs<Record> join_hubs(Array<Record, Space>& bodies);
   void list_guided(ConstView<Guide> guides);
@@ -166,7 +170,6 @@ class ContactSolver {
 
   ContactStore<Space, Real> store_;
   Array<Real, Space> ball_rolling_, point_rolling_;  // RollingFields; empty if nothing rolls
-  ContactList<Space> ball_list_, point_list_;
   ContactFinder<Space, Real> finder_;
 
   ContactCounts counts_;

@@ -64,9 +64,6 @@ struct WallContacts {
   ConstView<MidBody<Real>> mid;
   FlightStage flight;
 
-  SCREE_HD std::int64_t place_of(std::int64_t c, std::uint8_t slot) const {
-    return first_place + place_of_slot(c, slot);
-  }
   SCREE_HD bool is_on_j(const Slot& slot) const { return !mid[slot.j].is_free(); }
   /// Where the centre of a body is when a contact is seen.
   SCREE_HD Vec3 centre(std::int32_t body, const Slot& slot, bool late) const {
@@ -85,7 +82,7 @@ struct PutBallOnWall {
 
   SCREE_HD void operator()(std::int64_t c) const {
     using C = BallContacts<Real>;
-    const std::int64_t place = among.place_of(c, contacts.slot[c]);
+    const std::int64_t place = among.first_place + contacts.slot[c];
     const std::int32_t entry = among.entry_of[place];
     if (entry < 0) return;
     const auto& f = contacts.fields;
@@ -108,7 +105,7 @@ struct PutPointsOnWall {
 
   SCREE_HD void operator()(std::int64_t c) const {
     using C = PointContacts<Real>;
-    const std::int64_t place = among.place_of(c, contacts.slot[c]);
+    const std::int64_t place = among.first_place + contacts.slot[c];
     const std::int32_t entry = among.entry_of[place];
     if (entry < 0) return;
     const bool on_j = among.is_on_j(among.places[place]);

@@ -128,8 +128,13 @@ struct FindBalls {
     return true;
   }
 
-  SCREE_HD void store(std::int64_t to, std::int64_t place, const Record& record) const {
+  /// What is found is found again at no cost.
+  SCREE_HD void keep(std::int64_t, const Record&) const {}
+  /// Contact `to`, of a slot that has one.
+  SCREE_HD void make(std::int64_t to, std::int64_t place) const {
     using C = BallContacts<Real>;
+    Record record;
+    find(place, record);
     const Slot slot = stage.places[place];
     SlotBodies<Real> at = stage.load(slot);
     const BallMemory<Real> remembered = memory[place];
@@ -145,7 +150,6 @@ struct FindBalls {
                           (record.lead > 0 || closing * stage.step > tolerance::likely_closing * record.gap);
     const BallMasses masses = stage.masses_of(at, record.arm_i, record.arm_j);
     contacts.ends[to] = {slot.end_i, slot.end_j};
-    contacts.slot[to] = static_cast<std::uint8_t>(place % tile_size);
     contacts.flags[to] = static_cast<std::uint8_t>(record.lead > 0 ? flag_late : 0);
     if (may_pass) passing.add(to);
     const auto& f = contacts.fields;
@@ -194,7 +198,7 @@ struct JudgeBalls {
 
   SCREE_HD void operator()(std::int64_t c) const {
     using C = BallContacts<Real>;
-    SlotBodies<Real> at = stage.load(stage.places[place_of_slot(c, contacts.slot[c])]);
+    SlotBodies<Real> at = stage.load(stage.places[contacts.slot[c]]);
     Manifold m;
     if (!meet<true>(stage, at, stage.lead_of(at.slot), m)) return;
     m.i = at.slot.i;

@@ -78,10 +78,9 @@ SCREE_HD inline bool meet_points(const FindStage<Real>& stage, const SlotBodies<
 /// Contacts that are not of balls alone, all as if they met. Those that may fly past are listed.
 template <class Real>
 struct FindPoints {
-  struct Record {
-    Manifold manifold;
-    double lead;
-  };
+  using Record = FoundManifold;
+
+  static constexpr int blocks_at_once = 1;
 
   FindStage<Real> stage;
   std::int64_t first_place;  ///< of the slots that are not of balls
@@ -89,6 +88,7 @@ struct FindPoints {
   View<PointMemory<Real>> memory;
   ConstView<LoadedParts> loads;  ///< of candidates
   PassingList passing;
+  View<Record> records;  ///< of slots: what is found
 
   bool is_end(std::int64_t k) const { return stage.places[first_place + k].i == Slot::empty; }
   SCREE_HD bool find(std::int64_t k, Record& record) const {
@@ -102,8 +102,11 @@ struct FindPoints {
     return false;
   }
 
-  SCREE_HD void store(std::int64_t to, std::int64_t k, const Record& record) const {
+  SCREE_HD void keep(std::int64_t k, const Record& record) const { records[k] = record; }
+  /// Contact `to`, of a slot that has one.
+  SCREE_HD void make(std::int64_t to, std::int64_t k) const {
     using C = PointContacts<Real>;
+    const Record& record = records[k];
     const Manifold& m = record.manifold;
     const double lead = record.lead;
     const Slot slot = stage.places[first_place + k];
@@ -116,7 +119,6 @@ struct FindPoints {
     PointMemory<Real> old = memory[k];
     PointMemory<Real>& now = memory[k];
     contacts.ends[to] = {slot.end_i, slot.end_j};
-    contacts.slot[to] = static_cast<std::uint8_t>(k % tile_size);
     contacts.flags[to] = static_cast<std::uint8_t>(lead > 0 ? flag_late : 0);
     contacts.points[to] = m.count;
     contacts.fields.set(C::normal, to, v3<Real>(m.normal));
@@ -202,7 +204,7 @@ struct JudgePoints {
 
   SCREE_HD void operator()(std::int64_t c) const {
     using C = PointContacts<Real>;
-    const Slot slot = stage.places[first_place + place_of_slot(c, contacts.slot[c])];
+    const Slot slot = stage.places[first_place + contacts.slot[c]];
     const SlotBodies<Real> at = stage.load(slot);
     Manifold m;
     const double lead = stage.lead_of(slot);

@@ -183,12 +183,47 @@ SCREE_HD inline const Manifold* manifold_on(int surface, bool corners, const Man
   return nullptr;
 }
 
-/// Places of contacts that may fly past, in any order.
+/// What is found at a slot that is not of balls.
+struct FoundManifold {
+  Manifold manifold;
+  double lead;
+};
+
+/// Contacts that may fly past, in any order.
 struct PassingList {
-  View<std::int32_t> places;
+  View<std::int32_t> contacts;
   std::uint64_t* count;
-  SCREE_HD void add(std::int64_t place) const {
-    places[static_cast<std::int64_t>(count_up(count))] = static_cast<std::int32_t>(place);
+  SCREE_HD void add(std::int64_t c) const {
+    contacts[static_cast<std::int64_t>(count_up(count))] = static_cast<std::int32_t>(c);
+  }
+};
+
+/// Finds the slots that have a contact, by FindBalls or FindPoints, which remembers for make() what it has
+/// found.
+template <class Find>
+struct FindSlots {
+  using Record = typename Find::Record;
+  static constexpr int blocks_at_once = Find::blocks_at_once;
+
+  Find all;
+  std::int32_t* found;
+
+  bool is_end(std::int64_t place) const { return all.is_end(place); }
+  SCREE_HD bool find(std::int64_t place, Record& record) const { return all.find(place, record); }
+  SCREE_HD void store(std::int64_t to, std::int64_t place, const Record& record) const {
+    found[to] = static_cast<std::int32_t>(place);
+    all.keep(place, record);
+  }
+};
+
+/// Makes the contacts of these slots.
+template <class Find>
+struct MakeContacts {
+  static constexpr int blocks_at_once = Find::blocks_at_once;
+
+  Find all;
+  SCREE_HD void operator()(std::int64_t c) const {
+    if (const std::int32_t place = all.contacts.slot[c]; place != Slot::empty) all.make(c, place);
   }
 };
 
@@ -206,7 +241,7 @@ struct JudgePassing {
 
   SCREE_HD void operator()(std::int64_t thread) const {
     const auto count = static_cast<std::int64_t>(*passing.count);
-    for (std::int64_t k = thread; k < count; k += stride) judge(passing.places[k]);
+    for (std::int64_t k = thread; k < count; k += stride) judge(passing.contacts[k]);
   }
 };
 

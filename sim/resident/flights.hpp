@@ -79,7 +79,7 @@ struct FlyLateBalls {
   SCREE_HD void operator()(std::int64_t c) const {
     using C = BallContacts<Real>;
     if ((contacts.flags[c] & flag_late) == 0) return;
-    const Slot& slot = places[place_of_slot(c, contacts.slot[c])];
+    const Slot& slot = places[contacts.slot[c]];
     const double left = flight.terms.step - fmax(flight.clock[slot.i], flight.clock[slot.j]);
     const Vec3 turned = turning_of(slot.j, slot.end_j) - turning_of(slot.i, slot.end_i);
     const Vec3 apart =
@@ -101,7 +101,7 @@ struct FlyLatePoints {
   SCREE_HD void operator()(std::int64_t c) const {
     using C = PointContacts<Real>;
     if ((contacts.flags[c] & flag_late) == 0) return;
-    const Slot& slot = places[place_of_slot(c, contacts.slot[c])];
+    const Slot& slot = places[contacts.slot[c]];
     const Vec3 n = vec3(contacts.fields.vector(C::normal, c));
     const Vec3 apart = bodies.period.nearest(bodies.position[slot.j] - bodies.position[slot.i]);
     const double left = flight.terms.step - fmax(flight.clock[slot.i], flight.clock[slot.j]);
@@ -146,8 +146,7 @@ struct LateBallMoments {
   ConstView<Slot> places;
   SCREE_HD Ledger operator()(std::int64_t c) const {
     if ((contacts.flags[c] & flag_late) == 0) return {};
-    return moments.of(places[place_of_slot(c, contacts.slot[c])],
-                      vec3(contacts.fields.vector(BallContacts<Real>::impulse, c)));
+    return moments.of(places[contacts.slot[c]], vec3(contacts.fields.vector(BallContacts<Real>::impulse, c)));
   }
 };
 template <class Real>
@@ -161,7 +160,7 @@ struct LatePointMoments {
     Vec3 impulse = Vec3::Zero();
     for (int k = 0; k < contacts.points[c]; ++k)
       impulse += vec3(contacts.point_fields.vector(C::at_point(k, C::impulse), c));
-    return moments.of(places[place_of_slot(c, contacts.slot[c])], impulse);
+    return moments.of(places[contacts.slot[c]], impulse);
   }
 };
 

@@ -36,6 +36,7 @@ struct Inspection {
   bool rolls = false;
   std::int64_t first_wall_point = 0;  ///< among the bodies of the solver
   double step = 0;                    ///< length of the substep (s)
+  std::int64_t first_place = 0;       ///< of the slots that are not of balls
   std::shared_ptr<BroughtContacts<Real>> brought;
 };
 
@@ -72,9 +73,6 @@ void for_each_contact(Inspection<Real>& seen, Visit visit) {
   using P = PointContacts<Real>;
   using R = RollingFields<Real>;
   const auto number = [](Real value) { return static_cast<double>(value); };
-  const auto slot_of = [&](std::int64_t first, std::int64_t c, std::uint8_t slot) {
-    return seen.places[first + place_of_slot(c, slot)];
-  };
   const auto whole = [&](std::int32_t body, std::int32_t end) {
     return end >= seen.first_wall_point ? end : body;
   };
@@ -90,10 +88,10 @@ void for_each_contact(Inspection<Real>& seen, Visit visit) {
   contact.balls = true;
   contact.count = 1;
   const B balls = seen.contacts->balls();
-  for (std::int64_t c = 0; c < seen.contacts->ball_places(); ++c) {
-    if (!has_contact(seen.contacts->ball_tiles().data(), c)) continue;
+  for (std::int64_t c = 0; c < balls.slot.size(); ++c) {
+    if (balls.slot[c] == Slot::empty) continue;
     const auto& f = balls.fields;
-    contact.slot = slot_of(0, c, balls.slot[c]);
+    contact.slot = seen.places[balls.slot[c]];
     contact.i = whole(contact.slot.i, contact.slot.end_i);
     contact.j = whole(contact.slot.j, contact.slot.end_j);
     contact.place = c;
@@ -107,9 +105,9 @@ void for_each_contact(Inspection<Real>& seen, Visit visit) {
   }
   contact.balls = false;
   const P points = seen.contacts->points();
-  for (std::int64_t c = 0; c < seen.contacts->point_places(); ++c) {
-    if (!has_contact(seen.contacts->point_tiles().data(), c)) continue;
-    contact.slot = slot_of(seen.contacts->ball_places(), c, points.slot[c]);
+  for (std::int64_t c = 0; c < points.slot.size(); ++c) {
+    if (points.slot[c] == Slot::empty) continue;
+    contact.slot = seen.places[seen.first_place + points.slot[c]];
     contact.i = contact.slot.i;
     contact.j = contact.slot.j;
     contact.place = c;

@@ -4,7 +4,7 @@
 #include "core/array.hpp"
 #include "core/parallel_loops.hpp"
 #include "sim/dynamics/islands.hpp"
-#include "sim/resident/contact_list.hpp"
+#include "sim/resident/contact_store.hpp"
 #include "sim/resident/layout.hpp"
 #include "sim/resident/sweeps.hpp"
 
@@ -17,8 +17,8 @@ namespace scree::resident {
 /// What a contact adds, and the bodies by which it belongs to an island: -1 where one is not free.
 template <class Sum>
 struct IslandTerm {
-  std::int32_t i, j;
-  Sum sum;
+  std::int32_t i = -1, j = -1;
+  Sum sum{};
 };
 
 /// The term of contact c, whose sum is of(c). Each contact has at least one free body.
@@ -31,7 +31,7 @@ struct TermOfIsland {
   Of of;
 
   SCREE_HD auto operator()(std::int64_t c) const {
-    const Slot& slot = places[first_place + place_of_slot(c, contacts.slot[c])];
+    const Slot& slot = places[first_place + contacts.slot[c]];
     const Ends ends = contacts.ends[c];
     const auto free = [&](std::int32_t body, std::int32_t end) {
       return solver[end].inverse_mass > 0 ? body : -1;
@@ -51,35 +51,34 @@ struct StoreTerm {
 template <class Space, class Sum>
 class IslandSums {
  public:
-  explicit IslandSums(std::int64_t bodies) : sums_(static_cast<std::size_t>(bodies)) {
-    islands_.start(bodies);
-  }
-  /// `term`: TermOfIsland of the contacts in the list.
+  explicit IslandSums(std::int64_t bodies) : bodies_(bodies) { islands_.start(bodies); }
+  /// `term`: TermOfIsland.
   template <class Of>
-  void add(const ContactList<Space>& list, const Of& term) {
+  void add(const Of& term) {
     using Term = IslandTerm<Sum>;
-    Array<Term, Space> terms(list.size());
-    parallel::for_each<Space>("islands.terms", list.size(),
-                              StoreTerm<Term, Of>{on_contacts(list, term), terms.data()});
+    const OnContacts<Of> of = on_contacts(term.contacts, term);
+    Array<Term, Space> terms(of.slot.size());
+    parallel::for_each<Space>("islands.terms", terms.size(), StoreTerm<Term, Of>{of, terms.data()});
     for (const Term& at : to_vector(terms)) {
       if (at.i >= 0 && at.j >= 0) islands_.unite(at.i, at.j);
-      terms_.push_back(at);
+      if (at.i >= 0 || at.j >= 0) terms_.push_back(at);
     }
   }
   /// Whether `of(sum)` holds for each island.
   template <class Of>
   bool all(const Of& of) {
+    std::vector<Sum> sums(static_cast<std::size_t>(bodies_));  // those of an island at its root
     for (const IslandTerm<Sum>& at : terms_) {
-      Sum& sum = sums_[static_cast<std::size_t>(islands_.root(at.i >= 0 ? at.i : at.j))];
+      Sum& sum = sums[static_cast<std::size_t>(islands_.root(at.i >= 0 ? at.i : at.j))];
       sum = sum + at.sum;
     }
-    return std::ranges::all_of(sums_, of);
+    return std::ranges::all_of(sums, of);
   }
 
  private:
+  std::int64_t bodies_;
   Islands islands_;
   std::vector<IslandTerm<Sum>> terms_;
-  std::vector<Sum> sums_;  // of each body, those of an island at its root
 };
 
 }  // namespace scree::resident

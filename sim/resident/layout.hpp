@@ -120,7 +120,7 @@ class Fields {
  public:
   Fields() = default;
   SCREE_HD explicit Fields(Real* data) : data_(data) {}
-  /// Numbers of so many places, whole tiles of them.
+  /// Numbers of so many places, whole blocks of them.
   static std::int64_t size(std::int64_t places) { return places * count; }
 
   SCREE_LAW Real& at(int field, std::int64_t place) const {
@@ -160,8 +160,7 @@ class Fields {
   Real* data_ = nullptr;
 };
 
-/// Contacts of balls with balls, or with bodies that are not free, tile by tile: those of a tile of slots are
-/// at its front, in the order of the slots.
+/// Contacts of balls with balls, or with bodies that are not free.
 template <class Real>
 struct BallContacts {
   enum Field {
@@ -186,7 +185,7 @@ struct BallContacts {
   };
 
   Ends* ends;
-  View<std::uint8_t> slot;  ///< of each contact, in its tile
+  View<std::int32_t> slot;  ///< place of the slot of each, among those of its kind; Slot::empty: no contact
   View<std::uint8_t> flags;
   Fields<Real, count> fields;
   Fields<Real, gap_count> gaps;
@@ -218,7 +217,7 @@ struct PointContacts {
   enum GapField { gap, flown, pushed, gap_count };
 
   Ends* ends;
-  View<std::uint8_t> slot;
+  View<std::int32_t> slot;
   View<std::uint8_t> flags;
   std::int32_t* points;  ///< of each contact
   Fields<Real, count> fields;
@@ -229,18 +228,6 @@ struct PointContacts {
   SCREE_LAW static int at_point(int k, PointField field) { return k * point_count + field; }
   SCREE_LAW static int at_point(int k, GapField field) { return k * gap_count + field; }
 };
-
-/// Slots and contacts are in tiles of so many (parallel::tile).
-inline constexpr std::int64_t tile_size = 256;
-
-/// The place of the slot that contact c comes from, by its number in the tile (BallContacts::slot), which is
-/// that of both.
-SCREE_LAW std::int64_t place_of_slot(std::int64_t c, std::uint8_t slot) { return c - c % tile_size + slot; }
-
-/// True if there is a contact in a place: `found` in each tile, at its front.
-SCREE_HD inline bool has_contact(const std::int32_t* found, std::int64_t place) {
-  return place % tile_size < found[place / tile_size];
-}
 
 /// Of contacts.
 enum Flag : std::uint8_t {

@@ -22,7 +22,7 @@ struct StartRolling {
 
   SCREE_HD void operator()(std::int64_t c) const {
     using R = RollingFields<Real>;
-    const std::int64_t place = first_place + place_of_slot(c, contacts.slot[c]);
+    const std::int64_t place = first_place + contacts.slot[c];
     const Slot slot = stage.places[place];
     const SlotBodies<Real> at = stage.load(slot);
     const auto reach = static_cast<Real>(stage.laws.rolling_reach(slot.i, slot.j));
@@ -50,7 +50,7 @@ struct BookRolling {
   View<V3<Real>> couples;  ///< of all places
 
   SCREE_HD Books operator()(std::int64_t c) const {
-    const std::int64_t place = first_place + place_of_slot(c, contacts.slot[c]);
+    const std::int64_t place = first_place + contacts.slot[c];
     const V3<Real> found = rolling.fields.vector(RollingFields<Real>::couple, c);
     couples[place] = found;
     Books books;

@@ -4,7 +4,7 @@
 
 #include "core/space_rounds.hpp"
 #include "sim/dynamics/state.hpp"
-#include "sim/resident/contact_list.hpp"
+#include "sim/resident/contact_store.hpp"
 #include "sim/resident/hubs.hpp"
 #include "sim/resident/layout.hpp"
 #include "sim/resident/rolling_visits.hpp"
@@ -20,17 +20,20 @@ namespace scree::resident {
 
 /// Visits to the contacts of one kind, the colours being phases.
 struct ColorPhases {
-  std::int64_t begin[most_colors + 1];
   int count = 0;
-  ConstView<std::int32_t> places;
+  int width;                        ///< contacts of a visit
+  std::int32_t begin[most_colors];  ///< first contact of each colour
+  std::int32_t visits[most_colors];
 
-  template <class Space>
-  explicit ColorPhases(const ContactList<Space>& list)
-      : count(static_cast<int>(list.visits_begin().size()) - 1), places(list.visits()) {
-    std::ranges::copy(list.visits_begin(), begin);
+  ColorPhases(const ColorRanges& colors, int contacts_of_visit)
+      : count(colors.colors()), width(contacts_of_visit) {
+    for (std::size_t k = 0; k < colors.count.size(); ++k) {
+      begin[k] = static_cast<std::int32_t>(colors.begin[k]);
+      visits[k] = static_cast<std::int32_t>((colors.count[k] + width - 1) / width);
+    }
   }
-  SCREE_HD std::int64_t items(int color) const { return begin[color + 1] - begin[color]; }
-  SCREE_HD std::int64_t place(int color, std::int64_t item) const { return places[begin[color] + item]; }
+  SCREE_HD std::int64_t items(int color) const { return visits[color]; }
+  SCREE_HD std::int64_t place(int color, std::int64_t item) const { return begin[color] + item * width; }
   std::int64_t most_items() const {
     std::int64_t most = 0;
     for (int c = 0; c < count; ++c) most = std::max(most, items(c));
@@ -67,17 +70,17 @@ struct RunOfItems {
 
   template <class Visit, class... More>
   auto visit(const ColorPhases& colors, int color, const Visit& visit, More... more) const {
-    const std::int32_t* const places = colors.places.data() + colors.begin[color];
+    const auto place = [&](std::int64_t k) { return colors.place(color, k); };
     if constexpr (by_kernels) {
-      return visit_kernels()(visit, Blocks{places + begin, end - begin}, more...);
+      return visit_kernels()(visit, Blocks{place(begin), end - begin}, more...);
     } else {
       using One = decltype(visit.template visit<Scalar<Real>>(0, more...));
       if constexpr (std::is_void_v<One>) {
-        for (std::int64_t k = begin; k < end; ++k) visit.template visit<Scalar<Real>>(places[k], more...);
+        for (std::int64_t k = begin; k < end; ++k) visit.template visit<Scalar<Real>>(place(k), more...);
       } else {
         SweepChange sum;
         for (std::int64_t k = begin; k < end; ++k)
-          sum = sum + visit.template visit<Scalar<Real>>(places[k], more...);
+          sum = sum + visit.template visit<Scalar<Real>>(place(k), more...);
         return sum;
       }
     }

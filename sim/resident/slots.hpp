@@ -1,4 +1,4 @@
-// Slots: where contacts may arise while the candidates stay, colour by colour, and what each remembers.
+// Slots: where contacts may arise while the candidates stay, and what each remembers.
 #pragma once
 
 #include "broadphase/broad_phase.hpp"
@@ -8,9 +8,7 @@
 #include "sim/resident/layout.hpp"
 #include "sim/resident/solver_bodies.hpp"
 
-#include <algorithm>
 #include <cstdint>
-#include <vector>
 
 namespace scree::resident {
 
@@ -43,27 +41,18 @@ struct ListedPairs {
   SCREE_HD static Pair ordered(const Pair& pair) { return pair.i < pair.j ? pair : Pair{pair.j, pair.i}; }
 };
 
-/// Tiles of one colour after the other: slots of one colour share no free body.
-struct ColorTiles {
-  std::vector<std::int64_t> begin;  ///< first tile of each colour; one more than colours
-
-  void archive(Archive& archive) { archive("begin", begin); }
-  std::int64_t colors() const { return static_cast<std::int64_t>(begin.size()) - 1; }
-  std::int64_t tiles() const { return begin.back() - begin.front(); }
-};
-
 template <class Space, class Real>
 class Slots {
  public:
   /// Slots for the candidates (in their order, each with a free body); those that were there before keep
-  /// what they remember. Places are given in tiles of parallel::tile: first those of balls, colour by colour,
-  /// then the others. Most keep their colours, too. The result does not depend on the order of threads.
+  /// what they remember. Places are given in tiles of parallel::tile: first those of balls, then the others,
+  /// each in the order of the candidates. The result does not depend on the order of threads.
   /// `place_before`: where each body lay at the last call, by its place, if bodies have changed places since.
   /// `rolls`: couples are remembered, too.
   void build(ConstView<Pair> candidates, ConstView<std::int32_t> place_before, const ConstBodyView& bodies,
              bool rolls);
   /// Others of the bodies are free now: colours are not to be kept.
-  void forget_colors() { keeps_colors_ = false; }
+  void forget_colors();
   /// Keeps what the slots remember, for recall_memory(), which puts it back. No build() between.
   void keep_memory();
   void recall_memory();
@@ -71,12 +60,22 @@ class Slots {
   void archive(Archive& archive, const ConstBodyView& bodies);
 
   ConstView<Slot> places() const { return places_.view(); }
-  const ColorTiles& balls() const { return balls_; }
-  const ColorTiles& others() const { return others_; }
+  /// Of those of balls.
+  std::int64_t ball_tiles() const { return ball_tiles_; }
+  std::int64_t ball_places() const;
+  /// Of the others.
+  std::int64_t other_tiles() const;
+  ConstView<Slot> places_of_balls() const { return {places_.data(), ball_places()}; }
+  ConstView<Slot> places_of_others() const {
+    return {places_.data() + ball_places(), places_.size() - ball_places()};
+  }
   View<BallMemory<Real>> ball_memory() { return ball_memory_.view(); }
   View<PointMemory<Real>> point_memory() { return point_memory_.view(); }
   /// Against rolling (N m s), of all places; empty if nothing rolls.
   View<V3<Real>> couples() { return couples_.view(); }
+  /// Of their last contacts (ContactColors).
+  View<std::uint8_t> ball_colors() { return {color_.data(), ball_places()}; }
+  View<std::uint8_t> other_colors() { return {color_.data() + ball_places(), color_.size() - ball_places()}; }
 
   /// Which the ends of slots are.
   const SolverBodies<Space>& solver_bodies() const { return solver_bodies_; }
@@ -84,27 +83,25 @@ class Slots {
 
  private:
   void list_slots(const ConstBodyView& bodies);
-  void color_slots(const ConstBodyView& bodies);
   void place_slots(const ConstBodyView& bodies);
-  void recall(bool rolls);
-  int colors_used() const { return static_cast<int>(std::max(balls_.colors(), others_.colors())); }
+  void put_slots(std::int64_t places);
+  void recall(const ConstBodyView& bodies, bool rolls);
 
   Array<Pair, Space> pairs_, old_pairs_;          // the candidates
   Array<std::int64_t, Space> first_, old_first_;  // slot of each; one more than candidates
   Array<Slot, Space> slots_;                      // in the order of the candidates
   Array<std::int64_t, Space> was_;                // the first old slot of each candidate
-  Array<std::uint8_t, Space> color_, old_color_;  // of each slot
-  bool keeps_colors_ = false, recolored_ = false;
-  int colors_at_first_ = 0;                       // that were needed when all were coloured at once
   Array<Slot, Space> places_;                     // the same slots, tile by tile
   Array<std::int64_t, Space> place_, old_place_;  // of each slot
-  ColorTiles balls_{{0}}, others_{{0}};
+  std::int64_t ball_tiles_ = 0;
   Array<BallMemory<Real>, Space> ball_memory_, old_ball_memory_;     // of each place
   Array<PointMemory<Real>, Space> point_memory_, old_point_memory_;  // of each place after those of balls
   Array<V3<Real>, Space> couples_, old_couples_;                     // of each place, if anything rolls
+  Array<std::uint8_t, Space> color_, old_color_;                     // of each place
   Array<BallMemory<Real>, Space> kept_ball_memory_;
   Array<PointMemory<Real>, Space> kept_point_memory_;
   Array<V3<Real>, Space> kept_couples_;
+  Array<std::uint8_t, Space> kept_color_;
   std::int64_t old_ball_places_ = 0;
   SolverBodies<Space> solver_bodies_;
 };

@@ -3,6 +3,7 @@
 #include "core/parallel.hpp"
 #include "core/space_atomic.hpp"
 #include "core/space_tiles.hpp"
+#include "sim/resident/contact_store.hpp"
 
 #include <bit>
 #include <cmath>

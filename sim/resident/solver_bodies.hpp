@@ -21,8 +21,11 @@ struct Hub {
   std::int32_t parts;
 };
 
-/// Slots of a body take no more: those of hubs are dealt to several.
-inline constexpr int most_colors = 64;
+/// Whether a slot is on a part of a hub.
+SCREE_HD inline bool is_on_part(ConstView<Mobility> mobility, const Slot& slot) {
+  return (mobility[slot.i] == Mobility::free && slot.end_i != slot.i) ||
+         (mobility[slot.j] == Mobility::free && slot.end_j != slot.j);
+}
 
 /// Balls on balls, or on what is not free.
 SCREE_HD inline bool is_of_balls(const ConstBodyView& bodies, const Slot& slot) {

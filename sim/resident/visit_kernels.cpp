@@ -86,7 +86,7 @@ struct Lanes : Vectors {
 template <class Visit>
 void push_over(const Visit& given, Blocks blocks) {
   const Visit visit = given;
-  for (std::int64_t k = 0; k < blocks.count; ++k) visit.template visit<Lanes>(blocks.places[k]);
+  for (std::int64_t k = 0; k < blocks.count; ++k) visit.template visit<Lanes>(blocks.place(k));
 }
 
 template <class Visit>
@@ -94,7 +94,7 @@ SweepChange sweep_over(const Visit& given, Blocks blocks, double beta) {
   const Visit visit = given;
   ChangeOf<Lanes> sum;
   for (std::int64_t k = 0; k < blocks.count; ++k)
-    sum = sum + visit.template visit<Lanes>(blocks.places[k], beta);
+    sum = sum + visit.template visit<Lanes>(blocks.place(k), beta);
   SweepChange total;
   for (int l = 0; l < width; ++l) {
     total.step += sum.step[l];
@@ -108,7 +108,7 @@ Overlaps part_over(const Visit& given, Blocks blocks) {
   const Visit visit = given;
   Vector deepest{}, sum{}, count{};
   for (std::int64_t k = 0; k < blocks.count; ++k) {
-    const Vector gap = visit.template visit<Lanes>(blocks.places[k]);
+    const Vector gap = visit.template visit<Lanes>(blocks.place(k));
     const Vector depth = gap < 0 ? -gap : Vector{};
     deepest = depth > deepest ? depth : deepest;
     sum += depth;
@@ -244,7 +244,7 @@ BlockBooks book_balls(const BookBlocks& given, Blocks blocks) {
   Vector loaded{}, ends{}, gaining{};
   const Vector one = Lanes::all(1);
   for (std::int64_t k = 0; k < blocks.count; ++k) {
-    const std::int64_t c = blocks.places[k];
+    const std::int64_t c = blocks.place(k);
     const Ends* const at = by.contacts.ends + c;
     const auto balls = balls_at<Lanes>(by.contacts, c);
     const Three p = by.contacts.fields.vector<Lanes>(C::impulse, c);

@@ -22,10 +22,11 @@ using RollPoints = Roll<double, PointContacts<double>, TurnPoints>;
 using PushRollingBalls = PushRolling<double, BallContacts<double>, TurnBalls>;
 using PushRollingPoints = PushRolling<double, PointContacts<double>, TurnPoints>;
 
-/// The first places of contacts that lie side by side, lanes::width of them.
+/// Blocks of contacts (lanes::width) one after the other.
 struct Blocks {
-  const std::int32_t* places;
-  std::int64_t count;
+  std::int64_t first;  ///< contact
+  std::int64_t count;  ///< of blocks
+  SCREE_LAW std::int64_t place(std::int64_t block) const { return first + block * lanes::width; }
 };
 
 /// Each makes its visit to the contacts of some blocks of one colour, and returns the sum over them.

@@ -3,8 +3,8 @@
 
 #include "core/rng.hpp"
 #include "sim/resident/bodies.hpp"
-#include "sim/resident/contact_list.hpp"
 #include "sim/resident/contact_store.hpp"
+#include "sim/resident/found_slots.hpp"
 #include "sim/resident/padding.hpp"
 #include "tests/sim/dynamics/flight_scenes.hpp"
 
@@ -99,22 +99,35 @@ class Crowd {
   };
   Found find(bool by_kernels) {
     Found found;
-    found.store.resize(tiles * tile, 0, static_cast<int>(tile));
     copy(found.memory, memory_at_start_);
     std::vector<std::int32_t> passing(static_cast<std::size_t>(tiles * tile));
     std::uint64_t count = 0;
-    const FindBalls<double> one_by_one{stage(),
-                                       found.store.balls(),
-                                       found.memory.view(),
-                                       solver_.view(),
-                                       {{passing.data(), tiles * tile}, &count}};
+    FindBalls<double> one_by_one{
+        stage(), {}, found.memory.view(), solver_.view(), {{passing.data(), tiles * tile}, &count}};
+    Array<Reach, Host> reach(bodies_.count() + 1);
+    for (std::int64_t k = 0; k < reach.size(); ++k) SetReach{stage(), reach.data() + 1}(k);
+    FoundSlots<Host> slots;
+    slots.start(tiles);
     if (by_kernels) {
-      Array<Reach, Host> reach(bodies_.count() + 1);
-      for (std::int64_t k = 0; k < reach.size(); ++k) SetReach{stage(), reach.data() + 1}(k);
       for (std::int64_t t = 0; t < tiles; ++t)
-        FindBallTile{one_by_one, reach.data() + 1, found.store.ball_tiles().data()}(t);
+        FindBallTile{one_by_one, reach.data() + 1, slots.places(), slots.counts()}(t);
     } else {
-      parallel::compact_tiles<Host>("test", tiles, one_by_one, found.store.ball_tiles().data());
+      parallel::compact_tiles<Host>("test", tiles, FindSlots<FindBalls<double>>{one_by_one, slots.places()},
+                                    slots.counts());
+    }
+    slots.join();
+    // They share no body.
+    ColorRanges one_color;
+    one_color.add(slots.all().size());
+    found.store.take_balls(one_color);
+    one_by_one.contacts = found.store.balls();
+    for (std::int64_t c = 0; c < one_color.places(); ++c)
+      one_by_one.contacts.slot[c] = c < slots.all().size() ? slots.all()[c] : Slot::empty;
+    if (by_kernels) {
+      for (std::int64_t b = 0; b < one_color.places() / lanes::width; ++b)
+        MakeBallBlock{one_by_one, reach.data() + 1}(b);
+    } else {
+      for (std::int64_t c = 0; c < one_color.places(); ++c) MakeContacts<FindBalls<double>>{one_by_one}(c);
     }
     passing.resize(static_cast<std::size_t>(count));
     std::ranges::sort(passing);
@@ -148,21 +161,18 @@ TEST(BallTiles, FindWhatIsFoundOneByOne) {
     const C a = kernels.store.balls(), b = one_by_one.store.balls();
     EXPECT_EQ(kernels.passing, one_by_one.passing);
     EXPECT_GT(kernels.passing.size(), 5u);
-    std::int64_t found = 0;
-    for (std::int64_t t = 0; t < Crowd::tiles; ++t) {
-      ASSERT_EQ(kernels.store.ball_tiles().view()[t], one_by_one.store.ball_tiles().view()[t]);
-      found += kernels.store.ball_tiles().view()[t];
-      for (std::int64_t c = t * tile; c < t * tile + kernels.store.ball_tiles().view()[t]; ++c) {
-        ASSERT_EQ(a.slot[c], b.slot[c]);
-        ASSERT_EQ(a.flags[c], b.flags[c]);
-        ASSERT_EQ(a.ends[c].i, b.ends[c].i);
-        ASSERT_EQ(a.ends[c].j, b.ends[c].j);
-        for (int field = 0; field < C::count; ++field)
-          ASSERT_NEAR(a.fields.at(field, c), b.fields.at(field, c), rounding)
-              << c << " " << field << " slot " << int{a.slot[c]};
-        for (int field = 0; field < C::gap_count; ++field)
-          ASSERT_NEAR(a.gaps.at(field, c), b.gaps.at(field, c), rounding) << c << " " << field;
-      }
+    const std::int64_t found = kernels.store.ball_colors().contacts();
+    ASSERT_EQ(found, one_by_one.store.ball_colors().contacts());
+    for (std::int64_t c = 0; c < found; ++c) {
+      ASSERT_EQ(a.slot[c], b.slot[c]);
+      ASSERT_EQ(a.flags[c], b.flags[c]);
+      ASSERT_EQ(a.ends[c].i, b.ends[c].i);
+      ASSERT_EQ(a.ends[c].j, b.ends[c].j);
+      for (int field = 0; field < C::count; ++field)
+        ASSERT_NEAR(a.fields.at(field, c), b.fields.at(field, c), rounding)
+            << c << " " << field << " slot " << a.slot[c];
+      for (int field = 0; field < C::gap_count; ++field)
+        ASSERT_NEAR(a.gaps.at(field, c), b.gaps.at(field, c), rounding) << c << " " << field;
     }
     EXPECT_GT(found, 200);
     EXPECT_LT(found, Crowd::pairs - 100);
@@ -187,17 +197,11 @@ TEST(BallTiles, BookWhatIsBookedOneByOne) {
     after.view()[k].velocity = after.view()[k].velocity + v3<double>(vector_in(random, 0.1));
     after.view()[k].spin = v3<double>(vector_in(random, 0.1));
   }
-  ContactList<Host> list;
-  list.take({{0, Crowd::tiles}});
+  const std::int64_t contacts = kernels.store.ball_colors().contacts();
   for (auto* found : {&kernels, &one_by_one}) {
-    for (std::int64_t t = 0; t < Crowd::tiles; ++t)
-      PadBalls<double>{found->store.balls(),
-                       {},
-                       false,
-                       found->store.ball_tiles().data(),
-                       static_cast<std::int32_t>(nobody)}(t);
+    for (std::int64_t b = 0; b < kernels.store.ball_colors().places() / lanes::width; ++b)
+      PadBalls<double>{found->store.balls(), {}, false, static_cast<std::int32_t>(nobody)}(b);
   }
-  list.make(kernels.store.ball_tiles(), lanes::width);
   const BookStage<double> stage{std::as_const(crowd.places()).view(),
                                 crowd.bodies(),
                                 crowd.solver().view(),
@@ -207,7 +211,7 @@ TEST(BallTiles, BookWhatIsBookedOneByOne) {
                                 {}};
   Books expected;
   const BookBalls<double> book{stage, one_by_one.store.balls(), one_by_one.memory.view()};
-  for (const std::int32_t c : list.places()) expected = expected + book(c);
+  for (std::int64_t c = 0; c < contacts; ++c) expected = expected + book(c);
   std::vector<std::uint32_t> loads(Crowd::pairs / 4 + 1);
   BookStage<double> with_loads = stage;
   with_loads.loads = {loads.data(), std::ssize(loads)};
@@ -218,13 +222,10 @@ TEST(BallTiles, BookWhatIsBookedOneByOne) {
                                        .step = crowd.step(),
                                        .rounding = response_gain<double>,
                                        .again = false},
-                              .blocks = list.visits(),
-                              .found = std::as_const(kernels.store.ball_tiles()).view(),
                               .stage = with_loads,
                               .memory = kernels.memory.view()};
   Books got;
-  for (std::int64_t run = 0; run * BookBallBlocks::together < list.visits().size(); ++run)
-    got = got + blocks(run);
+  for (std::int64_t run = 0; run < blocks.runs(); ++run) got = got + blocks(run);
   EXPECT_NEAR(got.restitution, expected.restitution, 1e-10);
   EXPECT_NEAR(got.friction, expected.friction, 1e-10);
   EXPECT_NEAR(got.work, expected.work, 1e-10);
@@ -237,10 +238,10 @@ TEST(BallTiles, BookWhatIsBookedOneByOne) {
   EXPECT_EQ(got.gaining, expected.gaining);
   EXPECT_GT(got.gaining, 0);
   EXPECT_GT(got.loaded, 50);
-  for (const std::int32_t c : list.places()) {
+  for (std::int64_t c = 0; c < contacts; ++c) {
     ASSERT_NEAR(kernels.store.balls().gaps.at(C::flown, c), one_by_one.store.balls().gaps.at(C::flown, c),
                 rounding);
-    const std::int64_t place = c - c % tile + kernels.store.balls().slot[c];
+    const std::int32_t place = kernels.store.balls().slot[c];
     const bool loaded = kernels.memory.view()[place].is_loaded();
     ASSERT_EQ(loaded, one_by_one.memory.view()[place].is_loaded());
     const auto candidate = static_cast<std::size_t>(crowd.places().view()[place].candidate);

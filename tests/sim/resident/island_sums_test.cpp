@@ -27,32 +27,28 @@ struct NumberOf {
 constexpr std::int32_t fixed = 6, bodies = 7;
 constexpr std::int32_t end_of_body[bodies] = {3, 5, 0, 4, 1, 2, 6};
 
-/// Contacts in two tiles of slots, at the front of each. The slots that have none lie before and between
-/// those that have.
+/// Contacts in blocks, which are not full. The slots that have none lie between those that have.
 template <class Space>
 class Problem {
  public:
-  explicit Problem(const std::vector<std::vector<std::pair<std::int32_t, std::int32_t>>>& tiles) {
-    const std::size_t all = tiles.size() * tile_size;
-    std::vector<Slot> places(all);
-    std::vector<Ends> ends(all);
-    std::vector<std::uint8_t> slot(all);
-    std::vector<double> numbers(all);
-    std::vector<std::int32_t> found;
-    ColorTiles colors{{0}};
+  explicit Problem(const std::vector<std::vector<std::pair<std::int32_t, std::int32_t>>>& blocks) {
+    const std::size_t contacts = blocks.size() * lanes::width;
+    std::vector<Ends> ends(contacts);
+    std::vector<std::int32_t> slot(contacts, Slot::empty);
+    std::vector<double> numbers(contacts);
+    std::vector<Slot> places;
     double number = 1;
-    for (std::size_t t = 0; t < tiles.size(); ++t) {
-      for (std::size_t k = 0; k < tiles[t].size(); ++k) {
-        const auto [i, j] = tiles[t][k];
-        const std::size_t c = t * tile_size + k, in_tile = 3 * k + 2;
-        slot[c] = static_cast<std::uint8_t>(in_tile);
-        places[t * tile_size + in_tile] = {.i = i, .j = j};
+    for (std::size_t b = 0; b < blocks.size(); ++b) {
+      for (std::size_t k = 0; k < blocks[b].size(); ++k) {
+        const auto [i, j] = blocks[b][k];
+        const std::size_t c = b * lanes::width + k;
+        places.push_back({});
+        slot[c] = static_cast<std::int32_t>(places.size());
+        places.push_back({.i = i, .j = j});
         ends[c] = {end_of_body[i], end_of_body[j]};
         numbers[c] = number;
         number *= 2;
       }
-      found.push_back(static_cast<std::int32_t>(tiles[t].size()));
-      colors.begin.push_back(static_cast<std::int64_t>(t) + 1);
     }
     std::vector<BodyRecord<double>> solver(bodies);
     for (std::int32_t k = 0; k < bodies; ++k) solver[end_of_body[k]].inverse_mass = k == fixed ? 0 : 1;
@@ -61,10 +57,6 @@ class Problem {
     copy(slot_, slot);
     copy(numbers_, numbers);
     copy(solver_, solver);
-    Array<std::int32_t, Space> counts;
-    copy(counts, found);
-    list_.take(colors);
-    list_.make(counts, 1);
   }
 
   IslandSums<Space, double> sums() {
@@ -72,21 +64,20 @@ class Problem {
     contacts.ends = ends_.data();
     contacts.slot = slot_.view();
     IslandSums<Space, double> all(bodies);
-    all.add(list_, TermOfIsland<double, BallContacts<double>, NumberOf>{std::as_const(places_).view(),
-                                                                        0,
-                                                                        contacts,
-                                                                        std::as_const(solver_).view(),
-                                                                        {std::as_const(numbers_).view()}});
+    all.add(TermOfIsland<double, BallContacts<double>, NumberOf>{std::as_const(places_).view(),
+                                                                 0,
+                                                                 contacts,
+                                                                 std::as_const(solver_).view(),
+                                                                 {std::as_const(numbers_).view()}});
     return all;
   }
 
  private:
   Array<Slot, Space> places_;
   Array<Ends, Space> ends_;
-  Array<std::uint8_t, Space> slot_;
+  Array<std::int32_t, Space> slot_;
   Array<double, Space> numbers_;
   Array<BodyRecord<double>, Space> solver_;
-  ContactList<Space> list_;
 };
 
 template <class Space>
@@ -100,7 +91,7 @@ std::vector<double> sums_of(IslandSums<Space, double> sums) {
 }
 
 TYPED_TEST(IslandSumsTest, ContactsThatShareFreeBodiesAddUp) {
-  // A chain 0-1-2 over both tiles, a pair 4-5, and 3 alone on what is not free, which connects nothing.
+  // A chain 0-1-2 over both blocks, a pair 4-5, and 3 alone on what is not free, which connects nothing.
   Problem<TypeParam> problem({{{0, 1}, {3, fixed}, {4, 5}}, {{1, 2}, {fixed, 5}, {fixed, 0}}});
   EXPECT_EQ(sums_of(problem.sums()), (std::vector<double>{1 + 8 + 32, 2, 4 + 16}));
 }

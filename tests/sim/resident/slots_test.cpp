@@ -1,4 +1,4 @@
-// Slots: every candidate has its places, colours share no free body, memory outlives the candidates.
+// Slots: every candidate has its places, memory outlives the candidates.
 #include "sim/resident/slots.hpp"
 
 #include "core/parallel.hpp"
@@ -82,43 +82,48 @@ struct Built {
   }
 };
 
-void expect_colors_apart(const std::vector<Slot>& places, const ColorTiles& tiles, const BodyTable& bodies) {
-  for (std::size_t c = 0; c + 1 < tiles.begin.size(); ++c) {
-    std::set<std::int32_t> used;
-    for (std::int64_t p = tiles.begin[c] * parallel::tile; p < tiles.begin[c + 1] * parallel::tile; ++p) {
-      const Slot& slot = places[static_cast<std::size_t>(p)];
-      if (slot.i == Slot::empty) continue;
-      for (const auto& [body, end] : {std::pair(slot.i, slot.end_i), std::pair(slot.j, slot.end_j)}) {
-        if (bodies.mobility[static_cast<std::size_t>(body)] != Mobility::free) continue;
-        EXPECT_TRUE(used.insert(end).second) << "body " << body << " twice in colour " << c;
-      }
-    }
-  }
-}
-
-TYPED_TEST(SlotsTest, EachCandidateHasOnePlaceAndColoursShareNoFreeBody) {
+TYPED_TEST(SlotsTest, EachCandidateHasOnePlaceInItsOrder) {
   const BodyTable bodies = balls(300, false);
   const std::vector<Pair> pairs = random_pairs(300, 1500, 1);
   Built<TypeParam> built(bodies);
   built.build(pairs);
   const std::vector<Slot> places = built.places();
-  std::vector<int> seen(pairs.size(), 0);
-  for (const Slot& slot : places) {
-    if (slot.i == Slot::empty) continue;
-    const auto k = static_cast<std::size_t>(slot.candidate);
-    ++seen[k];
-    EXPECT_EQ(slot.i, pairs[k].i);
-    EXPECT_EQ(slot.j, pairs[k].j);
+  EXPECT_EQ(built.slots.other_tiles(), 0);
+  ASSERT_EQ(std::ssize(places), built.slots.ball_places());
+  for (std::size_t k = 0; k < places.size(); ++k) {
+    const bool is_there = k < pairs.size();
+    EXPECT_EQ(places[k].i, is_there ? pairs[k].i : Slot::empty);
+    if (!is_there) continue;
+    EXPECT_EQ(places[k].j, pairs[k].j);
+    EXPECT_EQ(places[k].candidate, static_cast<std::int32_t>(k));
   }
-  EXPECT_EQ(std::ranges::count(seen, 1), static_cast<std::ptrdiff_t>(pairs.size()));
-  expect_colors_apart(places, built.slots.balls(), bodies);
-  EXPECT_EQ(built.slots.others().tiles(), 0);
+}
+
+TYPED_TEST(SlotsTest, ThoseOfBallsAreFirst) {
+  BodyTable bodies = balls(300, false);
+  for (std::size_t k = 3; k < 300; k += 3) bodies.shape[k] = Shape::box;
+  const std::vector<Pair> pairs = random_pairs(300, 1500, 1);
+  Built<TypeParam> built(bodies);
+  built.build(pairs);
+  const std::vector<Slot> places = built.places();
+  std::vector<std::int32_t> expected[2], seen[2];
+  const auto is_box = [&](std::int32_t k) { return bodies.shape[static_cast<std::size_t>(k)] == Shape::box; };
+  for (std::size_t k = 0; k < pairs.size(); ++k)
+    expected[is_box(pairs[k].i) || is_box(pairs[k].j)].push_back(static_cast<std::int32_t>(k));
+  for (std::int64_t place = 0; place < std::ssize(places); ++place) {
+    const Slot& slot = places[static_cast<std::size_t>(place)];
+    if (slot.i != Slot::empty) seen[place >= built.slots.ball_places()].push_back(slot.candidate);
+  }
+  for (const bool other : {false, true}) {
+    EXPECT_EQ(seen[other], expected[other]);
+    EXPECT_GT(seen[other].size(), 300u);
+  }
 }
 
 TYPED_TEST(SlotsTest, ATubeHasASlotForEachSurfaceAndOneThatTurnsAPointForEach) {
   Built<TypeParam> built(balls(10, true));
   built.build({{0, 2}, {1, 2}, {1, 3}, {2, 3}});
-  EXPECT_EQ(built.slots.others().tiles(), 0);
+  EXPECT_EQ(built.slots.other_tiles(), 0);
   EXPECT_EQ(built.slots.solver_bodies().first_wall_point(), 11);
   EXPECT_EQ(built.slots.solver_bodies().count(), 17);
   std::multiset<std::pair<std::int32_t, std::int32_t>> on_tube;
@@ -139,16 +144,14 @@ TYPED_TEST(SlotsTest, ATubeHasASlotForEachSurfaceAndOneThatTurnsAPointForEach) {
                          {1, 0}, {1, 1}, {1, 2}, {2, 0}, {2, 1}, {2, 2}}));
 }
 
-/// A ball that touches a thousand is many parts, each with few slots, so that colours stay few.
-TYPED_TEST(SlotsTest, AHubIsSplitSoThatColoursStayFew) {
+/// A ball that touches a thousand is many parts, each with few slots.
+TYPED_TEST(SlotsTest, AHubIsSplit) {
   const BodyTable bodies = balls(1002, false);
   std::vector<Pair> pairs;
   for (std::int32_t k = 2; k < 1002; ++k) pairs.push_back({1, k});
   Built<TypeParam> built(bodies);
   built.build(pairs);
   const std::vector<Slot> places = built.places();
-  expect_colors_apart(places, built.slots.balls(), bodies);
-  EXPECT_LE(built.slots.balls().colors(), 64);
   ASSERT_EQ(built.slots.solver_bodies().hubs().size(), 1);
   std::map<std::int32_t, int> of_part;
   for (const Slot& slot : places)
@@ -233,7 +236,7 @@ TYPED_TEST(SlotsTest, MemoryOutlivesTheCandidates) {
   EXPECT_GT(kept, 10);
 }
 
-TYPED_TEST(SlotsTest, MemoryAndColoursOutliveMovesOfTheBodies) {
+TYPED_TEST(SlotsTest, MemoryOutlivesMovesOfTheBodies) {
   constexpr std::int32_t count = 200;
   const BodyTable table = balls(count, false);
   const std::vector<Pair> before = random_pairs(count, 700, 2);
@@ -242,7 +245,6 @@ TYPED_TEST(SlotsTest, MemoryAndColoursOutliveMovesOfTheBodies) {
   parallel::for_each<TypeParam>(
       "test", built.slots.places().size(),
       Remember<double>{built.slots.places(), built.slots.ball_memory(), built.slots.couples()});
-  const std::int64_t colors = built.slots.balls().colors();
 
   // To any other places, and the pairs in their order there.
   std::vector<std::int32_t> place_before(count), place_now(count);
@@ -262,9 +264,7 @@ TYPED_TEST(SlotsTest, MemoryAndColoursOutliveMovesOfTheBodies) {
   });
   built.build(after, place_before);
 
-  EXPECT_EQ(built.slots.balls().colors(), colors);
   const std::vector<Slot> places = built.places();
-  expect_colors_apart(places, built.slots.balls(), moved);
   std::vector<BallMemory<double>> memory(places.size());
   copy_bytes<Host, TypeParam>(memory.data(), built.slots.ball_memory().data(),
                               memory.size() * sizeof(BallMemory<double>));

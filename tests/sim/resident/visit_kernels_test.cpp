@@ -16,28 +16,34 @@
 namespace scree::resident {
 namespace {
 
-constexpr int tile = 256;
 constexpr double float_sums = 1e-6;  // of some numbers that are added up as floats, in whatever order
 using Balls = BallContacts<double>;
 using Points = PointContacts<double>;
 using Rolling = RollingFields<double>;
 
-/// One tile of contacts of balls and one of others, each contact between two bodies of its own, of which some
-/// are not free. So many contacts that those side by side are not all there, and differ in their number of
-/// points.
+/// One colour of contacts of balls and one of others, each contact between two bodies of its own, of which
+/// some are not free. So many contacts that those side by side are not all there, and differ in their number
+/// of points.
 class Problem {
  public:
   static constexpr int balls_found = 29, points_found = 43;
   static constexpr std::int32_t nobody = 2 * (balls_found + points_found);
 
   explicit Problem(bool rough, bool rolls) {
-    store_.resize(tile, tile, tile);
-    ball_rolling_.resize(decltype(Rolling::fields)::size(tile));
-    point_rolling_.resize(decltype(Rolling::fields)::size(tile));
+    ColorRanges of_balls, of_points;
+    of_balls.add(balls_found);
+    of_points.add(points_found);
+    store_.take_balls(of_balls);
+    store_.take_points(of_points);
+    ball_rolling_.resize(decltype(Rolling::fields)::size(of_balls.places()));
+    point_rolling_.resize(decltype(Rolling::fields)::size(of_points.places()));
     // What no contact wrote must not matter.
     for (const auto& [data, size] : memory()) std::memset(data, 0xff, size);
-    store_.ball_tiles().view()[0] = balls_found;
-    store_.point_tiles().view()[0] = points_found;
+    const auto number_slots = [](View<std::int32_t> slots, std::int32_t found) {
+      for (std::int32_t c = 0; c < slots.size(); ++c) slots[c] = c < found ? c : Slot::empty;
+    };
+    number_slots(store_.balls().slot, balls_found);
+    number_slots(store_.points().slot, points_found);
     Random random(7, 0);
     const auto number = [&](double low, double high) { return random.uniform(low, high); };
     const auto vector = [&](double size) {
@@ -112,8 +118,10 @@ class Problem {
       }
       put_rolling(point_rolling(), c, n);
     }
-    PadBalls<double>{b, ball_rolling(), true, store_.ball_tiles().data(), nobody}(0);
-    PadPoints<double>{p, point_rolling(), true, store_.point_tiles().data(), nobody}(0);
+    for (std::int64_t block = 0; block < b.slot.size() / lanes::width; ++block)
+      PadBalls<double>{b, ball_rolling(), true, nobody}(block);
+    for (std::int64_t block = 0; block < p.slot.size() / lanes::width; ++block)
+      PadPoints<double>{p, point_rolling(), true, nobody}(block);
     for (std::int32_t k = 0; k <= nobody; ++k) {
       CentreRecord<double> centre, turn;
       centre.velocity = turn.velocity = {};
@@ -173,11 +181,11 @@ class Problem {
     };
     const Balls b = balls();
     const Points p = points();
-    return {{&b.fields.at(0, 0), bytes(decltype(b.fields)::size(tile))},
-            {&b.gaps.at(0, 0), bytes(decltype(b.gaps)::size(tile))},
-            {&p.fields.at(0, 0), bytes(decltype(p.fields)::size(tile))},
-            {&p.point_fields.at(0, 0), bytes(decltype(p.point_fields)::size(tile))},
-            {&p.gaps.at(0, 0), bytes(decltype(p.gaps)::size(tile))},
+    return {{&b.fields.at(0, 0), bytes(decltype(b.fields)::size(b.slot.size()))},
+            {&b.gaps.at(0, 0), bytes(decltype(b.gaps)::size(b.slot.size()))},
+            {&p.fields.at(0, 0), bytes(decltype(p.fields)::size(p.slot.size()))},
+            {&p.point_fields.at(0, 0), bytes(decltype(p.point_fields)::size(p.slot.size()))},
+            {&p.gaps.at(0, 0), bytes(decltype(p.gaps)::size(p.slot.size()))},
             {ball_rolling_.data(), bytes(ball_rolling_.size())},
             {point_rolling_.data(), bytes(point_rolling_.size())}};
   }
@@ -244,9 +252,7 @@ struct BySet {
   const VisitKernels& kernels;
   template <class Visit, class... More>
   auto operator()(const Visit& visit, int found, More... more) const {
-    std::vector<std::int32_t> places;
-    for (int c = 0; c < found; c += lanes::width) places.push_back(c);
-    return kernels(visit, Blocks{places.data(), static_cast<std::int64_t>(places.size())}, more...);
+    return kernels(visit, Blocks{0, (found + lanes::width - 1) / lanes::width}, more...);
   }
 };
 

@@ -14,7 +14,6 @@
 namespace scree::resident {
 namespace {
 
-constexpr int tile = 256;
 constexpr double rounding = 1e-12;  // of velocities of some m/s, and of impulses of some N s
 
 Vec3 vector_in(Random& random, double size) {
@@ -88,13 +87,16 @@ void expect_moves(const BodyRecord<double>& record, const SolverBody& body, std:
 template <class Contacts>
 struct Stored {
   ContactStore<Host, double> store;
-  std::vector<double> rolling_data =
-      std::vector<double>(static_cast<std::size_t>(decltype(RollingFields<double>::fields)::size(tile)));
+  std::vector<double> rolling_data = std::vector<double>(
+      static_cast<std::size_t>(decltype(RollingFields<double>::fields)::size(lanes::width)));
   RollingFields<double> rolling{decltype(RollingFields<double>::fields)(rolling_data.data())};
   std::vector<BodyRecord<double>> bodies;
 
   explicit Stored(const Reference& of) {
-    store.resize(tile, tile, tile);
+    ColorRanges one;
+    one.add(1);
+    store.take_balls(one);
+    store.take_points(one);
     bodies = {record_of(of.i), record_of(of.j)};
     rolling.fields.at(RollingFields<double>::reach, 0) = of.rolling_reach;
     rolling.fields.set(RollingFields<double>::couple, 0, v3<double>(of.couple));
