@@ -141,14 +141,11 @@ struct LoadColor {
   SCREE_HD int operator()(std::int64_t d) const { return static_cast<int>(color[d]); }
 };
 
-struct SetBytes {
-  View<std::uint8_t> of;
-  std::uint8_t value;
+template <class T>
+struct Fill {
+  View<T> of;
+  T value;
   SCREE_HD void operator()(std::int64_t k) const { of[k] = value; }
-};
-struct ClearPlaces {
-  View<std::int32_t> of;
-  SCREE_HD void operator()(std::int64_t c) const { of[c] = Slot::empty; }
 };
 
 struct PlaceContacts {
@@ -173,36 +170,36 @@ void ContactColors<Space>::find(ConstView<std::int32_t> found, ConstView<Slot> s
   const std::int64_t n = found.size();
   const ColoredContacts contacts{found, slots, bodies.mobility, bodies.id};
   const bool keep = colors_ > 0 && colors_ <= colors_at_first_ + most_more;
-  Array<std::uint32_t, Space> list;
-  parallel::select("contacts.color", n, Uncolored{found, remembered, keep}, Uncolored::none, list);
-  are_same_ = knows_slots_ && keep && list.size() == 0 && n == color_.size();
+  parallel::select("contacts.color", n, Uncolored{found, remembered, keep}, Uncolored::none, uncolored_);
+  are_same_ = knows_slots_ && keep && uncolored_.empty() && n == color_.size();
   knows_slots_ = true;
   if (are_same_) return;
   color_.resize(n);
   slot_.resize(n);
-  Array<std::uint64_t, Space> standing(ends), taken(ends);
-  parallel::fill("contacts.color", standing, ~std::uint64_t{0});
-  parallel::fill("contacts.color", taken, std::uint64_t{0});
+  standing_.resize(ends);
+  taken_.resize(ends);
+  parallel::fill("contacts.color", standing_, ~std::uint64_t{0});
+  parallel::fill("contacts.color", taken_, std::uint64_t{0});
   parallel::for_each<Space>(
-      "contacts.color", n, KeepColors{contacts, keep, remembered, color_.view(), slot_.view(), taken.view()});
-  if (list.size() > 0) {
-    parallel::run_rounds<Space>(
-        "contacts.color",
-        ColorRounds{contacts, std::as_const(list).view(), color_.view(), standing.view(), taken.view()},
-        ColorRounds::State{false});
+      "contacts.color", n,
+      KeepColors{contacts, keep, remembered, color_.view(), slot_.view(), taken_.view()});
+  if (!uncolored_.empty()) {
+    parallel::run_rounds<Space>("contacts.color",
+                                ColorRounds{contacts, std::as_const(uncolored_).view(), color_.view(),
+                                            standing_.view(), taken_.view()},
+                                ColorRounds::State{false});
   }
-  parallel::for_each<Space>("contacts.color", remembered.size(), SetBytes{remembered, no_color});
+  parallel::for_each<Space>("contacts.color", remembered.size(), Fill<std::uint8_t>{remembered, no_color});
   parallel::for_each<Space>("contacts.color", n,
                             RememberColors{contacts, std::as_const(color_).view(), remembered});
   ranges_ = {};
   if (n == 0) return;
   parallel::sort_by_key("contacts.color", color_, slot_, 6);
-  Array<std::uint32_t, Space> counts;
   parallel::histogram<Space>("contacts.color", n, LoadColor{std::as_const(color_).view()}, most_colors,
-                             counts);
+                             counts_);
   std::vector<ColorStart> start;
   std::int64_t first = 0;
-  for (const std::uint32_t count : to_vector(counts)) {
+  for (const std::uint32_t count : to_vector(counts_)) {
     start.push_back({first, ranges_.places()});
     first += count;
     if (count > 0) ranges_.add(count);
@@ -214,7 +211,7 @@ void ContactColors<Space>::find(ConstView<std::int32_t> found, ConstView<Slot> s
 
 template <class Space>
 void ContactColors<Space>::place(View<std::int32_t> slot) const {
-  parallel::for_each<Space>("contacts.color", slot.size(), ClearPlaces{slot});
+  parallel::for_each<Space>("contacts.color", slot.size(), Fill<std::int32_t>{slot, Slot::empty});
   parallel::for_each<Space>("contacts.color", color_.size(),
                             PlaceContacts{color_.view(), slot_.view(), start_.view(), slot});
 }

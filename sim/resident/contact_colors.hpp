@@ -54,6 +54,9 @@ class ContactColors {
   Array<std::uint32_t, Space> color_, slot_;  // of each contact; in the end colour by colour
   ColorRanges ranges_;
   Array<ColorStart, Space> start_;  // of each colour
+  // Room for find(): contacts without a colour, what bodies of the solver know, contacts of each colour.
+  Array<std::uint32_t, Space> uncolored_, counts_;
+  Array<std::uint64_t, Space> standing_, taken_;
   bool knows_slots_ = false, are_same_ = false;
   int colors_ = 0;           // of the last call
   int colors_at_first_ = 0;  // that were needed when all were coloured at once

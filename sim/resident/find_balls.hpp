@@ -128,7 +128,7 @@ struct FindBalls {
     return true;
   }
 
-  /// What is found is found again at no cost.
+  /// Nothing is kept: make() reads the same bodies, and finds the contact again.
   SCREE_HD void keep(std::int64_t, const Record&) const {}
   /// Contact `to`, of a slot that has one.
   SCREE_HD void make(std::int64_t to, std::int64_t place) const {
