@@ -28,6 +28,7 @@ int sync(const std::filesystem::path& file) {
 void make_movie(const std::filesystem::path& frames, double fps, const std::filesystem::path& file) {
   std::filesystem::path part = file;
   part += ".part";
+  // Without -xerror ffmpeg ends with status 0 when the disk is full as it writes the file's index.
   // crf 17 keeps small spheres crisp; the colours are tagged as what they are converted to.
   const std::vector<std::string> command = {
       "ffmpeg",
@@ -35,6 +36,7 @@ void make_movie(const std::filesystem::path& frames, double fps, const std::file
       "-hide_banner",
       "-loglevel",
       "error",
+      "-xerror",
       "-y",
       "-framerate",
       std::to_string(fps),

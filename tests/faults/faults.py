@@ -11,6 +11,7 @@ NAME: only the cases whose name holds it.
 import argparse
 import errno
 import os
+import shutil
 import signal
 import subprocess
 import sys
@@ -175,18 +176,31 @@ def held(case):
 # Pictures.
 
 
+def no_room_for_movie(after):
+    """For a script in ffmpeg's place: ffmpeg itself, on a disk that gets full."""
+
+    def script(case):
+        variables = {"LD_PRELOAD": case.harness.libraries / "fault_shim.so", **no_room("/movie.mp4", after)}
+        return " ".join(f"{name}={value}" for name, value in variables.items()) + f' exec {shutil.which("ffmpeg")} "$@"'
+
+    return script
+
+
 @case(
     ("ffmpeg is missing", None, "not installed"),
-    ("ffmpeg fails half way", "echo no codec >&2; exit 1", "ffmpeg failed: no codec"),
-    ("ffmpeg is killed half way", "kill -KILL $$", "ffmpeg was ended by signal 9"),
-    ("ffmpeg is no program", "", "ffmpeg does not start"),
+    ("ffmpeg fails half way", lambda case: "echo no codec >&2; exit 1", "ffmpeg failed: no codec"),
+    ("ffmpeg is killed half way", lambda case: "kill -KILL $$", "ffmpeg was ended by signal 9"),
+    ("ffmpeg is no program", lambda case: "", "ffmpeg does not start"),
+    ("disk full for the movie's first bytes", no_room_for_movie(after=0), FULL),
+    ("disk full for the movie's index", no_room_for_movie(after=1000), FULL),
 )
 def no_movie(case, script, words):
     programs = case.scratch / "bin"
     programs.mkdir()
     if script is not None:
-        (programs / "ffmpeg").write_text(f'#!/bin/sh\nfor last; do :; done\necho half > "$last"\n{script}\n' if script else "")
-        (programs / "ffmpeg").chmod(0o755 if script else 0o644)
+        lines = script(case)
+        (programs / "ffmpeg").write_text(f'#!/bin/sh\nfor last; do :; done\necho half > "$last"\n{lines}\n' if lines else "")
+        (programs / "ffmpeg").chmod(0o755 if lines else 0o644)
     case.ends(case.run(environment={"PATH": str(programs)}), 0, "no movie, but the frames are in", words)
     case.warned(words)
     case.is_undisturbed(but=("files",))
