@@ -254,6 +254,7 @@ class ResidentStepper final : public Stepper {
   bool fly_and_respond(double h, double done, bool may_be_undone);
   void fly_on(double h, double done, bool late);
   void give_candidates(ConstView<Pair> pairs);
+  ConstView<std::int64_t> known(ConstView<Pair> pairs);
   ConstView<LoadedParts> loads_of(ConstView<Pair> pairs);
   bool resolve_impacts(double h, double from, double foresight, double reach);
   void add_impulse_on_walls(const Impact& impact);
@@ -282,6 +283,8 @@ class ResidentStepper final : public Stepper {
   KeptPairs<Space> seen_pairs_;
   bool sees_kept_ = true;
   std::int64_t pairs_taken_ = 0;  // how often they had been made when the contacts last took them
+  std::int64_t pairs_known_ = 0;  // the same of `known_`
+  Array<std::int64_t, Space> known_;
   Array<LoadedParts, Space> loads_;
   LibccdContacts libccd_;
   ImpactRounds<Space> impacts_;
@@ -432,6 +435,7 @@ void ResidentStepper<Space, Real>::archive(Archive& archive) {
   archive.part("seen_pairs", seen_pairs_);
   archive("sees_kept", sees_kept_);
   archive("pairs_taken", pairs_taken_);
+  if (archive.is_loading()) pairs_known_ = 0;
   archive.part("contacts", contacts_, view_of(std::as_const(bodies_)), parameters_);
   gravity_.archive(archive, parameters_);
   if (!archive.is_loading()) return;
@@ -439,12 +443,20 @@ void ResidentStepper<Space, Real>::archive(Archive& archive) {
   forces_.act(step_, bodies_, parameters_);
 }
 
+/// Which of the pairs that were made anew are among the contacts' candidates (Slots::look_up).
+template <class Space, class Real>
+ConstView<std::int64_t> ResidentStepper<Space, Real>::known(ConstView<Pair> pairs) {
+  if (pairs_known_ != kept_pairs_.times_made()) contacts_.slots().look_up(pairs, place_before(), known_);
+  pairs_known_ = kept_pairs_.times_made();
+  return std::as_const(known_).view();
+}
+
 /// Lets the contacts know of candidates that were made anew.
 template <class Space, class Real>
 void ResidentStepper<Space, Real>::give_candidates(ConstView<Pair> pairs) {
   if (pairs_taken_ == kept_pairs_.times_made()) return;
   const timing::Region region("slots");
-  contacts_.take_candidates(pairs, place_before(), view_of(std::as_const(bodies_)), parameters_);
+  contacts_.take_candidates(pairs, known(pairs), view_of(std::as_const(bodies_)), parameters_);
   have_moved_ = false;
   pairs_taken_ = kept_pairs_.times_made();
 }
@@ -453,7 +465,7 @@ void ResidentStepper<Space, Real>::give_candidates(ConstView<Pair> pairs) {
 template <class Space, class Real>
 ConstView<LoadedParts> ResidentStepper<Space, Real>::loads_of(ConstView<Pair> pairs) {
   if (pairs_taken_ == kept_pairs_.times_made()) return contacts_.loads();
-  contacts_.look_up_loads(pairs, place_before(), loads_);
+  contacts_.loads_of(known(pairs), loads_);
   return std::as_const(loads_).view();
 }
 

@@ -263,10 +263,11 @@ std::string memory_words(const Scene& scene) {
 std::string response_words(const ResponseSettings& settings) {
   const std::string sweeps = settings.iterations ? fmt::format("at most {} sweeps", *settings.iterations)
                                                  : std::string("sweeps by the number of contact points");
-  const std::string tolerance = settings.tolerance
-                                    ? fmt::format("{:g} of their size", *settings.tolerance)
-                                    : fmt::format("{:g} of their size, of a heap's {:g}",
-                                                  tolerance::response_change, tolerance::heap_change);
+  const std::string tolerance =
+      settings.tolerance
+          ? fmt::format("{:g} of their size", *settings.tolerance)
+          : fmt::format("{:g} of their size, of a heap's {:g} ({:g} where it flows)",
+                        tolerance::response_change, tolerance::heap_change, tolerance::heap_change_in_flow);
   return fmt::format("{}, until the impulses change by less than {}", sweeps, tolerance);
 }
 

@@ -118,8 +118,8 @@ SCREE_HD bool would_push_apart(const StruckFlights& struck, const Header& m, con
 
 /// Of a Manifold. Two bodies that the rows would hold apart, though
 /// nothing else has touched them, may pass by each other: the normal of the midpoint says nothing of it. Or
-/// they meet later, in an impact that will bounce. `size`: the smaller smallest_size of the two (m);
-/// `loaded`: whether the pair's part carried an impulse in the last substep.
+/// they meet later, in an impact that will bounce; in a crowd they bounce now. `size`: the smaller
+/// smallest_size of the two (m); `loaded`: whether the pair's part carried an impulse in the last substep.
 template <class Header>
 SCREE_HD ContactFlight flight_of_contact(const StruckFlights& struck, const Header& m,
                                          const ContactPoint* points, double size, bool loaded) {
@@ -131,8 +131,9 @@ SCREE_HD ContactFlight flight_of_contact(const StruckFlights& struck, const Head
   PairFlight pair = stage.pair_of(m.i, m.j, 1.5 * step);
   pair.slowest[m.part] = 0;
   const Meeting meeting = next_meeting(pair, struck.time_of(m.i, m.j));
-  contact.flying = meeting.time == HUGE_VAL ||
-                   (meeting.time > step && fastest_approach(pair) > stage.slowest_bounce(m.i, m.j));
+  const bool bounces_later = meeting.time > step && !stage.are_in_crowd(m.i, m.j) &&
+                             fastest_approach(pair) > stage.slowest_bounce(m.i, m.j);
+  contact.flying = meeting.time == HUGE_VAL || bounces_later;
   return contact;
 }
 

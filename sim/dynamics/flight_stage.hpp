@@ -48,6 +48,8 @@ struct FlightLog {
   Array<double, Space> top_speed;  ///< bound on that of its surface, but for what gravity adds (m/s)
   Array<double, Space> reach;      ///< of its surface from the midpoint, to either end of the substep (m)
   Array<double, Space> extent;  ///< how far from its centre it may be in the substep (m); infinite: boundary
+  /// 1: bore load together with another free body in the last substep. Empty: nobody did, or none counts.
+  Array<std::uint32_t, Space> in_crowd;
 
   void resize(std::int64_t bodies) {
     clock.resize(bodies);
@@ -83,7 +85,8 @@ struct FlightStage {
         turn(log.turn.view()),
         top_speed(log.top_speed.view()),
         reach(log.reach.view()),
-        extent(log.extent.view()) {}
+        extent(log.extent.view()),
+        in_crowd(log.in_crowd.view()) {}
 
   FlightTerms terms;
   ResponseParameters parameters;
@@ -94,6 +97,7 @@ struct FlightStage {
   View<double> top_speed;
   View<double> reach;
   View<double> extent;
+  View<std::uint32_t> in_crowd;
   double harmless = -1;  ///< two bodies whose top speeds sum to no more have no impact (m/s)
 
   SCREE_HD bool is_free(std::int32_t body) const { return bodies.mobility[body] == Mobility::free; }
@@ -102,6 +106,11 @@ struct FlightStage {
     return is_free(body) && tolerance::heavy_ratio * bodies.inverse_mass[body] <= bodies.inverse_mass[other];
   }
   SCREE_HD bool is_late(std::int32_t body) const { return clock[body] > 0.5 * terms.step; }
+  /// Whether two bodies bounce off each other together with the contacts that they bear load in, and not
+  /// before those: the order of impacts in a crowd is chaos, and its contacts are solved at once.
+  SCREE_HD bool are_in_crowd(std::int32_t i, std::int32_t j) const {
+    return in_crowd.size() > 0 && in_crowd[i] != 0 && in_crowd[j] != 0;
+  }
 
   /// What the bodies' velocities have of the substep's kick already (m/s).
   SCREE_HD Vec3 kick_of(std::int32_t body) const {
@@ -182,7 +191,7 @@ struct FlightStage {
     limits.earliest = std::max(clock[i], clock[j]);
     if (!(limits.earliest < terms.step)) return false;
     limits.left = terms.step - limits.earliest;
-    limits.slowest = terms.bounces ? slowest_bounce(i, j) : HUGE_VAL;
+    limits.slowest = terms.bounces && !are_in_crowd(i, j) ? slowest_bounce(i, j) : HUGE_VAL;
     limits.farthest =
         parameters.continuous ? tolerance::deep_approach * terms.laws.smaller_size(i, j) : HUGE_VAL;
     return limits.may_count(fastest(i, j));

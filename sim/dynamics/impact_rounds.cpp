@@ -52,6 +52,20 @@ struct StartProgress {
   }
 };
 
+/// Not where nobody is fast enough for an impact.
+struct MarkCrowd {
+  FlightStage stage;
+  ConstView<Pair> pairs;
+  ConstView<LoadedParts> loaded;
+  const ImpactProgress* progress;
+  SCREE_HD void operator()(std::int64_t k) const {
+    if (progress->harmless == HUGE_VAL || loaded[k].bits == 0) return;
+    const auto [i, j] = pairs[k];
+    if (!stage.is_free(i) || !stage.is_free(j)) return;
+    for (const std::int32_t body : {i, j}) raise(&stage.in_crowd[body], 1u);
+  }
+};
+
 struct LoadOrdered {
   ConstView<std::int64_t> order;
   ConstView<Resolved> resolved;
@@ -112,8 +126,16 @@ template <class Space>
 Ledger ImpactRounds<Space>::resolve(const Problem& problem, const ResponseParameters& parameters,
                                     BodyView bodies) {
   log_.resize(bodies.count());
+  const bool has_crowds =
+      problem.terms.bounces && parameters.restitution && !problem.one_by_one && problem.loaded.size() > 0;
+  log_.in_crowd.resize(has_crowds ? bodies.count() : 0);
   const FlightStage stage(problem.terms, parameters, bodies, log_);
   start(stage);
+  if (has_crowds) {
+    parallel::fill("impact.crowd", log_.in_crowd, 0u);
+    parallel::for_each<Space>("impact.crowd", problem.pairs.size(),
+                              MarkCrowd{stage, problem.pairs, problem.loaded, shared_progress_.data()});
+  }
   RoundsState state;
   for (;;) {
     state = parallel::run_rounds<Space>("impact.rounds", program(stage, problem), state);

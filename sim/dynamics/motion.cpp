@@ -193,18 +193,21 @@ struct AddTravel {
   SCREE_HD void operator()(std::int64_t k) const { margin[k] += travel(k); }
 };
 
-/// At least the margin wanted and the skin, and how far the surfaces of fast bodies travel in so long (s):
-/// they are few, and for them alone the boxes of all would have to be put anew.
+/// At least the margin wanted and the skin, and how far a body's surface travels in so long (s): fast bodies
+/// are few, and for them alone the boxes of all would have to be put anew. So would they for a slow one among
+/// others, which pass their speed on to it.
 struct RaiseMargin {
   ConstBodyView bodies;
   ConstView<double> wanted;
   View<double> margin;
   double life;
-  double most;  ///< but for what is wanted (m)
+  double typical;  ///< speed of bodies, in their smallest_size (1/s)
+  double most;     ///< but for what is wanted (m)
   SCREE_HD void operator()(std::int64_t k) const {
     if (bodies.mobility[k] == Mobility::fixed || is_surface(bodies.shape[k])) return;
     const double size = smallest_size(bodies.shape[k], bodies.size[k]);
-    const double travel = tolerance::contact_slack * size + life * surface_speed(bodies, k);
+    const double travel =
+        tolerance::contact_slack * size + life * fmax(surface_speed(bodies, k), typical * size);
     const double ample = fmax(margin[k], fmax(wanted[k] + tolerance::pair_skin * size, travel));
     margin[k] = fmax(wanted[k], fmin(ample, most));
   }
@@ -310,9 +313,9 @@ void FatBoxes<Space>::put_around(const Bodies<Space>& bodies, double dt, const R
   const double life =
       rate * longest > tolerance::pair_travel ? std::max(dt, tolerance::pair_travel / rate) : longest;
   contact_margins(bodies, dt, tolerance::contact_slack + tolerance::pair_skin, parameters, margin_);
-  parallel::for_each<Space>(
-      "motion.margins", bodies.count(),
-      RaiseMargin{view_of(bodies), contact_margin.view(), margin_.view(), life, bodies.period.most_margin});
+  parallel::for_each<Space>("motion.margins", bodies.count(),
+                            RaiseMargin{view_of(bodies), contact_margin.view(), margin_.view(), life, rate,
+                                        bodies.period.most_margin});
   copy(position_, bodies.position);
   copy(orientation_, bodies.orientation);
 }

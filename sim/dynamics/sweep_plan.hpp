@@ -22,20 +22,23 @@ struct SweepPlan {
 /// Few contacts are solved to the tolerance whatever it takes, since they cost nothing. Of a heap each visit
 /// sweeps a point once, since news travels one contact per sweep however well each is solved, and the least
 /// number of sweeps sees to the slow modes, of which one sweep's change tells nothing (docs/decisions/0005,
-/// 0014).
+/// 0014). `flows`: a heap's bodies move on one another; what that does to the contacts by the next substep is
+/// more than what further sweeps would change (0052).
 inline SweepPlan plan_sweeps(const ResponseParameters& parameters, std::int64_t contacts,
-                             std::int64_t all_points) {
+                             std::int64_t all_points, bool flows) {
   constexpr std::int64_t visits = 400000;  // of points in a substep
   constexpr std::int64_t fewest = 60, most = 10000;
+  constexpr int plain_in_flow = 2;
   const bool heap = is_heap(all_points);
-  SweepPlan plan{
-      .least = !heap                                ? 1
-               : shares_loads(contacts, all_points) ? 12
-                                                    : 6,
-      .most = 0,
-      .block_sweeps = heap ? 1 : 4,
-      .tolerance = heap && !parameters.accurate ? tolerance::heap_change : tolerance::response_change,
-      .direct = !heap};
+  const double heap_change = flows ? tolerance::heap_change_in_flow : tolerance::heap_change;
+  SweepPlan plan{.least = !heap                                ? 1
+                          : shares_loads(contacts, all_points) ? 12
+                                                               : 6,
+                 .most = 0,
+                 .block_sweeps = heap ? 1 : 4,
+                 .tolerance = heap && !parameters.accurate ? heap_change : tolerance::response_change,
+                 .direct = !heap,
+                 .first_with_momentum = heap && flows ? plain_in_flow : 0};
   const std::int64_t points = std::max<std::int64_t>(all_points, 1);
   plan.most = static_cast<int>(std::clamp(visits / (plan.block_sweeps * points), fewest, most));
   if (parameters.block_sweeps > 0) plan.block_sweeps = parameters.block_sweeps;

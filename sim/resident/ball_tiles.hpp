@@ -109,7 +109,7 @@ struct MakeBallBlock {
       }
       contacts.ends[c] = {block.i[l], block.j[l]};
       contacts.flags[c] = 0;
-      if ((closing >> l & 1) != 0 && (loaded >> l & 1) == 0) one_by_one.passing.add(c);
+      if ((closing >> l & 1) != 0 && (loaded >> l & 1) == 0) one_by_one.approaching.add(c);
     }
   }
 };

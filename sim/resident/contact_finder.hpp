@@ -36,16 +36,16 @@ class ContactFinder {
                   ContactStore<Space, Real>& store);
   void find_points(const FindStage<Real>& stage, Slots<Space, Real>& slots, ConstView<LoadedParts> loads,
                    ContactStore<Space, Real>& store);
-  PassingList clear_passing(std::int64_t contacts);
+  ApproachList clear_approaching(std::int64_t contacts);
   template <class Judge>
-  void judge(const PassingList& passing, const Judge& judge);
+  void judge(const ApproachList& approaching, const Judge& judge);
 
   FoundSlots<Space> found_;
   ContactColors<Space> ball_colors_, point_colors_;
   Array<FoundManifold, Space> manifolds_;  // of slots
   Array<Reach, Host> reach_;               // of nobody, and of each body; where the kernels find contacts
-  Array<std::int32_t, Space> passing_;
-  Array<std::uint64_t, Space> passing_count_;
+  Array<std::int32_t, Space> approaching_;
+  Array<std::uint64_t, Space> approaching_count_;
 };
 
 }  // namespace scree::resident

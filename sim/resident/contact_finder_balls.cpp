@@ -1,5 +1,5 @@
 #include "sim/resident/ball_tiles.hpp"
-#include "sim/resident/contact_finder_passing.hpp"
+#include "sim/resident/contact_finder_approach.hpp"
 #include "sim/resident/find_balls.hpp"
 
 namespace scree::resident {
@@ -30,14 +30,14 @@ void ContactFinder<Space, Real>::find_balls(const FindStage<Real>& stage, Slots<
   find.contacts = store.balls();
   if (!ball_colors_.are_same()) ball_colors_.place(find.contacts.slot);
   const std::int64_t contacts = find.contacts.slot.size();
-  find.passing = clear_passing(contacts);
+  find.approaching = clear_approaching(contacts);
   if constexpr (!one_by_one) {
     parallel::for_each<Host>("contacts.make balls", contacts / lanes::width,
                              MakeBallBlock{find, reach_.data() + 1}, few_blocks);
   } else {
     parallel::for_each<Space>("contacts.make balls", contacts, MakeContacts<FindBalls<Real>>{find});
   }
-  judge(find.passing, JudgeBalls<Real>{stage, find.contacts});
+  judge(find.approaching, JudgeBalls<Real>{stage, find.contacts});
 }
 
 #define SCREE_INSTANTIATE(Space)                                                                          \

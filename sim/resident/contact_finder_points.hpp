@@ -2,7 +2,7 @@
 // contact_finder_float.cpp.
 #pragma once
 
-#include "sim/resident/contact_finder_passing.hpp"
+#include "sim/resident/contact_finder_approach.hpp"
 #include "sim/resident/find_points.hpp"
 
 namespace scree::resident {
@@ -25,9 +25,9 @@ void ContactFinder<Space, Real>::find_points(const FindStage<Real>& stage, Slots
   find.contacts = store.points();
   if (!point_colors_.are_same()) point_colors_.place(find.contacts.slot);
   const std::int64_t contacts = find.contacts.slot.size();
-  find.passing = clear_passing(contacts);
+  find.approaching = clear_approaching(contacts);
   parallel::for_each<Space>("contacts.make points", contacts, MakeContacts<FindPoints<Real>>{find});
-  judge(find.passing, JudgePoints<Real>{stage, first, find.contacts});
+  judge(find.approaching, JudgePoints<Real>{stage, first, find.contacts});
 }
 
 }  // namespace scree::resident

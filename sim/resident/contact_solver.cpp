@@ -26,11 +26,10 @@ constexpr std::int64_t few_bodies = 1 << 14;
 }  // namespace
 
 template <class Space, class Real>
-void ContactSolver<Space, Real>::take_candidates(ConstView<Pair> candidates,
-                                                 ConstView<std::int32_t> place_before,
+void ContactSolver<Space, Real>::take_candidates(ConstView<Pair> candidates, ConstView<std::int64_t> before,
                                                  const ConstBodyView& bodies,
                                                  const ResponseParameters& parameters) {
-  slots_.build(candidates, place_before, bodies, parameters.rolling_friction);
+  slots_.build(candidates, before, bodies, parameters.rolling_friction);
   forget_contacts();
   list_guided(parameters.guides);
   wall_sums_.take(slots_.places(), bodies);
@@ -70,13 +69,10 @@ void ContactSolver<Space, Real>::archive(Archive& archive, const ConstBodyView& 
 }
 
 template <class Space, class Real>
-void ContactSolver<Space, Real>::look_up_loads(ConstView<Pair> candidates,
-                                               ConstView<std::int32_t> place_before,
-                                               Array<LoadedParts, Space>& loads) const {
-  loads.resize(candidates.size());
-  parallel::for_each<Space>(
-      "contacts.loads", candidates.size(),
-      LookUpLoads{candidates, {slots_.candidates(), place_before}, this->loads(), loads.view()});
+void ContactSolver<Space, Real>::loads_of(ConstView<std::int64_t> index,
+                                          Array<LoadedParts, Space>& loads) const {
+  loads.resize(index.size());
+  parallel::for_each<Space>("contacts.loads", index.size(), LoadsOfPairs{index, this->loads(), loads.view()});
 }
 
 template <class Space, class Real>
@@ -290,7 +286,7 @@ template <class Space, class Real>
 void ContactSolver<Space, Real>::find_impulses(const ConstBodyView& bodies,
                                                const ResponseParameters& parameters, double share,
                                                Counters& counters) {
-  SweepPlan plan = plan_sweeps(parameters, counts_.contacts, counts_.points);
+  SweepPlan plan = plan_sweeps(parameters, counts_.contacts, counts_.points, patience_.flows());
   if (std::is_same_v<Real, float>) plan.tolerance = std::max(plan.tolerance, tolerance::mixed_change);
   if (is_heap(counts_.points)) {
     plan.least = patience_.sweeps(plan.least, shares_loads(counts_.contacts, counts_.points), share);
@@ -676,7 +672,7 @@ PartingPlan ContactSolver<Space, Real>::plan_parting() const {
   using namespace tolerance;
   if (!is_heap(counts_.points)) return {1, 100, corrected_overlap, corrected_overlap};
   if (shares_loads(counts_.contacts, counts_.points)) return {1, 24, heap_overlap, shared_mean_overlap};
-  return {patience_.is_calm() ? 1 : 2, 6, heap_overlap, heap_mean_overlap};
+  return {patience_.is_calm() ? 1 : 2, 12, heap_overlap, heap_mean_overlap};
 }
 
 template <class Space, class Real>

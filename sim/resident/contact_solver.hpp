@@ -45,8 +45,8 @@ template <class Space, class Real>
 class ContactSolver {
  public:
   /// The candidates have been made anew; impulses are remembered, and couples if anything rolls.
-  /// `place_before`: as for Slots::build(). The bodies in guides stay where they are until the next call.
-  void take_candidates(ConstView<Pair> candidates, ConstView<std::int32_t> place_before,
+  /// `before`: Slots::look_up() of them. The bodies in guides stay where they are until the next call.
+  void take_candidates(ConstView<Pair> candidates, ConstView<std::int64_t> before,
                        const ConstBodyView& bodies, const ResponseParameters& parameters);
 
   /// Others of the bodies are free now; new candidates follow.
@@ -88,9 +88,8 @@ class ContactSolver {
     static_assert(sizeof(LoadedParts) == 1);
     return {reinterpret_cast<const LoadedParts*>(loads_.data()), slots_.candidates().size()};
   }
-  /// The same of other candidates (ordered likewise), for those that it knows.
-  void look_up_loads(ConstView<Pair> candidates, ConstView<std::int32_t> place_before,
-                     Array<LoadedParts, Space>& loads) const;
+  /// The same of pairs whose Slots::look_up() is given.
+  void loads_of(ConstView<std::int64_t> index, Array<LoadedParts, Space>& loads) const;
   const Slots<Space, Real>& slots() const { return slots_; }
 
   /// Of the last substep.

@@ -19,16 +19,12 @@ struct CountPoints {
   SCREE_HD std::int64_t operator()(std::int64_t c) const { return contacts.points[c]; }
 };
 
-/// What is known of pairs in another list.
-struct LookUpLoads {
-  ConstView<Pair> pairs;
-  ListedPairs known;
+/// Of pairs whose indices among the candidates are given.
+struct LoadsOfPairs {
+  ConstView<std::int64_t> index;
   ConstView<LoadedParts> loads;
   View<LoadedParts> out;
-  SCREE_HD void operator()(std::int64_t k) const {
-    const std::int64_t at = known.find(pairs[k]);
-    out[k] = at < 0 ? LoadedParts{} : loads[at];
-  }
+  SCREE_HD void operator()(std::int64_t k) const { out[k] = index[k] < 0 ? LoadedParts{} : loads[index[k]]; }
 };
 
 template <class Real>

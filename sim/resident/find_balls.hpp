@@ -88,7 +88,7 @@ SCREE_HD inline bool meet_balls(const FindStage<Real>& stage, std::int64_t place
   return found;
 }
 
-/// Contacts of balls, all as if they met. Those that may fly past are listed.
+/// Contacts of balls, all as if they met and stayed. Those that may fly past or bounce are listed.
 template <class Real>
 struct FindBalls {
   struct Record {
@@ -104,7 +104,7 @@ struct FindBalls {
   BallContacts<Real> contacts;
   View<BallMemory<Real>> memory;
   View<BodyRecord<Real>> solver;  ///< gets the points of walls
-  PassingList passing;
+  ApproachList approaching;
 
   bool is_end(std::int64_t place) const { return stage.places[place].i == Slot::empty; }
   SCREE_HD bool find(std::int64_t place, Record& record) const {
@@ -144,14 +144,13 @@ struct FindBalls {
     const double opened = stage.opened_by_then(at, n, bend, record.lead);
     set_wall_points(at, record);
     const double parting = n.dot(stage.relative_velocity(at));
-    // A look at the normal velocity tells of nearly all that they are not held apart (flight_of_contact).
     const double closing = -n.dot(stage.kicked_relative_velocity(at));
-    const bool may_pass = record.gap > 0 && !remembered.is_loaded() &&
-                          (record.lead > 0 || closing * stage.step > tolerance::likely_closing * record.gap);
+    const bool approaches =
+        !remembered.is_loaded() && stage.may_be_held_apart(record.gap, closing, record.lead);
     const BallMasses masses = stage.masses_of(at, record.arm_i, record.arm_j);
     contacts.ends[to] = {slot.end_i, slot.end_j};
     contacts.flags[to] = static_cast<std::uint8_t>(record.lead > 0 ? flag_late : 0);
-    if (may_pass) passing.add(to);
+    if (approaches) approaching.add(to);
     const auto& f = contacts.fields;
     const auto put = [&](int field, double value) { f.at(field, to) = static_cast<Real>(value); };
     const V3<Real> impulse = v3<Real>(stage.remembered(remembered.impulse, n, friction));
@@ -199,17 +198,24 @@ struct JudgeBalls {
   SCREE_HD void operator()(std::int64_t c) const {
     using C = BallContacts<Real>;
     SlotBodies<Real> at = stage.load(stage.places[contacts.slot[c]]);
+    const double lead = stage.lead_of(at.slot);
     Manifold m;
-    if (!meet<true>(stage, at, stage.lead_of(at.slot), m)) return;
+    if (!meet<true>(stage, at, lead, m)) return;
     m.i = at.slot.i;
     m.j = at.slot.j;
-    if (!flight_of_contact(stage.struck, m, m.points, at.size(), false).flying) return;
+    Real& target = contacts.fields.at(C::target, c);
+    if (!flight_of_contact(stage.struck, m, m.points, at.size(), false).flying) {
+      if (!stage.struck.stage.are_in_crowd(m.i, m.j)) return;
+      target = static_cast<Real>(stage.target_of_bounce(
+          at.slot, static_cast<double>(target), m.points[0].gap, m.normal.dot(stage.relative_velocity(at)),
+          m.normal.dot(stage.kicked_relative_velocity(at)), lead));
+      return;
+    }
     contacts.flags[c] |= flag_flying;
     stage.take_wall_points(at);
     const Vec3 velocity_i = stage.kicked_velocity(at.a, at.slot.i);
     const Vec3 velocity_j = stage.kicked_velocity(at.b, at.slot.j);
     const double free = m.normal.dot(velocity_j - velocity_i);
-    Real& target = contacts.fields.at(C::target, c);
     target = static_cast<Real>(
         stage.target_in_flight(static_cast<double>(target), free, velocity_i.norm() + velocity_j.norm()));
   }

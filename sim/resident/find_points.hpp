@@ -75,7 +75,8 @@ SCREE_HD inline bool meet_points(const FindStage<Real>& stage, const SlotBodies<
   return true;
 }
 
-/// Contacts that are not of balls alone, all as if they met. Those that may fly past are listed.
+/// Contacts that are not of balls alone, all as if they met and stayed. Those that may fly past or bounce are
+/// listed.
 template <class Real>
 struct FindPoints {
   using Record = FoundManifold;
@@ -87,7 +88,7 @@ struct FindPoints {
   PointContacts<Real> contacts;
   View<PointMemory<Real>> memory;
   ConstView<LoadedParts> loads;  ///< of candidates
-  PassingList passing;
+  ApproachList approaching;
   View<Record> records;  ///< of slots: what is found
 
   bool is_end(std::int64_t k) const { return stage.places[first_place + k].i == Slot::empty; }
@@ -128,7 +129,7 @@ struct FindPoints {
     put_inertia(C::inertia_j, to, j.inverse_inertia);
     now.count = m.count;
     const double bend = stage.bend_of(pair, m.normal);
-    bool may_pass = false;
+    bool approaches = false;
     for (int p = 0; p < m.count; ++p) {
       const ContactPoint& point = m.points[p];
       RowCoupling coupling;
@@ -141,7 +142,8 @@ struct FindPoints {
         if (old.feature[q] == point.feature) last = old.impulse[q];
       const V3<Real> impulse = v3<Real>(stage.remembered(last, m.normal, friction));
       const double parting = m.normal.dot(row.relative_velocity(i, j));
-      may_pass = may_pass || may_hold_apart(point.gap, -(parting + m.normal.dot(kick)), lead);
+      const double closing = -(parting + m.normal.dot(kick));
+      approaches = approaches || stage.may_be_held_apart(point.gap, closing, lead);
       const auto at = [p](auto field) { return C::at_point(p, field); };
       const auto& f = contacts.point_fields;
       const auto put = [&](auto field, double value) { f.at(at(field), to) = static_cast<Real>(value); };
@@ -163,7 +165,7 @@ struct FindPoints {
       put_gap(C::flown, point.gap + stage.opened_by_then(pair, m.normal, bend, lead));
       put_gap(C::pushed, 0);
     }
-    if (may_pass && !loads[slot.candidate].is_loaded(m.part)) passing.add(to);
+    if (approaches && !loads[slot.candidate].is_loaded(m.part)) approaching.add(to);
   }
 
  private:
@@ -174,11 +176,6 @@ struct FindPoints {
     if (stage.libccd->checks(at.a.shape, at.b.shape, number(slot.i), number(slot.j)))
       stage.libccd->check({at.a.shape, stage.solid(slot.i, lead)}, {at.b.shape, solid_near(stage, at, lead)},
                           stage.shapes_of(slot.i, slot.j));
-  }
-  /// A look at a point's normal velocity tells of nearly all that they are not held apart
-  /// (flight_of_contact).
-  SCREE_HD bool may_hold_apart(double gap, double closing, double lead) const {
-    return gap > 0 && (lead > 0 || closing * stage.step > tolerance::likely_closing * gap);
   }
   SCREE_HD void put_inertia(int first, std::int64_t to, const Mat3& m) const {
     const double elements[] = {m(0, 0), m(1, 1), m(2, 2), m(0, 1), m(0, 2), m(1, 2)};
@@ -211,21 +208,26 @@ struct JudgePoints {
     if (!meet_points(stage, at, lead, m)) return;
     m.i = slot.i;
     m.j = slot.j;
-    if (!flight_of_contact(stage.struck, m, m.points, at.size(), false).flying) return;
-    contacts.flags[c] |= flag_flying;
+    const bool flying = flight_of_contact(stage.struck, m, m.points, at.size(), false).flying;
+    if (!flying && !stage.struck.stage.are_in_crowd(slot.i, slot.j)) return;
+    if (flying) contacts.flags[c] |= flag_flying;
     const auto velocity_at = [&](const MidBody<Real>& at_mid, std::int32_t body, const Vec3& point) {
       return Vec3(stage.bodies.velocity[body] +
-                  stage.bodies.spin[body].cross(stage.arm(at_mid, body, lead, point)) +
-                  stage.kick_of(at_mid, body));
+                  stage.bodies.spin[body].cross(stage.arm(at_mid, body, lead, point)));
     };
+    const Vec3 kick_i = stage.kick_of(at.a, slot.i), kick_j = stage.kick_of(at.b, slot.j);
     for (int p = 0; p < m.count; ++p) {
       const Vec3& point = m.points[p].position;
-      const Vec3 velocity_i = velocity_at(at.a, slot.i, point);
-      const Vec3 velocity_j = velocity_at(at.b, slot.j, point);
+      const Vec3 before_i = velocity_at(at.a, slot.i, point);
+      const Vec3 before_j = velocity_at(at.b, slot.j, point);
+      const double before = m.normal.dot(before_j - before_i);
+      const double free = before + m.normal.dot(kick_j - kick_i);
       Real& target = contacts.point_fields.at(C::at_point(p, C::target), c);
-      target = static_cast<Real>(stage.target_in_flight(static_cast<double>(target),
-                                                        m.normal.dot(velocity_j - velocity_i),
-                                                        velocity_i.norm() + velocity_j.norm()));
+      const auto otherwise = static_cast<double>(target);
+      target = static_cast<Real>(
+          flying ? stage.target_in_flight(otherwise, free,
+                                          (before_i + kick_i).norm() + (before_j + kick_j).norm())
+                 : stage.target_of_bounce(slot, otherwise, m.points[p].gap, before, free, lead));
     }
   }
 };

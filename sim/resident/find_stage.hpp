@@ -113,11 +113,27 @@ struct FindStage {
     const double closing = gap > shell ? -(gap - shell) / (step - lead) : 0.0;
     return fmin(closing - 0.5 * step * bend, noise - parting);
   }
+  /// A look at the normal velocity of a point tells of nearly all that they are not held apart
+  /// (flight_of_contact).
+  SCREE_HD bool may_be_held_apart(double gap, double closing, double lead) const {
+    if (gap <= 0) return closing > 0;
+    return lead > 0 || closing * step > tolerance::likely_closing * gap;
+  }
   /// Of what flies past: it is not held at all. `free` is the normal velocity without contacts, and `speed`
   /// the sum of the two bodies' speeds there, whose rounding pushes nobody (m/s).
   SCREE_HD static double target_in_flight(double target, double free, double speed) {
     constexpr double rounding = tolerance::flight_roundings * std::numeric_limits<Real>::epsilon();
     return fmin(target, free - tolerance::flight_margin * fabs(free) - rounding * speed);
+  }
+
+  /// Of two bodies in a crowd that approach: one that would be pushed anyway before it has closed its gap
+  /// bounces, as all contacts of the crowd at once (u+ = -e u-; Moreau 1999). `before` and `free` are the
+  /// normal velocities before the kick and with it (m/s).
+  SCREE_HD double target_of_bounce(const Slot& slot, double target, double gap, double before, double free,
+                                   double lead) const {
+    const FlightStage& flight = struck.stage;
+    const bool bounces = -before > flight.slowest_bounce(slot.i, slot.j) && -free * (step - lead) > gap;
+    return bounces ? -laws.between(slot.i, slot.j).restitution * before : target;
   }
 
   /// What the gap at the end has beside what the velocities after the response open (m): it bends; and a
@@ -189,8 +205,8 @@ struct FoundManifold {
   double lead;
 };
 
-/// Contacts that may fly past, in any order.
-struct PassingList {
+/// Contacts whose bodies approach, and which bore no load, in any order.
+struct ApproachList {
   View<std::int32_t> contacts;
   std::uint64_t* count;
   SCREE_HD void add(std::int64_t c) const {
@@ -227,21 +243,22 @@ struct MakeContacts {
   }
 };
 
-/// Decides on them: work of another kind than that on the many which touch, and so it is done apart.
+/// Decides whether they fly past or bounce: work of another kind than that on the many which touch, and so it
+/// is done apart.
 template <class Judge>
-struct JudgePassing {
+struct JudgeApproach {
   /// Of which each takes one in so many.
   template <class Space>
   static constexpr std::int64_t threads = std::is_same_v<Space, Host> ? 64 : 1 << 15;
 
   std::int64_t stride;
 
-  PassingList passing;
+  ApproachList approaching;
   Judge judge;
 
   SCREE_HD void operator()(std::int64_t thread) const {
-    const auto count = static_cast<std::int64_t>(*passing.count);
-    for (std::int64_t k = thread; k < count; k += stride) judge(passing.contacts[k]);
+    const auto count = static_cast<std::int64_t>(*approaching.count);
+    for (std::int64_t k = thread; k < count; k += stride) judge(approaching.contacts[k]);
   }
 };
 

@@ -36,9 +36,9 @@ int Patience::sweeps(int usual, bool shared, double share) {
 /// Over many substeps at once: the slow modes are oscillations, and a number of sweeps that goes up and down
 /// with them pumps them. But where a substep leaves as much undone as its impulses do, as when a heap has
 /// just fallen on its ground, all sweeps follow at once: what sinks in meanwhile takes seconds to come out
-/// again.
+/// again. And what flows has no slow modes, so that a few substeps tell that the usual number will do.
 void Patience::judge(double undone, double kicked, double dissipated) {
-  constexpr int judged_together = 32;
+  constexpr int judged_together = 32, judged_in_flow = 8;
   const auto of = [](double loss) { return undone_of_dissipated * std::max(loss, 0.0); };
   if (std::abs(undone) > all_undone * kicked + much_undone * of(dissipated)) {
     degree_ = most_degree;
@@ -48,13 +48,17 @@ void Patience::judge(double undone, double kicked, double dissipated) {
   undone_ += std::abs(undone);
   kicked_ += kicked;
   dissipated_ += dissipated;
-  if (++judged_ < judged_together) return;
+  ++judged_;
+  const bool flows = dissipated_ > flowing_power * kicked_;
+  const bool is_done = undone_ < of(dissipated_);
+  if (judged_ < (flows && is_done ? judged_in_flow : judged_together)) return;
   moves_ = dissipated_ > moving_power * kicked_;
+  flows_ = flows;
+  if (flows && is_done) degree_ = std::min(degree_, usual_degree);
   const double most_undone = degrees[degree_].more * kicked_ + of(dissipated_);
   if (undone_ > most_undone) {
     degree_ = std::min(degree_ + (undone_ > much_undone * most_undone ? 2 : 1), most_degree);
-  } else if (undone_ < degrees[degree_].less * kicked_ ||
-             (moves_ && degree_ > usual_degree && undone_ < of(dissipated_))) {
+  } else if (undone_ < degrees[degree_].less * kicked_ || (moves_ && degree_ > usual_degree && is_done)) {
     --degree_;
   }
   undone_ = kicked_ = dissipated_ = judged_ = 0;

@@ -18,6 +18,9 @@ class Patience {
   /// After a substep: the powers (W), and what was dissipated.
   void judge(double undone, double kicked, double dissipated);
 
+  /// Everywhere bodies move on one another, and dissipate more than their impulses do work on what they
+  /// change.
+  bool flows() const { return flows_; }
   /// Nothing is left of slow modes.
   bool is_calm() const { return degree_ == 0; }
 
@@ -27,12 +30,14 @@ class Patience {
     archive("kicked", kicked_);
     archive("dissipated", dissipated_);
     archive("moves", moves_);
+    archive("flows", flows_);
     archive("judged", judged_);
   }
 
  private:
-  int degree_ = 2;  // 0, 1, 2... are 2, 3, 6, 12... sweeps of balls
-  bool moves_ = false;
+  int degree_ = 2;      // 0, 1, 2... are 2, 3, 6, 12... sweeps of balls
+  bool moves_ = false;  // some of its bodies, on one another
+  bool flows_ = false;  // nearly all do
   double undone_ = 0, kicked_ = 0, dissipated_ = 0;
   int judged_ = 0;  // substeps since it was last changed
 };

@@ -47,16 +47,11 @@ struct ListSlots {
 
 static_assert(box_tube_surfaces <= 16);  // that ContactColors can tell apart
 
-/// The first of the old slots of each pair, -1 for new pairs.
-struct LookUpOld {
+struct LookUpPairs {
   ConstView<Pair> pairs;
-  ListedPairs old_pairs;
-  ConstView<std::int64_t> old_first;
-  View<std::int64_t> was;
-  SCREE_HD void operator()(std::int64_t k) const {
-    const std::int64_t pair = old_pairs.find(pairs[k]);
-    was[k] = pair < 0 ? -1 : old_first[pair];
-  }
+  ListedPairs listed;
+  View<std::int64_t> index;
+  SCREE_HD void operator()(std::int64_t k) const { index[k] = listed.find(pairs[k]); }
 };
 
 /// Slots of balls are first, each kind in the order of the candidates.
@@ -88,7 +83,8 @@ template <class Real>
 struct Recall {
   ConstView<Slot> places;
   ConstView<Mobility> mobility;
-  ConstView<std::int64_t> was;
+  ConstView<std::int64_t> before;     ///< Slots::look_up()
+  ConstView<std::int64_t> old_first;  ///< slot of each old candidate
   ConstView<std::int64_t> old_place;
   std::int64_t ball_places, old_ball_places;
   ConstView<BallMemory<Real>> old_balls;
@@ -116,17 +112,24 @@ struct Recall {
     }
   }
   SCREE_HD std::int64_t old_place_of(const Slot& slot) const {
-    if (slot.i == Slot::empty || was[slot.candidate] < 0) return -1;
-    return old_place[was[slot.candidate] + slot.surface];
+    if (slot.i == Slot::empty || before[slot.candidate] < 0) return -1;
+    return old_place[old_first[before[slot.candidate]] + slot.surface];
   }
 };
 
 }  // namespace
 
 template <class Space, class Real>
-void Slots<Space, Real>::build(ConstView<Pair> candidates, ConstView<std::int32_t> place_before,
+void Slots<Space, Real>::look_up(ConstView<Pair> pairs, ConstView<std::int32_t> place_before,
+                                 Array<std::int64_t, Space>& index) const {
+  index.resize(pairs.size());
+  parallel::for_each<Space>("slots.look up", pairs.size(),
+                            LookUpPairs{pairs, {candidates(), place_before}, index.view()});
+}
+
+template <class Space, class Real>
+void Slots<Space, Real>::build(ConstView<Pair> candidates, ConstView<std::int64_t> before,
                                const ConstBodyView& bodies, bool rolls) {
-  old_pairs_.swap(pairs_);
   old_first_.swap(first_);
   old_place_.swap(place_);
   old_color_.swap(color_);
@@ -137,16 +140,10 @@ void Slots<Space, Real>::build(ConstView<Pair> candidates, ConstView<std::int32_
   pairs_.resize(candidates.size());
   copy_bytes<Space, Space>(pairs_.data(), candidates.data(),
                            static_cast<std::size_t>(candidates.size()) * sizeof(Pair));
-  was_.resize(pairs_.size());
-  parallel::for_each<Space>("slots.recall", pairs_.size(),
-                            LookUpOld{std::as_const(pairs_).view(),
-                                      {std::as_const(old_pairs_).view(), place_before},
-                                      std::as_const(old_first_).view(),
-                                      was_.view()});
   list_slots(bodies);
   solver_bodies_.number(bodies, slots_.view());
   place_slots(bodies);
-  recall(bodies, rolls);
+  recall(before, bodies, rolls);
 }
 
 template <class Space, class Real>
@@ -199,14 +196,14 @@ void Slots<Space, Real>::forget_colors() {
 }
 
 template <class Space, class Real>
-void Slots<Space, Real>::recall(const ConstBodyView& bodies, bool rolls) {
+void Slots<Space, Real>::recall(ConstView<std::int64_t> before, const ConstBodyView& bodies, bool rolls) {
   ball_memory_.resize(ball_places());
   point_memory_.resize(places_.size() - ball_places());
   couples_.resize(rolls ? places_.size() : 0);
   color_.resize(places_.size());
   parallel::for_each<Space>(
       "slots.recall", places_.size(),
-      Recall<Real>{std::as_const(places_).view(), bodies.mobility, std::as_const(was_).view(),
+      Recall<Real>{std::as_const(places_).view(), bodies.mobility, before, std::as_const(old_first_).view(),
                    std::as_const(old_place_).view(), ball_places(), old_ball_places_,
                    std::as_const(old_ball_memory_).view(), std::as_const(old_point_memory_).view(),
                    std::as_const(old_couples_).view(), std::as_const(old_color_).view(), ball_memory_.view(),

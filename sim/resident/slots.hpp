@@ -47,10 +47,13 @@ class Slots {
   /// Slots for the candidates (in their order, each with a free body); those that were there before keep
   /// what they remember. Places are given in tiles of parallel::tile: first those of balls, then the others,
   /// each in the order of the candidates. The result does not depend on the order of threads.
-  /// `place_before`: where each body lay at the last call, by its place, if bodies have changed places since.
-  /// `rolls`: couples are remembered, too.
-  void build(ConstView<Pair> candidates, ConstView<std::int32_t> place_before, const ConstBodyView& bodies,
+  /// `before`: look_up() of the candidates. `rolls`: couples are remembered, too.
+  void build(ConstView<Pair> candidates, ConstView<std::int64_t> before, const ConstBodyView& bodies,
              bool rolls);
+  /// The index of each pair among the present candidates; -1: it is none. `place_before`: where each body lay
+  /// at the last build(), by its place, if bodies have changed places since.
+  void look_up(ConstView<Pair> pairs, ConstView<std::int32_t> place_before,
+               Array<std::int64_t, Space>& index) const;
   /// Others of the bodies are free now: colours are not to be kept.
   void forget_colors();
   /// Keeps what the slots remember, for recall_memory(), which puts it back. No build() between.
@@ -85,12 +88,11 @@ class Slots {
   void list_slots(const ConstBodyView& bodies);
   void place_slots(const ConstBodyView& bodies);
   void put_slots(std::int64_t places);
-  void recall(const ConstBodyView& bodies, bool rolls);
+  void recall(ConstView<std::int64_t> before, const ConstBodyView& bodies, bool rolls);
 
-  Array<Pair, Space> pairs_, old_pairs_;          // the candidates
+  Array<Pair, Space> pairs_;                      // the candidates
   Array<std::int64_t, Space> first_, old_first_;  // slot of each; one more than candidates
   Array<Slot, Space> slots_;                      // in the order of the candidates
-  Array<std::int64_t, Space> was_;                // the first old slot of each candidate
   Array<Slot, Space> places_;                     // the same slots, tile by tile
   Array<std::int64_t, Space> place_, old_place_;  // of each slot
   std::int64_t ball_tiles_ = 0;

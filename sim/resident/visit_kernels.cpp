@@ -228,7 +228,8 @@ std::uint32_t prepare_balls(const PrepareBalls& given, const BallBlock& block, s
   gaps.put<Lanes>(C::pushed, place, Vector{});
   gaps.put<Lanes>(C::cap, place, tolerance::correction_cap * smaller);
   const Vector closing = -dot(law.normal, j.velocity - i.velocity + kick);
-  return bits_of((contact.gap > 0) & (closing * given.step > tolerance::likely_closing * contact.gap));
+  const Vector open = contact.gap > 0 ? contact.gap : Vector{};
+  return bits_of(closing * given.step > tolerance::likely_closing * open);
 }
 
 SCREE_LAW double sum_of(const Vector& v) {

@@ -44,8 +44,8 @@ struct VisitKernels {
   /// A bit for each of `look` slots whose bodies come as close as they reach. `reach` knows -1, too, which
   /// reaches nobody.
   std::uint64_t (*near)(const Reach* reach, const Slot* slots, const Period* period);
-  /// Sets the fields of the contacts of a block, which begins at a place. A bit for each that is open, and
-  /// closes so fast that it may fly past.
+  /// Sets the fields of the contacts of a block, which begins at a place. A bit for each that may be
+  /// held apart (FindStage::may_be_held_apart).
   std::uint32_t (*prepare_balls)(const PrepareBalls&, const BallBlock&, std::int64_t place);
   BlockBooks (*book_balls)(const BookBlocks&, Blocks);
   /// Of the bodies from the first to the last.

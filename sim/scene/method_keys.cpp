@@ -56,8 +56,9 @@ Codec<ResponseSettings> response_section() {
                  "stand still, but 1 for heaps"),
           key<T>("tolerance", &T::tolerance, or_auto(number(inside(0, 1))), optionally,
                  "sweeps stop when they change the impulses by less than this share; auto: 1e-10, but for "
-                 "heaps, of which the rest is left to the next steps, 3e-3 and at least 6 sweeps, 12 where "
-                 "bodies share several points"),
+                 "heaps, of which the rest is left to the next steps, 3e-3 (2e-2 where they flow) and at "
+                 "least 6 "
+                 "sweeps, 12 where bodies share several points"),
           key<T>("warm_start", &T::warm_start, boolean(), optionally, "start from the last step's impulses"),
           key<T>("restitution_threshold", &T::restitution_threshold, or_auto(number(not_negative, "m/s")),
                  optionally, "slower approaches do not bounce; auto: 2 gravity step (1 - e)"),

@@ -237,7 +237,7 @@ TYPED_TEST(Rounds, WhatWasLoadedDoesNotBounce) {
   FlightScene scene;
   for (int k = 0; k < 2; ++k) {
     scene.add_ball(0.1, Vec3(0, k, 0), Vec3(1, 0, 0));
-    scene.add_ball(0.1, Vec3(0.201, k, 0), Vec3(-1, 0, 0));
+    scene.add(Shape::sphere, Vec3::Constant(0.1), Vec3(0.201, k, 0), Vec3(-1, 0, 0), false);
   }
   World<TypeParam> world(scene);
   Array<Pair, TypeParam> pairs;
@@ -250,6 +250,38 @@ TYPED_TEST(Rounds, WhatWasLoadedDoesNotBounce) {
   const std::vector<Impact> impacts = impacts_of(rounds);
   ASSERT_EQ(impacts.size(), 1u);
   EXPECT_EQ(impacts[0].i, 2);
+}
+
+/// Balls 0 and 1 rest on others, 4 and 5; ball 2 on the fixed 6, and ball 3 on none. All pairs of one row
+/// meet.
+TYPED_TEST(Rounds, TwoThatBearLoadInACrowdAreLeftToItsContacts) {
+  FlightScene scene;
+  scene.law.restitution = 0.5;
+  for (int k = 0; k < 4; ++k) scene.add_ball(0.1, Vec3(0.201 * k, 0, 0), Vec3(k % 2 == 0 ? 1 : -1, 0, 0));
+  for (const int k : {0, 1}) scene.add_ball(0.1, Vec3(0.201 * k, 0, -0.2), Vec3::Zero());
+  scene.add(Shape::sphere, Vec3::Constant(0.1), Vec3(0.402, 0, -0.2), Vec3::Zero(), false);
+  World<TypeParam> world(scene);
+  Array<Pair, TypeParam> pairs;
+  Array<LoadedParts, TypeParam> loaded;
+  copy(pairs, std::vector<Pair>{{0, 1}, {0, 4}, {1, 5}, {2, 3}, {2, 6}});
+  copy(loaded, std::vector<LoadedParts>{{}, {.bits = 1}, {.bits = 1}, {}, {.bits = 1}});
+  for (const bool one_by_one : {false, true}) {
+    ImpactRounds<TypeParam> rounds;
+    rounds.resolve({.pairs = std::as_const(pairs).view(),
+                    .loaded = std::as_const(loaded).view(),
+                    .terms = world.terms(0),
+                    .one_by_one = one_by_one},
+                   scene.parameters, view_of(world.bodies));
+    const std::vector<Impact> impacts = impacts_of(rounds);
+    const FlightStage stage = rounds.stage(world.terms(0), scene.parameters, view_of(world.bodies));
+    ASSERT_EQ(impacts.size(), one_by_one ? 2u : 1u) << "in the accurate mode all are impacts";
+    EXPECT_TRUE(std::ranges::any_of(impacts, [](const Impact& impact) { return impact.i == 2; }));
+    if constexpr (std::is_same_v<TypeParam, Host>) {
+      EXPECT_EQ(stage.are_in_crowd(0, 1), !one_by_one);
+      EXPECT_FALSE(stage.are_in_crowd(2, 3));
+    }
+    rounds.undo(view_of(world.bodies));
+  }
 }
 
 TYPED_TEST(Rounds, UndoneAreAsIfTheyHadNotBeen) {

@@ -95,15 +95,15 @@ class Crowd {
   struct Found {
     ContactStore<Host, double> store;
     Array<BallMemory<double>, Host> memory;
-    std::vector<std::int32_t> passing;
+    std::vector<std::int32_t> approaching;
   };
   Found find(bool by_kernels) {
     Found found;
     copy(found.memory, memory_at_start_);
-    std::vector<std::int32_t> passing(static_cast<std::size_t>(tiles * tile));
+    std::vector<std::int32_t> approaching(static_cast<std::size_t>(tiles * tile));
     std::uint64_t count = 0;
     FindBalls<double> one_by_one{
-        stage(), {}, found.memory.view(), solver_.view(), {{passing.data(), tiles * tile}, &count}};
+        stage(), {}, found.memory.view(), solver_.view(), {{approaching.data(), tiles * tile}, &count}};
     Array<Reach, Host> reach(bodies_.count() + 1);
     for (std::int64_t k = 0; k < reach.size(); ++k) SetReach{stage(), reach.data() + 1}(k);
     FoundSlots<Host> slots;
@@ -129,9 +129,9 @@ class Crowd {
     } else {
       for (std::int64_t c = 0; c < one_color.places(); ++c) MakeContacts<FindBalls<double>>{one_by_one}(c);
     }
-    passing.resize(static_cast<std::size_t>(count));
-    std::ranges::sort(passing);
-    found.passing = passing;
+    approaching.resize(static_cast<std::size_t>(count));
+    std::ranges::sort(approaching);
+    found.approaching = approaching;
     return found;
   }
 
@@ -159,8 +159,8 @@ TEST(BallTiles, FindWhatIsFoundOneByOne) {
     Crowd crowd(periodic);
     auto kernels = crowd.find(true), one_by_one = crowd.find(false);
     const C a = kernels.store.balls(), b = one_by_one.store.balls();
-    EXPECT_EQ(kernels.passing, one_by_one.passing);
-    EXPECT_GT(kernels.passing.size(), 5u);
+    EXPECT_EQ(kernels.approaching, one_by_one.approaching);
+    EXPECT_GT(kernels.approaching.size(), 5u);
     const std::int64_t found = kernels.store.ball_colors().contacts();
     ASSERT_EQ(found, one_by_one.store.ball_colors().contacts());
     for (std::int64_t c = 0; c < found; ++c) {

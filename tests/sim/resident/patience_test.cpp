@@ -80,9 +80,27 @@ TEST(Patience, AHeapThatHasJustFallenIsSweptAtOnce) {
   EXPECT_EQ(of_flow.sweeps(balls, false, 1.0), balls);
   // And as soon as little is left, there are fewer again.
   for (const int expected : {48, 24, 12, 6}) {
-    judge(of_balls, 1, 0.01, 0.9);
+    judge(of_balls, 1, 0.01, 0.5);
     EXPECT_EQ(of_balls.sweeps(balls, false, 1.0), expected);
   }
+}
+
+TEST(Patience, EightSubstepsTellThatAllFlows) {
+  Patience of_flow, of_more;
+  for (Patience* patience : {&of_flow, &of_more}) {
+    patience->judge(0.6, 1.0, 0.2);
+    EXPECT_EQ(patience->sweeps(balls, false, 1.0), 96);
+  }
+  for (int k = 0; k < 8; ++k) {
+    EXPECT_FALSE(of_flow.flows()) << k;
+    of_flow.judge(0.05, 1.0, 0.9);
+    of_more.judge(0.12, 1.0, 0.9);
+  }
+  EXPECT_TRUE(of_flow.flows());
+  EXPECT_EQ(of_flow.sweeps(balls, false, 1.0), balls);
+  EXPECT_EQ(of_more.sweeps(balls, false, 1.0), 96) << "more is left undone than flowing explains";
+  judge(of_flow, 1, 0.01, 0.5);
+  EXPECT_FALSE(of_flow.flows());
 }
 
 TEST(Patience, SubstepsShareTheSweepsOfAStep) {

@@ -373,6 +373,71 @@ bodies:)" + open_box(0.4) +
   EXPECT_LT(sweeps / static_cast<double>(after.substeps - before.substeps), 50);
 }
 
+/// A column whose wall goes: what docs/accuracy.md states of heaps in motion.
+TEST_P(ResidentStep, WhatFlowsOverlapsLittle) {
+  Simulation run = simulate(R"(
+gravity: [0, 0, -9.81]
+time: {end: 0.56, step: 0.0020833333333333333}
+materials: {stone: {density: 2500, restitution: 0.5, friction: 0.4}}
+bodies:
+  - {plane: {normal: [0, 0, 1], offset: 0}, material: stone}
+  - {plane: {normal: [1, 0, 0], offset: 0}, material: stone}
+  - {plane: {normal: [-1, 0, 0], offset: -0.18}, until: 0.3, material: stone}
+  - {plane: {normal: [0, 1, 0], offset: 0}, material: stone}
+  - {plane: {normal: [0, -1, 0], offset: -0.18}, material: stone}
+  - sphere: {radius: {uniform: [0.009, 0.011]}}
+    at: [0.01125, 0.01125, 0.01125]
+    repeat: {count: [8, 8, 40], spacing: [0.0225, 0.0225, 0.0225], jitter: 0.0002}
+    material: stone)");
+  while (run.time() < 0.36) run.step();
+  const Counters before = run.observe(false).counters;
+  double mean = 0, worst = 0;
+  int looks = 0;
+  for (; !run.finished(); ++looks) {
+    for (int k = 0; k < 8 && !run.finished(); ++k) run.step();
+    const Observation& seen = run.observe();
+    mean += seen.penetration.relative_mean;
+    worst = std::max(worst, seen.penetration.relative_max);
+  }
+  EXPECT_LT(mean / looks, 5e-4);
+  EXPECT_LT(worst, 2e-2);
+  const Counters& after = run.observe(false).counters;
+  EXPECT_LT(after.sweeps - before.sweeps, 16 * (after.substeps - before.substeps));
+}
+
+/// Two balls on two others fly towards one another. They bear load there, so that they bounce as contacts and
+/// not in an impact: by the same law.
+TEST_P(ResidentStep, WhatBearsLoadBouncesByTheSameLaw) {
+  for (const double restitution : {0.0, 0.3, 0.8, 0.95}) {
+    for (const bool accurate : {false, true}) {
+      if (accurate && is_mixed()) continue;
+      Simulation run = simulate(fmt::format(R"(
+gravity: [0, 0, -9.81]
+time: {{end: 0.04, step: 0.002}}
+materials: {{ice: {{density: 1000, restitution: {}, friction: 0}}}}
+response: {{mode: {}}}
+bodies:
+  - {{plane: {{normal: [0, 0, 1], offset: 0}}, material: ice}}
+  - {{sphere: {{radius: 0.08}}, at: [0, 0, 0.08], velocity: [1, 0, 0], material: ice}}
+  - {{sphere: {{radius: 0.1}}, at: [0, 0, 0.26], velocity: [1, 0, 0], material: ice}}
+  - {{sphere: {{radius: 0.08}}, at: [0.2633, 0, 0.08], velocity: [-1, 0, 0], material: ice}}
+  - {{sphere: {{radius: 0.1}}, at: [0.2633, 0, 0.26], velocity: [-1, 0, 0], material: ice}})",
+                                            restitution, accurate ? "accurate" : "default"));
+      double worst = 0;
+      double apart = -2;  // no longer, once they have met
+      while (apart < -1e-6 && !run.finished()) {
+        run.step();
+        worst = std::max(worst, run.observe().penetration.relative_max);
+        apart = run.body(4).velocity.x() - run.body(2).velocity.x();
+      }
+      EXPECT_NEAR(apart, 2 * restitution, is_mixed() ? 1e-5 : 1e-8) << restitution << ' ' << accurate;
+      EXPECT_LT(worst, 1e-4);
+      EXPECT_EQ(run.observe(false).counters.impacts, accurate && restitution > 0 ? 1 : 0) << restitution;
+      EXPECT_LT(std::abs(run.observe().unexplained), is_mixed() ? 1e-7 : 1e-12);
+    }
+  }
+}
+
 /// Boxes that fly into each other and turn: many are struck after the midpoint of the one substep, and their
 /// contacts are seen then.
 TEST_P(ResidentStep, BoxesThatAreStruckLateKeepTheirMomenta) {

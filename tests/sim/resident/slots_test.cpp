@@ -72,7 +72,9 @@ struct Built {
     copy(pairs, list);
     copy(before, place_before);
     constexpr bool rolls = true;
-    slots.build(std::as_const(pairs).view(), std::as_const(before).view(), view_of(std::as_const(bodies)),
+    Array<std::int64_t, Space> index;
+    slots.look_up(std::as_const(pairs).view(), std::as_const(before).view(), index);
+    slots.build(std::as_const(pairs).view(), std::as_const(index).view(), view_of(std::as_const(bodies)),
                 rolls);
   }
   std::vector<Slot> places() const {
