@@ -18,8 +18,7 @@ class Patience {
   /// After a substep: the powers (W), and what was dissipated.
   void judge(double undone, double kicked, double dissipated);
 
-  /// Everywhere bodies move on one another, and dissipate more than their impulses do work on what they
-  /// change.
+  /// The heap flows: what it dissipates is more than tolerance::flowing_power of the power of its impulses.
   bool flows() const { return flows_; }
   /// Nothing is left of slow modes.
   bool is_calm() const { return degree_ == 0; }
@@ -36,8 +35,8 @@ class Patience {
 
  private:
   int degree_ = 2;      // 0, 1, 2... are 2, 3, 6, 12... sweeps of balls
-  bool moves_ = false;  // some of its bodies, on one another
-  bool flows_ = false;  // nearly all do
+  bool moves_ = false;  // bodies slide on one another somewhere (tolerance::moving_power)
+  bool flows_ = false;  // and nearly everywhere (tolerance::flowing_power)
   double undone_ = 0, kicked_ = 0, dissipated_ = 0;
   int judged_ = 0;  // substeps since it was last changed
 };
