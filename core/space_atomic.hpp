@@ -33,6 +33,16 @@ SCREE_HD T exchange(T* place, T value) {
 #endif
 }
 
+/// Puts `value` in its place, where several threads may put the same one.
+template <class T>
+SCREE_HD void put(T* place, T value) {
+#if defined(__CUDA_ARCH__)
+  *static_cast<volatile T*>(place) = value;
+#else
+  std::atomic_ref<T>(*place).store(value, std::memory_order_relaxed);
+#endif
+}
+
 /// Lowers what is in a place to `value`, if that is smaller: exact, whatever the order of the threads. True
 /// for the thread that did.
 template <class T>
@@ -81,6 +91,22 @@ SCREE_HD T add(T* place, T value) {
 
 /// Adds one to a count and returns what it was: a place in a list, whose order hangs on the threads.
 SCREE_HD inline std::uint64_t count_up(std::uint64_t* count) { return add(count, std::uint64_t{1}); }
+
+/// The same for a list that grows fast: the threads that run side by side, which must all count up the same
+/// count, do so at one stroke.
+SCREE_HD inline std::uint64_t count_up_together(std::uint64_t* count) {
+#if defined(__CUDA_ARCH__)
+  const unsigned active = __activemask();
+  const unsigned lane = threadIdx.x % 32;
+  const int first = __ffs(static_cast<int>(active)) - 1;
+  std::uint64_t before = 0;
+  if (lane == static_cast<unsigned>(first)) before = add(count, static_cast<std::uint64_t>(__popc(active)));
+  before = __shfl_sync(active, before, first);
+  return before + static_cast<std::uint64_t>(__popc(active & ((1u << lane) - 1)));
+#else
+  return count_up(count);
+#endif
+}
 
 /// Sets the bits of `value`.
 template <class T>

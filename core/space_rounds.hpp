@@ -15,7 +15,7 @@
 #include <vector>
 
 #if SCREE_WITH_CUDA
-#include <cooperative_groups.h>
+#include <cuda/atomic>
 #endif
 
 /// Before a SCREE_HD template that calls functions of its arguments: these need to run only where it is
@@ -111,6 +111,43 @@ typename Program::State run(Host, const char* label, const Program& program, typ
 
 #if SCREE_WITH_CUDA
 
+/// Where all blocks of a launch wait for one another. The word in memory, at first 0, counts those that have
+/// come in its lower bits; the last one of them flips its highest bit and clears the others. Other than in
+/// grid.sync() of cooperative groups, no block waits for what its addition returns.
+class GridBarrier {
+ public:
+  __device__ explicit GridBarrier(unsigned* word) : word_(*word) {}
+
+  __device__ void wait() {
+    __syncthreads();
+    if (threadIdx.x == 0) {
+      word_.fetch_add(blockIdx.x == 0 ? flip - (gridDim.x - 1) : 1u, cuda::memory_order_release);
+      while ((word_.load(cuda::memory_order_relaxed) & flip) == before_) {
+      }
+      cuda::atomic_thread_fence(cuda::memory_order_acquire, cuda::thread_scope_device);
+      before_ ^= flip;
+    }
+    __syncthreads();
+  }
+
+ private:
+  static constexpr unsigned flip = 1u << 31;
+  cuda::atomic_ref<unsigned, cuda::thread_scope_device> word_;
+  unsigned before_ = 0;  // the highest bit, as the block's first thread knows it
+};
+
+/// The phases from one on that have so few items that one block does them sooner than all blocks would wait
+/// for one another. None where items() hang on what other blocks do meanwhile.
+template <class Program>
+__device__ int phases_of_one_block(const Program& program, const typename Program::State& state, int first,
+                                   int phases) {
+  int phase = first;
+  if constexpr (WorksOnRuns<Program>) {
+    while (phase < phases && program.items(state, phase) <= Program::threads) ++phase;
+  }
+  return phase - first;
+}
+
 /// All blocks are on the GPU at once, and wait for each other between phases. The items of a phase are dealt
 /// to them warp by warp, so that few items keep all processors busy. Each block keeps the state itself and
 /// judges alike, from the sums of all blocks, of which there are two sets: one may still be read by blocks
@@ -118,7 +155,7 @@ typename Program::State run(Host, const char* label, const Program& program, typ
 template <class Program>
 __global__ void __launch_bounds__(Program::threads, blocks_at_once<Program>())
     run_phases(const __grid_constant__ Program program, const typename Program::State start,
-               typename Program::Sum* sums, typename Program::State* out) {
+               typename Program::Sum* sums, typename Program::State* out, unsigned* barrier_word) {
   using Sum = typename Program::Sum;
   constexpr bool adds_up = !std::is_empty_v<Sum>;
   constexpr int threads = Program::threads;
@@ -128,24 +165,34 @@ __global__ void __launch_bounds__(Program::threads, blocks_at_once<Program>())
   typename Program::State& state = *state_room.data();
   if (threadIdx.x == 0) state = start;
   __syncthreads();
-  const auto grid = cooperative_groups::this_grid();
+  GridBarrier barrier(barrier_word);
   Sum* const sums_of[] = {sums, sums + gridDim.x};
   int turn = 0;
   for (int phases = program.phases(state); phases > 0; phases = program.phases(state)) {
     Sum mine{};
-    for (int phase = 0; phase < phases; ++phase) {
-      if (phase > 0) grid.sync();
+    for (int phase = 0; phase < phases;) {
+      if (phase > 0) barrier.wait();
+      if (const int few = phases_of_one_block(program, state, phase, phases); few > 0) {
+        for (int k = 0; blockIdx.x == 0 && k < few; ++k) {
+          if (k > 0) __syncthreads();
+          const std::int64_t item = threadIdx.x;
+          if (item < program.items(state, phase + k)) mine = mine + program(state, phase + k, item);
+        }
+        phase += few;
+        continue;
+      }
       const std::int64_t items = program.items(state, phase);
       const std::int64_t stride = std::int64_t{gridDim.x} * threads;
       const std::int64_t first =
           (std::int64_t{threadIdx.x / warp} * gridDim.x + blockIdx.x) * warp + threadIdx.x % warp;
       for (std::int64_t i = first; i < items; i += stride) mine = mine + program(state, phase, i);
+      ++phase;
     }
     if constexpr (adds_up) {
       const Sum sum = sum_over_block<threads>(mine, room.data());
       if (threadIdx.x == 0) sums_of[turn][blockIdx.x] = sum;
     }
-    grid.sync();
+    barrier.wait();
     Sum of_blocks{};
     if constexpr (adds_up) {
       for (unsigned b = threadIdx.x; b < gridDim.x; b += threads) of_blocks = of_blocks + sums_of[turn][b];
@@ -195,9 +242,12 @@ typename Program::State run(Device, const char* label, Program program, typename
   const unsigned blocks = blocks_for<Program>(program.most_items());
   Array<typename Program::Sum, Device> sums(2 * std::int64_t{blocks});
   Array<typename Program::State, Device> out(1);
+  Array<unsigned, Device> barrier_word(1);
   auto* sums_data = sums.data();
   auto* out_data = out.data();
-  void* arguments[] = {&program, &state, &sums_data, &out_data};
+  auto* word_data = barrier_word.data();
+  cudaMemsetAsync(word_data, 0, sizeof(unsigned));
+  void* arguments[] = {&program, &state, &sums_data, &out_data, &word_data};
   cudaLaunchCooperativeKernel(run_phases<Program>, blocks, Program::threads, arguments);
   scree::detail::require_launched(label);
   copy_bytes<Host, Device>(&state, out.data(), sizeof(state));

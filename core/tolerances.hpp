@@ -98,9 +98,14 @@ inline constexpr double impact_gain = 1e-12;
 /// replaces both. Larger: towers rock; heaps come to rest too dense.
 inline constexpr double response_change = 1e-10;
 inline constexpr double heap_change = 3e-3;
-/// The same of a heap that flows. Larger: they overlap more; smaller: more sweeps, and
+/// The same of a heap that flows, at most. Larger: they overlap more; smaller: more sweeps, and
 /// overlaps that the motion makes anew (docs/decisions/0052 has the front).
 inline constexpr double heap_change_in_flow = 2e-2;
+/// Mean overlap of the contacts of a heap that flows, of the smaller size, under which its change in one
+/// sweep may be twice as large in the next substeps, and over which half as large. Larger: fewer sweeps, and
+/// heaps that flow overlap more.
+inline constexpr double little_overlap_in_flow = 2e-4;
+inline constexpr double much_overlap_in_flow = 4e-4;
 /// Power that normal impulses have on what they leave undone (of that on all they change), over which a heap
 /// is swept twice as often in the next substeps, and under which half as often: it shows slow modes of many
 /// layers, of which one sweep's change tells nothing. Smaller: heaps come to rest sooner, and cost more until
@@ -117,10 +122,11 @@ inline constexpr double undone_of_dissipated = 0.1;
 /// Of the power of all impulses, what is dissipated in a heap that moves: 0.5 to 1 where it flows, under 0.1
 /// at rest.
 inline constexpr double moving_power = 0.25;
-/// And in one that flows as a whole: 0.7 to 2; where boxes rain on others 0.5 to 0.6, and where a heap has
-/// just fallen under 0.4. Larger: what flows is swept until nothing changes any more; smaller: boxes that
-/// come to rest are not, and bounce on what is left.
-inline constexpr double flowing_power = 0.6;
+/// And in one that flows as a whole: 0.8 to 2. What falls on others loses the half of that power, and what it
+/// rubs away besides: boxes that rain on others 0.5 to 0.6, a deep heap that lands layer by layer 0.65 to
+/// 0.71. Larger: what flows is swept until nothing changes any more; smaller: deep heaps sink in while they
+/// land, and boxes that come to rest bounce on what is left.
+inline constexpr double flowing_power = 0.75;
 /// Of the power of one substep's impulses, what is undone as it is when a heap has just fallen on its ground;
 /// where it flows, 0.005 to 0.09. Larger: deep heaps sink in while they land. Smaller: what only moves is
 /// swept as often as any.

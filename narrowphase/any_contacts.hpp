@@ -6,9 +6,11 @@
 
 namespace scree {
 
-/// As find_pair_contacts(), of any two shapes.
-SCREE_HD inline int find_any_contacts(const ShapedSolid& a, const ShapedSolid& b, const PairShapes& shapes,
-                                      const ContactReach& reach, Manifold* out) {
+/// As find_pair_contacts(), of any two shapes. It is called and not copied to where it is used: a GPU that
+/// does all of it once in a while waits for its instructions.
+[[gnu::noinline]] SCREE_HD inline int find_any_contacts(const ShapedSolid& a, const ShapedSolid& b,
+                                                        const PairShapes& shapes, const ContactReach& reach,
+                                                        Manifold* out) {
   SCREE_ON_HOST(
       if (is_general(a.shape) || is_general(b.shape)) return find_general_contacts(a, b, shapes, reach, out);)
   return find_pair_contacts(a.shape, a.solid, b.shape, b.solid, reach.margin, out);

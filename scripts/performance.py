@@ -88,6 +88,61 @@ def drum(n, precision="mixed"):
     return Run("drum_hub", settings, 1.5, 15 if n < 10**6 else 100, precision, varied={"n": n})
 
 
+def scaled(n, of, **lengths):
+    """Settings of lengths, or lists of them, that grow with the number of bodies `of` which the scene has."""
+    scale = (n / of) ** (1 / 3)
+    text = lambda value: f"[{','.join(map(text, value))}]" if isinstance(value, (list, tuple)) else f"{scale * value:.6g}"
+    return {key: text(value) for key, value in lengths.items()}
+
+
+def collapse(n, **rest):
+    side = round((n / 5.7) ** (1 / 3))
+    settings = {"bodies[5].repeat.count": f"[{side},{side},{round(5.7 * side)}]", **{f"bodies[{k}].plane.offset": f"{-0.0225 * side:.6g}" for k in (2, 4)}}
+    return Run(**({"scene": "collapse", "settings": settings, "settle": 0.75, "within": 60, "varied": {"n": n}} | rest))
+
+
+def beads(n, **rest):
+    settings = {"bodies[1].scatter.count": n, "bodies[1].sphere.radius": f"{0.0037 * (10**5 / n) ** (1 / 3):.6g}"}
+    return Run(**({"scene": "drum", "settings": settings, "settle": 0.8, "within": 60, "varied": {"n": n}} | rest))
+
+
+def rubble(n, **rest):
+    x, y, z = (round(count * (n / 10**5) ** (1 / 3)) for count in (40, 88, 14))
+    settings = {**{f"bodies[{k}].repeat.count": f"[{x},{y},{z}]" for k in (4, 5)}, **{f"bodies[{k}].plane.offset": f"{-0.013 * y - 0.002:.6g}" for k in (2, 3)}}
+    return Run(**({"scene": "rubble", "settings": settings, "settle": 0.6, "within": 100, "varied": {"n": n}} | rest))
+
+
+def stirrer(n):
+    lengths = {"bodies[0].tube.radius": 0.3, "bodies[0].tube.length": 1.6, "bodies[0].at": (0, 0, 0.8), "bodies[1].box.size": (0.54, 0.02, 0.16),
+               "bodies[1].at": (0, 0, 0.2), "bodies[2].scatter.from": (-0.3, -0.3, 0), "bodies[2].scatter.to": (0.3, 0.3, 1.2)}
+    return Run("stirrer", {"bodies[2].scatter.count": n, **scaled(n, 3 * 10**5, **lengths)}, 1.5, 60, varied={"n": n})
+
+
+def hopper(n):
+    scale = (10**5 / n) ** (1 / 3)
+    settings = {"bodies[4].scatter.count": n, "bodies[4].sphere.radius.uniform": f"[{0.0037 * scale:.6g},{0.0045 * scale:.6g}]"}
+    return Run("hopper", settings, 1.2, 60, varied={"n": n})
+
+
+def mixed_drum(n):
+    scale = (10**5 / n) ** (1 / 3)
+    settings = {"bodies[1].scatter.count": n, "bodies[1].sphere.radius.powerlaw": f"[{0.0018 * scale:.6g},{0.018 * scale:.6g},3.5]"}
+    return Run("mixed_drum", settings, 0.8, 60, varied={"n": n})
+
+
+def motion(n):
+    return [collapse(n), beads(n), stirrer(3 * n if n == 10**5 else n), hopper(n), mixed_drum(n), rubble(n)]
+
+
+def motion_and_error(n):
+    for scene in (collapse, beads, rubble):
+        for substeps in ("auto", 1, 2, 4):
+            for iterations in ("auto", 3, 6, 12, 24):
+                run = scene(n, within=20, varied={"n": n, "substeps": substeps, "iterations": iterations})
+                run.settings |= {"time.substeps": substeps, "response.iterations": iterations}
+                yield run
+
+
 def speed_and_error(n):
     """Sweeps go on to their bound: the tolerance is out of reach."""
     for precision in ("mixed", "double"):
@@ -122,6 +177,9 @@ PARTS = {
     "boxes": lambda at_most, space: [boxes(n, p) for p in PRECISIONS for n in at_most(10**4, 10**5, 10**6)],
     "decades": lambda at_most, space: [decades(n, p) for p in PRECISIONS for n in at_most(10**6)],
     "drum": lambda at_most, space: [drum(n, p) for p in PRECISIONS for n in at_most(10**6)],
+    "motion": lambda at_most, space: [run for n in at_most(10**5) for run in motion(n)],
+    "motion-large": lambda at_most, space: [run for n in at_most(10**6) for run in motion(n)],
+    "motion-error": lambda at_most, space: [run for n in at_most(10**5) for run in motion_and_error(n)],
     "crossover": lambda at_most, space: list(crossover(at_most(100, 300, 1000, 3000, 10**4, 3 * 10**4, 10**5), space)),
     "error": lambda at_most, space: [run for n in at_most(10**5) for run in speed_and_error(n)],
     "heaps": lambda at_most, space: list(heaps(space)),

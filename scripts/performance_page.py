@@ -110,6 +110,7 @@ ERROR = {
     "unexplained energy": lambda row: small(row.unexplained),
 }
 MEMORY = {"bytes/body at the peak": lambda row: three(row.memory_peak_bytes / row.bodies)}
+SCENE = {"scene": lambda row: f"[{row.scene}](../configs/bench/{row.scene}.yaml)"}
 WHERE = {"hardware": lambda row: row.machine, "precision": lambda row: row.precision}
 SETTLED = {"settled for (s)": lambda row: f"{row.time * row.settling_steps / (row.settling_steps + row.steps):.2g}", "steps": lambda row: f"{row.steps:.0f}"}
 
@@ -188,10 +189,42 @@ def other_scenes(number):
     if not rows:
         return []
     rows.sort(key=lambda row: (row.scene, row.space != "cuda", row.machine, row.precision != "mixed", row.bodies))
-    scene = {"scene": lambda row: f"[{row.scene}](../configs/bench/{row.scene}.yaml)"}
     return [f"## {number}. Other scenes", "",
             "Boxes at rest; balls with radii over two decades; a drum with a ball that thousands touch. Each scene says what it is, and how its number is "
-            "changed.", "", *table_of(rows, scene | WHERE | SPEED | ERROR | SETTLED), *left_out(failed), *caption(rows)]
+            "changed.", "", *table_of(rows, SCENE | WHERE | SPEED | ERROR | SETTLED), *left_out(failed), *caption(rows)]
+
+
+MACROSCOPIC = {"centre (m)": lambda row: f"{row.centre_z:.5f}", "rms speed (m/s)": lambda row: three(row.speed_rms)}
+
+
+def in_motion(number):
+    rows, failed = rows_of("motion", "motion-large")
+    if not rows:
+        return []
+    rows.sort(key=lambda row: (row.scene, row.space != "cuda", row.machine, row.bodies))
+    return [f"## {number}. In motion", "",
+            "Scenes in which most bodies move. The height of the centre of mass and the rms speed are what a coarser step would change.", "",
+            *table_of(rows, SCENE | WHERE | SPEED | {"impacts/step": lambda row: three(row.impacts)} | ERROR | MACROSCOPIC | SETTLED), *left_out(failed), *caption(rows)]
+
+
+def motion_against_error(number):
+    rows, failed = rows_of("motion-error")
+    if not rows:
+        return []
+    lines = [f"## {number}. In motion: speed against error", "",
+             "Substeps (`time.substeps`) of auto, 1, 2 and 4 with sweeps (`response.iterations`) of auto and at most 3, 6, 12 and 24, from the start of the scene on. "
+             "A line is a number of substeps, and sweeps go on along it.", ""]
+    order = lambda word: -1 if word == "auto" else word
+    for scene in dict.fromkeys(row.scene for row in rows):
+        of_scene = sorted((row for row in rows if row.scene == scene), key=lambda row: (row.machine, order(row.substeps), order(row.iterations)))
+        swept = [row for row in of_scene if row.iterations != "auto"]
+        lines += picture(f"motion_{scene}", "set logscale xy\nset xlabel 'ms/step'\nset ylabel 'mean overlap (of the size)'\nset format y '10^{%T}'\n",
+                         curves_of(swept, lambda row: row.median_ms, lambda row: row.penetration_relative_mean, lambda row: f"{row.machine}, substeps {row.substeps}") +
+                         curves_of([row for row in of_scene if row.iterations == row.substeps == "auto"], lambda row: row.median_ms,
+                                   lambda row: row.penetration_relative_mean, lambda row: f"{row.machine}, as it is"))
+        lines += table_of(of_scene, SCENE | WHERE | {"substeps asked": lambda row: row.substeps, "sweeps asked": lambda row: row.iterations,
+                                                     "substeps": SPEED["substeps"], "sweeps": SPEED["sweeps"], "ms/step": SPEED["ms/step"]} | ERROR | MACROSCOPIC)
+    return lines + left_out(failed) + caption(rows)
 
 
 def crossings(rows):
@@ -295,7 +328,7 @@ def write():
     """Sections without results are left out."""
     text = HEAD
     number = 1
-    for section in (scaling, stages, memory, other_scenes, crossover, speed_against_error, peers):
+    for section in (scaling, stages, memory, other_scenes, in_motion, motion_against_error, crossover, speed_against_error, peers):
         if lines := section(number):
             text += "\n" + "\n".join(lines).rstrip("\n") + "\n"
             number += 1

@@ -435,7 +435,10 @@ void ResidentStepper<Space, Real>::archive(Archive& archive) {
   archive.part("seen_pairs", seen_pairs_);
   archive("sees_kept", sees_kept_);
   archive("pairs_taken", pairs_taken_);
-  if (archive.is_loading()) pairs_known_ = 0;
+  if (archive.is_loading()) {
+    pairs_known_ = 0;
+    impacts_ = {};
+  }
   archive.part("contacts", contacts_, view_of(std::as_const(bodies_)), parameters_);
   gravity_.archive(archive, parameters_);
   if (!archive.is_loading()) return;
@@ -491,7 +494,8 @@ bool ResidentStepper<Space, Real>::resolve_impacts(double h, double from, double
     const Ledger moved = impacts_.resolve({.pairs = pairs,
                                            .loaded = loads_of(pairs),
                                            .terms = terms(h, from),
-                                           .one_by_one = parameters_.accurate},
+                                           .one_by_one = parameters_.accurate,
+                                           .pairs_made = kept_pairs_.times_made()},
                                           parameters_, views());
     if (impacts_.impacts().size() == 0) return false;
     // What was struck may have left the boxes: others that it can meet now are not among the pairs.

@@ -63,7 +63,8 @@ class Response : public Solver {
     ResponseParameters parameters;
     parameters.accurate = accurate_;
     parameters.tolerance = budget;
-    const SweepPlan plan = plan_sweeps(parameters, contacts_.contacts(), contacts_.points(), false);
+    const SweepPlan plan =
+        plan_sweeps(parameters, contacts_.contacts(), contacts_.points(), false, tolerance::heap_change);
     SweepPlan first = plan, rest = plan;
     if (plan.direct) first.most = few_sweeps;
     rest.most = std::max(plan.most - first.most, few_sweeps);

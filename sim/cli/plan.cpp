@@ -266,7 +266,7 @@ std::string response_words(const ResponseSettings& settings) {
   const std::string tolerance =
       settings.tolerance
           ? fmt::format("{:g} of their size", *settings.tolerance)
-          : fmt::format("{:g} of their size, of a heap's {:g} ({:g} where it flows)",
+          : fmt::format("{:g} of their size, of a heap's {:g} (at most {:g} where it flows)",
                         tolerance::response_change, tolerance::heap_change, tolerance::heap_change_in_flow);
   return fmt::format("{}, until the impulses change by less than {}", sweeps, tolerance);
 }

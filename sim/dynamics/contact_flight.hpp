@@ -130,9 +130,10 @@ SCREE_HD ContactFlight flight_of_contact(const StruckFlights& struck, const Head
   if (loaded || !detail::would_push_apart(struck, m, points, size, seen)) return contact;
   PairFlight pair = stage.pair_of(m.i, m.j, 1.5 * step);
   pair.slowest[m.part] = 0;
-  const Meeting meeting = next_meeting(pair, struck.time_of(m.i, m.j));
-  const bool bounces_later = meeting.time > step && !stage.are_in_crowd(m.i, m.j) &&
-                             fastest_approach(pair) > stage.slowest_bounce(m.i, m.j);
+  const bool bounces =
+      !stage.are_in_crowd(m.i, m.j) && fastest_approach(pair) > stage.slowest_bounce(m.i, m.j);
+  const Meeting meeting = next_meeting(pair, struck.time_of(m.i, m.j), bounces ? step : HUGE_VAL);
+  const bool bounces_later = bounces && meeting.time > step;
   contact.flying = meeting.time == HUGE_VAL || bounces_later;
   return contact;
 }

@@ -171,6 +171,12 @@ struct FlightStage {
                                                      : smallest_size(bodies.shape[body], bodies.size[body]);
   }
 
+  /// Whether when it meets others is searched for (next_meeting). As bound() has seen it.
+  SCREE_HD bool needs_search(std::int32_t body) const {
+    if (bodies.mobility[body] == Mobility::absent || bodies.shape[body] == Shape::sphere) return false;
+    return !is_boundary(bodies.shape[body]) || turn[body] == HUGE_VAL;
+  }
+
   /// What `harmless` may be, for the bodies as bound() has seen them (m/s): such two neither go deep, nor do
   /// they close as fast as what bounces, even if gravity adds to it. `smallest`: the smallest size_of() (m);
   /// `restitution`: the largest of the laws.

@@ -254,12 +254,6 @@ SCREE_HD void add_other_walls(const FlightStage& stage, const SolvedImpact& of, 
 
 }  // namespace detail
 
-/// No wall but that of the pair: what solve_impact() asks of two free bodies.
-struct NoOtherWalls {
-  template <class Then>
-  SCREE_HD void operator()(const Then&) const {}
-};
-
 /// Newton's law u+ = -e u- at all points that touch and close, with Coulomb friction. `loads` are those of
 /// the pair, as LoadedParts. `other_walls(then)` calls then(wall, part) for what the free body of the pair
 /// meets besides and is not free. False if no point closes.

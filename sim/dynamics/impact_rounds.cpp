@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <type_traits>
 #include <utility>
 
 namespace scree {
@@ -23,7 +24,6 @@ using detail::RoundsState;
 /// laws.
 struct StartFlight {
   FlightStage stage;
-  View<std::uint32_t> joined_in;
   SCREE_HD FlightBounds operator()(std::int64_t k) const {
     FlightBounds bounds;
     const ConstView<PairLaw> laws = stage.terms.laws.table;
@@ -32,10 +32,10 @@ struct StartFlight {
     const double from = stage.terms.from;
     stage.clock[k] = from > 0 ? fmax(stage.clock[k], from) : 0.0;
     stage.weary[k] = 0;
-    joined_in[k] = detail::not_yet;
     stage.bound(static_cast<std::int32_t>(k));
     bounds.top_speed = stage.top_speed[k];
     bounds.smallest = stage.size_of(k);
+    bounds.needs_search = stage.needs_search(static_cast<std::int32_t>(k));
     return bounds;
   }
 };
@@ -49,20 +49,46 @@ struct StartProgress {
     const bool nobody = 2 * bounds[0].top_speed <= harmless;
     *progress = {};
     progress->harmless = nobody ? HUGE_VAL : harmless;
+    progress->needs_search = bounds[0].needs_search;
   }
 };
 
-/// Not where nobody is fast enough for an impact.
 struct MarkCrowd {
   FlightStage stage;
   ConstView<Pair> pairs;
   ConstView<LoadedParts> loaded;
-  const ImpactProgress* progress;
   SCREE_HD void operator()(std::int64_t k) const {
-    if (progress->harmless == HUGE_VAL || loaded[k].bits == 0) return;
+    if (loaded[k].bits == 0) return;
     const auto [i, j] = pairs[k];
     if (!stage.is_free(i) || !stage.is_free(j)) return;
     for (const std::int32_t body : {i, j}) raise(&stage.in_crowd[body], 1u);
+  }
+};
+
+/// What the first round begins with.
+struct ResetBodies {
+  ImpactProgram program;
+  SCREE_HD void operator()(std::int64_t body) const {
+    program.first[0][body] = program.first[1][body] = detail::no_meeting;
+    program.struck_in[body] = program.waits_in[body] = program.walls_of[body] = 0;
+    program.volley_of[body] = detail::no_volley;
+  }
+};
+
+/// Pairs that may meet. A loop of its own looks at more pairs at once than the rounds, which take many
+/// registers.
+struct ListNear {
+  FlightStage stage;
+  ConstView<Pair> pairs;
+  ImpactProgress* progress;
+  View<std::int64_t> near;
+  SCREE_HD void operator()(std::int64_t k) const {
+    const auto [i, j] = pairs[k];
+    ImpactLimits limits;
+    if (stage.top_speed[i] + stage.top_speed[j] <= progress->harmless || !stage.may_meet(i, j, limits))
+      return;
+    const auto place = static_cast<std::int64_t>(count_up_together(&progress->near));
+    if (place < near.size()) near[place] = k;
   }
 };
 
@@ -97,6 +123,7 @@ struct Restore {
 };
 
 constexpr std::int64_t least_room = 4096;
+constexpr int lanes_on_device = 8;
 
 /// Makes room for so many, and keeps the `used` first.
 template <class T, class Space>
@@ -130,20 +157,28 @@ Ledger ImpactRounds<Space>::resolve(const Problem& problem, const ResponseParame
       problem.terms.bounces && parameters.restitution && !problem.one_by_one && problem.loaded.size() > 0;
   log_.in_crowd.resize(has_crowds ? bodies.count() : 0);
   const FlightStage stage(problem.terms, parameters, bodies, log_);
-  start(stage);
+  impacts_.resize(0);
+  struck_.resize(0);
+  rounds_ = 0;
+  if (!any_may_meet(problem.terms, parameters, bodies)) {
+    log_.in_crowd.resize(0);
+    return {};
+  }
   if (has_crowds) {
     parallel::fill("impact.crowd", log_.in_crowd, 0u);
     parallel::for_each<Space>("impact.crowd", problem.pairs.size(),
-                              MarkCrowd{stage, problem.pairs, problem.loaded, shared_progress_.data()});
+                              MarkCrowd{stage, problem.pairs, problem.loaded});
   }
+  if (problem.pairs_made == 0 || problem.pairs_made != adjacency_of_) adjacency_.clear();
+  parallel::for_each<Space>("impact.near", bodies.count(), ResetBodies{program(stage, problem)});
+  list_near(stage, problem);
   RoundsState state;
   for (;;) {
     state = parallel::run_rounds<Space>("impact.rounds", program(stage, problem), state);
     if (state.halt == RoundsState::Halt::end) break;
-    make_room(state);
+    make_room(stage, problem, state);
   }
   rounds_ = state.round - 1;
-  progress_ = {};
   if (state.round > 1 || state.counts.meetings > 0)
     copy_bytes<Host, Space>(&progress_, shared_progress_.data(), sizeof(progress_));
   if (state.counts.meetings > 0) progress_.hit_bound = 1;
@@ -153,12 +188,11 @@ Ledger ImpactRounds<Space>::resolve(const Problem& problem, const ResponseParame
 
 template <class Space>
 void ImpactRounds<Space>::start(const FlightStage& stage) {
-  joined_in_.resize(stage.bodies.count());
   shared_progress_.resize(1);
   bounds_.resize(1);
-  parallel::sum_into<FlightBounds, Space>(
-      "impact.start", std::max(stage.bodies.count(), stage.terms.laws.table.size()),
-      StartFlight{stage, joined_in_.view()}, bounds_scratch_, bounds_.data());
+  parallel::sum_into<FlightBounds, Space>("impact.start",
+                                          std::max(stage.bodies.count(), stage.terms.laws.table.size()),
+                                          StartFlight{stage}, bounds_scratch_, bounds_.data());
   parallel::for_each<Space>("impact.start", 1,
                             StartProgress{stage, std::as_const(bounds_).view(), shared_progress_.data()});
 }
@@ -166,9 +200,10 @@ void ImpactRounds<Space>::start(const FlightStage& stage) {
 template <class Space>
 ImpactProgram ImpactRounds<Space>::program(const FlightStage& stage, const Problem& problem) {
   const std::int64_t n = stage.bodies.count();
-  first_.resize(n);
+  for (auto& of_bodies : first_) of_bodies.resize(n);
   for (auto* of_bodies : {&struck_in_, &waits_in_, &volley_of_, &walls_of_}) of_bodies->resize(n);
-  for (auto* list : {&suspects_, &busy_}) grow(*list, list->size(), least_room);
+  grow(near_, near_.size(), least_room);
+  grow(suspects_, 0, least_room);
   for (auto& list : meetings_) grow(list, list.size(), least_room);
   grow(volleys_, 0, meetings_[0].size());
   grow(resolved_, resolved_.size(), least_room);
@@ -177,42 +212,60 @@ ImpactProgram ImpactRounds<Space>::program(const FlightStage& stage, const Probl
   return {.stage = stage,
           .pairs = problem.pairs,
           .loaded = problem.loaded,
+          .adjacency = adjacency_.view(),
           .one_by_one = problem.one_by_one,
+          .lanes = std::is_same_v<Space, Host> ? 1 : lanes_on_device,
           .progress = shared_progress_.data(),
-          .first = first_.view(),
-          .joined_in = joined_in_.view(),
+          .first = {first_[0].view(), first_[1].view()},
           .struck_in = struck_in_.view(),
           .waits_in = waits_in_.view(),
           .volley_of = volley_of_.view(),
           .walls_of = walls_of_.view(),
+          .near = near_.view(),
           .suspects = suspects_.view(),
-          .busy = busy_.view(),
           .meetings = {meetings_[0].view(), meetings_[1].view()},
           .volleys = volleys_.view(),
           .resolved = resolved_.view(),
           .key = key_.view(),
-          .struck = struck_.view()};
+          .struck = struck_.view(),
+          .chunks = chunks_.view()};
 }
 
 template <class Space>
-void ImpactRounds<Space>::make_room(RoundsState& state) {
+void ImpactRounds<Space>::list_near(const FlightStage& stage, const Problem& problem) {
+  parallel::for_each<Space>("impact.near", problem.pairs.size(),
+                            ListNear{stage, problem.pairs, shared_progress_.data(), near_.view()});
+}
+
+template <class Space>
+void ImpactRounds<Space>::make_room(const FlightStage& stage, const Problem& problem, RoundsState& state) {
   ImpactProgress* progress = shared_progress_.data();
   copy_bytes<Host, Space>(&progress_, progress, sizeof(progress_));
   const std::int64_t meetings = signed_count(state.counts.meetings);
   if (state.halt == RoundsState::Halt::lists) {
     // The first half is done again.
     grow(suspects_, 0, signed_count(state.counts.suspects));
-    grow(busy_, signed_count(state.busy), signed_count(progress_.busy));
     for (auto& list : meetings_) grow(list, list.size(), std::max(meetings, meetings_[0].size()));
-    progress_.busy = state.busy;
     progress_.counts[state.round % 2] = {};
+    const std::int64_t near = signed_count(progress_.near);
+    const bool all_listed = near <= near_.size();
+    if (!all_listed) progress_.near = 0;
     copy_bytes<Space, Host>(progress, &progress_, sizeof(progress_));
+    if (!all_listed) {
+      grow(near_, 0, near);
+      list_near(stage, problem);
+    }
   } else {
     const std::int64_t impacts = signed_count(progress_.impacts);
     const std::int64_t struck = signed_count(progress_.struck);
     grow(resolved_, impacts, impacts + meetings);
     grow(key_, impacts, impacts + meetings);
     grow(struck_, struck, struck + 2 * meetings);
+    if (adjacency_.view().is_empty()) {
+      adjacency_.build(problem.pairs, ConstView<Mobility>(stage.bodies.mobility));
+      adjacency_of_ = problem.pairs_made;
+      chunks_.resize(adjacency_.view().row.size() / ImpactProgram::chunk_size + stage.bodies.count());
+    }
   }
   state.halt = RoundsState::Halt::none;
 }
@@ -230,7 +283,7 @@ Ledger ImpactRounds<Space>::put_in_order(std::int64_t pairs, ConstView<BodyNumbe
                         std::bit_width(static_cast<std::uint64_t>((rounds_ + 1) * pairs)));
   const ConstView<std::int64_t> order = order_.view();
   parallel::for_each<Space>("impact.order", n, PutInOrder{order, resolved_.view(), number, impacts_.view()});
-  return parallel::sum<Ledger, Space>("impact.moved", n, LoadOrdered{order, resolved_.view()});
+  return parallel::sum_by_tiles<Ledger, Space>("impact.moved", n, LoadOrdered{order, resolved_.view()});
 }
 
 template <class Space>

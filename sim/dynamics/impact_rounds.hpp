@@ -3,6 +3,7 @@
 #pragma once
 
 #include "core/array.hpp"
+#include "sim/dynamics/adjacency.hpp"
 #include "sim/dynamics/impact_program.hpp"
 
 #include <cmath>
@@ -17,8 +18,10 @@ struct FlightBounds {
   double top_speed = 0;        ///< the largest of the bodies' (m/s)
   double smallest = HUGE_VAL;  ///< of their sizes (m)
   double restitution = 0;      ///< the largest of the laws'
+  bool needs_search = false;   ///< one of them does (FlightStage::needs_search)
   SCREE_HD friend FlightBounds operator+(const FlightBounds& a, const FlightBounds& b) {
-    return {fmax(a.top_speed, b.top_speed), fmin(a.smallest, b.smallest), fmax(a.restitution, b.restitution)};
+    return {fmax(a.top_speed, b.top_speed), fmin(a.smallest, b.smallest), fmax(a.restitution, b.restitution),
+            a.needs_search || b.needs_search};
   }
 };
 
@@ -48,7 +51,8 @@ class ImpactRounds {
     ConstView<Pair> pairs;          ///< candidates, among which are all that may meet; each has a free body
     ConstView<LoadedParts> loaded;  ///< of each pair; empty: none
     FlightTerms terms;
-    bool one_by_one = false;  ///< strictly in the order of their times, whatever that costs
+    bool one_by_one = false;      ///< strictly in the order of their times, whatever that costs
+    std::int64_t pairs_made = 0;  ///< the same number: the same pairs of the same bodies; 0: unknown
   };
 
   /// False if all are too slow for one in the flight, wherever they are.
@@ -78,7 +82,8 @@ class ImpactRounds {
   void start(const FlightStage& stage);
   detail::ImpactProgram program(const FlightStage& stage, const Problem& problem);
   /// For rounds that have halted for want of it.
-  void make_room(detail::RoundsState& state);
+  void list_near(const FlightStage& stage, const Problem& problem);
+  void make_room(const FlightStage& stage, const Problem& problem, detail::RoundsState& state);
   Ledger put_in_order(std::int64_t pairs, ConstView<BodyNumber> number);
 
   FlightLog<Space> log_;
@@ -87,14 +92,17 @@ class ImpactRounds {
   Array<detail::FlightBounds, Space> bounds_, bounds_scratch_;
   std::int64_t rounds_ = 0;
   // As in detail::ImpactProgram:
-  Array<detail::FirstMeeting, Space> first_;
-  Array<std::uint32_t, Space> joined_in_, struck_in_, waits_in_, volley_of_, walls_of_;
-  Array<std::int64_t, Space> suspects_, busy_;
+  Array<std::uint64_t, Space> first_[2];
+  Array<std::uint32_t, Space> struck_in_, waits_in_, volley_of_, walls_of_;
+  Array<std::int64_t, Space> near_, suspects_;
   Array<detail::Foreseen, Space> meetings_[2];
   Array<detail::Volley, Space> volleys_;
   Array<detail::Resolved, Space> resolved_;
   Array<std::uint64_t, Space> key_;
   Array<StruckBody, Space> struck_;
+  Array<detail::StruckPairs, Space> chunks_;
+  Adjacency<Space> adjacency_;
+  std::int64_t adjacency_of_ = 0;  // Problem::pairs_made
   // In order:
   Array<std::int64_t, Space> order_;
   Array<Impact, Space> impacts_;

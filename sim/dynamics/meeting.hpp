@@ -92,8 +92,8 @@ SCREE_HD inline bool may_touch(const PairFlight& pair, double earliest) {
 }
 
 /// The first meeting that counts, at `earliest` (s) or later. Balls, and balls with planes and tubes that do
-/// not turn over, have closed forms; for the others it is a search.
-SCREE_HD inline Meeting next_meeting(const PairFlight& pair, double earliest) {
+/// not turn over, have closed forms; for the others it is a search. `divide`: see MeetingSearch::run.
+SCREE_HD inline Meeting next_meeting(const PairFlight& pair, double earliest, double divide = NAN) {
   if (pair.i.is_ball() && pair.j.is_ball()) return detail::next_of_balls(pair, earliest);
   const bool ball_first = pair.i.is_ball();
   const BodyFlight& ball = ball_first ? pair.i : pair.j;
@@ -104,7 +104,7 @@ SCREE_HD inline Meeting next_meeting(const PairFlight& pair, double earliest) {
   }
   const double fastest = fastest_approach(pair);
   if (!(fastest * (pair.until - earliest) > 0)) return {};
-  return MeetingSearch(pair, fastest).run(earliest);
+  return MeetingSearch(pair, fastest).run(earliest, divide);
 }
 
 /// The contact of two bodies at an instant, on the part given: of its manifolds the one with the smallest gap

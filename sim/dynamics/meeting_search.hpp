@@ -6,6 +6,7 @@
 #include "sim/dynamics/body_flight.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace scree {
 
@@ -23,8 +24,9 @@ class MeetingSearch {
   SCREE_HD MeetingSearch(const PairFlight& pair, double fastest)
       : pair_(pair), fastest_(fastest), size_(pair.smaller_size()) {}
 
-  /// At `earliest` (s) or later.
-  SCREE_HD Meeting run(double earliest) {
+  /// At `earliest` (s) or later. `divide`: if it is given, the time may be any on the right side of this one,
+  /// where it takes no further look to tell that.
+  SCREE_HD Meeting run(double earliest, double divide = NAN) {
     double s = earliest;
     Look now = look(s);
     for (int iteration = 0; now.near && iteration < most_iterations; ++iteration) {
@@ -36,7 +38,8 @@ class MeetingSearch {
       const double level = std::min(now.gap, 0.0);
       if (then.hit) {
         SCREE_ON_HOST(if (now.hidden) return first_hit(s, next, then);)
-        if (then.gap >= level - touching()) return {.time = next, .part = then.part};
+        const bool is_told = next <= divide || s >= divide;
+        if (is_told || then.gap >= level - touching()) return {.time = next, .part = then.part};
         // Where it reaches that gap, unless it is not fast enough there yet.
         double touch = next;
         const Look at = bisect(s, now, touch, then, level);
@@ -72,7 +75,7 @@ class MeetingSearch {
     }
   }
 
-  SCREE_HD Look look(double s) const {
+  [[gnu::noinline]] SCREE_HD Look look(double s) const {
     const BodyInstant i = instant_of(pair_.i, s);
     const BodyInstant j = instant_of(pair_.j, s);
     Manifold manifolds[max_pair_manifolds];

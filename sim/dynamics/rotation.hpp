@@ -80,20 +80,13 @@ struct AxisOrder {
 
 enum class RotationOrder { second, fourth };
 
-/// Turns a free body for the time dt (s). Equal moments: exact. Otherwise the symmetric three-axis splitting
-/// of the body-frame equations (Touma and Wisdom 1994; Dullweber, Leimkuhler, McLachlan 1997, sec. 3): second
-/// order, world angular momentum kept to rounding; then a small turn restores the energy, also to rounding.
-/// What turns far goes in several such steps.
-/// Fourth order: Suzuki's composition of five such steps, of p, p, 1 - 4 p, p, p times the length, p = 1 / (4
-/// - 4^(1/3)) (Suzuki 1990, "Fractal decomposition of exponential operators"). What hardly turns does so
-/// about its mean spin (Magnus' second term is of third order, and rounding here), at a quarter of the cost.
-/// Returns the drift of the rotational energy (J); where it is but rounding by construction, 0.
-SCREE_HD inline double rotate_freely(Quat& orientation, Vec3& spin, const Vec3& inverse_inertia, double dt,
-                                     RotationOrder order = RotationOrder::second) {
-  if (has_equal_moments(inverse_inertia)) {
-    orientation = (rotation_of(spin * dt) * orientation).normalized();
-    return 0;
-  }
+namespace detail {
+
+/// rotate_freely() of a body with different moments: called and not copied to where it is used, since it is
+/// long.
+[[gnu::noinline]] SCREE_HD inline double rotate_unequal(Quat& orientation, Vec3& spin,
+                                                        const Vec3& inverse_inertia, double dt,
+                                                        RotationOrder order) {
   const AxisOrder axes(inverse_inertia);
   const auto v3 = [](const Vec3& a) { return lanes::V3<Number>{a.x(), a.y(), a.z()}; };
   const auto vec3 = [&axes](const lanes::V3<Number>& a) { return axes.named_back(Vec3(a.x, a.y, a.z)); };
@@ -116,6 +109,25 @@ SCREE_HD inline double rotate_freely(Quat& orientation, Vec3& spin, const Vec3& 
   orientation.vec() = vec3(top.orientation.v);
   spin = vec3(top.spin);
   return drift;
+}
+
+}  // namespace detail
+
+/// Turns a free body for the time dt (s). Equal moments: exact. Otherwise the symmetric three-axis splitting
+/// of the body-frame equations (Touma and Wisdom 1994; Dullweber, Leimkuhler, McLachlan 1997, sec. 3): second
+/// order, world angular momentum kept to rounding; then a small turn restores the energy, also to rounding.
+/// What turns far goes in several such steps.
+/// Fourth order: Suzuki's composition of five such steps, of p, p, 1 - 4 p, p, p times the length, p = 1 / (4
+/// - 4^(1/3)) (Suzuki 1990, "Fractal decomposition of exponential operators"). What hardly turns does so
+/// about its mean spin (Magnus' second term is of third order, and rounding here), at a quarter of the cost.
+/// Returns the drift of the rotational energy (J); where it is but rounding by construction, 0.
+SCREE_HD inline double rotate_freely(Quat& orientation, Vec3& spin, const Vec3& inverse_inertia, double dt,
+                                     RotationOrder order = RotationOrder::second) {
+  if (has_equal_moments(inverse_inertia)) {
+    orientation = (rotation_of(spin * dt) * orientation).normalized();
+    return 0;
+  }
+  return detail::rotate_unequal(orientation, spin, inverse_inertia, dt, order);
 }
 
 /// Inverse inertia tensor in the world frame.

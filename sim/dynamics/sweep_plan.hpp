@@ -23,14 +23,13 @@ struct SweepPlan {
 /// sweeps a point once, since news travels one contact per sweep however well each is solved, and the least
 /// number of sweeps sees to the slow modes, of which one sweep's change tells nothing (docs/decisions/0005,
 /// 0014). `flows`: a heap's bodies move on one another; what that does to the contacts by the next substep is
-/// more than what further sweeps would change (0052).
+/// more than what further sweeps would change (0052). `heap_change`: at which those of a heap have converged.
 inline SweepPlan plan_sweeps(const ResponseParameters& parameters, std::int64_t contacts,
-                             std::int64_t all_points, bool flows) {
+                             std::int64_t all_points, bool flows, double heap_change) {
   constexpr std::int64_t visits = 400000;  // of points in a substep
   constexpr std::int64_t fewest = 60, most = 10000;
   constexpr int plain_in_flow = 2;
   const bool heap = is_heap(all_points);
-  const double heap_change = flows ? tolerance::heap_change_in_flow : tolerance::heap_change;
   SweepPlan plan{.least = !heap                                ? 1
                           : shares_loads(contacts, all_points) ? 12
                                                                : 6,

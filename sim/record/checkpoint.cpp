@@ -26,7 +26,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::string_view head_words = "scree checkpoint 4, xxh3 of what follows: ";
+constexpr std::string_view head_words = "scree checkpoint 5, xxh3 of what follows: ";
 constexpr std::size_t first_line_bytes = head_words.size() + 17;
 
 using hdf5::check;

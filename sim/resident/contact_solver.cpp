@@ -286,7 +286,8 @@ template <class Space, class Real>
 void ContactSolver<Space, Real>::find_impulses(const ConstBodyView& bodies,
                                                const ResponseParameters& parameters, double share,
                                                Counters& counters) {
-  SweepPlan plan = plan_sweeps(parameters, counts_.contacts, counts_.points, patience_.flows());
+  SweepPlan plan =
+      plan_sweeps(parameters, counts_.contacts, counts_.points, patience_.flows(), patience_.change());
   if (std::is_same_v<Real, float>) plan.tolerance = std::max(plan.tolerance, tolerance::mixed_change);
   if (is_heap(counts_.points)) {
     plan.least = patience_.sweeps(plan.least, shares_loads(counts_.contacts, counts_.points), share);
@@ -678,7 +679,7 @@ PartingPlan ContactSolver<Space, Real>::plan_parting() const {
 template <class Space, class Real>
 template <bool only_balls>
 void ContactSolver<Space, Real>::run_parting_rounds(const PartingPlan& plan) {
-  parallel::run_rounds<Space>(
+  const PartingState done = parallel::run_rounds<Space>(
       "correction",
       PartingRounds<Real, only_balls>{
           .ball_colors = ColorPhases(store_.ball_colors(), visit_width<Space, Real>),
@@ -696,6 +697,7 @@ void ContactSolver<Space, Real>::run_parting_rounds(const PartingPlan& plan) {
           .deepest = static_cast<float>(plan.deepest / tolerance::correction_cap),
           .mean = static_cast<float>(plan.mean / tolerance::correction_cap)},
       PartingState{});
+  patience_.see_overlap(tolerance::correction_cap * done.mean);
 }
 
 #define SCREE_INSTANTIATE(Space)               \

@@ -42,7 +42,8 @@ void Patience::judge(double undone, double kicked, double dissipated) {
   const auto of = [](double loss) { return undone_of_dissipated * std::max(loss, 0.0); };
   if (std::abs(undone) > all_undone * kicked + much_undone * of(dissipated)) {
     degree_ = most_degree;
-    undone_ = kicked_ = dissipated_ = judged_ = 0;
+    looseness_ = 0;
+    undone_ = kicked_ = dissipated_ = overlap_ = judged_ = 0;
     return;
   }
   undone_ += std::abs(undone);
@@ -54,6 +55,7 @@ void Patience::judge(double undone, double kicked, double dissipated) {
   if (judged_ < (flows && is_done ? judged_in_flow : judged_together)) return;
   moves_ = dissipated_ > moving_power * kicked_;
   flows_ = flows;
+  looseness_ = flows ? next_looseness() : 0;
   if (flows && is_done) degree_ = std::min(degree_, usual_degree);
   const double most_undone = degrees[degree_].more * kicked_ + of(dissipated_);
   if (undone_ > most_undone) {
@@ -61,7 +63,17 @@ void Patience::judge(double undone, double kicked, double dissipated) {
   } else if (undone_ < degrees[degree_].less * kicked_ || (moves_ && degree_ > usual_degree && is_done)) {
     --degree_;
   }
-  undone_ = kicked_ = dissipated_ = judged_ = 0;
+  undone_ = kicked_ = dissipated_ = overlap_ = judged_ = 0;
 }
+
+int Patience::next_looseness() const {
+  constexpr int loosest = 3;
+  static_assert(heap_change_in_flow <= heap_change * (1 << loosest));
+  if (overlap_ > 2 * much_overlap_in_flow) return 0;
+  if (overlap_ > much_overlap_in_flow) return std::max(looseness_ - 1, 0);
+  return overlap_ < little_overlap_in_flow ? std::min(looseness_ + 1, loosest) : looseness_;
+}
+
+double Patience::change() const { return std::min(std::ldexp(heap_change, looseness_), heap_change_in_flow); }
 
 }  // namespace scree::resident

@@ -269,6 +269,7 @@ struct ImpulseRounds {
 struct PartingState {
   std::int32_t sweeps = 0;
   bool corrected = false;
+  double mean = 0;  ///< of the overlaps that the last sweep has seen (of the cap)
 };
 
 /// Parts what overlaps, as the position correction of Host: displacements and turns of bodies that start
@@ -315,7 +316,8 @@ struct PartingRounds {
   SCREE_HD State judge(const State& state, const Sum& seen) const {
     const int sweeps = state.sweeps + 1;
     return {sweeps,
-            sweeps >= least && seen.deepest <= deepest && seen.sum <= static_cast<double>(mean) * seen.count};
+            sweeps >= least && seen.deepest <= deepest && seen.sum <= static_cast<double>(mean) * seen.count,
+            seen.count > 0 ? seen.sum / seen.count : 0.0};
   }
 
  private:

@@ -2,6 +2,7 @@
 
 #include "core/parallel.hpp"
 
+#include <bit>
 #include <utility>
 
 namespace scree::resident {
@@ -115,7 +116,7 @@ void WallSums<Space>::take(ConstView<Slot> places, const ConstBodyView& bodies) 
   key.resize(n);
   parallel::for_each<Space>("walls.list", n,
                             NameWall{places, bodies.mobility, std::as_const(place).view(), key.view()});
-  parallel::sort_by_key("walls.list", key, place);
+  parallel::sort_by_key("walls.list", key, place, std::bit_width(static_cast<std::uint64_t>(bodies.count())));
   entry_of_.resize(places.size());
   parallel::fill("walls.list", entry_of_, -1);
   parallel::for_each<Space>(

@@ -54,11 +54,12 @@ Codec<ResponseSettings> response_section() {
           key<T>("block_sweeps", &T::block_sweeps, or_auto(integer(between(1, 100))), optionally,
                  "sweeps over the points that two bodies share, at each visit; auto: 4, with which stacks "
                  "stand still, but 1 for heaps"),
-          key<T>("tolerance", &T::tolerance, or_auto(number(inside(0, 1))), optionally,
-                 "sweeps stop when they change the impulses by less than this share; auto: 1e-10, but for "
-                 "heaps, of which the rest is left to the next steps, 3e-3 (2e-2 where they flow) and at "
-                 "least 6 "
-                 "sweeps, 12 where bodies share several points"),
+          key<T>(
+              "tolerance", &T::tolerance, or_auto(number(inside(0, 1))), optionally,
+              "sweeps stop when they change the impulses by less than this share; auto: 1e-10, but for "
+              "heaps, of which the rest is left to the next steps, 3e-3 (up to 2e-2 where they flow) and at "
+              "least 6 "
+              "sweeps, 12 where bodies share several points"),
           key<T>("warm_start", &T::warm_start, boolean(), optionally, "start from the last step's impulses"),
           key<T>("restitution_threshold", &T::restitution_threshold, or_auto(number(not_negative, "m/s")),
                  optionally, "slower approaches do not bounce; auto: 2 gravity step (1 - e)"),

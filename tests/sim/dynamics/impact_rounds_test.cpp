@@ -191,7 +191,7 @@ TYPED_TEST(Rounds, SlowBodiesHaveNone) {
 }
 
 /// Of each four the first strikes the second, which may then strike two more: there are more suspects in the
-/// second round than there is room for, while the first round's meetings and busy pairs are to be kept.
+/// second round than there is room for, while the first round's meetings are to be kept.
 TYPED_TEST(Rounds, RoomMayBeLackingInALaterRound) {
   constexpr std::int32_t lanes = 3000;
   FlightScene scene;
@@ -209,6 +209,24 @@ TYPED_TEST(Rounds, RoomMayBeLackingInALaterRound) {
   EXPECT_GT(rounds.rounds, 2);
   ASSERT_GE(rounds.impacts.size(), static_cast<std::size_t>(3 * lanes));
   expect_same(rounds, in_time_order(scene, pairs), 1e-11);
+}
+
+/// The first of four drives the second into the third, before that meets the fourth: the third waits. Each is
+/// a candidate of very many others, none of which it meets.
+TYPED_TEST(Rounds, HubsWaitForOneAnother) {
+  constexpr std::int32_t hubs = 4, others = 300;
+  static_assert(others > AdjacencyView::most_of_few);
+  FlightScene scene;
+  const double at[hubs] = {0, 0.2002, 0.4004, 0.6009};
+  const double speed[hubs] = {3, 0, 0, -1};
+  for (int k = 0; k < hubs; ++k) scene.add_ball(0.1, Vec3(at[k], 0, 0), Vec3(speed[k], 0, 0));
+  for (std::int32_t k = 0; k < others; ++k) scene.add_ball(0.1, Vec3(k, 5, 0), Vec3(0, 0.1, 0));
+  std::vector<Pair> pairs = {{0, 1}, {1, 2}, {2, 3}};
+  for (std::int32_t hub = 0; hub < hubs; ++hub)
+    for (std::int32_t other = hubs; other < hubs + others; ++other) pairs.push_back({hub, other});
+  const Outcome rounds = in_rounds<TypeParam>(scene, pairs);
+  EXPECT_GE(rounds.impacts.size(), 3u);
+  expect_same(rounds, in_time_order(scene, pairs), 1e-12);
 }
 
 /// All touch at the start, where each closes with the next one; the last is heavy to the first.

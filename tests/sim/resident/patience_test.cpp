@@ -103,6 +103,39 @@ TEST(Patience, EightSubstepsTellThatAllFlows) {
   EXPECT_FALSE(of_flow.flows());
 }
 
+/// As many substeps as tell that a heap flows, `times` times.
+void flow(Patience& patience, int times, double overlap, double dissipated = 1.0) {
+  for (int k = 0; k < 8 * times; ++k) {
+    patience.judge(0.02, 1.0, dissipated);
+    patience.see_overlap(overlap);
+  }
+}
+
+TEST(Patience, AHeapThatFlowsIsSweptByItsOverlaps) {
+  Patience patience;
+  EXPECT_DOUBLE_EQ(patience.change(), tolerance::heap_change);
+  const double little = 0.5 * tolerance::little_overlap_in_flow;
+  const double much = 1.5 * tolerance::much_overlap_in_flow;
+  for (const double expected : {2 * tolerance::heap_change, 4 * tolerance::heap_change,
+                                tolerance::heap_change_in_flow, tolerance::heap_change_in_flow}) {
+    flow(patience, 1, little);
+    EXPECT_DOUBLE_EQ(patience.change(), expected);
+  }
+  flow(patience, 3, 0.5 * (tolerance::little_overlap_in_flow + tolerance::much_overlap_in_flow));
+  EXPECT_DOUBLE_EQ(patience.change(), tolerance::heap_change_in_flow);
+  flow(patience, 1, much);
+  EXPECT_DOUBLE_EQ(patience.change(), 4 * tolerance::heap_change);
+  flow(patience, 1, 2 * much);
+  EXPECT_DOUBLE_EQ(patience.change(), tolerance::heap_change);
+}
+
+TEST(Patience, AHeapThatLandsLayerByLayerDoesNotFlow) {
+  Patience patience;
+  flow(patience, 8, 0.0, 0.7);
+  EXPECT_FALSE(patience.flows());
+  EXPECT_DOUBLE_EQ(patience.change(), tolerance::heap_change);
+}
+
 TEST(Patience, SubstepsShareTheSweepsOfAStep) {
   Patience of_balls, of_boxes;
   judge(of_balls, 6, 1.0);
