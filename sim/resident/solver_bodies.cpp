@@ -16,7 +16,7 @@ namespace {
 /// Slots that a free body may have before it is a hub, and those of a part of one. Two bodies leave one of 64
 /// colours for what they share. Most bodies of a heap have fewer; each colour that only few need is a wait
 /// for all.
-constexpr std::int32_t most_slots = 24;
+constexpr std::int32_t most_slots = 32;
 constexpr std::int32_t slots_of_part = 12;
 static_assert(2 * most_slots <= most_colors);
 
