@@ -81,8 +81,9 @@ class ImpactRounds {
  private:
   void start(const FlightStage& stage);
   detail::ImpactProgram program(const FlightStage& stage, const Problem& problem);
-  /// For rounds that have halted for want of it.
+  /// Lists the pairs that may meet, as far as there is room.
   void list_near(const FlightStage& stage, const Problem& problem);
+  /// For rounds that have halted for want of it.
   void make_room(const FlightStage& stage, const Problem& problem, detail::RoundsState& state);
   Ledger put_in_order(std::int64_t pairs, ConstView<BodyNumber> number);
 
