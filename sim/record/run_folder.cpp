@@ -11,6 +11,7 @@
 #include <cstdlib>
 #include <cstring>
 #include <fcntl.h>
+#include <new>
 #include <string_view>
 #include <sys/file.h>
 #include <system_error>
@@ -95,6 +96,8 @@ RunFolder::RunFolder(fs::path folder, Earlier earlier) : folder_(std::move(folde
     }
     fs::create_directories(folder_);
   } catch (const fs::filesystem_error& error) {
+    // Another folder would not help.
+    if (error.code() == std::errc::not_enough_memory) throw std::bad_alloc();
     throw InputError(fmt::format("cannot make the run folder {}: {}; give another one with -o",
                                  folder_.string(), error.code().message()));
   }
