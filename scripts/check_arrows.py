@@ -32,7 +32,7 @@ ARROWS = {
                       "sim/presence.hpp"],
     "sim/measurement.": ["core/", "sim/dynamics/", "sim/observation.hpp",
                          "sim/measurement.hpp"],
-    "sim/dynamics/": ["core/", "narrowphase/", "sim/observation.hpp", "sim/scene/courses.hpp", "sim/scene/scene.hpp",
+    "sim/dynamics/": ["core/", "narrowphase/", "sim/observation.hpp", "sim/scene/motion_bounds.hpp", "sim/scene/scene.hpp",
                       "sim/dynamics/"],
     "sim/resident/": ["core/", "broadphase/", "narrowphase/", "sim/dynamics/", "sim/inspection.hpp",
                       "sim/observation.hpp", "sim/resident/"],

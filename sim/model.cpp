@@ -3,7 +3,7 @@
 #include "broadphase/bounds.hpp"
 #include "broadphase/grid_plan.hpp"
 #include "core/tolerances.hpp"
-#include "sim/scene/courses.hpp"
+#include "sim/scene/motion_bounds.hpp"
 
 #include <fmt/format.h>
 

@@ -7,7 +7,7 @@
 #include "sim/measurement.hpp"
 #include "sim/presence.hpp"
 #include "sim/resident_stepper.hpp"
-#include "sim/scene/courses.hpp"
+#include "sim/scene/motion_bounds.hpp"
 #include "sim/scene/time_grid.hpp"
 #include "sim/step_failure.hpp"
 #include "sim/stepper.hpp"

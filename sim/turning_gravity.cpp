@@ -1,7 +1,7 @@
 #include "sim/turning_gravity.hpp"
 
 #include "sim/dynamics/motion.hpp"
-#include "sim/scene/courses.hpp"
+#include "sim/scene/motion_bounds.hpp"
 
 namespace scree {
 

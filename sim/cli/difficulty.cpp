@@ -1,6 +1,6 @@
 #include "sim/cli/difficulty.hpp"
 
-#include "sim/scene/courses.hpp"
+#include "sim/scene/motion_bounds.hpp"
 
 #include <algorithm>
 #include <cmath>

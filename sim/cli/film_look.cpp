@@ -2,7 +2,7 @@
 
 #include "sim/cli/periodic_cell.hpp"
 #include "sim/record/contact_writer.hpp"
-#include "sim/scene/courses.hpp"
+#include "sim/scene/motion_bounds.hpp"
 
 #include <fmt/format.h>
 

@@ -418,7 +418,7 @@ bool mostly_succeed(std::int64_t solved, std::int64_t failed) {
 
 }  // namespace
 
-bool pays_patience(const Counters& counters) {
+bool pays_long_solution(const Counters& counters) {
   return mostly_succeed(counters.patient, counters.patient_failed);
 }
 

@@ -33,7 +33,7 @@ int sweeps_before_direct(int most, const Counters& counters);
 
 /// Large islands that creep are worth a long direct solution, if nearly all succeed in the scene: then warm
 /// starts keep what was found. Where everything tumbles they do not (docs/decisions/0017).
-bool pays_patience(const Counters& counters);
+bool pays_long_solution(const Counters& counters);
 
 /// Loads of contacts, as ImpulseChange::size (J).
 struct LoadSpread {

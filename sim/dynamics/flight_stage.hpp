@@ -14,12 +14,13 @@
 
 namespace scree {
 
-/// How weary impacts make a body in a flight. What is caught between others bounces ever faster, and the
-/// contacts of the substep end that: the body bounces no more from the first sum on (when e^k has fallen to
-/// 1/1000, after 4 to 64 impacts), and has no more impacts from the second on.
+/// The impact budget of a body in a flight. A body that is caught between others would bounce ever faster
+/// (Zeno), so each impact has a cost. A body whose impacts have cost `bounces_end` does not bounce any more
+/// (e^k has fallen to 1/1000 then, after 4 to 64 impacts). A body whose impacts have cost `impacts_end` has
+/// no more impacts: the contacts of the substep hold it.
 inline constexpr double bounces_end = 8;
 inline constexpr double impacts_end = 16;
-SCREE_HD inline double weariness(double restitution) {
+SCREE_HD inline double impact_cost(double restitution) {
   return fmax(0.125, fmin(-bounces_end / 3 * log10(fmax(restitution, 0.01)), 2.0));
 }
 
@@ -42,18 +43,18 @@ struct LoadedParts {
 /// Of each body in a flight.
 template <class Space>
 struct FlightLog {
-  Array<double, Space> clock;      ///< time of its last impact (s); the start if it had none
-  Array<double, Space> weary;      ///< sum of weariness() of its impacts so far
-  Array<double, Space> turn;       ///< bound on the speed that turning gives its surface (m/s)
-  Array<double, Space> top_speed;  ///< bound on that of its surface, but for what gravity adds (m/s)
-  Array<double, Space> reach;      ///< of its surface from the midpoint, to either end of the substep (m)
+  Array<double, Space> clock;        ///< time of its last impact (s); the start if it had none
+  Array<double, Space> budget_used;  ///< what its impacts so far have cost, by impact_cost()
+  Array<double, Space> turn;         ///< bound on the speed that turning gives its surface (m/s)
+  Array<double, Space> top_speed;    ///< bound on that of its surface, but for what gravity adds (m/s)
+  Array<double, Space> reach;        ///< of its surface from the midpoint, to either end of the substep (m)
   Array<double, Space> extent;  ///< how far from its centre it may be in the substep (m); infinite: boundary
   /// 1: bore load together with another free body in the last substep. Empty: nobody did, or none counts.
   Array<std::uint32_t, Space> in_crowd;
 
   void resize(std::int64_t bodies) {
     clock.resize(bodies);
-    weary.resize(bodies);
+    budget_used.resize(bodies);
     turn.resize(bodies);
     top_speed.resize(bodies);
     reach.resize(bodies);
@@ -81,7 +82,7 @@ struct FlightStage {
         parameters(r),
         bodies(b),
         clock(log.clock.view()),
-        weary(log.weary.view()),
+        budget_used(log.budget_used.view()),
         turn(log.turn.view()),
         top_speed(log.top_speed.view()),
         reach(log.reach.view()),
@@ -92,13 +93,13 @@ struct FlightStage {
   ResponseParameters parameters;
   BodyView bodies;
   View<double> clock;
-  View<double> weary;
+  View<double> budget_used;
   View<double> turn;
   View<double> top_speed;
   View<double> reach;
   View<double> extent;
   View<std::uint32_t> in_crowd;
-  double harmless = -1;  ///< two bodies whose top speeds sum to no more have no impact (m/s)
+  double least_impact_speed = -1;  ///< two bodies whose top speeds sum to no more have no impact (m/s)
 
   SCREE_HD bool is_free(std::int32_t body) const { return bodies.mobility[body] == Mobility::free; }
   /// Whether an impact with the other hardly moves a body.
@@ -177,10 +178,10 @@ struct FlightStage {
     return !is_boundary(bodies.shape[body]) || turn[body] == HUGE_VAL;
   }
 
-  /// What `harmless` may be, for the bodies as bound() has seen them (m/s): such two neither go deep, nor do
-  /// they close as fast as what bounces, even if gravity adds to it. `smallest`: the smallest size_of() (m);
-  /// `restitution`: the largest of the laws.
-  SCREE_HD double harmless_speed(double smallest, double restitution) const {
+  /// What `least_impact_speed` may be, for the bodies as bound() has seen them (m/s): such two neither go
+  /// deep, nor do they close as fast as what bounces, even if gravity adds to it. `smallest`: the smallest
+  /// size_of() (m); `restitution`: the largest of the laws.
+  SCREE_HD double find_least_impact_speed(double smallest, double restitution) const {
     double speed = HUGE_VAL;
     if (parameters.continuous) speed = tolerance::deep_approach * smallest / terms.step;
     if (terms.bounces && parameters.restitution)
@@ -191,8 +192,8 @@ struct FlightStage {
   /// Whether two bodies, of which one is free, may meet in an impact, told without a look at their shapes;
   /// then sets what counts as one.
   SCREE_HD bool may_meet(std::int32_t i, std::int32_t j, ImpactLimits& limits) const {
-    if (top_speed[i] + top_speed[j] <= harmless || are_far(i, j) ||
-        std::max(weary[i], weary[j]) >= impacts_end)
+    if (top_speed[i] + top_speed[j] <= least_impact_speed || are_far(i, j) ||
+        std::max(budget_used[i], budget_used[j]) >= impacts_end)
       return false;
     limits.earliest = std::max(clock[i], clock[j]);
     if (!(limits.earliest < terms.step)) return false;

@@ -313,7 +313,7 @@ SCREE_HD bool solve_impact(const FlightStage& stage, std::int32_t i, std::int32_
   const double slowest =
       stage.slowest_bounce(i, j) + fabs(m.normal.dot(sinking_velocity(out.flight_i, out.flight_j)));
   const bool bounces = fastest > slowest && !loads.is_loaded(meeting.part) &&
-                       std::max(stage.weary[i], stage.weary[j]) < bounces_end;
+                       std::max(stage.budget_used[i], stage.budget_used[j]) < bounces_end;
   out.restitution = bounces ? law.restitution : 0.0;
   for (int k = 0; k < count; ++k) out.rows[k].target = -out.restitution * out.before[k].dot(m.normal);
   if (of_balls) {
@@ -346,20 +346,20 @@ SCREE_HD inline double fly_on(const FlightStage& stage, std::int32_t body, const
   return drift;
 }
 
-/// What hardly moves a body does not weary it.
-SCREE_HD inline void weary(const FlightStage& stage, const SolvedImpact& solved) {
-  const auto tire = [&](std::int32_t body, std::int32_t other) {
+/// Adds the cost of an impact to both bodies' budgets. An impact with a much lighter body costs nothing.
+SCREE_HD inline void count_impact_cost(const FlightStage& stage, const SolvedImpact& solved) {
+  const auto charge = [&](std::int32_t body, std::int32_t other) {
     if (!stage.is_free(body) || stage.is_heavy_to(body, other)) return;
-    stage.weary[body] += weariness(solved.restitution);
+    stage.budget_used[body] += impact_cost(solved.restitution);
   };
-  tire(solved.i, solved.j);
-  tire(solved.j, solved.i);
+  charge(solved.i, solved.j);
+  charge(solved.j, solved.i);
 }
 
 /// Gives both bodies the flights that lead on from an impact. Returns what it moved.
 SCREE_HD inline Ledger fly_on(const FlightStage& stage, const SolvedImpact& solved, Impact& impact) {
   impact = solved.of_pair();
-  weary(stage, solved);
+  count_impact_cost(stage, solved);
   Ledger moved = solved.moved();
   moved.integration += fly_on(stage, solved.i, solved.flight_i, solved.at_i, solved.after_i, solved.time) +
                        fly_on(stage, solved.j, solved.flight_j, solved.at_j, solved.after_j, solved.time);

@@ -7,7 +7,7 @@
 #include "narrowphase/candidates.hpp"
 #include "sim/dynamics/adjacency.hpp"
 #include "sim/dynamics/impact.hpp"
-#include "sim/dynamics/volley.hpp"
+#include "sim/dynamics/impact_group.hpp"
 
 #include <algorithm>
 #include <bit>
@@ -65,7 +65,7 @@ struct FirstMeeting {
 };
 
 inline constexpr std::uint64_t no_meeting = ~std::uint64_t{0};
-inline constexpr std::uint32_t no_volley = ~std::uint32_t{0};  ///< of meetings
+inline constexpr std::uint32_t no_impact_group = ~std::uint32_t{0};  ///< of meetings
 
 /// How many a round has found.
 struct RoundCounts {
@@ -81,12 +81,12 @@ struct FirstOfAll {
 
 /// What the threads of a flight tell each other, and the host at the end.
 struct ImpactProgress {
-  RoundCounts counts[2];      ///< of the even rounds and of the odd ones
-  FirstOfAll first[2];        ///< likewise
-  double harmless = 0;        ///< FlightStage::harmless; infinite where nobody is faster (m/s)
-  bool needs_search = false;  ///< some body's meetings have no closed form
-  std::uint64_t near = 0;     ///< pairs that may meet, listed before the first round
-  std::uint64_t chunks = 0;   ///< listed by this round
+  RoundCounts counts[2];          ///< of the even rounds and of the odd ones
+  FirstOfAll first[2];            ///< likewise
+  double least_impact_speed = 0;  ///< FlightStage::least_impact_speed; infinite where nobody is faster (m/s)
+  bool needs_search = false;      ///< some body's meetings have no closed form
+  std::uint64_t near = 0;         ///< pairs that may meet, listed before the first round
+  std::uint64_t chunks = 0;       ///< listed by this round
   std::uint64_t impacts = 0;
   std::uint64_t struck = 0;  ///< bodies
   std::uint32_t late = 0;    ///< whether one of them was struck after the midpoint
@@ -135,16 +135,16 @@ struct ImpactProgram {
   // Of each body:
   View<std::uint64_t> first[2];             ///< FirstMeeting in the even rounds and in the odd ones
   View<std::uint32_t> struck_in, waits_in;  ///< the last such round, 0 for none
-  View<std::uint32_t> volley_of;            ///< its first meeting with a lighter one
+  View<std::uint32_t> impact_group_of;      ///< its first meeting with a lighter one
   /// One of its meetings with what is not free, from 1 on; the next is that meeting's next_of_wall. 0: none.
   View<std::uint32_t> walls_of;
   // As long as there is room:
-  ConstView<std::int64_t> near;  ///< pairs that may meet, as far as is told without their shapes
-  View<std::int64_t> suspects;   ///< pairs whose meeting is to be searched for in this round
-  View<Foreseen> meetings[2];    ///< of the even rounds and of the odd ones, in any order
-  View<Volley> volleys;          ///< of each meeting
-  View<Resolved> resolved;       ///< impacts, in any order
-  View<std::uint64_t> key;       ///< of each one's place
+  ConstView<std::int64_t> near;     ///< pairs that may meet, as far as is told without their shapes
+  View<std::int64_t> suspects;      ///< pairs whose meeting is to be searched for in this round
+  View<Foreseen> meetings[2];       ///< of the even rounds and of the odd ones, in any order
+  View<ImpactGroup> impact_groups;  ///< of each meeting
+  View<Resolved> resolved;          ///< impacts, in any order
+  View<std::uint64_t> key;          ///< of each one's place
   View<StruckBody> struck;
   View<StruckPairs> chunks;  ///< of those that were struck in the last round; there is room for all bodies
 
@@ -252,7 +252,7 @@ struct ImpactProgram {
     const std::int64_t k = adjacency.pair(of.body, place);
     const auto [i, j] = pairs[k];
     if (of.body == j && was_struck(state, i)) return;
-    if (stage.top_speed[i] + stage.top_speed[j] > progress->harmless) look(state, k);
+    if (stage.top_speed[i] + stage.top_speed[j] > progress->least_impact_speed) look(state, k);
   }
   SCREE_HD void keep(const State& state, const Foreseen& last) const {
     const auto [i, j] = pairs[last.pair];
@@ -318,11 +318,11 @@ struct ImpactProgram {
     } else if (!with_heavy || phase == 3) {
       resolve_first(state, item);
     } else if (phase == 1) {
-      scale_volleys(state, item);
+      scale_impact_groups(state, item);
     } else if (phase == 2) {
-      gather_volleys(state, item);
+      gather_impact_groups(state, item);
     } else {
-      end_volleys(state, item);
+      end_impact_groups(state, item);
     }
   }
 
@@ -341,7 +341,9 @@ struct ImpactProgram {
     if (!counts_for(body, other)) return true;
     return first_of(state, body).bits == of_meeting(other, of.time).bits && waits_in[body] != state.round;
   }
-  SCREE_HD Volley& volley(std::int32_t heavy) const { return volleys[volley_of[heavy]]; }
+  SCREE_HD ImpactGroup& impact_group(std::int32_t heavy) const {
+    return impact_groups[impact_group_of[heavy]];
+  }
 
   /// Of a meeting of the last round: what was first then is asked for no more, and its place is the next
   /// round's.
@@ -360,7 +362,7 @@ struct ImpactProgram {
     const std::int32_t other = is_i ? j : i;
     if (lane == 0) {
       if (is_i) start_meeting(state, of, e);
-      if (stage.is_heavy_to(body, other)) lower(&volley_of[body], static_cast<std::uint32_t>(e));
+      if (stage.is_heavy_to(body, other)) lower(&impact_group_of[body], static_cast<std::uint32_t>(e));
     }
     if (!one_by_one && counts_for(body, other) &&
         first_of(state, body).bits == of_meeting(other, of.time).bits)
@@ -370,7 +372,7 @@ struct ImpactProgram {
     const auto [i, j] = pairs[of.pair];
     if (stage.is_free(i) != stage.is_free(j))
       of.next_of_wall = exchange(&walls_of[stage.is_free(i) ? i : j], static_cast<std::uint32_t>(e + 1));
-    if (is_of_heavy(i, j)) volleys[e] = {};
+    if (is_of_heavy(i, j)) impact_groups[e] = {};
     FirstOfAll& of_all = progress->first[state.round % 2];
     if (one_by_one && of_all.time == ordered_bits(of.time)) lower(&of_all.pair, numbers_of(of.pair).bits);
   }
@@ -433,24 +435,25 @@ struct ImpactProgram {
     return offset.squaredNorm() <= reach * reach;
   }
 
-  /// The speeds that volleys have to do with.
-  SCREE_HD void scale_volleys(const State& state, std::int64_t e) const {
+  /// Notes the fastest of the lighter bodies of each impact group, which sets the units of its sums.
+  SCREE_HD void scale_impact_groups(const State& state, std::int64_t e) const {
     const auto [i, j] = pairs[meeting(state, e).pair];
-    scale_volley(i, j);
-    scale_volley(j, i);
+    scale_impact_group(i, j);
+    scale_impact_group(j, i);
   }
-  SCREE_HD void scale_volley(std::int32_t body, std::int32_t other) const {
-    if (stage.is_heavy_to(body, other)) raise(&volley(body).fastest, ordered_bits(stage.top_speed[other]));
+  SCREE_HD void scale_impact_group(std::int32_t body, std::int32_t other) const {
+    if (stage.is_heavy_to(body, other))
+      raise(&impact_group(body).fastest, ordered_bits(stage.top_speed[other]));
   }
   /// Adds up what the first meetings give to heavy bodies.
-  SCREE_HD void gather_volleys(const State& state, std::int64_t e) const {
+  SCREE_HD void gather_impact_groups(const State& state, std::int64_t e) const {
     const Foreseen& of = meeting(state, e);
     const auto [i, j] = pairs[of.pair];
     if (!is_of_heavy(i, j) || !is_first(state, of)) return;
     SolvedImpact solved;
     if (!solve(state, of, solved)) return;
     const std::int32_t heavy = stage.is_heavy_to(i, j) ? i : j;
-    add_to_volley(stage, heavy, solved, numbers_of(of.pair).bits, volley(heavy));
+    add_to_impact_group(stage, heavy, solved, numbers_of(of.pair).bits, impact_group(heavy));
   }
 
   SCREE_HD void resolve_first(const State& state, std::int64_t e) const {
@@ -469,8 +472,8 @@ struct ImpactProgram {
     const auto place = static_cast<std::int64_t>(count_up(&progress->impacts));
     if (heavy_i || heavy_j) {
       const std::int32_t heavy = heavy_i ? i : j;
-      Volley& with = volley(heavy);
-      const double scale = VolleyOutcome(stage, heavy, with).scale();
+      ImpactGroup& with = impact_group(heavy);
+      const double scale = ImpactGroupOutcome(stage, heavy, with).scale();
       resolved[place].moved = fly_on_scaled(stage, heavy, solved, scale, resolved[place].impact);
       if (with.first_missing == ~numbers_of(of.pair).bits) with.place = static_cast<std::uint64_t>(place);
     } else {
@@ -482,7 +485,7 @@ struct ImpactProgram {
     for (int k = 0; k < solved.count; ++k)
       if (solved.is_first_of_wall(k)) add_impact_of_wall(state, solved, solved.wall[k]);
     if (of.time > 0.5 * stage.terms.step) raise(&progress->late, 1u);
-    if (std::max(heavy_i ? 0.0 : stage.weary[i], heavy_j ? 0.0 : stage.weary[j]) >= impacts_end)
+    if (std::max(heavy_i ? 0.0 : stage.budget_used[i], heavy_j ? 0.0 : stage.budget_used[j]) >= impacts_end)
       raise(&progress->hit_bound, 1u);
   }
   [[gnu::noinline]] SCREE_HD bool solve(const State& state, const Foreseen& of, SolvedImpact& solved) const {
@@ -555,17 +558,17 @@ struct ImpactProgram {
       chunks[place + c] = {body, static_cast<std::int32_t>(c * chunk_size)};
   }
 
-  /// Gives each volley to its heavy body.
-  SCREE_HD void end_volleys(const State& state, std::int64_t e) const {
+  /// Gives each impact group to its heavy body.
+  SCREE_HD void end_impact_groups(const State& state, std::int64_t e) const {
     const auto [i, j] = pairs[meeting(state, e).pair];
     if (!is_of_heavy(i, j)) return;
     const std::int32_t heavy = stage.is_heavy_to(i, j) ? i : j;
-    if (volley_of[heavy] != static_cast<std::uint32_t>(e)) return;
-    volley_of[heavy] = no_volley;
-    const Volley& given = volleys[e];
+    if (impact_group_of[heavy] != static_cast<std::uint32_t>(e)) return;
+    impact_group_of[heavy] = no_impact_group;
+    const ImpactGroup& given = impact_groups[e];
     if (given.impacts == 0) return;
     mark_struck(state, before_impacts(stage, heavy));
-    const VolleyOutcome outcome(stage, heavy, given);
+    const ImpactGroupOutcome outcome(stage, heavy, given);
     Ledger& moved = resolved[static_cast<std::int64_t>(given.place)].moved;
     moved = moved + outcome.fly_on(stage, heavy);
   }

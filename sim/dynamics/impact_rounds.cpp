@@ -31,7 +31,7 @@ struct StartFlight {
     if (k >= stage.clock.size()) return bounds;
     const double from = stage.terms.from;
     stage.clock[k] = from > 0 ? fmax(stage.clock[k], from) : 0.0;
-    stage.weary[k] = 0;
+    stage.budget_used[k] = 0;
     stage.bound(static_cast<std::int32_t>(k));
     bounds.top_speed = stage.top_speed[k];
     bounds.smallest = stage.size_of(k);
@@ -45,10 +45,11 @@ struct StartProgress {
   ConstView<FlightBounds> bounds;
   ImpactProgress* progress;
   SCREE_HD void operator()(std::int64_t) const {
-    const double harmless = stage.harmless_speed(bounds[0].smallest, bounds[0].restitution);
-    const bool nobody = 2 * bounds[0].top_speed <= harmless;
+    const double least_impact_speed =
+        stage.find_least_impact_speed(bounds[0].smallest, bounds[0].restitution);
+    const bool nobody = 2 * bounds[0].top_speed <= least_impact_speed;
     *progress = {};
-    progress->harmless = nobody ? HUGE_VAL : harmless;
+    progress->least_impact_speed = nobody ? HUGE_VAL : least_impact_speed;
     progress->needs_search = bounds[0].needs_search;
   }
 };
@@ -71,7 +72,7 @@ struct ResetBodies {
   SCREE_HD void operator()(std::int64_t body) const {
     program.first[0][body] = program.first[1][body] = detail::no_meeting;
     program.struck_in[body] = program.waits_in[body] = program.walls_of[body] = 0;
-    program.volley_of[body] = detail::no_volley;
+    program.impact_group_of[body] = detail::no_impact_group;
   }
 };
 
@@ -85,7 +86,8 @@ struct ListNear {
   SCREE_HD void operator()(std::int64_t k) const {
     const auto [i, j] = pairs[k];
     ImpactLimits limits;
-    if (stage.top_speed[i] + stage.top_speed[j] <= progress->harmless || !stage.may_meet(i, j, limits))
+    if (stage.top_speed[i] + stage.top_speed[j] <= progress->least_impact_speed ||
+        !stage.may_meet(i, j, limits))
       return;
     const auto place = static_cast<std::int64_t>(count_up_together(&progress->near));
     if (place < near.size()) near[place] = k;
@@ -146,7 +148,7 @@ bool ImpactRounds<Space>::any_may_meet(const FlightTerms& terms, const ResponseP
   log_.resize(bodies.count());
   start({terms, parameters, bodies, log_});
   copy_bytes<Host, Space>(&progress_, shared_progress_.data(), sizeof(progress_));
-  return progress_.harmless != HUGE_VAL;
+  return progress_.least_impact_speed != HUGE_VAL;
 }
 
 template <class Space>
@@ -201,11 +203,11 @@ template <class Space>
 ImpactProgram ImpactRounds<Space>::program(const FlightStage& stage, const Problem& problem) {
   const std::int64_t n = stage.bodies.count();
   for (auto& of_bodies : first_) of_bodies.resize(n);
-  for (auto* of_bodies : {&struck_in_, &waits_in_, &volley_of_, &walls_of_}) of_bodies->resize(n);
+  for (auto* of_bodies : {&struck_in_, &waits_in_, &impact_group_of_, &walls_of_}) of_bodies->resize(n);
   grow(near_, near_.size(), least_room);
   grow(suspects_, 0, least_room);
   for (auto& list : meetings_) grow(list, list.size(), least_room);
-  grow(volleys_, 0, meetings_[0].size());
+  grow(impact_groups_, 0, meetings_[0].size());
   grow(resolved_, resolved_.size(), least_room);
   grow(key_, key_.size(), least_room);
   grow(struck_, struck_.size(), least_room);
@@ -219,12 +221,12 @@ ImpactProgram ImpactRounds<Space>::program(const FlightStage& stage, const Probl
           .first = {first_[0].view(), first_[1].view()},
           .struck_in = struck_in_.view(),
           .waits_in = waits_in_.view(),
-          .volley_of = volley_of_.view(),
+          .impact_group_of = impact_group_of_.view(),
           .walls_of = walls_of_.view(),
           .near = near_.view(),
           .suspects = suspects_.view(),
           .meetings = {meetings_[0].view(), meetings_[1].view()},
-          .volleys = volleys_.view(),
+          .impact_groups = impact_groups_.view(),
           .resolved = resolved_.view(),
           .key = key_.view(),
           .struck = struck_.view(),

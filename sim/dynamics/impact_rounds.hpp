@@ -94,10 +94,10 @@ class ImpactRounds {
   std::int64_t rounds_ = 0;
   // As in detail::ImpactProgram:
   Array<std::uint64_t, Space> first_[2];
-  Array<std::uint32_t, Space> struck_in_, waits_in_, volley_of_, walls_of_;
+  Array<std::uint32_t, Space> struck_in_, waits_in_, impact_group_of_, walls_of_;
   Array<std::int64_t, Space> near_, suspects_;
   Array<detail::Foreseen, Space> meetings_[2];
-  Array<detail::Volley, Space> volleys_;
+  Array<detail::ImpactGroup, Space> impact_groups_;
   Array<detail::Resolved, Space> resolved_;
   Array<std::uint64_t, Space> key_;
   Array<StruckBody, Space> struck_;

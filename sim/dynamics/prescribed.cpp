@@ -1,7 +1,7 @@
 #include "sim/dynamics/prescribed.hpp"
 
 #include "core/parallel.hpp"
-#include "sim/scene/courses.hpp"
+#include "sim/scene/motion_bounds.hpp"
 
 #include <algorithm>
 

@@ -58,7 +58,7 @@ void ContactSolver<Space, Real>::archive(Archive& archive, const ConstBodyView& 
                                          const ResponseParameters& parameters) {
   archive.part("slots", slots_, bodies);
   archive.part("finder", finder_);
-  archive.part("patience", patience_);
+  archive.part("sweep count", sweep_count_);
   archive("loads", loads_);
   if (!archive.is_loading()) return;
   step_ = 0;
@@ -287,13 +287,13 @@ void ContactSolver<Space, Real>::find_impulses(const ConstBodyView& bodies,
                                                const ResponseParameters& parameters, double share,
                                                Counters& counters) {
   SweepPlan plan =
-      plan_sweeps(parameters, counts_.contacts, counts_.points, patience_.flows(), patience_.change());
+      plan_sweeps(parameters, counts_.contacts, counts_.points, sweep_count_.flows(), sweep_count_.change());
   if (std::is_same_v<Real, float>) plan.tolerance = std::max(plan.tolerance, tolerance::mixed_change);
   if (is_heap(counts_.points)) {
-    plan.least = patience_.sweeps(plan.least, shares_loads(counts_.contacts, counts_.points), share);
+    plan.least = sweep_count_.sweeps(plan.least, shares_loads(counts_.contacts, counts_.points), share);
     if (parameters.iterations > 0) plan.least = std::min(plan.least, plan.most);
     plan.most = std::max(plan.most, plan.least);
-    if (patience_.is_calm()) plan.first_with_momentum = plan.least;
+    if (sweep_count_.is_calm()) plan.first_with_momentum = plan.least;
   }
   const bool islands = parameters.accurate || (plan.direct && fits_on_host());
   const bool converged =
@@ -360,7 +360,7 @@ bool ContactSolver<Space, Real>::solve_islands(const ConstBodyView& bodies, cons
   if (solve_directly(accurate ? thorough_limits : quick_limits, counters.direct, counters.direct_failed))
     return true;
   if (sweep_many(rest)) return true;
-  return !accurate && pays_patience(counters) &&
+  return !accurate && pays_long_solution(counters) &&
          solve_directly(patient_limits, counters.patient, counters.patient_failed);
 }
 
@@ -573,7 +573,7 @@ Ledger ContactSolver<Space, Real>::solve(const FlightStage& flight, bool any_is_
     ledger.restitution = books_.restitution;
     ledger.friction = books_.friction;
     ledger.work = books_.work;
-    patience_.judge(books_.gap_power, books_.kick_power, books_.restitution + books_.friction);
+    sweep_count_.judge(books_.gap_power, books_.kick_power, books_.restitution + books_.friction);
     if (parameters.accurate && parameters.friction && !is_heap(counts_.points))
       slip_end_ = find_slip_end(stage);
   }
@@ -624,14 +624,14 @@ void ContactSolver<Space, Real>::fly_on_with_changes() {
 template <class Space, class Real>
 void ContactSolver<Space, Real>::keep_memory() {
   slots_.keep_memory();
-  kept_patience_ = patience_;
+  kept_sweep_count_ = sweep_count_;
 }
 
 template <class Space, class Real>
 void ContactSolver<Space, Real>::recall_memory() {
   slots_.recall_memory();
   finder_.forget_slots();
-  patience_ = kept_patience_;
+  sweep_count_ = kept_sweep_count_;
 }
 
 template <class Space, class Real>
@@ -673,7 +673,7 @@ PartingPlan ContactSolver<Space, Real>::plan_parting() const {
   using namespace tolerance;
   if (!is_heap(counts_.points)) return {1, 100, corrected_overlap, corrected_overlap};
   if (shares_loads(counts_.contacts, counts_.points)) return {1, 24, heap_overlap, shared_mean_overlap};
-  return {patience_.is_calm() ? 1 : 2, 12, heap_overlap, heap_mean_overlap};
+  return {sweep_count_.is_calm() ? 1 : 2, 12, heap_overlap, heap_mean_overlap};
 }
 
 template <class Space, class Real>
@@ -697,7 +697,7 @@ void ContactSolver<Space, Real>::run_parting_rounds(const PartingPlan& plan) {
           .deepest = static_cast<float>(plan.deepest / tolerance::correction_cap),
           .mean = static_cast<float>(plan.mean / tolerance::correction_cap)},
       PartingState{});
-  patience_.see_overlap(tolerance::correction_cap * done.mean);
+  sweep_count_.judge_overlap(tolerance::correction_cap * done.mean);
 }
 
 #define SCREE_INSTANTIATE(Space)               \

@@ -19,10 +19,10 @@
 #include "sim/resident/hubs.hpp"
 #include "sim/resident/inspection.hpp"
 #include "sim/resident/island_sums.hpp"
-#include "sim/resident/patience.hpp"
 #include "sim/resident/rolling.hpp"
 #include "sim/resident/rolling_visits.hpp"
 #include "sim/resident/slots.hpp"
+#include "sim/resident/sweep_count.hpp"
 #include "sim/resident/sweeps.hpp"
 #include "sim/resident/visit_kernels.hpp"
 #include "sim/resident/wall_sums.hpp"
@@ -175,7 +175,7 @@ class ContactSolver {
   Books books_;
   double overlap_ = 0;
   double slip_end_ = 1;
-  Patience patience_, kept_patience_;
+  SweepCount sweep_count_, kept_sweep_count_;
   Array<std::uint32_t, Space> loads_, next_loads_;
 
   Array<Books, Space> books_scratch_, books_totals_;

@@ -1,5 +1,5 @@
 // Gravity that turns, servos, and floors that shake, against closed forms, by each way of taking steps.
-#include "sim/scene/courses.hpp"
+#include "sim/scene/motion_bounds.hpp"
 #include "tests/sim/ways.hpp"
 
 #include <gtest/gtest.h>
@@ -141,7 +141,7 @@ bodies:
 
 INSTANTIATE_TEST_SUITE_P(Ways, MotionAndForces, testing::ValuesIn(double_ways()), way_name);
 
-TEST(Courses, GravityGoesStraightBetweenKeyframesAndRestsOutside) {
+TEST(MotionBounds, GravityGoesStraightBetweenKeyframesAndRestsOutside) {
   const GravityTurn turn{.keyframes = {{1, Vec3(0, 0, -2)}, {3, Vec3(4, 0, 0)}, {4, Vec3(0, 0, 0)}}};
   EXPECT_EQ(gravity_at(turn, Vec3(9, 9, 9), 0), Vec3(0, 0, -2));
   EXPECT_EQ(gravity_at(turn, Vec3(9, 9, 9), 1.5), Vec3(1, 0, -1.5));

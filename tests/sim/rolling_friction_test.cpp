@@ -12,7 +12,7 @@ namespace {
 class RollingFriction : public WayTest {};
 
 /// Two clouds of spinning balls of several sizes meet without weight, one with a body of hundreds of times
-/// their mass in it: couples act on both bodies alike, in impacts (volleys too) and in contacts.
+/// their mass in it: couples act on both bodies alike, in impacts (and in groups of them) and in contacts.
 TEST_P(RollingFriction, KeepsMomentaAndExplainsEnergy) {
   const auto cloud = [](const char* place, const char* velocity) {
     return std::string("  - {sphere: {radius: {uniform: [0.03, 0.06]}}, at: ") + place +

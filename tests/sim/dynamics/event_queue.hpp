@@ -30,7 +30,7 @@ class EventQueue {
     FlightStage stage(terms, parameters, bodies, log_);
     for (std::int64_t k = 0; k < n; ++k) {
       log_.clock.view()[k] = terms.from > 0 ? std::max(log_.clock.view()[k], terms.from) : 0.0;
-      log_.weary.view()[k] = 0;
+      log_.budget_used.view()[k] = 0;
       stage.bound(static_cast<std::int32_t>(k));
     }
     for (const auto& [i, j] : pairs) {

@@ -38,9 +38,9 @@ BodyTable crowd(std::uint64_t seed) {
   return table;
 }
 
-class Harmless : public testing::TestWithParam<double> {};  // the step (s)
+class LeastImpactSpeed : public testing::TestWithParam<double> {};  // the step (s)
 
-TEST_P(Harmless, TwoSlowBodiesHaveNoImpact) {
+TEST_P(LeastImpactSpeed, TwoSlowBodiesHaveNoImpact) {
   std::int64_t passed_over = 0;
   std::int64_t met = 0;
   for (std::uint64_t seed = 0; seed < 40; ++seed) {
@@ -59,15 +59,15 @@ TEST_P(Harmless, TwoSlowBodiesHaveNoImpact) {
       FlightStage stage(terms, parameters, view_of(bodies), log);
       for (std::int32_t k = 0; k < count; ++k) {
         stage.clock[k] = from;
-        stage.weary[k] = 0;
+        stage.budget_used[k] = 0;
         stage.bound(k);
       }
-      const double harmless = stage.harmless_speed(0.03, 0.6);
+      const double least_impact_speed = stage.find_least_impact_speed(0.03, 0.6);
       for (std::int32_t i = 0; i < count; ++i) {
         for (std::int32_t j = i + 1; j < count; ++j) {
           const bool meets = stage.next(i, j, LoadedParts{}).time <= terms.step;
           met += meets ? 1 : 0;
-          if (stage.top_speed[i] + stage.top_speed[j] > harmless) continue;
+          if (stage.top_speed[i] + stage.top_speed[j] > least_impact_speed) continue;
           ++passed_over;
           ASSERT_FALSE(meets) << "seed " << seed << ", bodies " << i << " and " << j;
         }
@@ -78,7 +78,7 @@ TEST_P(Harmless, TwoSlowBodiesHaveNoImpact) {
   EXPECT_GT(met, 100);
 }
 
-INSTANTIATE_TEST_SUITE_P(Steps, Harmless, testing::Values(1.0 / 240, 1.0 / 1000));
+INSTANTIATE_TEST_SUITE_P(Steps, LeastImpactSpeed, testing::Values(1.0 / 240, 1.0 / 1000));
 
 }  // namespace
 }  // namespace scree

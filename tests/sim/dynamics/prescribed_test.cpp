@@ -2,7 +2,7 @@
 #include "sim/dynamics/prescribed.hpp"
 
 #include "sim/dynamics/motion.hpp"
-#include "sim/scene/courses.hpp"
+#include "sim/scene/motion_bounds.hpp"
 #include "tests/sim/dynamics/simulations.hpp"
 
 #include <gtest/gtest.h>

@@ -23,7 +23,7 @@
 namespace scree::detail {
 
 /// What impacts of lighter bodies give to a heavy one, in units.
-struct Volley {
+struct ImpactGroup {
   std::uint64_t fastest;         ///< of the lighter bodies, as the bits of a speed (m/s)
   std::uint64_t momentum[3];     ///< given to the heavy body
   std::uint64_t delayed[3];      ///< the same times the time into the substep
@@ -40,11 +40,11 @@ struct Volley {
 
 /// Units of the sums. They are counted in integers, so that a sum does not hang on the order of its terms: as
 /// fine as the rounding of the body's own state, and with room for hundreds of times its momentum.
-class VolleyUnits {
+class ImpactGroupUnits {
  public:
-  SCREE_HD VolleyUnits(const FlightStage& stage, std::int32_t heavy, const Volley& volley) {
+  SCREE_HD ImpactGroupUnits(const FlightStage& stage, std::int32_t heavy, const ImpactGroup& impact_group) {
     constexpr double steps = 0x1p54;
-    const double speed = std::bit_cast<double>(volley.fastest) + stage.top_speed[heavy] +
+    const double speed = std::bit_cast<double>(impact_group.fastest) + stage.top_speed[heavy] +
                          stage.terms.step * stage.parameters.gravity.norm();
     const double size = bounding_radius(stage.bodies.shape[heavy], stage.bodies.size[heavy]);
     momentum = power_over(speed / stage.bodies.inverse_mass[heavy]) / steps;
@@ -97,9 +97,10 @@ struct HeavySide {
 };
 
 /// Adds an impact.
-SCREE_HD inline void add_to_volley(const FlightStage& stage, std::int32_t heavy, const SolvedImpact& solved,
-                                   std::uint64_t pair, Volley& volley) {
-  const VolleyUnits unit(stage, heavy, volley);
+SCREE_HD inline void add_to_impact_group(const FlightStage& stage, std::int32_t heavy,
+                                         const SolvedImpact& solved, std::uint64_t pair,
+                                         ImpactGroup& impact_group) {
+  const ImpactGroupUnits unit(stage, heavy, impact_group);
   const HeavySide side(solved, solved.i == heavy);
   double square = 0;
   for (int k = 0; k < solved.count; ++k) {
@@ -109,40 +110,40 @@ SCREE_HD inline void add_to_volley(const FlightStage& stage, std::int32_t heavy,
   if (solved.rolling.reach > 0) square += solved.rolling.square(solved.after_i, solved.after_j);
   const double own = side.own_energy();
   for (int axis = 0; axis < 3; ++axis) {
-    add_units(&volley.momentum[axis], side.momentum[axis], unit.momentum);
-    add_units(&volley.delayed[axis], side.momentum[axis] * solved.time, unit.delayed);
-    add_units(&volley.angular[axis], side.angular[axis], unit.angular);
+    add_units(&impact_group.momentum[axis], side.momentum[axis], unit.momentum);
+    add_units(&impact_group.delayed[axis], side.momentum[axis] * solved.time, unit.delayed);
+    add_units(&impact_group.angular[axis], side.angular[axis], unit.angular);
   }
-  add_units(&volley.light, square - own, unit.energy);
-  add_units(&volley.own, own, unit.energy);
-  add_units(&volley.turning, side.angular.dot(side.at.spin), unit.energy);
-  add_units(&volley.weight, side.momentum.norm(), unit.momentum);
-  add_units(&volley.delayed_weight, side.momentum.norm() * solved.time, unit.delayed);
-  count_up(&volley.impacts);
-  raise(&volley.first_missing, ~pair);
+  add_units(&impact_group.light, square - own, unit.energy);
+  add_units(&impact_group.own, own, unit.energy);
+  add_units(&impact_group.turning, side.angular.dot(side.at.spin), unit.energy);
+  add_units(&impact_group.weight, side.momentum.norm(), unit.momentum);
+  add_units(&impact_group.delayed_weight, side.momentum.norm() * solved.time, unit.delayed);
+  count_up(&impact_group.impacts);
+  raise(&impact_group.first_missing, ~pair);
 }
 
-/// What a volley does to its heavy body.
-class VolleyOutcome {
+/// What an impact group does to its heavy body.
+class ImpactGroupOutcome {
  public:
-  SCREE_HD VolleyOutcome(const FlightStage& stage, std::int32_t heavy, const Volley& volley)
+  SCREE_HD ImpactGroupOutcome(const FlightStage& stage, std::int32_t heavy, const ImpactGroup& impact_group)
       : flight_(stage.flight(heavy)) {
-    const VolleyUnits unit(stage, heavy, volley);
-    momentum_ = value_of(volley.momentum, unit.momentum);
-    angular_ = value_of(volley.angular, unit.angular);
-    turning_ = value_of(volley.turning, unit.energy);
-    const double weight = value_of(volley.weight, unit.momentum);
-    time_ = weight > 0 ? value_of(volley.delayed_weight, unit.delayed) / weight : flight_.midpoint;
+    const ImpactGroupUnits unit(stage, heavy, impact_group);
+    momentum_ = value_of(impact_group.momentum, unit.momentum);
+    angular_ = value_of(impact_group.angular, unit.angular);
+    turning_ = value_of(impact_group.turning, unit.energy);
+    const double weight = value_of(impact_group.weight, unit.momentum);
+    time_ = weight > 0 ? value_of(impact_group.delayed_weight, unit.delayed) / weight : flight_.midpoint;
     at_ = instant_of(flight_, time_);
     velocity_ = stage.bodies.inverse_mass[heavy] * momentum_;
-    delayed_velocity_ = stage.bodies.inverse_mass[heavy] * value_of(volley.delayed, unit.delayed);
+    delayed_velocity_ = stage.bodies.inverse_mass[heavy] * value_of(impact_group.delayed, unit.delayed);
     hold_to_guide(stage.parameters.guides, heavy, velocity_);
     hold_to_guide(stage.parameters.guides, heavy, delayed_velocity_);
     spin_ = world_inverse_inertia(at_.solid.orientation, flight_.inverse_inertia) * angular_;
-    if (volley.impacts == 1) return;
-    const double light = value_of(volley.light, unit.energy);
+    if (impact_group.impacts == 1) return;
+    const double light = value_of(impact_group.light, unit.energy);
     const double together = 0.5 * (momentum_.dot(velocity_) + angular_.dot(spin_));
-    if (light > 0) scale_ = (light + value_of(volley.own, unit.energy)) / (light + together);
+    if (light > 0) scale_ = (light + value_of(impact_group.own, unit.energy)) / (light + together);
   }
 
   /// x.
@@ -175,7 +176,7 @@ class VolleyOutcome {
   double scale_ = 1;
 };
 
-/// Gives the share of an impact in a volley to the lighter body. Returns what the impact moved.
+/// Gives the share of an impact in an impact group to the lighter body. Returns what the impact moved.
 SCREE_HD inline Ledger fly_on_scaled(const FlightStage& stage, std::int32_t heavy, const SolvedImpact& solved,
                                      double scale, Impact& impact) {
   const bool heavy_is_i = solved.i == heavy;
@@ -185,7 +186,7 @@ SCREE_HD inline Ledger fly_on_scaled(const FlightStage& stage, std::int32_t heav
   after.spin = at.spin + scale * (after.spin - at.spin);
   impact = solved.of_pair();
   impact.impulse *= scale;
-  weary(stage, solved);
+  count_impact_cost(stage, solved);
   Ledger moved = solved.moved();
   moved.restitution *= scale;
   moved.friction *= scale;

@@ -1,4 +1,4 @@
-#include "sim/scene/courses.hpp"
+#include "sim/scene/motion_bounds.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,6 @@
 // Many light bodies strike a heavy one in one round: what is kept, and how far that is from the order of
 // times.
-#include "sim/dynamics/volley.hpp"
+#include "sim/dynamics/impact_group.hpp"
 
 #include "tests/core/spaces.hpp"
 #include "tests/sim/dynamics/impact_outcomes.hpp"
@@ -13,8 +13,8 @@ namespace scree {
 namespace {
 
 template <class Space>
-class Volleys : public test::InSpace<Space> {};
-TYPED_TEST_SUITE(Volleys, test::Spaces, test::SpaceName);
+class ImpactGroups : public test::InSpace<Space> {};
+TYPED_TEST_SUITE(ImpactGroups, test::Spaces, test::SpaceName);
 
 /// Energy, momentum, and angular momentum about the origin, of the free bodies at the midpoint.
 struct Conserved {
@@ -60,7 +60,7 @@ FlightScene under_fire(Shape shape, double ratio) {
   return scene;
 }
 
-TYPED_TEST(Volleys, ManyStrikeAHeavyBodyAtOnce) {
+TYPED_TEST(ImpactGroups, ManyStrikeAHeavyBodyAtOnce) {
   for (const Shape shape : {Shape::sphere, Shape::box}) {
     for (const double restitution : {1.0, 0.5, 0.0}) {
       FlightScene scene = under_fire(shape, 1e5);
@@ -91,7 +91,7 @@ TYPED_TEST(Volleys, ManyStrikeAHeavyBodyAtOnce) {
   }
 }
 
-TYPED_TEST(Volleys, AHeavyBodyIsStruckAsInTheOrderOfTimesTheMoreTheHeavierItIs) {
+TYPED_TEST(ImpactGroups, AHeavyBodyIsStruckAsInTheOrderOfTimesTheMoreTheHeavierItIs) {
   double last = HUGE_VAL;
   for (const double ratio : {1e3, 1e4, 1e5, 1e6}) {
     FlightScene scene = under_fire(Shape::sphere, ratio);
@@ -108,7 +108,7 @@ TYPED_TEST(Volleys, AHeavyBodyIsStruckAsInTheOrderOfTimesTheMoreTheHeavierItIs) 
 }
 
 /// The surface of a plane that tilts has no bound on its speed.
-TYPED_TEST(Volleys, AHeavyBodyIsStruckWhereAWallTilts) {
+TYPED_TEST(ImpactGroups, AHeavyBodyIsStruckWhereAWallTilts) {
   FlightScene scene = under_fire(Shape::sphere, 1e5);
   scene.add_plane(Vec3::UnitZ(), -10);
   scene.bodies.mobility.back() = Mobility::prescribed;
@@ -119,7 +119,7 @@ TYPED_TEST(Volleys, AHeavyBodyIsStruckWhereAWallTilts) {
   EXPECT_LT((rounds.bodies.velocity[0] - in_time_order(scene, pairs).bodies.velocity[0]).norm(), 2e-5);
 }
 
-TYPED_TEST(Volleys, OneLightBallOnAHeavyOneIsAsInTheOrderOfTimes) {
+TYPED_TEST(ImpactGroups, OneLightBallOnAHeavyOneIsAsInTheOrderOfTimes) {
   FlightScene scene = under_fire(Shape::box, 1e5);
   scene.law = {.restitution = 0.7, .friction = 0.4};
   scene.parameters.gravity = Vec3(0, 0, -9.81);
@@ -136,7 +136,7 @@ TYPED_TEST(Volleys, OneLightBallOnAHeavyOneIsAsInTheOrderOfTimes) {
 }
 
 /// Not so dense that a light ball would meet the bound of its bounces between two heavy ones.
-TYPED_TEST(Volleys, HeavyBodiesInAGasKeepItsEnergy) {
+TYPED_TEST(ImpactGroups, HeavyBodiesInAGasKeepItsEnergy) {
   FlightScene scene = gas(0.2);
   scene.parameters.rotation = false;
   for (std::int32_t k = 0; k < 1000; k += 7) scene.weigh(k, 1e3);

@@ -1,4 +1,4 @@
-#include "sim/resident/patience.hpp"
+#include "sim/resident/sweep_count.hpp"
 
 #include "core/tolerances.hpp"
 
@@ -10,18 +10,18 @@ namespace {
 constexpr int balls = 6, boxes = 12;  // of plan_sweeps()
 
 /// As many substeps as are judged together, `times` times.
-void judge(Patience& patience, int times, double undone, double dissipated = 0) {
-  for (int k = 0; k < 32 * times; ++k) patience.judge(k % 2 == 0 ? undone : -undone, 1.0, dissipated);
+void judge(SweepCount& count, int times, double undone, double dissipated = 0) {
+  for (int k = 0; k < 32 * times; ++k) count.judge(k % 2 == 0 ? undone : -undone, 1.0, dissipated);
 }
 
-TEST(Patience, AHeapIsSweptAsUsualAtFirst) {
-  Patience of_balls, of_boxes;
+TEST(SweepCount, AHeapIsSweptAsUsualAtFirst) {
+  SweepCount of_balls, of_boxes;
   EXPECT_EQ(of_balls.sweeps(balls, false, 1.0), balls);
   EXPECT_EQ(of_boxes.sweeps(boxes, true, 1.0), 2 * boxes);
 }
 
-TEST(Patience, WhatIsLeftUndoneAsksForMore) {
-  Patience of_balls, of_boxes;
+TEST(SweepCount, WhatIsLeftUndoneAsksForMore) {
+  SweepCount of_balls, of_boxes;
   of_boxes.sweeps(boxes, true, 1.0);
   for (const int expected : {12, 24, 48, 96, 96}) {
     judge(of_balls, 1, 2 * tolerance::undone_power);
@@ -33,8 +33,8 @@ TEST(Patience, WhatIsLeftUndoneAsksForMore) {
   }
 }
 
-TEST(Patience, LittleAsksForFewer) {
-  Patience of_balls, of_boxes;
+TEST(SweepCount, LittleAsksForFewer) {
+  SweepCount of_balls, of_boxes;
   of_boxes.sweeps(boxes, true, 1.0);
   for (const int expected : {3, 2}) {
     EXPECT_FALSE(of_balls.is_calm());
@@ -46,8 +46,8 @@ TEST(Patience, LittleAsksForFewer) {
   EXPECT_EQ(of_boxes.sweeps(boxes, true, 1.0), 24);
 }
 
-TEST(Patience, AHeapThatMovesIsSweptAsUsual) {
-  Patience of_balls, of_boxes;
+TEST(SweepCount, AHeapThatMovesIsSweptAsUsual) {
+  SweepCount of_balls, of_boxes;
   of_boxes.sweeps(boxes, true, 1.0);
   judge(of_balls, 3, 0.08, 0.9);
   judge(of_boxes, 3, 0.05, 0.6);
@@ -62,20 +62,20 @@ TEST(Patience, AHeapThatMovesIsSweptAsUsual) {
   EXPECT_EQ(of_balls.sweeps(balls, false, 1.0), 12);
 }
 
-TEST(Patience, OneSubstepDecidesNothing) {
-  Patience patience;
-  patience.judge(0.4, 1.0, 0.0);
-  EXPECT_EQ(patience.sweeps(balls, false, 1.0), balls);
+TEST(SweepCount, OneSubstepDecidesNothing) {
+  SweepCount count;
+  count.judge(0.4, 1.0, 0.0);
+  EXPECT_EQ(count.sweeps(balls, false, 1.0), balls);
 }
 
-TEST(Patience, AHeapThatHasJustFallenIsSweptAtOnce) {
-  Patience of_balls, of_boxes;
+TEST(SweepCount, AHeapThatHasJustFallenIsSweptAtOnce) {
+  SweepCount of_balls, of_boxes;
   of_balls.judge(0.6, 1.0, 0.2);
   EXPECT_EQ(of_balls.sweeps(balls, false, 1.0), 96);
   of_boxes.judge(-0.6, 1.0, 0.2);
   EXPECT_EQ(of_boxes.sweeps(boxes, true, 1.0), 96);
   // Where all moves, that much is left undone however often it is swept.
-  Patience of_flow;
+  SweepCount of_flow;
   of_flow.judge(1.0, 1.0, 2.0);
   EXPECT_EQ(of_flow.sweeps(balls, false, 1.0), balls);
   // And as soon as little is left, there are fewer again.
@@ -85,11 +85,11 @@ TEST(Patience, AHeapThatHasJustFallenIsSweptAtOnce) {
   }
 }
 
-TEST(Patience, EightSubstepsTellThatAllFlows) {
-  Patience of_flow, of_more;
-  for (Patience* patience : {&of_flow, &of_more}) {
-    patience->judge(0.6, 1.0, 0.2);
-    EXPECT_EQ(patience->sweeps(balls, false, 1.0), 96);
+TEST(SweepCount, EightSubstepsTellThatAllFlows) {
+  SweepCount of_flow, of_more;
+  for (SweepCount* count : {&of_flow, &of_more}) {
+    count->judge(0.6, 1.0, 0.2);
+    EXPECT_EQ(count->sweeps(balls, false, 1.0), 96);
   }
   for (int k = 0; k < 8; ++k) {
     EXPECT_FALSE(of_flow.flows()) << k;
@@ -104,40 +104,40 @@ TEST(Patience, EightSubstepsTellThatAllFlows) {
 }
 
 /// As many substeps as tell that a heap flows, `times` times.
-void flow(Patience& patience, int times, double overlap, double dissipated = 1.0) {
+void flow(SweepCount& count, int times, double overlap, double dissipated = 1.0) {
   for (int k = 0; k < 8 * times; ++k) {
-    patience.judge(0.02, 1.0, dissipated);
-    patience.see_overlap(overlap);
+    count.judge(0.02, 1.0, dissipated);
+    count.judge_overlap(overlap);
   }
 }
 
-TEST(Patience, AHeapThatFlowsIsSweptByItsOverlaps) {
-  Patience patience;
-  EXPECT_DOUBLE_EQ(patience.change(), tolerance::heap_change);
+TEST(SweepCount, AHeapThatFlowsIsSweptByItsOverlaps) {
+  SweepCount count;
+  EXPECT_DOUBLE_EQ(count.change(), tolerance::heap_change);
   const double little = 0.5 * tolerance::little_overlap_in_flow;
   const double much = 1.5 * tolerance::much_overlap_in_flow;
   for (const double expected : {2 * tolerance::heap_change, 4 * tolerance::heap_change,
                                 tolerance::heap_change_in_flow, tolerance::heap_change_in_flow}) {
-    flow(patience, 1, little);
-    EXPECT_DOUBLE_EQ(patience.change(), expected);
+    flow(count, 1, little);
+    EXPECT_DOUBLE_EQ(count.change(), expected);
   }
-  flow(patience, 3, 0.5 * (tolerance::little_overlap_in_flow + tolerance::much_overlap_in_flow));
-  EXPECT_DOUBLE_EQ(patience.change(), tolerance::heap_change_in_flow);
-  flow(patience, 1, much);
-  EXPECT_DOUBLE_EQ(patience.change(), 4 * tolerance::heap_change);
-  flow(patience, 1, 2 * much);
-  EXPECT_DOUBLE_EQ(patience.change(), tolerance::heap_change);
+  flow(count, 3, 0.5 * (tolerance::little_overlap_in_flow + tolerance::much_overlap_in_flow));
+  EXPECT_DOUBLE_EQ(count.change(), tolerance::heap_change_in_flow);
+  flow(count, 1, much);
+  EXPECT_DOUBLE_EQ(count.change(), 4 * tolerance::heap_change);
+  flow(count, 1, 2 * much);
+  EXPECT_DOUBLE_EQ(count.change(), tolerance::heap_change);
 }
 
-TEST(Patience, AHeapThatLandsLayerByLayerDoesNotFlow) {
-  Patience patience;
-  flow(patience, 8, 0.0, 0.7);
-  EXPECT_FALSE(patience.flows());
-  EXPECT_DOUBLE_EQ(patience.change(), tolerance::heap_change);
+TEST(SweepCount, AHeapThatLandsLayerByLayerDoesNotFlow) {
+  SweepCount count;
+  flow(count, 8, 0.0, 0.7);
+  EXPECT_FALSE(count.flows());
+  EXPECT_DOUBLE_EQ(count.change(), tolerance::heap_change);
 }
 
-TEST(Patience, SubstepsShareTheSweepsOfAStep) {
-  Patience of_balls, of_boxes;
+TEST(SweepCount, SubstepsShareTheSweepsOfAStep) {
+  SweepCount of_balls, of_boxes;
   judge(of_balls, 6, 1.0);
   of_boxes.sweeps(boxes, true, 1.0);
   judge(of_boxes, 6, 1.0);

@@ -1,4 +1,4 @@
-#include "sim/resident/patience.hpp"
+#include "sim/resident/sweep_count.hpp"
 
 #include "core/tolerances.hpp"
 
@@ -24,7 +24,7 @@ constexpr int usual_degree = 2, most_degree = 6;
 
 }  // namespace
 
-int Patience::sweeps(int usual, bool shared, double share) {
+int SweepCount::sweeps(int usual, bool shared, double share) {
   const int least = !shared ? 0 : moves_ ? usual_degree : least_shared;
   const int most = shared ? most_shared : most_degree;
   degree_ = std::clamp(degree_, least, most);
@@ -37,7 +37,7 @@ int Patience::sweeps(int usual, bool shared, double share) {
 /// with them pumps them. But where a substep leaves as much undone as its impulses do, as when a heap has
 /// just fallen on its ground, all sweeps follow at once: what sinks in meanwhile takes seconds to come out
 /// again. And what flows has no slow modes, so that a few substeps tell that the usual number will do.
-void Patience::judge(double undone, double kicked, double dissipated) {
+void SweepCount::judge(double undone, double kicked, double dissipated) {
   constexpr int judged_together = 32, judged_in_flow = 8;
   const auto of = [](double loss) { return undone_of_dissipated * std::max(loss, 0.0); };
   if (std::abs(undone) > all_undone * kicked + much_undone * of(dissipated)) {
@@ -66,7 +66,7 @@ void Patience::judge(double undone, double kicked, double dissipated) {
   undone_ = kicked_ = dissipated_ = overlap_ = judged_ = 0;
 }
 
-int Patience::next_looseness() const {
+int SweepCount::next_looseness() const {
   constexpr int loosest = 3;
   static_assert(heap_change_in_flow <= heap_change * (1 << loosest));
   if (overlap_ > 2 * much_overlap_in_flow) return 0;
@@ -74,6 +74,8 @@ int Patience::next_looseness() const {
   return overlap_ < little_overlap_in_flow ? std::min(looseness_ + 1, loosest) : looseness_;
 }
 
-double Patience::change() const { return std::min(std::ldexp(heap_change, looseness_), heap_change_in_flow); }
+double SweepCount::change() const {
+  return std::min(std::ldexp(heap_change, looseness_), heap_change_in_flow);
+}
 
 }  // namespace scree::resident
