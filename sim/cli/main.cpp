@@ -265,7 +265,8 @@ int after_printing(int status) {
 int main(int argc, char** argv) {
   open_standard_streams();
   CLI::App app(
-      "scree simulates rigid particles, spheres and boxes, from a YAML scene to pictures and numbers.",
+      "scree simulates rigid particles, such as spheres and boxes, from a YAML scene to pictures and "
+      "numbers.",
       "scree");
   app.footer("Exit status: 0 done; 1 a check failed; 2 bad input; 3 the run failed; 130 interrupted.");
   app.require_subcommand(1);

@@ -2,6 +2,7 @@
 #include "core/tolerances.hpp"
 #include "sim/cli/commands.hpp"
 #include "sim/cli/difficulty.hpp"
+#include "sim/cli/trial.hpp"
 #include "sim/model.hpp"
 #include "sim/record/contact_writer.hpp"
 #include "sim/record/metrics.hpp"
@@ -325,6 +326,7 @@ std::string output_words(const Scene& scene, const OutputPlan& plan) {
 
 int plan(const PlanArguments& arguments) {
   const Scene scene = read_scene(arguments.scene, arguments.overrides);
+  check_seeds(scene, arguments.overrides);
   const TimeGrid grid(scene.time);
   const OutputPlan output = plan_output(scene, grid);
   print_row("scene", fmt::format("{} ({}), seed {}", scene.name, scene.source.string(), scene.seed));

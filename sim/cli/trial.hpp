@@ -8,8 +8,12 @@
 
 namespace scree::cli {
 
-/// The checks of a scene that was read with the `overrides`, of all its seeds together. Throws what a run
-/// may.
+/// Reads a scene that was read with the `overrides` with each of its other seeds too, because bodies that
+/// are scattered may not fit with each. Throws InputError, whose text names the seed.
+void check_seeds(const Scene& scene, const std::vector<Override>& overrides);
+
+/// The checks of a scene that was read with the `overrides`, of all its seeds together. Throws what
+/// check_seeds() and a run may.
 std::vector<CheckResult> run_checks(const Scene& scene, const std::vector<Override>& overrides,
                                     const SimulationOptions& options);
 

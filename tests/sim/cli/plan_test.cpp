@@ -139,5 +139,29 @@ TEST_F(PlanTest, ABallAloneHasNoneOfThem) {
     EXPECT_FALSE(has(rows, subject, "")) << subject;
 }
 
+TEST_F(PlanTest, BodiesHaveToFitWithEachSeed) {
+  // With the seeds 0 to 10 they do.
+  const auto scene = [](int seeds) {
+    return "format: 1\nseeds: " + std::to_string(seeds) + R"(
+gravity: [0, 0, -9.81]
+time: {end: 0.02, step: 0.01}
+materials: {stone: {density: 2000}}
+bodies:
+  - {sphere: {radius: {uniform: [0.09, 0.11]}}, scatter: {count: 110, from: [0, 0, 0], to: [1, 1, 1]}, material: stone}
+checks:
+  - {measure: centre.z, at: 0.02, above: 0, confidence: 0.95}
+)";
+  };
+  write_text(folder_ / "eleven.yaml", scene(11));
+  write_text(folder_ / "twelve.yaml", scene(12));
+  for (const char* command : {"plan", "verify"}) {
+    EXPECT_EQ(scree_in(folder_, {command, "eleven.yaml"}).status, 0) << command;
+    const Finished run = scree_in(folder_, {command, "twelve.yaml"});
+    EXPECT_EQ(run.status, 2) << command;
+    EXPECT_TRUE(contains(run.out + run.error, "only 109 of 110 bodies fit without overlap")) << run.error;
+    EXPECT_TRUE(contains(run.out + run.error, "(with seed 11)")) << run.error;
+  }
+}
+
 }  // namespace
 }  // namespace scree
