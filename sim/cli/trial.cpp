@@ -23,7 +23,7 @@ std::vector<CheckResult> run_once(const Scene& scene, const SimulationOptions& o
   return checks.results(simulation.observe(false).energy_scale);
 }
 
-/// The scene with another of its seeds. Throws as read_scene(), with the seed in the text.
+/// Reads the scene with its seed number k, counted from 0. Throws as read_scene(), with the seed in the text.
 Scene read_seed(const Scene& scene, std::vector<Override> overrides, int k) {
   const std::string seed = std::to_string(scene.seed + static_cast<std::uint64_t>(k));
   overrides.push_back({"seed", seed});

@@ -8,8 +8,9 @@
 
 namespace scree::cli {
 
-/// Reads a scene that was read with the `overrides` with each of its other seeds too, because bodies that
-/// are scattered may not fit with each. Throws InputError, whose text names the seed.
+/// Checks that a scene can be read with each of its seeds, because scattered bodies may fit with one and not
+/// with another. `overrides`: those with which `scene` was read. Throws InputError, whose text names the
+/// seed.
 void check_seeds(const Scene& scene, const std::vector<Override>& overrides);
 
 /// The checks of a scene that was read with the `overrides`, of all its seeds together. Throws what

@@ -1,14 +1,14 @@
-// What a scene prescribes of times to come: gravity that turns, bodies that move.
+// Gravity as a function of time, and bounds on the motions that a scene prescribes.
 #pragma once
 
 #include "sim/scene/scene.hpp"
 
 namespace scree {
 
-/// Of gravity that is `at_start` at t = 0 (m/s^2).
+/// Gravity at a time (s), if it is `at_start` at t = 0 (m/s^2).
 Vec3 gravity_at(const GravityTurn& turn, const Vec3& at_start, double time);
 
-/// The largest that gravity ever is (m/s^2).
+/// The largest size that gravity has at any time (m/s^2).
 double largest_gravity(const Scene& scene);
 
 /// Bounds on the speeds of a motion, and on how fast they change, but for what constant spin does.

@@ -141,7 +141,7 @@ bodies:
 
 INSTANTIATE_TEST_SUITE_P(Ways, MotionAndForces, testing::ValuesIn(double_ways()), way_name);
 
-TEST(MotionBounds, GravityGoesStraightBetweenKeyframesAndRestsOutside) {
+TEST(GravityTurn, GravityGoesStraightBetweenKeyframesAndRestsOutside) {
   const GravityTurn turn{.keyframes = {{1, Vec3(0, 0, -2)}, {3, Vec3(4, 0, 0)}, {4, Vec3(0, 0, 0)}}};
   EXPECT_EQ(gravity_at(turn, Vec3(9, 9, 9), 0), Vec3(0, 0, -2));
   EXPECT_EQ(gravity_at(turn, Vec3(9, 9, 9), 1.5), Vec3(1, 0, -1.5));
