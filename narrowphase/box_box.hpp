@@ -23,14 +23,42 @@ SCREE_HD inline bool is_at_edge(const BoxPair& pair, const BoxAxes& axes, double
          cosine < 1.0 - tolerance::face_cosine;
 }
 
+/// Adds to a contact at one point what lies within the margin over the face that parts the boxes better.
+/// Boxes that lie nearly flat on one another touch at one point, where two edges cross, and turn about it:
+/// within a substep they meet at the other end of these. All points share the normal, from which that of the
+/// face must not be far.
+SCREE_HD inline void add_points_over_face(const BoxPair& pair, const BoxAxes& axes, double margin,
+                                          Manifold& out) {
+  constexpr double least_cosine = 0.95;  // 0.32 rad
+  const BoxAxis& face = axes.face[axes.face[1].separation > axes.face[0].separation ? 1 : 0];
+  const double cosine = normal_of(pair, face).dot(out.normal);
+  Manifold over;
+  if (cosine < least_cosine || !face_contact(pair, face, margin * cosine, over)) return;
+  const ContactPoint first = out.points[0];
+  const auto distance = [&](int k) { return (over.points[k].position - first.position).squaredNorm(); };
+  int nearest = 0;
+  for (int k = 1; k < over.count; ++k)
+    if (distance(k) < distance(nearest)) nearest = k;
+  const bool is_full = over.count == Manifold::max_points;
+  for (int k = 0; k < over.count; ++k) {
+    const ContactPoint& point = over.points[k];
+    if ((k == nearest && is_full) || point.feature == first.feature) continue;
+    out.points[out.count++] = {point.position, point.gap / cosine, point.feature};
+  }
+}
+
 /// As contact_along(), but for Manifold::at_edge.
 SCREE_HD inline bool feature_contact(const BoxPair& pair, const BoxAxes& axes, const BoxAxis& face,
                                      double margin, Manifold& out) {
+  const auto with_points_over_face = [&](bool found) {
+    if (found) add_points_over_face(pair, axes, margin, out);
+    return found;
+  };
   // Nearly parallel edges are no choice beside a face, but they can show that no other edges are close
   // either.
   if (clearly_better(axes.edges.separation, face.separation, pair.smallest) &&
       !clearly_better(axes.separation, axes.edges.separation, pair.smallest) &&
-      edge_contact(pair, axes.edges, out))
+      with_points_over_face(edge_contact(pair, axes.edges, out)))
     return true;
   const double close = axes.separation + preference(axes.separation, pair.smallest);
   const BoxAxis* faces[2] = {&face, &axes.face[1 - face.box]};
@@ -38,8 +66,9 @@ SCREE_HD inline bool feature_contact(const BoxPair& pair, const BoxAxes& axes, c
     if (clearly_better(axes.separation, reference->separation, pair.smallest)) continue;
     if (face_contact(pair, *reference, margin, out) && detail::smallest_gap(out) <= close) return true;
   }
-  if (axes.separation > 0.0) return closest_edges(pair, axes, margin, out);
-  if (axes.any_edges.separation > -HUGE_VAL) return edge_contact(pair, axes.any_edges, out);
+  if (axes.separation > 0.0) return with_points_over_face(closest_edges(pair, axes, margin, out));
+  if (axes.any_edges.separation > -HUGE_VAL)
+    return with_points_over_face(edge_contact(pair, axes.any_edges, out));
   return face_contact(pair, face, margin, out);
 }
 

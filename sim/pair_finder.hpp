@@ -36,7 +36,9 @@ template <class Space>
 std::unique_ptr<PairFinder<Space>> make_pair_finder(const BroadPhaseSettings& settings, bool on_device,
                                                     const Vec3& origin);
 
-/// The PCS and the candidates for contacts, made anew only when a body has left its box.
+/// The PCS and the candidates for contacts. They are made anew only when so many bodies have left their boxes
+/// that it does not pay to look at each for what it may touch, or when one of them may touch what it is not
+/// paired with.
 template <class Space>
 class KeptPairs {
  public:
@@ -54,13 +56,13 @@ class KeptPairs {
   /// Those last made.
   ConstView<Pair> pairs() const { return candidates_.pairs(); }
   /// Whether they still do, for the bodies where they are now.
-  bool cover(const Bodies<Space>& bodies, const Array<double, Space>& contact_margin) const {
-    return kept_ && boxes_.hold(bodies, contact_margin);
+  bool cover(const Bodies<Space>& bodies, const Array<double, Space>& contact_margin) {
+    return kept_ && boxes_.pairs_last(bodies, contact_margin);
   }
   /// The same with the margins (m) of contacts within `foresight` (s), which are set.
   bool cover(const Bodies<Space>& bodies, double foresight, const ResponseParameters& parameters,
-             Array<double, Space>& contact_margin) const {
-    if (kept_) return boxes_.hold(bodies, foresight, parameters, contact_margin);
+             Array<double, Space>& contact_margin) {
+    if (kept_) return boxes_.pairs_last(bodies, foresight, parameters, contact_margin);
     contact_margins<Space>(bodies, foresight, tolerance::contact_slack, parameters, contact_margin);
     return false;
   }

@@ -44,22 +44,36 @@ struct BallImpact {
 };
 
 /// When two balls meet, at `earliest` or later; infinite if they do not, or part at first. The distance of
-/// balls in straight flight is convex in time, so Newton's method nears the first meeting from before.
-/// Time, normal and speed are of one instant: along the midpoint's normal an impulse would turn the balls.
+/// balls in straight flight is convex in time, so Newton's method nears the first meeting from before, until
+/// nothing but rounding is left. Where both accelerate alike the squared distance is quadratic, and its root
+/// spares the way there. Time, normal and speed are of one instant: along the midpoint's normal an impulse
+/// would turn the balls.
 SCREE_HD inline BallImpact next_ball_impact(const FlightOfBalls& balls, double step, double earliest) {
   constexpr int most_iterations = 32;
+  constexpr double rounding = 1e-14;  // of the distance at which they touch
+  const bool is_straight = balls.flight.acceleration.isZero(0);
   BallImpact impact;
   double s = earliest;
+  double last_change = HUGE_VAL;
   for (int iteration = 0; iteration <= most_iterations; ++iteration) {
     const Vec3 d = balls.flight.at(balls.velocity, step, s);
     const double distance = d.norm();
     impact.normal = distance > 0 ? Vec3(d / distance) : Vec3(Vec3::UnitZ());
     impact.speed = impact.normal.dot(balls.velocity + s * balls.flight.acceleration);
     if (!(impact.speed < 0)) return {};
-    const double change = (balls.touching - distance) / impact.speed;
+    double change = (balls.touching - distance) / impact.speed;
     const bool overlap_at_first = iteration == 0 && change <= 0;
-    if (overlap_at_first || fabs(change) <= tolerance::impact_time * step || iteration == most_iterations)
+    const bool is_rounding =
+        fabs(change) >= last_change && fabs(distance - balls.touching) <= rounding * distance;
+    if (overlap_at_first || fabs(change) <= tolerance::impact_time * step || is_rounding ||
+        iteration == most_iterations)
       break;
+    if (iteration == 0 && is_straight) {
+      const double gap = 0.5 * (distance - balls.touching) * (distance + balls.touching);
+      change = time_of_impact(gap, d.dot(balls.velocity), balls.velocity.squaredNorm());
+      if (change == HUGE_VAL) return {};
+    }
+    last_change = fabs(change);
     s = fmax(earliest, s + change);
   }
   impact.time = s;

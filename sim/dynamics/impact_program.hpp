@@ -85,7 +85,7 @@ struct ImpactProgress {
   FirstOfAll first[2];            ///< likewise
   double least_impact_speed = 0;  ///< FlightStage::least_impact_speed; infinite where nobody is faster (m/s)
   bool needs_search = false;      ///< some body's meetings have no closed form
-  std::uint64_t near = 0;         ///< pairs that may meet, listed before the first round
+  std::uint64_t near = 0;         ///< pairs that come near each other, listed before the first round
   std::uint64_t chunks = 0;       ///< listed by this round
   std::uint64_t impacts = 0;
   std::uint64_t struck = 0;  ///< bodies
@@ -106,6 +106,10 @@ struct RoundsState {
   std::int64_t chunks = 0;  ///< of the pairs of bodies that were struck in it
   RoundCounts counts;       ///< of this round, once its first half is over
 };
+
+SCREE_HD inline LoadedParts loads_at(ConstView<LoadedParts> loaded, std::int64_t pair) {
+  return loaded.size() > 0 ? loaded[pair] : LoadedParts{};
+}
 
 /// Nothing to add up.
 struct NoSum {
@@ -139,7 +143,7 @@ struct ImpactProgram {
   /// One of its meetings with what is not free, from 1 on; the next is that meeting's next_of_wall. 0: none.
   View<std::uint32_t> walls_of;
   // As long as there is room:
-  ConstView<std::int64_t> near;     ///< pairs that may meet, as far as is told without their shapes
+  ConstView<std::int64_t> near;     ///< pairs that come near each other, for the first round
   View<std::int64_t> suspects;      ///< pairs whose meeting is to be searched for in this round
   View<Foreseen> meetings[2];       ///< of the even rounds and of the odd ones, in any order
   View<ImpactGroup> impact_groups;  ///< of each meeting
@@ -222,9 +226,7 @@ struct ImpactProgram {
     const auto [i, j] = pairs[pair];
     return PairNumbers::of(number(i), number(j));
   }
-  SCREE_HD LoadedParts loads_of(std::int64_t pair) const {
-    return loaded.size() > 0 ? loaded[pair] : LoadedParts{};
-  }
+  SCREE_HD LoadedParts loads_of(std::int64_t pair) const { return loads_at(loaded, pair); }
   SCREE_HD std::int32_t partner_in(std::int64_t pair, std::int32_t body) const {
     const auto [i, j] = pairs[pair];
     return i == body ? j : i;
@@ -236,7 +238,7 @@ struct ImpactProgram {
     if (phase == 1) {
       foresee_pair(state, suspects[item]);
     } else if (state.round == 1) {
-      look(state, near[item]);
+      foresee_or_list(state, near[item]);
     } else if (item < state.kept) {
       keep(state, meetings[(state.round + 1) % 2][item]);
     } else {
@@ -263,12 +265,15 @@ struct ImpactProgram {
   SCREE_HD bool was_struck(const State& state, std::int32_t body) const {
     return struck_in[body] == state.round - 1;
   }
-  /// Foresees the meeting of a pair that may have one, or lists it if that takes a search: searches that
-  /// lie side by side keep all threads of a warp busy.
   SCREE_HD void look(const State& state, std::int64_t k) const {
     const auto [i, j] = pairs[k];
     ImpactLimits limits;
-    if (!stage.may_meet(i, j, limits) || !stage.come_near(i, j, limits, loads_of(k))) return;
+    if (stage.may_meet(i, j, limits) && stage.come_near(i, j, limits, loads_of(k))) foresee_or_list(state, k);
+  }
+  /// Foresees the meeting of a pair that comes near, or lists it if that takes a search: searches that lie
+  /// side by side keep all threads of a warp busy.
+  SCREE_HD void foresee_or_list(const State& state, std::int64_t k) const {
+    const auto [i, j] = pairs[k];
     if (!stage.needs_search(i) && !stage.needs_search(j)) return foresee_pair(state, k);
     const auto place =
         static_cast<std::int64_t>(count_up_together(&progress->counts[state.round % 2].suspects));

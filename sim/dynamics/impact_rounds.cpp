@@ -76,18 +76,19 @@ struct ResetBodies {
   }
 };
 
-/// Pairs that may meet. A loop of its own looks at more pairs at once than the rounds, which take many
-/// registers.
+/// Pairs that come near each other. A loop of its own looks at more pairs at once than the rounds, which take
+/// many registers.
 struct ListNear {
   FlightStage stage;
   ConstView<Pair> pairs;
+  ConstView<LoadedParts> loaded;
   ImpactProgress* progress;
   View<std::int64_t> near;
   SCREE_HD void operator()(std::int64_t k) const {
     const auto [i, j] = pairs[k];
     ImpactLimits limits;
     if (stage.top_speed[i] + stage.top_speed[j] <= progress->least_impact_speed ||
-        !stage.may_meet(i, j, limits))
+        !stage.may_meet(i, j, limits) || !stage.come_near(i, j, limits, detail::loads_at(loaded, k)))
       return;
     const auto place = static_cast<std::int64_t>(count_up_together(&progress->near));
     if (place < near.size()) near[place] = k;
@@ -235,8 +236,9 @@ ImpactProgram ImpactRounds<Space>::program(const FlightStage& stage, const Probl
 
 template <class Space>
 void ImpactRounds<Space>::list_near(const FlightStage& stage, const Problem& problem) {
-  parallel::for_each<Space>("impact.near", problem.pairs.size(),
-                            ListNear{stage, problem.pairs, shared_progress_.data(), near_.view()});
+  parallel::for_each<Space>(
+      "impact.near", problem.pairs.size(),
+      ListNear{stage, problem.pairs, problem.loaded, shared_progress_.data(), near_.view()});
 }
 
 template <class Space>

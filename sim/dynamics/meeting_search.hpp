@@ -42,7 +42,7 @@ class MeetingSearch {
         if (is_told || then.gap >= level - touching()) return {.time = next, .part = then.part};
         // Where it reaches that gap, unless it is not fast enough there yet.
         double touch = next;
-        const Look at = bisect(s, now, touch, then, level);
+        const Look at = find_touch(s, now, touch, then, level);
         return at.hit ? Meeting{.time = touch, .part = at.part} : Meeting{.time = next, .part = then.part};
       }
       s = next;
@@ -147,21 +147,28 @@ class MeetingSearch {
     return {.time = to, .part = after.part};
   }
 
-  /// Where the gap falls through the level between two instants, from above: moves `to` there.
-  SCREE_HD Look bisect(double from, const Look& before, double& to, Look after, double level) const {
-    double excess = before.gap - level;
-    for (int k = 0; k < most_bisections && after.gap < level - touching(); ++k) {
-      // Every other one is a secant's, kept off the ends.
-      const double share = k % 2 == 0 ? std::clamp(excess / (excess + level - after.gap), 0.05, 0.95) : 0.5;
-      const double middle = from + share * (to - from);
-      if (!(middle > from && middle < to)) break;
+  /// Where the gap falls through the level between two instants, from above: moves `to` there. By Newton's
+  /// steps from the instants before and after, as far as bodies close there: of two, from that whose gap is
+  /// nearer to it. Where they leave the interval, or are not quick, since nearest features change and gaps
+  /// have kinks and leaps, it is halved. It aims at the middle of what counts as touching.
+  SCREE_HD Look find_touch(double from, Look before, double& to, Look after, double level) const {
+    constexpr int usual_steps = 4;
+    const double aim = level - touching() / 16;
+    for (int k = 1; k <= most_bisections && after.gap < level - touching(); ++k) {
+      const double above = before.gap - aim;
+      const double below = aim - after.gap;
+      const bool forward = before.closing > 0 && (above < below || !(after.closing > 0));
+      double middle = forward ? from + above / before.closing : to - below / after.closing;
+      const bool halves = (k > usual_steps && k % 2 == 0) || !(middle > from && middle < to);
+      if (halves) middle = 0.5 * (from + to);
+      if (!(middle > from && middle < to) || fastest_ * (to - from) <= touching()) break;
       const Look at = look(middle);
-      if (at.gap > level) {
-        from = middle;
-        excess = at.gap - level;
-      } else {
+      if (at.gap <= level) {
         to = middle;
         after = at;
+      } else {
+        from = middle;
+        before = at;
       }
     }
     return after;

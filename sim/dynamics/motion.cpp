@@ -165,20 +165,28 @@ struct IsOut {
   Travel travel;
   ConstView<double> box_margin;
   ConstView<double> contact_margin;
-  SCREE_HD int operator()(std::int64_t k) const {
+  SCREE_HD bool operator()(std::int64_t k) const {
     const Mobility mobility = travel.bodies.mobility[k];
-    if (mobility == Mobility::fixed || mobility == Mobility::absent) return 0;
-    return travel(k) + contact_margin[k] > box_margin[k] ? 1 : 0;
+    if (mobility == Mobility::fixed || mobility == Mobility::absent) return false;
+    return travel(k) + contact_margin[k] > box_margin[k];
   }
 };
 
-/// The same of a margin that is yet to be set.
-struct IsOutWithMargin {
-  SetMargin margins;
+struct NoteOutside {
   IsOut is_out;
-  SCREE_HD std::int64_t operator()(std::int64_t k) const {
+  BodiesOutside outside;
+  SCREE_HD void operator()(std::int64_t k) const {
+    if (is_out(k)) outside.add({is_out.travel.bodies, is_out.contact_margin}, k);
+  }
+};
+
+/// The same with margins that are yet to be set.
+struct NoteOutsideWithMargin {
+  SetMargin margins;
+  NoteOutside note;
+  SCREE_HD void operator()(std::int64_t k) const {
     margins(k);
-    return is_out(k);
+    note(k);
   }
 };
 
@@ -321,22 +329,32 @@ void FatBoxes<Space>::put_around(const Bodies<Space>& bodies, double dt, const R
 }
 
 template <class Space>
-bool FatBoxes<Space>::hold(const Bodies<Space>& bodies, const Array<double, Space>& contact_margin) const {
-  const IsOut is_out{
-      {view_of(bodies), position_.view(), orientation_.view()}, margin_.view(), contact_margin.view()};
-  return parallel::max<int, Space>("motion.out", bodies.count(), is_out, 0) == 0;
+bool FatBoxes<Space>::pairs_last(const Bodies<Space>& bodies, const Array<double, Space>& contact_margin) {
+  const ConstBodyView now = view_of(bodies);
+  const IsOut is_out{{now, position_.view(), orientation_.view()}, margin_.view(), contact_margin.view()};
+  parallel::for_each<Space>("motion.out", bodies.count(), NoteOutside{is_out, new_pairs_.start()});
+  return pairs_last_now(now, contact_margin);
 }
 
 template <class Space>
-bool FatBoxes<Space>::hold(const Bodies<Space>& bodies, double dt, const ResponseParameters& parameters,
-                           Array<double, Space>& contact_margin) const {
+bool FatBoxes<Space>::pairs_last(const Bodies<Space>& bodies, double dt, const ResponseParameters& parameters,
+                                 Array<double, Space>& contact_margin) {
   contact_margin.resize(bodies.count());
-  const ConstBodyView views = view_of(bodies);
-  const SetMargin margins{views, contact_margin.view(), dt, tolerance::contact_slack, parameters};
+  const ConstBodyView now = view_of(bodies);
+  const SetMargin margins{now, contact_margin.view(), dt, tolerance::contact_slack, parameters};
   const IsOut is_out{
-      {views, position_.view(), orientation_.view()}, margin_.view(), std::as_const(contact_margin).view()};
-  return parallel::sum_by_tiles<std::int64_t, Space>("motion.out", bodies.count(),
-                                                     IsOutWithMargin{margins, is_out}) == 0;
+      {now, position_.view(), orientation_.view()}, margin_.view(), std::as_const(contact_margin).view()};
+  parallel::for_each<Space>("motion.out", bodies.count(),
+                            NoteOutsideWithMargin{margins, {is_out, new_pairs_.start()}});
+  return pairs_last_now(now, contact_margin);
+}
+
+template <class Space>
+bool FatBoxes<Space>::pairs_last_now(const ConstBodyView& now, const Array<double, Space>& contact_margin) {
+  ConstBodyView then = now;
+  then.position = std::as_const(position_).view();
+  then.orientation = std::as_const(orientation_).view();
+  return !new_pairs_.exist({now, contact_margin.view()}, {then, std::as_const(margin_).view()});
 }
 
 template <class Space>

@@ -4,8 +4,11 @@
 #include "core/archive.hpp"
 #include "core/array.hpp"
 #include "core/bodies.hpp"
+#include "sim/dynamics/new_pairs.hpp"
 #include "sim/dynamics/rotation.hpp"
 #include "sim/dynamics/state.hpp"
+
+#include <cstdint>
 
 namespace scree {
 
@@ -32,12 +35,15 @@ class FatBoxes {
   /// them look, and for contacts that reach as far as given (m).
   void put_around(const Bodies<Space>& bodies, double dt, const ResponseParameters& parameters,
                   const Array<double, Space>& contact_margin);
-  /// Whether every body, wherever it is now, and with contacts that reach as far as given (m), is still in
-  /// its box.
-  bool hold(const Bodies<Space>& bodies, const Array<double, Space>& contact_margin) const;
+  /// Whether all bodies that may be in contact, wherever they are now, and with contacts that reach as far as
+  /// given (m), are among the pairs that were found with the boxes: all are in their boxes, or those outside
+  /// are few and have no NewPairs.
+  bool pairs_last(const Bodies<Space>& bodies, const Array<double, Space>& contact_margin);
   /// The same with contact_margins() within dt (s), which are set.
-  bool hold(const Bodies<Space>& bodies, double dt, const ResponseParameters& parameters,
-            Array<double, Space>& contact_margin) const;
+  bool pairs_last(const Bodies<Space>& bodies, double dt, const ResponseParameters& parameters,
+                  Array<double, Space>& contact_margin);
+  /// How many bodies were outside their boxes when that was last asked.
+  std::int64_t outside() const { return new_pairs_.outside(); }
   /// Raises the margins (m) by what each body has moved since the boxes were put around it.
   void add_travel(const Bodies<Space>& bodies, Array<double, Space>& contact_margin) const;
   const Array<double, Space>& margin() const { return margin_; }  ///< (m)
@@ -48,9 +54,12 @@ class FatBoxes {
   }
 
  private:
+  bool pairs_last_now(const ConstBodyView& now, const Array<double, Space>& contact_margin);
+
   Array<double, Space> margin_;
   Array<Vec3, Space> position_;
   Array<Quat, Space> orientation_;
+  NewPairs<Space> new_pairs_;
 };
 
 /// Work of the forces that accelerate the bodies so (m/s^2) on their way from `start` to where they are (J).

@@ -54,6 +54,34 @@ TEST(BallImpact, IsTheFirstTouchAndItsNormalAndSpeedAreOfThatInstant) {
   EXPECT_GT(passed_by, 100);
 }
 
+/// A ball passes another one at a share of their touching distance, and a little nearer or farther each time:
+/// a graze is a double root, which costs half the digits, and no more.
+TEST(BallImpact, GrazesAreFoundAsWellAsTheirRootsAreKnown) {
+  constexpr double step = 0.001;
+  constexpr Real speed = 3, touching = 0.02, start = 0.001;
+  for (int digit = 1; digit <= 14; ++digit) {
+    for (const double side : {-1.0, 1.0}) {
+      const double miss = 0.02 * (1 + side * std::pow(10.0, -digit));
+      FlightOfBalls balls{
+          .flight = {Vec3::Zero(), Vec3::Zero()}, .velocity = Vec3(3, 0, 0), .touching = 0.02};
+      balls.flight.position = Vec3(-0.001 + 1.5 * step, miss, 0);
+      const BallImpact impact = next_ball_impact(balls, step, 0);
+      if (side > 0) {
+        EXPECT_EQ(impact.time, HUGE_VAL) << digit;
+        continue;
+      }
+      const Real half_chord = std::sqrt((touching - miss) * (touching + miss));
+      if (half_chord > start) {
+        EXPECT_EQ(impact.time, 0) << digit;  // they overlap
+        continue;
+      }
+      const auto expected = static_cast<double>((start - half_chord) / speed);
+      const double known = 1e-17 * 0.02 / static_cast<double>(half_chord * speed);
+      EXPECT_NEAR(impact.time, expected, 64 * known + 1e-15 * step) << digit;
+    }
+  }
+}
+
 TEST(BallImpact, OverlapIsNowIfTheyCloseAndNeverIfTheyPart) {
   FlightOfBalls balls{.flight = {Vec3(0.9, 0, 0), Vec3::Zero()}, .velocity = Vec3(-1, 0, 0), .touching = 1};
   EXPECT_EQ(next_ball_impact(balls, 0.01, 0.004).time, 0.004);

@@ -150,6 +150,18 @@ TEST_P(Meetings, NothingPassesThroughAtAnySpeed) {
   }
 }
 
+/// What is searched for ends within the gap that counts as touching, wherever gaps bend and leap.
+TEST_P(Meetings, EndWithinWhatTouches) {
+  for (std::uint64_t item = 0; item < 1000; ++item) {
+    const PairFlight p = pair(item, item % 2 == 0 ? 2.0 : 20.0);
+    const double size = size_of(p);
+    if (gap_at(p, 0) < 0.01 * size) continue;
+    const Meeting meeting = next_meeting(p, 0);
+    if (meeting.time > step) continue;
+    EXPECT_NEAR(gap_at(p, meeting.time), 0, 2 * tolerance::touching_gap * size) << item;
+  }
+}
+
 TEST_P(Meetings, SlowOnesDoNotCount) {
   for (std::uint64_t item = 0; item < 100; ++item) {
     PairFlight p = pair(item, 2.0);

@@ -2,7 +2,9 @@
 // them.
 #include "sim/pair_finder.hpp"
 
+#include "core/rng.hpp"
 #include "core/tolerances.hpp"
+#include "narrowphase/pair_contacts.hpp"
 #include "sim/applied_forces.hpp"
 #include "sim/moving_state.hpp"
 #include "tests/core/spaces.hpp"
@@ -10,6 +12,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cstdint>
+#include <set>
 #include <type_traits>
 #include <utility>
 #include <vector>
@@ -86,6 +91,70 @@ TYPED_TEST(InSpaceTest, KeptPairsAreThoseOnHost) {
     }
     for (std::size_t k = 2; k + 1 < state.position.size(); k += 2) state.position[k].x() += 0.05;
   }
+}
+
+/// Pairs are kept though some bodies have left their boxes, as long as these may touch nobody else: beside
+/// the contacts of all pairs.
+TYPED_TEST(InSpaceTest, PairsLastUntilOneOutsideItsBoxMayTouchAnother) {
+  const Scene scene = scene_of(R"(
+seed: 4
+materials: {a: {density: 1000}}
+bodies:
+  - {plane: {normal: [0, 0, 1], offset: -1.2}, material: a}
+  - {tube: {radius: 1.7, length: 3}, fixed: true, at: [0, 0, 0], material: a}
+  - {box: {size: [1, 0.6, 0.1]}, fixed: true, at: [0, 0, 0], orientation: [1, 0.2, 0.2, 0], material: a}
+  - {sphere: {radius: 0.08}, at: [-0.9, -0.9, -1], repeat: {count: [7, 7, 3], spacing: [0.3, 0.3, 0.5], jitter: 0.03}, material: a}
+  - {box: {size: [0.2, 0.15, 0.1]}, at: [-0.9, -0.9, -0.8], repeat: {count: [7, 7, 3], spacing: [0.3, 0.3, 0.5], jitter: 0.03}, material: a}
+)");
+  const bool on_device = !std::is_same_v<TypeParam, Host>;
+  KeptPairs<TypeParam> kept(scene.broadphase, on_device, Vec3::Zero());
+  ResponseParameters parameters;
+  parameters.gravity = Vec3::Zero();
+  Bodies<TypeParam> bodies;
+  Array<double, TypeParam> margin;
+  int lasted = 0, ended = 0;
+  for (std::uint64_t trial = 0; trial < 120; ++trial) {
+    BodyTable state = scene.bodies;
+    copy_bodies(bodies, state);
+    contact_margins(bodies, 0, tolerance::contact_slack, parameters, margin);
+    kept.make(bodies, margin, 0, parameters);
+    Random random(47, trial);
+    const double way = random.uniform(0.001, 0.05);
+    for (int moved = 0; moved < 12;) {
+      const auto k = static_cast<std::size_t>(random.uniform(0, static_cast<double>(state.position.size())));
+      if (state.mobility[k] != Mobility::free) continue;
+      const double x = random.uniform(-way, way), y = random.uniform(-way, way);
+      state.position[k] += Vec3(x, y, random.uniform(-way, way));
+      ++moved;
+    }
+    copy_bodies(bodies, state);
+    contact_margins(bodies, 0, tolerance::contact_slack, parameters, margin);
+    if (!kept.cover(bodies, margin)) {
+      ++ended;
+      continue;
+    }
+    ++lasted;
+    std::vector<Pair> pairs(static_cast<std::size_t>(kept.pairs().size()));
+    copy_bytes<Host, TypeParam>(pairs.data(), kept.pairs().data(), pairs.size() * sizeof(Pair));
+    std::set<std::pair<std::int32_t, std::int32_t>> known;
+    for (const Pair& pair : pairs) known.insert(std::minmax(pair.i, pair.j));
+    const std::vector<double> reach = to_vector(margin);
+    const auto solid = [&](std::size_t k) {
+      return Solid{state.position[k], state.orientation[k], state.size[k]};
+    };
+    for (std::size_t i = 0; i < reach.size(); ++i) {
+      for (std::size_t j = i + 1; j < reach.size(); ++j) {
+        if (state.mobility[i] != Mobility::free && state.mobility[j] != Mobility::free) continue;
+        Manifold manifolds[max_pair_manifolds];
+        const bool touch = find_pair_contacts(state.shape[i], solid(i), state.shape[j], solid(j),
+                                              reach[i] + reach[j], manifolds) > 0;
+        const std::pair<std::int32_t, std::int32_t> pair(i, j);
+        ASSERT_TRUE(!touch || known.contains(pair)) << "trial " << trial << ": " << i << ", " << j;
+      }
+    }
+  }
+  EXPECT_GT(lasted, 30);
+  EXPECT_GT(ended, 20);
 }
 
 TYPED_TEST(InSpaceTest, ForcesActFromTheirStartToTheirEnd) {

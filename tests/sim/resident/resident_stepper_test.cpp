@@ -402,7 +402,7 @@ bodies:
   EXPECT_LT(mean / looks, 5e-4);
   EXPECT_LT(worst, 2e-2);
   const Counters& after = run.observe(false).counters;
-  EXPECT_LT(after.sweeps - before.sweeps, 20 * (after.substeps - before.substeps));
+  EXPECT_LT(after.sweeps - before.sweeps, 24 * (after.substeps - before.substeps));
 }
 
 /// Two balls on two others fly towards one another. They bear load there, so that they bounce as contacts and

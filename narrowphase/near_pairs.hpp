@@ -1,0 +1,74 @@
+// Which bodies are near enough for a contact, as told without their shapes.
+#pragma once
+
+#include "broadphase/bounds.hpp"
+#include "core/array.hpp"
+#include "core/bodies.hpp"
+#include "narrowphase/far_apart.hpp"
+
+#include <cmath>
+#include <cstdint>
+
+namespace scree {
+
+/// Bodies, and how far the contacts of each reach (m).
+struct NearPairs {
+  ConstBodyView bodies;
+  ConstView<double> margin;
+
+  /// Whether two bodies are of a kind that may be in contact: one of them is free, and both are there.
+  SCREE_HD bool may_be_pair(std::int32_t i, std::int32_t j) const {
+    return (is_free(i) || is_free(j)) && is_present(i) && is_present(j);
+  }
+  /// Whether two bodies may have a gap of no more than the sum of their margins, as told from the spheres
+  /// around them: of a tube, from its wall and its caps. Spheres are in half of their boxes' volume: of a
+  /// packing's pairs this takes two of five.
+  SCREE_HD bool spheres_are_near(std::int32_t i, std::int32_t j) const {
+    if (is_plane(i)) return is_near_plane(i, j);
+    if (is_plane(j)) return is_near_plane(j, i);
+    if (is_boundary(bodies.shape[i])) return !is_within(i, j, reach(j) + margin[i]);
+    if (is_boundary(bodies.shape[j])) return !is_within(j, i, reach(i) + margin[j]);
+    return !are_far_apart(offset(i, j), reach(i) + reach(j));
+  }
+  /// The same, as told from the boxes around them along the world's axes. Boxes are too coarse for planes,
+  /// which they are near everywhere.
+  SCREE_HD bool boxes_are_near(std::int32_t i, std::int32_t j) const {
+    if (is_plane(i) || is_plane(j)) return true;
+    const Vec3 apart = offset(i, j).cwiseAbs() - half_extent(i) - half_extent(j);
+    return apart.maxCoeff() <= margin[i] + margin[j];
+  }
+  /// Radius of a sphere around a body and its margin (m); infinite for a boundary.
+  SCREE_HD double sphere_around(std::int32_t k) const {
+    return is_boundary(bodies.shape[k]) ? HUGE_VAL : reach(k);
+  }
+  SCREE_HD bool is_plane(std::int32_t k) const { return bodies.shape[k] == Shape::plane; }
+  SCREE_HD bool is_free(std::int32_t k) const { return bodies.mobility[k] == Mobility::free; }
+
+ private:
+  SCREE_HD bool is_present(std::int32_t k) const { return bodies.mobility[k] != Mobility::absent; }
+  SCREE_HD Vec3 offset(std::int32_t i, std::int32_t j) const {
+    return bodies.period.nearest(bodies.position[j] - bodies.position[i]);
+  }
+  SCREE_HD double reach(std::int32_t k) const {
+    return bounding_radius(bodies.shape[k], bodies.size[k]) + margin[k];
+  }
+  SCREE_HD Vec3 half_extent(std::int32_t k) const {
+    return half_extent_of({bodies.shape[k], bodies.position[k], bodies.orientation[k], bodies.size[k]});
+  }
+  SCREE_HD bool is_near_plane(std::int32_t plane, std::int32_t body) const {
+    const Vec3 up = bodies.orientation[plane] * Vec3::UnitZ();
+    return up.dot(bodies.position[body] - bodies.position[plane]) <= reach(body) + margin[plane];
+  }
+  /// Whether a body is within a tube, and farther than `reach` (m) from its wall and its caps.
+  SCREE_HD bool is_within(std::int32_t tube, std::int32_t body, double reach) const {
+    const Vec3 up = bodies.orientation[tube] * Vec3::UnitZ();
+    const Vec3 from = bodies.position[body] - bodies.position[tube];
+    const double along = up.dot(from);
+    const double across = (from - along * up).norm();
+    const Vec3& size = bodies.size[tube];
+    const double rounding = tolerance::far_rounding * (size.x() + size.z());
+    return across + reach + rounding < size.x() && fabs(along) + reach + rounding < size.z();
+  }
+};
+
+}  // namespace scree
