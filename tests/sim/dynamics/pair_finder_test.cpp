@@ -98,6 +98,7 @@ TYPED_TEST(InSpaceTest, KeptPairsAreThoseOnHost) {
 TYPED_TEST(InSpaceTest, PairsLastUntilOneOutsideItsBoxMayTouchAnother) {
   const Scene scene = scene_of(R"(
 seed: 4
+time: {end: 1, step: 0.01}
 materials: {a: {density: 1000}}
 bodies:
   - {plane: {normal: [0, 0, 1], offset: -1.2}, material: a}
