@@ -150,7 +150,8 @@ class MeetingSearch {
   /// Where the gap falls through the level between two instants, from above: moves `to` there. By Newton's
   /// steps from the instants before and after, as far as bodies close there: of two, from that whose gap is
   /// nearer to it. Where they leave the interval, or are not quick, since nearest features change and gaps
-  /// have kinks and leaps, it is halved. It aims at the middle of what counts as touching.
+  /// have kinks and leaps, it is halved. It aims at the near end of what counts as touching: from deeper in
+  /// it bodies at rest with e = 1 would bounce more.
   SCREE_HD Look find_touch(double from, Look before, double& to, Look after, double level) const {
     constexpr int usual_steps = 4;
     const double aim = level - touching() / 16;

@@ -75,7 +75,8 @@ TEST(SweepImpact, ImpulsesMeetTheLawToRounding) {
     ContactRow rows[Manifold::max_points];
     RowCoupling couplings[Manifold::max_points];
     for (int k = 0; k < count; ++k) {
-      const Vec3 across = vector(0.3) - normal.dot(vector(0.3)) * normal;
+      const Vec3 drawn = vector(0.3);
+      const Vec3 across = drawn - normal.dot(drawn) * normal;
       rows[k] = make_row(normal, 0.2 * normal + across, -0.2 * normal + across, 0.0, i, j, couplings[k]);
       rows[k].target = random.uniform(0, 1);
     }

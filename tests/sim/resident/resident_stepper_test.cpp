@@ -402,6 +402,7 @@ bodies:
   EXPECT_LT(mean / looks, 5e-4);
   EXPECT_LT(worst, 2e-2);
   const Counters& after = run.observe(false).counters;
+  // 18 to 20.2 were seen, and 28 where sweeps end at the change of a heap at rest (docs/decisions/0052).
   EXPECT_LT(after.sweeps - before.sweeps, 24 * (after.substeps - before.substeps));
 }
 
