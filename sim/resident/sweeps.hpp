@@ -7,6 +7,13 @@
 
 #include <cstdint>
 
+/// A loop over the points that a contact may have: unrolled on a GPU, so that lists of them are registers.
+#ifdef __CUDA_ARCH__
+#define SCREE_OVER_POINTS _Pragma("unroll") for (int p = 0; p < Manifold::max_points; ++p)
+#else
+#define SCREE_OVER_POINTS for (int p = 0; p < Manifold::max_points; ++p)
+#endif
+
 namespace scree::resident {
 
 /// What the sweeps of a substep know of one another.
@@ -172,7 +179,8 @@ struct SweepBalls {
   }
 };
 
-/// Solves the points of a contact, one after the other.
+/// Solves the points of a contact, one after the other. All their numbers are asked for before the first is
+/// waited for: a GPU waits for memory at every visit, and would for each point.
 template <class Real>
 struct SweepPoints {
   PointContacts<Real> contacts;
@@ -190,29 +198,35 @@ struct SweepPoints {
     const auto friction = contacts.fields.template get<A>(C::friction, c);
     const int count = A::most(contacts.points + c);
     const auto& f = contacts.point_fields;
-    V3 now[Manifold::max_points];
-    V3 ahead[Manifold::max_points];
-    for (int p = 0; p < count; ++p) {
-      const V3 before = f.template vector<A>(C::at_point(p, C::impulse), c);
-      now[p] = ahead[p] = before + A::all(beta) * (before - f.template vector<A>(C::at_point(p, C::last), c));
-      f.template put<A>(C::at_point(p, C::last), c, before);
+    lanes::Point<A> at[Manifold::max_points]{};
+    lanes::PointLaw<A> law[Manifold::max_points]{};
+    V3 before[Manifold::max_points]{}, last[Manifold::max_points]{};
+    V3 ahead[Manifold::max_points]{}, now[Manifold::max_points]{};
+    SCREE_OVER_POINTS {
+      if (p >= count) continue;
+      before[p] = f.template vector<A>(C::at_point(p, C::impulse), c);
+      last[p] = f.template vector<A>(C::at_point(p, C::last), c);
+      at[p] = point_at<A>(contacts, c, p);
+      law[p] = law_at<A>(contacts, c, p);
     }
+    SCREE_OVER_POINTS if (p < count) now[p] = ahead[p] = before[p] + A::all(beta) * (before[p] - last[p]);
     for (int sweep = 0; sweep < block_sweeps; ++sweep) {
-      for (int p = 0; p < count; ++p) {
-        const auto at = point_at<A>(contacts, c, p);
-        const V3 impulse =
-            impulse_of(law_at<A>(contacts, c, p), n, friction, now[p], velocity_at(at, two.i, two.j));
-        push<A>(turning.i, turning.j, at, impulse - now[p], two.i, two.j);
+      SCREE_OVER_POINTS {
+        if (p >= count) continue;
+        const V3 impulse = impulse_of(law[p], n, friction, now[p], velocity_at(at[p], two.i, two.j));
+        push<A>(turning.i, turning.j, at[p], impulse - now[p], two.i, two.j);
         now[p] = impulse;
       }
     }
     store<A>(two, bodies, ends);
     ChangeOf<A> total;
-    for (int p = 0; p < count; ++p) {
+    SCREE_OVER_POINTS {
+      if (p >= count) continue;
+      f.template put<A>(C::at_point(p, C::last), c, before[p]);
       f.template put<A>(C::at_point(p, C::impulse), c, now[p]);
       const V3 change = now[p] - ahead[p];
-      const auto mass = f.template get<A>(C::at_point(p, C::normal_mass), c);
-      total = total + ChangeOf<A>{dot(change, change) / mass, dot(now[p], now[p]) / mass};
+      total = total +
+              ChangeOf<A>{dot(change, change) / law[p].normal_mass, dot(now[p], now[p]) / law[p].normal_mass};
     }
     return total;
   }
@@ -304,29 +318,39 @@ struct PartPoints {
     V apart = dot(n, centres.j.velocity - centres.i.velocity);
     V pushed_apart{}, least{};
     const int count = A::most(contacts.points + c);
-    for (int p = 0; p < count; ++p) {
-      const auto at = point_at<A>(contacts, c, p);
-      const lanes::V3<A> lever_i = cross(at.arm_i, n), lever_j = cross(at.arm_j, n);
-      const V gap = contacts.gaps.template get<A>(C::at_point(p, C::flown), c) + apart +
-                    (dot(lever_j, turned.j.velocity) - dot(lever_i, turned.i.velocity));
-      V pushed = contacts.gaps.template get<A>(C::at_point(p, C::pushed), c);
-      if (A::any((gap < 0) | (pushed > 0))) {
-        const V more = lanes::parting<A>(
-            gap, cap, A::all(share), contacts.point_fields.template get<A>(C::at_point(p, C::normal_mass), c),
-            pushed);
+    lanes::Point<A> at[Manifold::max_points]{};
+    V flown[Manifold::max_points]{}, pushed[Manifold::max_points]{}, mass[Manifold::max_points]{};
+    bool parts[Manifold::max_points]{};
+    SCREE_OVER_POINTS {
+      if (p >= count) continue;
+      at[p] = point_at<A>(contacts, c, p);
+      flown[p] = contacts.gaps.template get<A>(C::at_point(p, C::flown), c);
+      pushed[p] = contacts.gaps.template get<A>(C::at_point(p, C::pushed), c);
+      mass[p] = contacts.point_fields.template get<A>(C::at_point(p, C::normal_mass), c);
+    }
+    SCREE_OVER_POINTS {
+      if (p >= count) continue;
+      const lanes::V3<A> lever_i = cross(at[p].arm_i, n), lever_j = cross(at[p].arm_j, n);
+      const V gap = flown[p] + apart + (dot(lever_j, turned.j.velocity) - dot(lever_i, turned.i.velocity));
+      parts[p] = A::any((gap < 0) | (pushed[p] > 0));
+      if (parts[p]) {
+        const V more = lanes::parting<A>(gap, cap, A::all(share), mass[p], pushed[p]);
         apart = apart + masses * more;
         pushed_apart = pushed_apart + more;
         turned.i.velocity = turned.i.velocity - more * (turning.i * lever_i);
         turned.j.velocity = turned.j.velocity + more * (turning.j * lever_j);
-        contacts.gaps.template put<A>(C::at_point(p, C::pushed), c, pushed);
       }
       least = gap < least ? gap : least;
     }
     push_centres(pushed_apart * n, centres.i, centres.j);
     store<A>(centres, bodies, ends);
     store<A>(turned, turns, ends);
+    SCREE_OVER_POINTS if (p < count && parts[p])
+        contacts.gaps.template put<A>(C::at_point(p, C::pushed), c, pushed[p]);
     return least / cap;
   }
 };
 
 }  // namespace scree::resident
+
+#undef SCREE_OVER_POINTS
