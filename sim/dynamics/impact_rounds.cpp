@@ -77,19 +77,34 @@ struct ResetBodies {
 };
 
 /// Pairs that come near each other. A loop of its own looks at more pairs at once than the rounds, which take
-/// many registers.
+/// many registers. Of four pairs the speeds are on their way together: most pairs are too slow.
 struct ListNear {
+  static constexpr int together = 4;
+  SCREE_HD static std::int64_t items(std::int64_t pairs) { return (pairs + together - 1) / together; }
+
   FlightStage stage;
   ConstView<Pair> pairs;
   ConstView<LoadedParts> loaded;
   ImpactProgress* progress;
   View<std::int64_t> near;
-  SCREE_HD void operator()(std::int64_t k) const {
+  SCREE_HD void operator()(std::int64_t item) const {
+    const std::int64_t stride = items(pairs.size());
+    const double least = progress->least_impact_speed;
+    bool is_fast[together];
+    for (int p = 0; p < together; ++p) {
+      const std::int64_t k = item + p * stride;
+      const Pair pair = pairs[k < pairs.size() ? k : item];
+      is_fast[p] = k < pairs.size() && stage.top_speed[pair.i] + stage.top_speed[pair.j] > least;
+    }
+    for (int p = 0; p < together; ++p)
+      if (is_fast[p]) look_at(item + p * stride);
+  }
+
+ private:
+  SCREE_HD void look_at(std::int64_t k) const {
     const auto [i, j] = pairs[k];
     ImpactLimits limits;
-    if (stage.top_speed[i] + stage.top_speed[j] <= progress->least_impact_speed ||
-        !stage.may_meet(i, j, limits) || !stage.come_near(i, j, limits, detail::loads_at(loaded, k)))
-      return;
+    if (!stage.may_meet(i, j, limits) || !stage.come_near(i, j, limits, detail::loads_at(loaded, k))) return;
     const auto place = static_cast<std::int64_t>(count_up_together(&progress->near));
     if (place < near.size()) near[place] = k;
   }
@@ -237,7 +252,7 @@ ImpactProgram ImpactRounds<Space>::program(const FlightStage& stage, const Probl
 template <class Space>
 void ImpactRounds<Space>::list_near(const FlightStage& stage, const Problem& problem) {
   parallel::for_each<Space>(
-      "impact.near", problem.pairs.size(),
+      "impact.near", ListNear::items(problem.pairs.size()),
       ListNear{stage, problem.pairs, problem.loaded, shared_progress_.data(), near_.view()});
 }
 
