@@ -64,15 +64,60 @@ constexpr int blocks_at_once() {
 }
 
 template <class F>
+constexpr bool has_kinds() {
+  if constexpr (requires { F::kinds; }) return F::kinds > 0;
+  return false;
+}
+
+/// Which item of its tile a thread looks at, or -1. Those of one kind are side by side, so that the threads
+/// of a warp do the same work, and those of none leave whole warps free.
+template <class F>
+__device__ int item_of_thread(const F& f, std::int64_t first) {
+  __shared__ std::uint32_t sums[F::kinds][tile / 32];
+  __shared__ std::uint16_t items[tile];
+  const int kind = f.kind(first + threadIdx.x);
+  std::uint32_t start = 0;
+  for (int k = 0; k < F::kinds; ++k) {
+    std::uint32_t total;
+    const std::uint32_t before =
+        scree::detail::sum_before_in_block<tile>(kind == k ? 1u : 0u, sums[k], total);
+    if (kind == k) items[start + before] = static_cast<std::uint16_t>(threadIdx.x);
+    start += total;
+  }
+  __syncthreads();
+  return threadIdx.x < start ? items[threadIdx.x] : -1;
+}
+
+/// How many items before its own were found, for a thread that has found one.
+__device__ inline std::uint32_t found_before(int item, bool found, std::uint32_t& total) {
+  __shared__ std::uint32_t sums[tile / 32];
+  __shared__ std::uint32_t of_item[tile];
+  of_item[threadIdx.x] = 0;
+  __syncthreads();
+  if (found) of_item[item] = 1;
+  __syncthreads();
+  of_item[threadIdx.x] = scree::detail::sum_before_in_block<tile>(of_item[threadIdx.x], sums, total);
+  __syncthreads();
+  return found ? of_item[item] : 0;
+}
+
+template <class F>
 __global__ void __launch_bounds__(tile, blocks_at_once<F>())
     compact_tile(const __grid_constant__ F f, std::int32_t* counts) {
-  __shared__ std::uint32_t sums[tile / 32];
   const std::int64_t first = std::int64_t{blockIdx.x} * tile;
   typename F::Record record;
-  const bool found = f.find(first + threadIdx.x, record);
   std::uint32_t total;
-  const std::uint32_t before = scree::detail::sum_before_in_block<tile>(found ? 1u : 0u, sums, total);
-  if (found) f.store(first + before, first + threadIdx.x, record);
+  if constexpr (has_kinds<F>()) {
+    const int item = item_of_thread(f, first);
+    const bool found = item >= 0 && f.find(first + item, record);
+    const std::uint32_t before = found_before(item, found, total);
+    if (found) f.store(first + before, first + item, record);
+  } else {
+    __shared__ std::uint32_t sums[tile / 32];
+    const bool found = f.find(first + threadIdx.x, record);
+    const std::uint32_t before = scree::detail::sum_before_in_block<tile>(found ? 1u : 0u, sums, total);
+    if (found) f.store(first + before, first + threadIdx.x, record);
+  }
   if (threadIdx.x == 0) counts[blockIdx.x] = static_cast<std::int32_t>(total);
 }
 
@@ -145,7 +190,8 @@ void add_up(Device, const char* label, std::int64_t n, const F& f, Array<T, Devi
 /// is stored by f.store(place, item, record), in the order of the items, from the front of its tile on. Where
 /// f.is_end(item), there is nothing from there to the end of its tile.
 /// counts[t] becomes how much tile t has found. F has a type Record. On Device the call returns before the
-/// work is done.
+/// work is done. If F has a number of `kinds`, f.kind(item) tells there which an item is of, from 0 on, or -1
+/// where find() would return false, all of which it does then: find() is called kind by kind.
 template <class Space, class F>
 void compact_tiles(const char* label, std::int64_t tiles, const F& f, std::int32_t* counts) {
   if (tiles > 0) detail::compact(Space{}, label, tiles, f, counts);

@@ -99,6 +99,7 @@ struct FindBalls {
   };
 
   static constexpr int blocks_at_once = 2;  // spilled registers cost more than threads that wait
+  static constexpr int kinds = 0;           // all are alike
 
   FindStage<Real> stage;
   BallContacts<Real> contacts;

@@ -91,6 +91,20 @@ struct FindPoints {
   ApproachList approaching;
   View<Record> records;  ///< of slots: what is found
 
+  /// The work of these differs most.
+  static constexpr int kinds = 3;
+  SCREE_HD int kind(std::int64_t k) const {
+    const Slot slot = stage.places[first_place + k];
+    if (slot.i == Slot::empty) return -1;
+    const SlotBodies<Real> at = stage.load(slot);
+    if (stage.lead_of(slot) == 0 && are_far(stage, at)) {
+      memory[k].count = 0;
+      return -1;
+    }
+    if (at.a.shape == Shape::sphere || at.b.shape == Shape::sphere) return 0;
+    return at.a.shape == Shape::box && at.b.shape == Shape::box ? 1 : 2;
+  }
+
   bool is_end(std::int64_t k) const { return stage.places[first_place + k].i == Slot::empty; }
   SCREE_HD bool find(std::int64_t k, Record& record) const {
     const Slot slot = stage.places[first_place + k];

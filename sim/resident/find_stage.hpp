@@ -220,11 +220,13 @@ template <class Find>
 struct FindSlots {
   using Record = typename Find::Record;
   static constexpr int blocks_at_once = Find::blocks_at_once;
+  static constexpr int kinds = Find::kinds;
 
   Find all;
   std::int32_t* found;
 
   bool is_end(std::int64_t place) const { return all.is_end(place); }
+  SCREE_HD int kind(std::int64_t place) const { return all.kind(place); }
   SCREE_HD bool find(std::int64_t place, Record& record) const { return all.find(place, record); }
   SCREE_HD void store(std::int64_t to, std::int64_t place, const Record& record) const {
     found[to] = static_cast<std::int32_t>(place);

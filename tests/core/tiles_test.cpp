@@ -26,21 +26,43 @@ struct EveryThird {
   }
 };
 
-TYPED_TEST(TilesTest, WhatIsFoundIsAtTheFrontOfItsTileInOrder) {
+/// The same, kind by kind; what is not found is of none, or of one.
+struct EveryThirdByKind : EveryThird {
+  static constexpr int kinds = 2;
+  SCREE_HD int kind(std::int64_t item) const {
+    if (item / parallel::tile == 3 || item % 3 == 1) return -1;
+    return item % 5 == 0 ? 1 : 0;
+  }
+  SCREE_HD bool find(std::int64_t item, Record& record) const {
+    return EveryThird::find(item, record) && item / parallel::tile != 3;
+  }
+};
+
+template <class Space, class Find>
+void expect_found_in_order() {
   constexpr std::int64_t tiles = 5;
-  Array<std::int64_t, TypeParam> out(tiles * parallel::tile);
-  Array<std::int32_t, TypeParam> counts(tiles);
-  parallel::compact_tiles<TypeParam>("test", tiles, EveryThird{out.view()}, counts.data());
+  Array<std::int64_t, Space> out(tiles * parallel::tile);
+  Array<std::int32_t, Space> counts(tiles);
+  const Find find{{out.view()}};
+  parallel::compact_tiles<Space>("test", tiles, find, counts.data());
   const std::vector<std::int64_t> found = to_vector(out);
   const std::vector<std::int32_t> count = to_vector(counts);
   for (std::int64_t t = 0; t < tiles; ++t) {
     std::vector<std::int64_t> expected;
     for (std::int64_t item = t * parallel::tile; item < (t + 1) * parallel::tile; ++item)
-      if (item % 3 == 0) expected.push_back(11 * item);
+      if (std::int64_t record; find.find(item, record)) expected.push_back(record + item);
     ASSERT_EQ(count[static_cast<std::size_t>(t)], static_cast<std::int32_t>(expected.size()));
     const auto first = found.begin() + t * parallel::tile;
     EXPECT_TRUE(std::equal(expected.begin(), expected.end(), first)) << t;
   }
+}
+
+TYPED_TEST(TilesTest, WhatIsFoundIsAtTheFrontOfItsTileInOrder) {
+  expect_found_in_order<TypeParam, EveryThird>();
+}
+
+TYPED_TEST(TilesTest, WhatIsFoundByKindIsInTheSameOrder) {
+  expect_found_in_order<TypeParam, EveryThirdByKind>();
 }
 
 struct CountVisits {
