@@ -166,6 +166,11 @@ inline constexpr double flight_roundings = 8;
 /// are (of their size). Both are met to rounding; energy depends on neither.
 inline constexpr double impact_time = 1e-15;
 inline constexpr double impact_residual = 1e-15;
+/// Rounding of the distance of two balls, at which the time of their impact cannot be found better.
+inline constexpr double impact_distance = 1e-14;
+/// How far beyond the level a search aims at when it looks for a touch, of touching_gap. Larger: bodies at
+/// rest with e = 1 bounce more; smaller: the search ends before the touch, and goes on.
+inline constexpr double touch_aim = 0.0625;
 /// Under this much (likewise) a change that has stopped to fall is rounding of the bodies' velocities.
 inline constexpr double impact_rounding = 1e-10;
 
@@ -220,6 +225,10 @@ inline constexpr double far_rounding = 1e-12;
 
 /// Distance of two sphere centres under which their direction is rounding noise (of the sum of the radii).
 inline constexpr double coincident = 1e-14;
+
+/// Cosine of the angle between the normal of a contact at an edge or a corner and that of a face, from which
+/// on what lies over the face is part of the contact. Smaller: more such contacts have more points.
+inline constexpr double over_face_cosine = 0.95;
 
 /// Sine of the angle under which the cross product of two box edges is too short to be a separating axis. The
 /// overlap along any axis is exact whatever its rounding; a smaller value only adds axes that repeat the

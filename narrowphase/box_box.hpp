@@ -29,11 +29,10 @@ SCREE_HD inline bool is_at_edge(const BoxPair& pair, const BoxAxes& axes, double
 /// face must not be far.
 SCREE_HD inline void add_points_over_face(const BoxPair& pair, const BoxAxes& axes, double margin,
                                           Manifold& out) {
-  constexpr double least_cosine = 0.95;  // 0.32 rad
-  const BoxAxis& face = axes.face[axes.face[1].separation > axes.face[0].separation ? 1 : 0];
+  const BoxAxis& face = axes.better_face();
   const double cosine = normal_of(pair, face).dot(out.normal);
   Manifold over;
-  if (cosine < least_cosine || !face_contact(pair, face, margin * cosine, over)) return;
+  if (cosine < tolerance::over_face_cosine || !face_contact(pair, face, margin * cosine, over)) return;
   const ContactPoint first = out.points[0];
   const auto distance = [&](int k) { return (over.points[k].position - first.position).squaredNorm(); };
   int nearest = 0;

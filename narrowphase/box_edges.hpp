@@ -118,7 +118,7 @@ SCREE_HD inline std::uint32_t edges_within(const BoxPair& pair, const BoxAxes& a
 
 /// The contact of boxes that are apart and have no face over the other: the closest points of their edges.
 SCREE_HD inline bool closest_edges(const BoxPair& pair, const BoxAxes& axes, double margin, Manifold& out) {
-  const BoxAxis& face = axes.face[axes.face[1].separation > axes.face[0].separation];
+  const BoxAxis& face = axes.better_face();
   const int box = face.box, other = 1 - box;
   // If a face separates the boxes, its owner is wholly behind it and the other wholly before it, so the
   // closest point of the owner is on one of the 4 edges of the face.

@@ -44,6 +44,11 @@ struct BoxAxes {
   BoxAxis edges;      ///< of the pairs of edges that are not nearly parallel
   BoxAxis any_edges;  ///< of all that are not parallel
   double separation;  ///< largest of all 15; negative: minus the penetration depth
+
+  /// That of the two which parts the boxes better.
+  SCREE_HD const BoxAxis& better_face() const {
+    return face[face[1].separation > face[0].separation ? 1 : 0];
+  }
 };
 
 namespace detail {

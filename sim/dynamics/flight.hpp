@@ -50,7 +50,6 @@ struct BallImpact {
 /// would turn the balls.
 SCREE_HD inline BallImpact next_ball_impact(const FlightOfBalls& balls, double step, double earliest) {
   constexpr int most_iterations = 32;
-  constexpr double rounding = 1e-14;  // of the distance at which they touch
   const bool is_straight = balls.flight.acceleration.isZero(0);
   BallImpact impact;
   double s = earliest;
@@ -63,8 +62,8 @@ SCREE_HD inline BallImpact next_ball_impact(const FlightOfBalls& balls, double s
     if (!(impact.speed < 0)) return {};
     double change = (balls.touching - distance) / impact.speed;
     const bool overlap_at_first = iteration == 0 && change <= 0;
-    const bool is_rounding =
-        fabs(change) >= last_change && fabs(distance - balls.touching) <= rounding * distance;
+    const bool is_rounding = fabs(change) >= last_change &&
+                             fabs(distance - balls.touching) <= tolerance::impact_distance * distance;
     if (overlap_at_first || fabs(change) <= tolerance::impact_time * step || is_rounding ||
         iteration == most_iterations)
       break;

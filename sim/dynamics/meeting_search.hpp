@@ -154,7 +154,7 @@ class MeetingSearch {
   /// it bodies at rest with e = 1 would bounce more.
   SCREE_HD Look find_touch(double from, Look before, double& to, Look after, double level) const {
     constexpr int usual_steps = 4;
-    const double aim = level - touching() / 16;
+    const double aim = level - tolerance::touch_aim * touching();
     for (int k = 1; k <= most_bisections && after.gap < level - touching(); ++k) {
       const double above = before.gap - aim;
       const double below = aim - after.gap;
