@@ -48,14 +48,22 @@ inline constexpr double heap_mean_overlap = 1e-5;
 inline constexpr double shared_mean_overlap = 1e-6;
 /// Overlap that a substep may leave to be corrected (of the smaller smallest_size): after more, the next step
 /// is taken in twice as many substeps, if their number is free. It falls with the square of the substep's
-/// length. Smaller: impacts of many bodies at once cost more and are more accurate.
+/// length. Smaller: impacts of many bodies at once cost more and are more accurate. This and all overlaps
+/// below down to `mean_overlap_left` are for response.quality 1, by which they are divided.
 inline constexpr double substep_overlap = 0.06;
-/// Under this much (likewise) the next step is taken in half as many. Must be under a quarter of the other,
+/// The same of a heap, in which the deepest is an extreme of many. Larger: what falls into a heap sinks
+/// deeper before the substeps follow.
+inline constexpr double heap_substep_overlap = 0.25;
+/// Under this much (likewise) the next step is taken in half as many. Must be under a quarter of the first,
 /// or their number flickers.
 inline constexpr double coarser_overlap = 0.012;
 /// And after so many steps between the two, as well: what is wedged would ask for finer steps for good, which
 /// do not part it. Fewer: the deepest overlaps come back more often.
 inline constexpr int wedged_steps = 32;
+/// Overlaps that the steps of a heap in motion may leave, position correction included: the deepest, and the
+/// mean of all (of the smaller smallest_size). Substeps are chosen for them. Larger: fewer, and errors grow.
+inline constexpr double worst_overlap_left = 2e-2;
+inline constexpr double mean_overlap_left = 2e-4;
 /// Most substeps that a step takes by itself. Larger: fast scenes cost more.
 inline constexpr int most_substeps = 4;
 /// Substeps for each one of a step that failed, when it is taken again.

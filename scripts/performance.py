@@ -136,11 +136,14 @@ def motion(n):
 
 def motion_and_error(n):
     for scene in (collapse, beads, rubble):
-        for substeps in ("auto", 1, 2, 4):
-            for iterations in ("auto", 3, 6, 12, 24):
-                run = scene(n, within=20, varied={"n": n, "substeps": substeps, "iterations": iterations})
-                run.settings |= {"time.substeps": substeps, "response.iterations": iterations}
-                yield run
+        for quality in (0.0625, 0.25, 1, 4):
+            run = scene(n, within=20, varied={"n": n, "quality": quality})
+            run.settings |= {"response.quality": quality}
+            yield run
+        for substeps in (1, 2, 4):
+            run = scene(n, within=20, varied={"n": n, "substeps": substeps})
+            run.settings |= {"time.substeps": substeps}
+            yield run
 
 
 def speed_and_error(n):

@@ -207,23 +207,24 @@ def in_motion(number):
             *table_of(rows, SCENE | WHERE | SPEED | {"impacts/step": lambda row: three(row.impacts)} | ERROR | MACROSCOPIC | SETTLED), *left_out(failed), *caption(rows)]
 
 
+def asked(row):
+    """What was set of a scene, and to which number."""
+    key = "quality" if "quality" in row.varied else "substeps"
+    return key, row.varied[key]
+
+
 def motion_against_error(number):
     rows, failed = rows_of("motion-error")
     if not rows:
         return []
     lines = [f"## {number}. In motion: speed against error", "",
-             "Substeps (`time.substeps`) of auto, 1, 2 and 4 with sweeps (`response.iterations`) of auto and at most 3, 6, 12 and 24, from the start of the scene on. "
-             "A line is a number of substeps, and sweeps go on along it.", ""]
-    order = lambda word: -1 if word == "auto" else word
+             "Scenes in motion by `response.quality`, which chooses substeps and ends sweeps, and by `time.substeps`, each from the start of the scene on.", ""]
     for scene in dict.fromkeys(row.scene for row in rows):
-        of_scene = sorted((row for row in rows if row.scene == scene), key=lambda row: (row.machine, order(row.substeps), order(row.iterations)))
-        swept = [row for row in of_scene if row.iterations != "auto"]
+        of_scene = sorted((row for row in rows if row.scene == scene), key=lambda row: (row.machine, asked(row)))
         lines += picture(f"motion_{scene}", "set logscale xy\nset xlabel 'ms/step'\nset ylabel 'mean overlap (of the size)'\nset format y '10^{%T}'\n",
-                         curves_of(swept, lambda row: row.median_ms, lambda row: row.penetration_relative_mean, lambda row: f"{row.machine}, substeps {row.substeps}") +
-                         curves_of([row for row in of_scene if row.iterations == row.substeps == "auto"], lambda row: row.median_ms,
-                                   lambda row: row.penetration_relative_mean, lambda row: f"{row.machine}, as it is"))
-        lines += table_of(of_scene, SCENE | WHERE | {"substeps asked": lambda row: row.substeps, "sweeps asked": lambda row: row.iterations,
-                                                     "substeps": SPEED["substeps"], "sweeps": SPEED["sweeps"], "ms/step": SPEED["ms/step"]} | ERROR | MACROSCOPIC)
+                         curves_of(of_scene, lambda row: row.median_ms, lambda row: row.penetration_relative_mean, lambda row: f"{row.machine}, {asked(row)[0]}"))
+        lines += table_of(of_scene, SCENE | WHERE | {"asked": lambda row: "{} {:g}".format(*asked(row)), "substeps": SPEED["substeps"],
+                                                     "sweeps": SPEED["sweeps"], "ms/step": SPEED["ms/step"]} | ERROR | MACROSCOPIC) + [""]
     return lines + left_out(failed) + caption(rows)
 
 

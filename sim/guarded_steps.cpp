@@ -75,8 +75,15 @@ void GuardedSteps::take_in(int substeps, std::int64_t step, double length, const
     overlap = std::max(overlap, stepper.overlap());
   }
   judge(exchange, stepper);
-  substeps_.judge(std::min(substeps, tolerance::most_substeps), overlap);
+  if (!scene_.time.substeps) choose_substeps(substeps, overlap, stepper);
   stepper.counters.substeps += substeps;
+}
+
+void GuardedSteps::choose_substeps(int taken, double deepest, const Stepper& stepper) {
+  // A step that is taken again has more of them than are needed.
+  taken = std::min(taken, most_substeps(scene_.response.quality));
+  if (!stepper.has_heap()) return substeps_.judge(taken, deepest);
+  substeps_.judge_heap(taken, deepest, [&stepper] { return stepper.overlaps_left(); });
 }
 
 /// Throws StepFailure if the state is none to go on from.

@@ -19,7 +19,8 @@ class StepFailure;
 class GuardedSteps {
  public:
   /// `scene` must outlive this. Potential energies are about `origin`.
-  GuardedSteps(const Scene& scene, const Vec3& origin) : scene_(scene), origin_(origin) {}
+  GuardedSteps(const Scene& scene, const Vec3& origin)
+      : scene_(scene), origin_(origin), substeps_(scene.response.quality) {}
   void start(const Stepper& stepper, double least_scale);
 
   /// Takes the step that starts at `time` and is `length` long (s). `exchange`: what bodies brought and took
@@ -45,6 +46,7 @@ class GuardedSteps {
                           const Books& before, Stepper& stepper);
   void take_in(int substeps, std::int64_t step, double length, const Exchange& exchange, Stepper& stepper);
   void judge(const Exchange& exchange, const Stepper& stepper);
+  void choose_substeps(int taken, double deepest, const Stepper& stepper);
   [[noreturn]] void fail(const std::vector<std::int32_t>& bodies, const std::string& how) const;
   void extend_baseline(const Energies& energies, const Exchange& exchange, const Stepper& stepper);
   void undo(const Books& before, Stepper& stepper);

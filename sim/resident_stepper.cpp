@@ -86,6 +86,13 @@ class ResidentStepper final : public Stepper {
 
   void substep(double h, double done) override;
   double overlap() const override { return contacts_.overlap(); }
+  bool has_heap() const override { return contacts_.has_heap(); }
+  OverlapsLeft overlaps_left() const override {
+    const timing::Region region("correction");
+    const Penetration left = resident::measure_overlaps<Space>(
+        view_of(bodies_), std::as_const(shapes_).view(), kept_pairs_.pairs(), resident::Quantiles::none);
+    return {left.relative_mean, left.relative_max};
+  }
 
   void undo_step() override {
     start_.restore(bodies_);

@@ -20,6 +20,7 @@ ResponseParameters response_parameters_of(const Scene& scene) {
           .continuous = plan.continuous.on,
           .warm_start = scene.response.warm_start,
           .accurate = scene.response.mode == ResponseMode::accurate,
+          .quality = scene.response.quality,
           .iterations = scene.response.iterations.value_or(0),
           .block_sweeps = scene.response.block_sweeps.value_or(0),
           .tolerance = scene.response.tolerance.value_or(0),

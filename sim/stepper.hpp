@@ -6,6 +6,7 @@
 #include "core/bodies.hpp"
 #include "sim/dynamics/motion.hpp"
 #include "sim/dynamics/region.hpp"
+#include "sim/dynamics/substep_count.hpp"
 #include "sim/inspection.hpp"
 #include "sim/observation.hpp"
 #include "sim/scene/scene.hpp"
@@ -69,6 +70,10 @@ class Step {
   virtual void substep(double h, double done) = 0;
   /// Deepest overlap that the last substep found (of the smaller body's smallest_size).
   virtual double overlap() const = 0;
+  /// Whether its contacts are so many that they are a heap (is_heap()).
+  virtual bool has_heap() const = 0;
+  /// Overlaps of the state as it is, which are looked for among the pairs of the last substep.
+  virtual OverlapsLeft overlaps_left() const = 0;
   /// Back to the state at the start of the step, ledger included. What the steps before have left of pairs,
   /// contacts and impulses is forgotten: the step that failed may have spoilt it.
   virtual void undo_step() = 0;

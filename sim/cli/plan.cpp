@@ -3,6 +3,7 @@
 #include "sim/cli/commands.hpp"
 #include "sim/cli/difficulty.hpp"
 #include "sim/cli/trial.hpp"
+#include "sim/dynamics/substep_count.hpp"
 #include "sim/model.hpp"
 #include "sim/record/contact_writer.hpp"
 #include "sim/record/metrics.hpp"
@@ -265,10 +266,10 @@ std::string response_words(const ResponseSettings& settings) {
   const std::string sweeps = settings.iterations ? fmt::format("at most {} sweeps", *settings.iterations)
                                                  : std::string("sweeps by the number of contact points");
   const std::string tolerance =
-      settings.tolerance
-          ? fmt::format("{:g} of their size", *settings.tolerance)
-          : fmt::format("{:g} of their size, of a heap's {:g} (at most {:g} where it flows)",
-                        tolerance::response_change, tolerance::heap_change, tolerance::heap_change_in_flow);
+      settings.tolerance ? fmt::format("{:g} of their size", *settings.tolerance)
+                         : fmt::format("{:g} of their size, of a heap's {:g} (at most {:g} where it flows)",
+                                       tolerance::response_change, tolerance::heap_change / settings.quality,
+                                       tolerance::heap_change_in_flow / settings.quality);
   return fmt::format("{}, until the impulses change by less than {}", sweeps, tolerance);
 }
 
@@ -335,9 +336,9 @@ int plan(const PlanArguments& arguments) {
   print_meshes(scene);
   print_emitters(scene);
   print_period(scene);
-  const std::string substeps = scene.time.substeps
-                                   ? std::to_string(*scene.time.substeps)
-                                   : fmt::format("1 to {}, as overlaps ask", tolerance::most_substeps);
+  const std::string substeps =
+      scene.time.substeps ? std::to_string(*scene.time.substeps)
+                          : fmt::format("1 to {}, as overlaps ask", most_substeps(scene.response.quality));
   print_row("time", fmt::format("{} s in {} steps of {} s, substeps {}", scene.time.end, grid.last(),
                                 scene.time.step, substeps));
   print_difficulty(scene);

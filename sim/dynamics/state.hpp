@@ -45,6 +45,7 @@ struct ResponseParameters {
   bool continuous = true;
   bool warm_start = true;
   bool accurate = false;  ///< solve to the natural residual; rotate to fourth order
+  double quality = 1;     ///< response.quality: overlaps and changes that are left are divided by it
   int iterations = 0;     ///< most sweeps; 0: plan_sweeps()
   int block_sweeps = 0;   ///< over the points of a contact at each visit; 0: likewise
   double tolerance = 0;   ///< of the impulses' change in one sweep, relative; 0: plan_sweeps()

@@ -35,7 +35,8 @@ inline SweepPlan plan_sweeps(const ResponseParameters& parameters, std::int64_t 
                                                                : 6,
                  .most = 0,
                  .block_sweeps = heap ? 1 : 4,
-                 .tolerance = heap && !parameters.accurate ? heap_change : tolerance::response_change,
+                 .tolerance = heap && !parameters.accurate ? heap_change / parameters.quality
+                                                           : tolerance::response_change,
                  .direct = !heap,
                  .first_with_momentum = heap && flows ? plain_in_flow : 0};
   const std::int64_t points = std::max<std::int64_t>(all_points, 1);

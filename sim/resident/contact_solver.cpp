@@ -289,7 +289,7 @@ void ContactSolver<Space, Real>::find_impulses(const ConstBodyView& bodies,
   SweepPlan plan =
       plan_sweeps(parameters, counts_.contacts, counts_.points, sweep_count_.flows(), sweep_count_.change());
   if (std::is_same_v<Real, float>) plan.tolerance = std::max(plan.tolerance, tolerance::mixed_change);
-  if (is_heap(counts_.points)) {
+  if (has_heap()) {
     plan.least = sweep_count_.sweeps(plan.least, shares_loads(counts_.contacts, counts_.points), share);
     if (parameters.iterations > 0) plan.least = std::min(plan.least, plan.most);
     plan.most = std::max(plan.most, plan.least);
@@ -434,7 +434,7 @@ ReloadBody<Real> ContactSolver<Space, Real>::reload(const ConstBodyView& bodies,
 /// few, of a heap all alike, since it is one. Returns how many were scaled.
 template <class Space, class Real>
 int ContactSolver<Space, Real>::keep_from_gaining(const BookStage<Real>& stage) {
-  if (is_heap(counts_.points) || !fits_on_host()) {
+  if (has_heap() || !fits_on_host()) {
     const Moved moved = books_.moved();
     if (!moved.gains(response_gain<Real>)) return 0;
     copy(last_, solver_);
@@ -574,8 +574,7 @@ Ledger ContactSolver<Space, Real>::solve(const FlightStage& flight, bool any_is_
     ledger.friction = books_.friction;
     ledger.work = books_.work;
     sweep_count_.judge(books_.gap_power, books_.kick_power, books_.restitution + books_.friction);
-    if (parameters.accurate && parameters.friction && !is_heap(counts_.points))
-      slip_end_ = find_slip_end(stage);
+    if (parameters.accurate && parameters.friction && !has_heap()) slip_end_ = find_slip_end(stage);
   }
   if (parameters.torque.size() > 0) {
     ledger.work += parallel::sum_by_tiles<double, Space>(
@@ -650,12 +649,11 @@ Ledger ContactSolver<Space, Real>::correct(const FlightStage& flight, bool any_i
   if (overlap_ == 0 && !any_is_late) return {};
   parallel::for_each<Space>("correction.start", displacement_.size(),
                             ResetDisplacement<Real>{solver_.view(), displacement_.view(), turn_.view()});
-  const PartingPlan plan = plan_parting();
-  if (store_.point_colors().colors() == 0) {
-    run_parting_rounds<true>(plan);
-  } else {
-    run_parting_rounds<false>(plan);
-  }
+  const double quality = flight.parameters.quality;
+  const PartingPlan plan = plan_parting(quality);
+  const double left =
+      store_.point_colors().colors() == 0 ? run_parting_rounds<true>(plan) : run_parting_rounds<false>(plan);
+  sweep_count_.judge_overlap(quality * left);
   const BodyView& bodies = flight.bodies;
   Array<Ledger, Space> total(1);
   parallel::sum_into<Ledger, Space>(
@@ -667,18 +665,24 @@ Ledger ContactSolver<Space, Real>::correct(const FlightStage& flight, bool any_i
   return ledger;
 }
 
-/// Of a heap the deepest contact is one of many, which do not wait for it.
+/// Of a heap the deepest contact is one of many, which wait for it only as long as it is too deep to be left.
 template <class Space, class Real>
-PartingPlan ContactSolver<Space, Real>::plan_parting() const {
+PartingPlan ContactSolver<Space, Real>::plan_parting(double quality) const {
   using namespace tolerance;
-  if (!is_heap(counts_.points)) return {1, 100, corrected_overlap, corrected_overlap};
-  if (shares_loads(counts_.contacts, counts_.points)) return {1, 24, heap_overlap, shared_mean_overlap};
-  return {sweep_count_.is_calm() ? 1 : 2, 12, heap_overlap, heap_mean_overlap};
+  constexpr int most = 100;
+  if (!has_heap()) return {1, most, most, corrected_overlap, corrected_overlap, corrected_overlap};
+  const bool shares = shares_loads(counts_.contacts, counts_.points);
+  return {.least = shares || sweep_count_.is_calm() ? 1 : 2,
+          .usual = shares ? 24 : 12,
+          .most = most,
+          .deepest = heap_overlap / quality,
+          .mean = (shares ? shared_mean_overlap : heap_mean_overlap) / quality,
+          .too_deep = 0.5 * worst_overlap_left / quality};
 }
 
 template <class Space, class Real>
 template <bool only_balls>
-void ContactSolver<Space, Real>::run_parting_rounds(const PartingPlan& plan) {
+double ContactSolver<Space, Real>::run_parting_rounds(const PartingPlan& plan) {
   const PartingState done = parallel::run_rounds<Space>(
       "correction",
       PartingRounds<Real, only_balls>{
@@ -693,11 +697,13 @@ void ContactSolver<Space, Real>::run_parting_rounds(const PartingPlan& plan) {
           .guides = {guided_.view(), displacement_.data()},
           .share = static_cast<Real>(tolerance::correction_share),
           .least = plan.least,
+          .usual = plan.usual,
           .most = plan.most,
           .deepest = static_cast<float>(plan.deepest / tolerance::correction_cap),
-          .mean = static_cast<float>(plan.mean / tolerance::correction_cap)},
+          .mean = static_cast<float>(plan.mean / tolerance::correction_cap),
+          .too_deep = static_cast<float>(plan.too_deep / tolerance::correction_cap)},
       PartingState{});
-  sweep_count_.judge_overlap(tolerance::correction_cap * done.mean);
+  return tolerance::correction_cap * done.mean;
 }
 
 #define SCREE_INSTANTIATE(Space)               \

@@ -33,10 +33,10 @@
 namespace scree::resident {
 
 /// How often overlaps are swept: until the deepest and their mean are no more than this (of the smaller
-/// smallest_size).
+/// smallest_size), but no more than `usual` times, unless the deepest is more than `too_deep` then.
 struct PartingPlan {
-  int least, most;
-  double deepest, mean;
+  int least, usual, most;
+  double deepest, mean, too_deep;
 };
 
 /// The bodies are the caller's: at the midpoint for find() and solve(), at the end of the substep for
@@ -77,6 +77,8 @@ class ContactSolver {
   Ledger correct(const FlightStage& flight, bool any_is_late);
   /// Deepest overlap that the last correct() has found (of the smaller smallest_size).
   double overlap() const { return overlap_; }
+  /// Whether the contacts of the last find() are a heap.
+  bool has_heap() const { return is_heap(counts_.points); }
 
   /// Of the last solve().
   const Books& books() const { return books_; }
@@ -141,9 +143,9 @@ class ContactSolver {
   RollingFields<Real> rolling_of_points() {
     return {decltype(RollingFields<Real>::fields)(point_rolling_.data())};
   }
-  PartingPlan plan_parting() const;
+  PartingPlan plan_parting(double quality) const;
   template <bool only_balls>
-  void run_parting_rounds(const PartingPlan& plan);
+  double run_parting_rounds(const PartingPlan& plan);
   BookStage<Real> book_stage(const ConstBodyView& bodies, const ResponseParameters& parameters);
   void book(const BookStage<Real>& stage);
   BookBalls<Real> book_balls(const BookStage<Real>& stage);

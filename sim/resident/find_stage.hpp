@@ -108,10 +108,11 @@ struct FindStage {
 
   /// Normal velocity that a point may have at the end, so that the next midpoint does not overlap: the gap
   /// may close by then, and no more. Held, a contact that was parting before the kick would gain energy: it
-  /// may close as fast.
+  /// may close as fast, but not beyond its touch at the end of the substep.
   SCREE_HD double target_of(double gap, double shell, double bend, double parting, double lead) const {
     const double closing = gap > shell ? -(gap - shell) / (step - lead) : 0.0;
-    return fmin(closing - 0.5 * step * bend, noise - parting);
+    const double parted = noise - parting;
+    return fmin(closing - 0.5 * step * bend, gap > shell ? fmax(parted, 2 * closing) : parted);
   }
   /// A look at the normal velocity of a point tells of nearly all that they are not held apart
   /// (flight_of_contact).

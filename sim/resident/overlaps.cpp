@@ -25,7 +25,8 @@ struct Depths {
   }
 };
 
-/// Of a pair. Its depth is kept as the bits of a number that is not negative, which are ordered as it is.
+/// Of a pair. Its depth is kept, if there is room, as the bits of a number that is not negative, which are
+/// ordered as it is.
 struct MeasurePair {
   ConstBodyView bodies;
   ConstView<ShapeData> shapes;
@@ -35,7 +36,7 @@ struct MeasurePair {
   SCREE_HD Depths operator()(std::int64_t k) const {
     const Pair& pair = pairs[k];
     const double depth = depth_of(pair);
-    std::memcpy(&bits[k], &depth, sizeof(depth));
+    if (bits.size() > 0) std::memcpy(&bits[k], &depth, sizeof(depth));
     if (!(depth > 0)) return {};
     const double size = fmin(smallest_size(bodies.shape[pair.i], bodies.size[pair.i]),
                              smallest_size(bodies.shape[pair.j], bodies.size[pair.j]));
@@ -71,8 +72,8 @@ struct MeasurePair {
 
 template <class Space>
 Penetration measure_overlaps(const ConstBodyView& bodies, ConstView<ShapeData> shapes,
-                             ConstView<Pair> candidates) {
-  Array<std::uint64_t, Space> bits(candidates.size());
+                             ConstView<Pair> candidates, Quantiles quantiles) {
+  Array<std::uint64_t, Space> bits(quantiles == Quantiles::p99 ? candidates.size() : 0);
   Array<Depths, Space> scratch, total(1);
   parallel::sum_into<Depths, Space>("overlaps", candidates.size(),
                                     MeasurePair{bodies, shapes, candidates, bits.view()}, scratch,
@@ -90,6 +91,10 @@ Penetration measure_overlaps(const ConstBodyView& bodies, ConstView<ShapeData> s
   copy_bytes<Host, Space>(&pair, candidates.data() + depths.deepest, sizeof(pair));
   copy_bytes<Host, Space>(&out.deepest[0], bodies.id.data() + pair.i, sizeof(std::int32_t));
   copy_bytes<Host, Space>(&out.deepest[1], bodies.id.data() + pair.j, sizeof(std::int32_t));
+  if (quantiles == Quantiles::none) {
+    out.p99 = Penetration::unknown().p99;
+    return out;
+  }
   // The smallest depth that at least 99 % of the pairs do not exceed; pairs without come first.
   Array<std::uint8_t, Space> nothing(candidates.size());
   parallel::sort_by_key("overlaps.sort", bits, nothing);
@@ -99,8 +104,9 @@ Penetration measure_overlaps(const ConstBodyView& bodies, ConstView<ShapeData> s
   return out;
 }
 
-#define SCREE_INSTANTIATE(Space) \
-  template Penetration measure_overlaps<Space>(const ConstBodyView&, ConstView<ShapeData>, ConstView<Pair>);
+#define SCREE_INSTANTIATE(Space)                                                                            \
+  template Penetration measure_overlaps<Space>(const ConstBodyView&, ConstView<ShapeData>, ConstView<Pair>, \
+                                               Quantiles);
 SCREE_FOR_EACH_SPACE(SCREE_INSTANTIATE)
 
 }  // namespace scree::resident

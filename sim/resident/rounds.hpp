@@ -289,8 +289,8 @@ struct PartingRounds {
   JoinHubs<CentreRecord<Real>> shifted_hubs, turned_hubs;
   HoldToGuides<CentreRecord<Real>> guides;
   Real share;
-  int least, most;
-  float deepest, mean;  ///< that are left (of the cap)
+  int least, usual, most;         ///< PartingPlan
+  float deepest, mean, too_deep;  ///< likewise (of the cap)
 
   SCREE_HD int phases(const State& state) const {
     if (state.corrected || state.sweeps >= most) return 0;
@@ -315,8 +315,9 @@ struct PartingRounds {
   }
   SCREE_HD State judge(const State& state, const Sum& seen) const {
     const int sweeps = state.sweeps + 1;
-    return {sweeps,
-            sweeps >= least && seen.deepest <= deepest && seen.sum <= static_cast<double>(mean) * seen.count,
+    const bool are_small =
+        sweeps >= least && seen.deepest <= deepest && seen.sum <= static_cast<double>(mean) * seen.count;
+    return {sweeps, are_small || (sweeps >= usual && seen.deepest <= too_deep),
             seen.count > 0 ? seen.sum / seen.count : 0.0};
   }
 

@@ -18,10 +18,9 @@ Codec<TimeSettings> time_section() {
           key<T>("end", &T::end, number(above_zero, "s"), required, "when the run ends; it starts at 0"),
           key<T>("step", &T::step, number(above_zero, "s"), required,
                  "length of a step; the last one is shorter if `end` is no multiple"),
-          key<T>(
-              "substeps", &T::substeps, or_auto(integer(between(1, 1e6))), optionally,
-              "contacts are found and solved this many times per step; auto: 1, but up to 4 while overlaps "
-              "come to more than 6 % of the smaller body"),
+          key<T>("substeps", &T::substeps, or_auto(integer(between(1, 1e6))), optionally,
+                 "contacts are found and solved this many times per step; auto: as few as keep overlaps to "
+                 "what response.quality says, 1 to 4 with quality 1"),
       },
       check_time);
 }

@@ -150,6 +150,7 @@ enum class ResponseMode { standard, accurate };  ///< standard: `default` in the
 
 struct ResponseSettings {
   ResponseMode mode = ResponseMode::standard;
+  double quality = 1;               ///< by which overlaps and changes that are left are divided
   std::optional<int> iterations;    ///< most sweeps over the contacts per substep; absent: from their number
   std::optional<int> block_sweeps;  ///< sweeps over the points of a contact at each visit; absent: likewise
   std::optional<double> tolerance;  ///< share that sweeps change at which they stop; absent: by number

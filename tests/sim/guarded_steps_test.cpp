@@ -34,6 +34,8 @@ class FakeStepper final : public Stepper {
   }
   void substep(double h, double) override { on_substep(h, *this); }
   double overlap() const override { return 0; }
+  bool has_heap() const override { return false; }
+  OverlapsLeft overlaps_left() const override { return {}; }
   void undo_step() override {
     ++undone;
     bodies = start_;
