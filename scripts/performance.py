@@ -137,12 +137,8 @@ def motion(n):
 def motion_and_error(n):
     for scene in (collapse, beads, rubble):
         for quality in (0.0625, 0.25, 1, 4):
-            run = scene(n, within=20, varied={"n": n, "quality": quality})
+            run = scene(n, within=12, varied={"n": n, "quality": quality})
             run.settings |= {"response.quality": quality}
-            yield run
-        for substeps in (1, 2, 4):
-            run = scene(n, within=20, varied={"n": n, "substeps": substeps})
-            run.settings |= {"time.substeps": substeps}
             yield run
 
 

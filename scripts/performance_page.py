@@ -207,23 +207,17 @@ def in_motion(number):
             *table_of(rows, SCENE | WHERE | SPEED | {"impacts/step": lambda row: three(row.impacts)} | ERROR | MACROSCOPIC | SETTLED), *left_out(failed), *caption(rows)]
 
 
-def asked(row):
-    """What was set of a scene, and to which number."""
-    key = "quality" if "quality" in row.varied else "substeps"
-    return key, row.varied[key]
-
-
 def motion_against_error(number):
     rows, failed = rows_of("motion-error")
     if not rows:
         return []
     lines = [f"## {number}. In motion: speed against error", "",
-             "Scenes in motion by `response.quality`, which chooses substeps and ends sweeps, and by `time.substeps`, each from the start of the scene on.", ""]
+             "Scenes in motion by `response.quality`, from the start of the scene on: the number of substeps follows it, and the ends of sweeps and of position correction.", ""]
     for scene in dict.fromkeys(row.scene for row in rows):
-        of_scene = sorted((row for row in rows if row.scene == scene), key=lambda row: (row.machine, asked(row)))
+        of_scene = sorted((row for row in rows if row.scene == scene), key=lambda row: (row.machine, row.quality))
         lines += picture(f"motion_{scene}", "set logscale xy\nset xlabel 'ms/step'\nset ylabel 'mean overlap (of the size)'\nset format y '10^{%T}'\n",
-                         curves_of(of_scene, lambda row: row.median_ms, lambda row: row.penetration_relative_mean, lambda row: f"{row.machine}, {asked(row)[0]}"))
-        lines += table_of(of_scene, SCENE | WHERE | {"asked": lambda row: "{} {:g}".format(*asked(row)), "substeps": SPEED["substeps"],
+                         curves_of(of_scene, lambda row: row.median_ms, lambda row: row.penetration_relative_mean, lambda row: row.curve))
+        lines += table_of(of_scene, SCENE | WHERE | {"quality": lambda row: f"{row.quality:g}", "substeps": SPEED["substeps"],
                                                      "sweeps": SPEED["sweeps"], "ms/step": SPEED["ms/step"]} | ERROR | MACROSCOPIC) + [""]
     return lines + left_out(failed) + caption(rows)
 
