@@ -5,6 +5,8 @@
 #include "sim/resident/contact_finder_approach.hpp"
 #include "sim/resident/find_points.hpp"
 
+#include <utility>
+
 namespace scree::resident {
 
 template <class Space, class Real>
@@ -27,7 +29,7 @@ void ContactFinder<Space, Real>::find_points(const FindStage<Real>& stage, Slots
   const std::int64_t contacts = find.contacts.slot.size();
   find.approaching = clear_approaching(contacts);
   parallel::for_each<Space>("contacts.make points", contacts, MakeContacts<FindPoints<Real>>{find});
-  judge(find.approaching, JudgePoints<Real>{stage, first, find.contacts});
+  judge(find.approaching, JudgePoints<Real>{stage, first, find.contacts, std::as_const(manifolds_).view()});
 }
 
 }  // namespace scree::resident

@@ -212,14 +212,15 @@ struct JudgePoints {
   FindStage<Real> stage;
   std::int64_t first_place;
   PointContacts<Real> contacts;
+  ConstView<FoundManifold> records;  ///< of slots: what FindPoints has found
 
   SCREE_HD void operator()(std::int64_t c) const {
     using C = PointContacts<Real>;
-    const Slot slot = stage.places[first_place + contacts.slot[c]];
+    const std::int32_t place = contacts.slot[c];
+    const Slot slot = stage.places[first_place + place];
     const SlotBodies<Real> at = stage.load(slot);
-    Manifold m;
-    const double lead = stage.lead_of(slot);
-    if (!meet_points(stage, at, lead, m)) return;
+    const double lead = records[place].lead;
+    Manifold m = records[place].manifold;
     m.i = slot.i;
     m.j = slot.j;
     const bool flying = flight_of_contact(stage.struck, m, m.points, at.size(), false).flying;
