@@ -51,9 +51,9 @@ inline constexpr double shared_mean_overlap = 1e-6;
 /// length. Smaller: impacts of many bodies at once cost more and are more accurate. This and all overlaps
 /// below down to `mean_overlap_left` are for response.quality 1, by which they are divided.
 inline constexpr double substep_overlap = 0.06;
-/// The same of a heap, in which the deepest is an extreme of many. Larger: what falls into a heap sinks
-/// deeper before the substeps follow.
-inline constexpr double heap_substep_overlap = 0.25;
+/// The same of a heap, in which the deepest is an extreme of many: from here on two bodies may part to the
+/// wrong side. Larger: what falls into a heap sinks deeper before the substeps follow.
+inline constexpr double heap_substep_overlap = 0.5;
 /// Under this much (likewise) the next step is taken in half as many. Must be under a quarter of the first,
 /// or their number flickers.
 inline constexpr double coarser_overlap = 0.012;

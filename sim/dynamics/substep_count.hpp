@@ -69,7 +69,7 @@ class SubstepCount {
     const OverlapsLeft seen = seen_;
     seen_ = {};
     if (seen.exceed(mean, worst)) return refine(taken);
-    if (taken == 1 || seen.exceed(0.6 * mean, 0.75 * worst) || looks_ < looks_to_try_) return;
+    if (taken == 1 || seen.exceed(0.75 * mean, 0.75 * worst) || looks_ < looks_to_try_) return;
     coarsen(taken);
     is_tried_ = true;
   }

@@ -669,15 +669,15 @@ Ledger ContactSolver<Space, Real>::correct(const FlightStage& flight, bool any_i
 template <class Space, class Real>
 PartingPlan ContactSolver<Space, Real>::plan_parting(double quality) const {
   using namespace tolerance;
-  constexpr int most = 100;
+  constexpr int most = 100, most_of_heap = 60;
   if (!has_heap()) return {1, most, most, corrected_overlap, corrected_overlap, corrected_overlap};
   const bool shares = shares_loads(counts_.contacts, counts_.points);
   return {.least = shares || sweep_count_.is_calm() ? 1 : 2,
           .usual = shares ? 24 : 12,
-          .most = most,
+          .most = most_of_heap,
           .deepest = heap_overlap / quality,
           .mean = (shares ? shared_mean_overlap : heap_mean_overlap) / quality,
-          .too_deep = 0.5 * worst_overlap_left / quality};
+          .too_deep = worst_overlap_left / quality};
 }
 
 template <class Space, class Real>
