@@ -36,6 +36,15 @@ Codec<ConvexMethod> convex_word() {
   return codec;
 }
 
+/// Left out likewise.
+Codec<double> quality_number() {
+  Codec<double> codec = number(between(0.01, 100));
+  codec.write = [write = codec.write](const double& quality) -> std::optional<Node> {
+    return quality == 1 ? std::nullopt : write(quality);
+  };
+  return codec;
+}
+
 }  // namespace
 
 Codec<ResponseSettings> response_section() {
@@ -49,13 +58,14 @@ Codec<ResponseSettings> response_section() {
               optionally,
               "accurate: contacts are solved until their natural residual is within the tolerance, free "
               "rotation is of fourth order, and slower approaches bounce; takes longer"),
-          key<T>(
-              "quality", &T::quality, number(between(0.01, 100)), optionally,
-              "how little is left of errors. With 1 the substeps of many bodies in motion are chosen so that "
-              "overlaps are 2e-4 of the smaller body in the mean and 2e-2 at worst, or less; with q these, "
-              "and the changes at which sweeps and position correction of heaps end, are divided by q. "
-              "Overlaps fall with the square of the step's length: 4 takes twice as many substeps, 0.25 half "
-              "as many"),
+          with_default(
+              key<T>("quality", &T::quality, quality_number(), optionally,
+                     "how little is left of errors. With 1 the substeps of many bodies in motion are "
+                     "chosen so that overlaps are 2e-4 of the smaller body in the mean and 2e-2 at "
+                     "worst, or less; with q these, and the changes at which sweeps and position "
+                     "correction of heaps end, are divided by q. Overlaps fall with the square of the "
+                     "step's length: 4 takes twice as many substeps, 0.25 half as many"),
+              "1"),
           key<T>("iterations", &T::iterations, or_auto(integer(between(1, 1e6))), optionally,
                  "most sweeps over the contacts per substep; auto: 60, more the fewer contacts there are"),
           key<T>("block_sweeps", &T::block_sweeps, or_auto(integer(between(1, 100))), optionally,
