@@ -218,7 +218,7 @@ def motion_against_error(number):
         lines += picture(f"motion_{scene}", "set logscale xy\nset xlabel 'ms/step'\nset ylabel 'mean overlap (of the size)'\nset format y '10^{%T}'\n",
                          curves_of(of_scene, lambda row: row.median_ms, lambda row: row.penetration_relative_mean, lambda row: row.curve))
         lines += table_of(of_scene, SCENE | WHERE | {"quality": lambda row: f"{row.quality:g}", "substeps": SPEED["substeps"],
-                                                     "sweeps": SPEED["sweeps"], "ms/step": SPEED["ms/step"]} | ERROR | MACROSCOPIC) + [""]
+                                                     "sweeps": SPEED["sweeps"], "ms/step": SPEED["ms/step"]} | ERROR | MACROSCOPIC | SETTLED)
     return lines + left_out(failed) + caption(rows)
 
 
