@@ -3,6 +3,7 @@
 #include "broadphase/bounds.hpp"
 #include "broadphase/grid_plan.hpp"
 #include "core/tolerances.hpp"
+#include "sim/dynamics/substep_count.hpp"
 #include "sim/scene/motion_bounds.hpp"
 
 #include <fmt/format.h>
@@ -149,5 +150,7 @@ ModelPlan plan_model(const Scene& scene) {
           : RestitutionThreshold{.lossy = threshold * pressing_acceleration(scene) * step};
   return plan;
 }
+
+int most_substeps(const Scene& scene) { return most_substeps(scene.response.quality); }
 
 }  // namespace scree

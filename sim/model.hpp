@@ -35,4 +35,7 @@ struct ModelPlan {
 
 ModelPlan plan_model(const Scene& scene);
 
+/// That a step takes where the scene leaves their number open.
+int most_substeps(const Scene& scene);
+
 }  // namespace scree

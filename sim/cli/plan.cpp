@@ -3,7 +3,6 @@
 #include "sim/cli/commands.hpp"
 #include "sim/cli/difficulty.hpp"
 #include "sim/cli/trial.hpp"
-#include "sim/dynamics/substep_count.hpp"
 #include "sim/model.hpp"
 #include "sim/record/contact_writer.hpp"
 #include "sim/record/metrics.hpp"
@@ -336,9 +335,9 @@ int plan(const PlanArguments& arguments) {
   print_meshes(scene);
   print_emitters(scene);
   print_period(scene);
-  const std::string substeps =
-      scene.time.substeps ? std::to_string(*scene.time.substeps)
-                          : fmt::format("1 to {}, as overlaps ask", most_substeps(scene.response.quality));
+  const std::string substeps = scene.time.substeps
+                                   ? std::to_string(*scene.time.substeps)
+                                   : fmt::format("1 to {}, as overlaps ask", most_substeps(scene));
   print_row("time", fmt::format("{} s in {} steps of {} s, substeps {}", scene.time.end, grid.last(),
                                 scene.time.step, substeps));
   print_difficulty(scene);

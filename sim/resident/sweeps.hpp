@@ -3,18 +3,15 @@
 // of the kernels).
 #pragma once
 
+#include "core/space_unroll.hpp"
 #include "sim/resident/layout.hpp"
 
 #include <cstdint>
 
-/// A loop over the points that a contact may have: unrolled on a GPU, so that lists of them are registers.
-#ifdef __CUDA_ARCH__
-#define SCREE_OVER_POINTS _Pragma("unroll") for (int p = 0; p < Manifold::max_points; ++p)
-#else
-#define SCREE_OVER_POINTS for (int p = 0; p < Manifold::max_points; ++p)
-#endif
-
 namespace scree::resident {
+
+/// Of a contact.
+inline constexpr int most_points = Manifold::max_points;
 
 /// What the sweeps of a substep know of one another.
 struct SweepState {
@@ -198,20 +195,21 @@ struct SweepPoints {
     const auto friction = contacts.fields.template get<A>(C::friction, c);
     const int count = A::most(contacts.points + c);
     const auto& f = contacts.point_fields;
-    lanes::Point<A> at[Manifold::max_points]{};
-    lanes::PointLaw<A> law[Manifold::max_points]{};
-    V3 before[Manifold::max_points]{}, last[Manifold::max_points]{};
-    V3 ahead[Manifold::max_points]{}, now[Manifold::max_points]{};
-    SCREE_OVER_POINTS {
+    lanes::Point<A> at[most_points]{};
+    lanes::PointLaw<A> law[most_points]{};
+    V3 before[most_points]{}, last[most_points]{};
+    V3 ahead[most_points]{}, now[most_points]{};
+    SCREE_UNROLL for (int p = 0; p < most_points; ++p) {
       if (p >= count) continue;
       before[p] = f.template vector<A>(C::at_point(p, C::impulse), c);
       last[p] = f.template vector<A>(C::at_point(p, C::last), c);
       at[p] = point_at<A>(contacts, c, p);
       law[p] = law_at<A>(contacts, c, p);
     }
-    SCREE_OVER_POINTS if (p < count) now[p] = ahead[p] = before[p] + A::all(beta) * (before[p] - last[p]);
+    SCREE_UNROLL for (int p = 0; p < most_points; ++p) if (p < count) now[p] = ahead[p] =
+        before[p] + A::all(beta) * (before[p] - last[p]);
     for (int sweep = 0; sweep < block_sweeps; ++sweep) {
-      SCREE_OVER_POINTS {
+      SCREE_UNROLL for (int p = 0; p < most_points; ++p) {
         if (p >= count) continue;
         const V3 impulse = impulse_of(law[p], n, friction, now[p], velocity_at(at[p], two.i, two.j));
         push<A>(turning.i, turning.j, at[p], impulse - now[p], two.i, two.j);
@@ -220,7 +218,7 @@ struct SweepPoints {
     }
     store<A>(two, bodies, ends);
     ChangeOf<A> total;
-    SCREE_OVER_POINTS {
+    SCREE_UNROLL for (int p = 0; p < most_points; ++p) {
       if (p >= count) continue;
       f.template put<A>(C::at_point(p, C::last), c, before[p]);
       f.template put<A>(C::at_point(p, C::impulse), c, now[p]);
@@ -318,17 +316,17 @@ struct PartPoints {
     V apart = dot(n, centres.j.velocity - centres.i.velocity);
     V pushed_apart{}, least{};
     const int count = A::most(contacts.points + c);
-    lanes::Point<A> at[Manifold::max_points]{};
-    V flown[Manifold::max_points]{}, pushed[Manifold::max_points]{}, mass[Manifold::max_points]{};
-    bool parts[Manifold::max_points]{};
-    SCREE_OVER_POINTS {
+    lanes::Point<A> at[most_points]{};
+    V flown[most_points]{}, pushed[most_points]{}, mass[most_points]{};
+    bool parts[most_points]{};
+    SCREE_UNROLL for (int p = 0; p < most_points; ++p) {
       if (p >= count) continue;
       at[p] = point_at<A>(contacts, c, p);
       flown[p] = contacts.gaps.template get<A>(C::at_point(p, C::flown), c);
       pushed[p] = contacts.gaps.template get<A>(C::at_point(p, C::pushed), c);
       mass[p] = contacts.point_fields.template get<A>(C::at_point(p, C::normal_mass), c);
     }
-    SCREE_OVER_POINTS {
+    SCREE_UNROLL for (int p = 0; p < most_points; ++p) {
       if (p >= count) continue;
       const lanes::V3<A> lever_i = cross(at[p].arm_i, n), lever_j = cross(at[p].arm_j, n);
       const V gap = flown[p] + apart + (dot(lever_j, turned.j.velocity) - dot(lever_i, turned.i.velocity));
@@ -345,12 +343,10 @@ struct PartPoints {
     push_centres(pushed_apart * n, centres.i, centres.j);
     store<A>(centres, bodies, ends);
     store<A>(turned, turns, ends);
-    SCREE_OVER_POINTS if (p < count && parts[p])
+    SCREE_UNROLL for (int p = 0; p < most_points; ++p) if (p < count && parts[p])
         contacts.gaps.template put<A>(C::at_point(p, C::pushed), c, pushed[p]);
     return least / cap;
   }
 };
 
 }  // namespace scree::resident
-
-#undef SCREE_OVER_POINTS
