@@ -108,11 +108,10 @@ struct FindStage {
 
   /// Normal velocity that a point may have at the end, so that the next midpoint does not overlap: the gap
   /// may close by then, and no more. Held, a contact that was parting before the kick would gain energy: it
-  /// may close as fast, but not beyond its touch at the end of the substep.
+  /// may close as fast.
   SCREE_HD double target_of(double gap, double shell, double bend, double parting, double lead) const {
     const double closing = gap > shell ? -(gap - shell) / (step - lead) : 0.0;
-    const double parted = noise - parting;
-    return fmin(closing - 0.5 * step * bend, gap > shell ? fmax(parted, 2 * closing) : parted);
+    return fmin(closing - 0.5 * step * bend, noise - parting);
   }
   /// A look at the normal velocity of a point tells of nearly all that they are not held apart
   /// (flight_of_contact).

@@ -155,10 +155,8 @@ SCREE_LAW BallContact<A> contact_of(const V3<A>& offset, const typename A::V& fr
   const V3<A> w = before + kick;
   const V3<A> across = w - dot(w, normal) * normal;
   const V bend = dot(across, across) / reach;
-  const V closed = gap > 0 ? -gap / step : zero;
-  const V closing = closed - 0.5 * step * bend;
-  const V opened = noise - dot(before, normal);
-  const V parting = (gap > 0) & (opened < 2.0 * closed) ? 2.0 * closed : opened;
+  const V closing = (gap > 0 ? -gap / step : zero) - 0.5 * step * bend;
+  const V parting = noise - dot(before, normal);
   const V target = parting < closing ? parting : closing;
   const V masses = i.inverse_mass + j.inverse_mass;
   const V turning = i.inverse_inertia * (arm_i * arm_i) + j.inverse_inertia * (arm_j * arm_j);
