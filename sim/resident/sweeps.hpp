@@ -176,8 +176,8 @@ struct SweepBalls {
   }
 };
 
-/// Solves the points of a contact, one after the other. All their numbers are asked for before the first is
-/// waited for: a GPU waits for memory at every visit, and would for each point.
+/// Solves the points of a contact, one after the other. On a GPU all their numbers are asked for before the
+/// first is waited for.
 template <class Real>
 struct SweepPoints {
   PointContacts<Real> contacts;
@@ -195,24 +195,32 @@ struct SweepPoints {
     const auto friction = contacts.fields.template get<A>(C::friction, c);
     const int count = A::most(contacts.points + c);
     const auto& f = contacts.point_fields;
-    lanes::Point<A> at[most_points]{};
-    lanes::PointLaw<A> law[most_points]{};
+    lanes::Point<A> points[most_points]{};
+    lanes::PointLaw<A> laws[most_points]{};
     V3 before[most_points]{}, last[most_points]{};
-    V3 ahead[most_points]{}, now[most_points]{};
     SCREE_UNROLL for (int p = 0; p < most_points; ++p) {
       if (p >= count) continue;
       before[p] = f.template vector<A>(C::at_point(p, C::impulse), c);
       last[p] = f.template vector<A>(C::at_point(p, C::last), c);
-      at[p] = point_at<A>(contacts, c, p);
-      law[p] = law_at<A>(contacts, c, p);
+      if constexpr (is_gpu_code) {
+        points[p] = point_at<A>(contacts, c, p);
+        laws[p] = law_at<A>(contacts, c, p);
+      }
     }
-    SCREE_UNROLL for (int p = 0; p < most_points; ++p) if (p < count) now[p] = ahead[p] =
-        before[p] + A::all(beta) * (before[p] - last[p]);
+    const auto point = [&](int p) { return is_gpu_code ? points[p] : point_at<A>(contacts, c, p); };
+    const auto law = [&](int p) { return is_gpu_code ? laws[p] : law_at<A>(contacts, c, p); };
+    V3 ahead[most_points]{}, now[most_points]{};
+    SCREE_UNROLL for (int p = 0; p < most_points; ++p) {
+      if (p >= count) continue;
+      now[p] = ahead[p] = before[p] + A::all(beta) * (before[p] - last[p]);
+      f.template put<A>(C::at_point(p, C::last), c, before[p]);
+    }
     for (int sweep = 0; sweep < block_sweeps; ++sweep) {
       SCREE_UNROLL for (int p = 0; p < most_points; ++p) {
         if (p >= count) continue;
-        const V3 impulse = impulse_of(law[p], n, friction, now[p], velocity_at(at[p], two.i, two.j));
-        push<A>(turning.i, turning.j, at[p], impulse - now[p], two.i, two.j);
+        const auto at = point(p);
+        const V3 impulse = impulse_of(law(p), n, friction, now[p], velocity_at(at, two.i, two.j));
+        push<A>(turning.i, turning.j, at, impulse - now[p], two.i, two.j);
         now[p] = impulse;
       }
     }
@@ -220,11 +228,11 @@ struct SweepPoints {
     ChangeOf<A> total;
     SCREE_UNROLL for (int p = 0; p < most_points; ++p) {
       if (p >= count) continue;
-      f.template put<A>(C::at_point(p, C::last), c, before[p]);
       f.template put<A>(C::at_point(p, C::impulse), c, now[p]);
       const V3 change = now[p] - ahead[p];
-      total = total +
-              ChangeOf<A>{dot(change, change) / law[p].normal_mass, dot(now[p], now[p]) / law[p].normal_mass};
+      const auto mass =
+          is_gpu_code ? laws[p].normal_mass : f.template get<A>(C::at_point(p, C::normal_mass), c);
+      total = total + ChangeOf<A>{dot(change, change) / mass, dot(now[p], now[p]) / mass};
     }
     return total;
   }
@@ -316,23 +324,30 @@ struct PartPoints {
     V apart = dot(n, centres.j.velocity - centres.i.velocity);
     V pushed_apart{}, least{};
     const int count = A::most(contacts.points + c);
-    lanes::Point<A> at[most_points]{};
-    V flown[most_points]{}, pushed[most_points]{}, mass[most_points]{};
+    lanes::Point<A> points[most_points]{};
+    V flown[most_points]{}, pushed[most_points]{}, masses_there[most_points]{};
     bool parts[most_points]{};
+    const auto mass_at = [&](int p) {
+      return contacts.point_fields.template get<A>(C::at_point(p, C::normal_mass), c);
+    };
     SCREE_UNROLL for (int p = 0; p < most_points; ++p) {
       if (p >= count) continue;
-      at[p] = point_at<A>(contacts, c, p);
       flown[p] = contacts.gaps.template get<A>(C::at_point(p, C::flown), c);
       pushed[p] = contacts.gaps.template get<A>(C::at_point(p, C::pushed), c);
-      mass[p] = contacts.point_fields.template get<A>(C::at_point(p, C::normal_mass), c);
+      if constexpr (is_gpu_code) {
+        points[p] = point_at<A>(contacts, c, p);
+        masses_there[p] = mass_at(p);
+      }
     }
     SCREE_UNROLL for (int p = 0; p < most_points; ++p) {
       if (p >= count) continue;
-      const lanes::V3<A> lever_i = cross(at[p].arm_i, n), lever_j = cross(at[p].arm_j, n);
+      const auto at = is_gpu_code ? points[p] : point_at<A>(contacts, c, p);
+      const lanes::V3<A> lever_i = cross(at.arm_i, n), lever_j = cross(at.arm_j, n);
       const V gap = flown[p] + apart + (dot(lever_j, turned.j.velocity) - dot(lever_i, turned.i.velocity));
       parts[p] = A::any((gap < 0) | (pushed[p] > 0));
       if (parts[p]) {
-        const V more = lanes::parting<A>(gap, cap, A::all(share), mass[p], pushed[p]);
+        const V mass = is_gpu_code ? masses_there[p] : mass_at(p);
+        const V more = lanes::parting<A>(gap, cap, A::all(share), mass, pushed[p]);
         apart = apart + masses * more;
         pushed_apart = pushed_apart + more;
         turned.i.velocity = turned.i.velocity - more * (turning.i * lever_i);
@@ -343,8 +358,9 @@ struct PartPoints {
     push_centres(pushed_apart * n, centres.i, centres.j);
     store<A>(centres, bodies, ends);
     store<A>(turned, turns, ends);
-    SCREE_UNROLL for (int p = 0; p < most_points; ++p) if (p < count && parts[p])
-        contacts.gaps.template put<A>(C::at_point(p, C::pushed), c, pushed[p]);
+    SCREE_UNROLL for (int p = 0; p < most_points; ++p) {
+      if (p < count && parts[p]) contacts.gaps.template put<A>(C::at_point(p, C::pushed), c, pushed[p]);
+    }
     return least / cap;
   }
 };
