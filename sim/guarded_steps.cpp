@@ -82,7 +82,8 @@ void GuardedSteps::take_in(int substeps, std::int64_t step, double length, const
 void GuardedSteps::choose_substeps(int taken, double deepest, const Stepper& stepper) {
   // A step that is taken again has more of them than are needed.
   taken = std::min(taken, most_substeps(scene_.response.quality));
-  if (!stepper.has_heap()) return substeps_.judge(taken, deepest);
+  const bool accurate = scene_.response.mode == ResponseMode::accurate;
+  if (accurate || !stepper.has_heap()) return substeps_.judge(taken, deepest);
   substeps_.judge_heap(taken, deepest, [&stepper] { return stepper.overlaps_left(); });
 }
 

@@ -51,7 +51,6 @@ class SubstepCount {
   /// The same after a step with a heap. `measure()` gives the OverlapsLeft at the end of the step.
   template <class Measure>
   void judge_heap(int taken, double deepest, const Measure& measure) {
-    constexpr int steps_a_look = 8, looks_together = 4;
     if (deepest > tolerance::heap_substep_overlap / quality_) return refine(taken);
     if (deepest < tolerance::coarser_overlap / quality_) {
       coarsen(taken);
@@ -69,7 +68,7 @@ class SubstepCount {
     const OverlapsLeft seen = seen_;
     seen_ = {};
     if (seen.exceed(mean, worst)) return refine(taken);
-    if (taken == 1 || seen.exceed(0.75 * mean, 0.75 * worst) || looks_ < looks_to_try_) return;
+    if (taken == 1 || seen.exceed(tried_from * mean, tried_from * worst) || looks_ < looks_to_try_) return;
     coarsen(taken);
     is_tried_ = true;
   }
@@ -86,8 +85,13 @@ class SubstepCount {
   }
 
  private:
+  // Larger: the number follows later, and single looks matter less.
+  static constexpr int steps_a_look = 8, looks_together = 4;
+  // Half as many substeps are tried from this share of what may be left, after this many looks at last.
+  static constexpr double tried_from = 0.75;
+  static constexpr int most_looks = 64;
+
   void refine(int taken) {
-    constexpr int most_looks = 64;
     // What was tried and left too much is tried less often.
     if (is_tried_) looks_to_try_ = std::min(2 * looks_to_try_, most_looks);
     use(std::min(2 * taken, most_substeps(quality_)));
@@ -105,9 +109,9 @@ class SubstepCount {
   int shallow_steps_ = 0;  // since it was last chosen
   // Of a heap, likewise:
   int steps_ = 0, looks_ = 0;
-  OverlapsLeft seen_;      // the mean of the looks that are judged together, as far as they were taken
-  int looks_to_try_ = 4;   // before fewer substeps are tried
-  bool is_tried_ = false;  // this number, and was not found good yet
+  OverlapsLeft seen_;  // the mean of the looks that are judged together, as far as they were taken
+  int looks_to_try_ = looks_together;  // before fewer substeps are tried
+  bool is_tried_ = false;              // this number, and was not found good yet
 };
 
 }  // namespace scree

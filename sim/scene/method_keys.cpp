@@ -60,11 +60,12 @@ Codec<ResponseSettings> response_section() {
               "rotation is of fourth order, and slower approaches bounce; takes longer"),
           with_default(
               key<T>("quality", &T::quality, quality_number(), optionally,
-                     "how little is left of errors. With 1 the substeps of many bodies in motion are "
-                     "chosen so that overlaps are 2e-4 of the smaller body in the mean and 2e-2 at "
-                     "worst, or less; with q these, and the changes at which sweeps and position "
-                     "correction of heaps end, are divided by q. Overlaps fall with the square of the "
-                     "step's length: 4 takes twice as many substeps, 0.25 half as many"),
+                     "how little is left of errors. With 1 a step of many bodies in motion takes 1 to 4 "
+                     "substeps, as "
+                     "few as leave overlaps of 2e-4 of the smaller body in the mean and 2e-2 at worst; "
+                     "what moves faster leaves more. With q these, and the changes at which sweeps and "
+                     "position correction of heaps end, are divided by q. Overlaps fall with the square "
+                     "of the step's length: 4 allows twice as many substeps, 0.25 half as many"),
               "1"),
           key<T>("iterations", &T::iterations, or_auto(integer(between(1, 1e6))), optionally,
                  "most sweeps over the contacts per substep; auto: 60, more the fewer contacts there are"),

@@ -10,6 +10,7 @@
 #include <functional>
 #include <limits>
 #include <new>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -24,6 +25,9 @@ class FakeStepper final : public Stepper {
   BodyTable bodies;
   std::function<void(double h, FakeStepper&)> on_substep = [](double, FakeStepper&) {};
   int starts = 0, undone = 0;
+  bool heap = false;
+  double deepest = 0;
+  mutable int looks = 0;
 
   explicit FakeStepper(const Scene& scene) : bodies(scene.bodies) {}
 
@@ -33,9 +37,12 @@ class FakeStepper final : public Stepper {
     start_ledger_ = ledger;
   }
   void substep(double h, double) override { on_substep(h, *this); }
-  double overlap() const override { return 0; }
-  bool has_heap() const override { return false; }
-  OverlapsLeft overlaps_left() const override { return {}; }
+  double overlap() const override { return deepest; }
+  bool has_heap() const override { return heap; }
+  OverlapsLeft overlaps_left() const override {
+    ++looks;
+    return {};
+  }
   void undo_step() override {
     ++undone;
     bodies = start_;
@@ -113,6 +120,31 @@ TEST_F(GuardedStepsTest, AGoodStepIsTakenOnce) {
   EXPECT_EQ(stepper_.starts, 1);
   EXPECT_EQ(stepper_.counters.substeps, 1);
   EXPECT_EQ(stepper_.counters.redone, 0);
+}
+
+/// A heap that corrects deep overlaps, and leaves none: looked at every eighth step, but neither in the
+/// accurate mode, which follows what is corrected, nor where the scene sets the number.
+TEST_F(GuardedStepsTest, OverlapsOfAHeapAreMeasuredWhereTheyChooseSubsteps) {
+  const auto substeps_of = [this](ResponseMode mode, std::optional<int> substeps, int& looks) {
+    Scene scene = scene_;
+    scene.response.mode = mode;
+    scene.time.substeps = substeps;
+    FakeStepper stepper(scene);
+    stepper.heap = true;
+    stepper.deepest = 2 * tolerance::substep_overlap;
+    GuardedSteps steps(scene, Vec3::Zero());
+    steps.start(stepper, 0);
+    for (int k = 0; k < 16; ++k) steps.take(k, length * k, length, {}, stepper);
+    looks = stepper.looks;
+    return stepper.counters.substeps;
+  };
+  int looks = 0;
+  EXPECT_EQ(substeps_of(ResponseMode::standard, std::nullopt, looks), 16);
+  EXPECT_EQ(looks, 2);
+  EXPECT_EQ(substeps_of(ResponseMode::accurate, std::nullopt, looks), 1 + 2 + 14 * 4);
+  EXPECT_EQ(looks, 0);
+  EXPECT_EQ(substeps_of(ResponseMode::standard, 3, looks), 16 * 3);
+  EXPECT_EQ(looks, 0);
 }
 
 TEST_F(GuardedStepsTest, AStepThatFailsIsTakenAgainInSmallerSubsteps) {
