@@ -73,21 +73,21 @@ void Checkpoints::take(Simulation& simulation, Recorder& recorder) {
 }
 
 void Checkpoints::write(const Saved& saved) {
-  std::exception_ptr failure;
   try {
     folder_.add(saved.step, saved.state);
   } catch (...) {
-    failure = std::current_exception();
+    const std::lock_guard lock(failure_mutex_);
+    failure_ = std::current_exception();
   }
+}
+
+std::exception_ptr Checkpoints::take_failure() {
   const std::lock_guard lock(failure_mutex_);
-  failure_ = failure;
+  return std::exchange(failure_, nullptr);
 }
 
 void Checkpoints::throw_failure() {
-  const std::lock_guard lock(failure_mutex_);
-  if (!failure_) return;
-  last_step_ = -1;
-  std::rethrow_exception(std::exchange(failure_, nullptr));
+  if (const std::exception_ptr failure = take_failure()) std::rethrow_exception(failure);
 }
 
 void Checkpoints::take_if_due(Simulation& simulation, Recorder& recorder) {
@@ -96,7 +96,9 @@ void Checkpoints::take_if_due(Simulation& simulation, Recorder& recorder) {
 }
 
 void Checkpoints::take_last(Simulation& simulation, Recorder& recorder) {
-  if (last_step_ != simulation.steps()) take(simulation, recorder);
+  writer_.drain();
+  const bool has_failed = take_failure() != nullptr;
+  if (has_failed || last_step_ != simulation.steps()) take(simulation, recorder);
   writer_.drain();
   throw_failure();
 }

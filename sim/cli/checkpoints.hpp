@@ -33,7 +33,8 @@ class Checkpoints {
 
   /// Takes one if it is time. Throws once, RunError as a rule, if an earlier one could not be written.
   void take_if_due(Simulation& simulation, Recorder& recorder);
-  /// Takes one of the present state, unless it has been; complete on return. Throws if it cannot be written.
+  /// Takes one of the present state, unless it is saved already; complete on return. An earlier one that could
+  /// not be written no longer matters then. Throws if this one cannot be written.
   void take_last(Simulation& simulation, Recorder& recorder);
   /// Nobody will go on from here: removes all, and forgets what could not be written.
   void drop();
@@ -47,6 +48,7 @@ class Checkpoints {
   void archive(Archive& archive, Simulation& simulation, Recorder& recorder);
   void take(Simulation& simulation, Recorder& recorder);
   void write(const Saved& saved);
+  std::exception_ptr take_failure();
   void throw_failure();
 
   CheckpointFolder folder_;
@@ -58,7 +60,9 @@ class Checkpoints {
   Clock::time_point last_time_ = Clock::now();
   std::int64_t last_step_ = -1;
   std::mutex failure_mutex_;
-  std::exception_ptr failure_;  // of the last one written; another may fare better
+  // Why a checkpoint could not be written, until the driving thread has seen it: the success of the next one,
+  // which may wait already, must not hide it.
+  std::exception_ptr failure_;
   Worker<Saved> writer_;
 };
 
