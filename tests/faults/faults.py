@@ -160,7 +160,8 @@ def read_only(case):
 @case(("a folder that another run holds",))
 def held(case):
     other = case.start(stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
-    while not (case.folder / "metrics.csv.part").exists():
+    rows = case.folder / "metrics.csv.part"
+    while not rows.exists() or rows.read_bytes().count(b"\n") < 2:  # its header and a row
         expect(other.poll() is None, "the other run came to nothing")
         time.sleep(0.001)
     other.send_signal(signal.SIGSTOP)
