@@ -7,14 +7,14 @@ if(PROJECT_VERSION_MAJOR EQUAL 0)
   set(SCREE_ABI_VERSION 0.${PROJECT_VERSION_MINOR})
 endif()
 
-set(parts scree_core scree_broadphase scree_ccd scree_narrowphase scree_lanes scree_direct scree_dynamics scree_resident scree_scene scree_sim
-          scree_record)
+set(parts scree_core scree_broadphase scree_ccd scree_narrowphase scree_observe scree_laws scree_scene scree_bodies scree_pairs
+          scree_impacts scree_contacts scree_response scree_model scree_step scree_record)
 if(SCREE_CUDA)
   list(APPEND parts scree_broadphase_device)
 endif()
 # All objects of each part, and not those alone that the interface reaches: the program needs more.
 list(TRANSFORM parts REPLACE "(.+)" "$<TARGET_OBJECTS:\\1>" OUTPUT_VARIABLE objects)
-add_library(scree_library SHARED sim/interface.cpp ${objects})
+add_library(scree_library SHARED sim/library/interface.cpp ${objects})
 set_target_properties(scree_library PROPERTIES
   OUTPUT_NAME scree
   VERSION ${PROJECT_VERSION}

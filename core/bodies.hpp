@@ -21,7 +21,7 @@ using HostVector = std::vector<T>;
 /// Fields of N bodies. `Container` is an array type: HostVector for scenes and snapshots, Array<., Space>
 /// in the simulation. SI units, world frame unless said.
 /// A body has a number, by which the scene and all outputs know it, and a place, which is its index in the
-/// fields. The step may move bodies to other places (sim/dynamics/body_order.hpp); their numbers stay.
+/// fields. The step may move bodies to other places (sim/bodies/body_order.hpp); their numbers stay.
 template <template <class> class Container>
 struct BodyFields {
   Container<Vec3> position;         ///< centre of mass (m); of a plane, the point of it nearest the origin

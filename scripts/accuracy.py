@@ -282,7 +282,7 @@ def measure_model(program):
 def model_section():
     data = kept("model")
     lines = ["## 5. Only what a scene needs", "",
-             "What each feature costs where it cannot matter, and so what leaving it out saves (`scree plan SCENE` says which are on and why; tests/sim/model_test.cpp "
+             "What each feature costs where it cannot matter, and so what leaving it out saves (`scree plan SCENE` says which are on and why; tests/sim/model/model_test.cpp "
              "holds that no bit changes). Wall time for a simulated second, median of five runs "
              f"({label(data)}).", "",
              "| what | `scree study` of | off (s) | on (s) | on / off |", "|---|---|---|---|---|"]

@@ -1,7 +1,7 @@
 #include "bench/broadphase/input.hpp"
 
 #include "bench/broadphase/data_sets.hpp"
-#include "sim/simulation.hpp"
+#include "sim/step/simulation.hpp"
 
 #include <algorithm>
 

@@ -4,8 +4,8 @@
 
 #include "core/bodies.hpp"
 #include "narrowphase/candidates.hpp"
-#include "sim/observation.hpp"
-#include "sim/pair_finder.hpp"
+#include "sim/observe/observation.hpp"
+#include "sim/pairs/pair_finder.hpp"
 #include "sim/scene/scene.hpp"
 
 #include <memory>

@@ -2,7 +2,7 @@
 #include "bench/options.hpp"
 #include "bench/peers/engine.hpp"
 #include "core/error.hpp"
-#include "sim/simulation.hpp"
+#include "sim/step/simulation.hpp"
 
 #include <fmt/format.h>
 

@@ -15,7 +15,7 @@
 #include "bench/solvers/problem_file.hpp"
 #include "bench/solvers/residual.hpp"
 #include "bench/solvers/solver.hpp"
-#include "sim/simulation.hpp"
+#include "sim/step/simulation.hpp"
 
 #include <nlohmann/json.hpp>
 #include <tbb/global_control.h>

@@ -7,7 +7,7 @@
 #pragma once
 
 #include "core/math.hpp"
-#include "sim/inspection.hpp"
+#include "sim/observe/inspection.hpp"
 
 #include <cstddef>
 #include <cstdint>

@@ -1,9 +1,9 @@
 // scree's own solvers on a captured problem: the code that simulations run, from no impulses at all.
 #include "bench/solvers/scree_contacts.hpp"
 #include "bench/solvers/solver.hpp"
-#include "sim/dynamics/direct.hpp"
-#include "sim/dynamics/sweep_plan.hpp"
-#include "sim/resident/contacts_on_host.hpp"
+#include "sim/response/contacts_on_host.hpp"
+#include "sim/response/direct.hpp"
+#include "sim/response/sweep_plan.hpp"
 
 #include <algorithm>
 #include <cmath>

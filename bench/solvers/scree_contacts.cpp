@@ -1,16 +1,16 @@
 #include "bench/solvers/scree_contacts.hpp"
 
 #include "core/space_rounds.hpp"
-#include "sim/resident/contacts_on_host.hpp"
-#include "sim/resident/padding.hpp"
-#include "sim/resident/rounds.hpp"
+#include "sim/response/contacts_on_host.hpp"
+#include "sim/response/padding.hpp"
+#include "sim/response/sweep_loop.hpp"
 
 #include <algorithm>
 #include <utility>
 
 namespace scree::bench {
 
-using namespace resident;
+using namespace solver;
 
 ScreeContacts::ScreeContacts(const ContactProblem& problem)
     : problem_(problem), nobody_(static_cast<std::int32_t>(problem.bodies.size())) {
@@ -94,9 +94,9 @@ void ScreeContacts::place_contacts() {
       fill_points(contact, at);
     }
   }
-  for (std::int64_t b = 0; b < balls / lanes::width; ++b)
+  for (std::int64_t b = 0; b < balls / simd::width; ++b)
     PadBalls<double>{store_.balls(), {}, false, nobody_}(b);
-  for (std::int64_t b = 0; b < ranges[false].places() / lanes::width; ++b)
+  for (std::int64_t b = 0; b < ranges[false].places() / simd::width; ++b)
     PadPoints<double>{store_.points(), {}, false, nobody_}(b);
 }
 
@@ -168,8 +168,8 @@ void ScreeContacts::reset() {
 
 bool ScreeContacts::sweep(const SweepPlan& plan) {
   copy(solver_, free_);
-  const ImpulseRounds<double, false> rounds{.ball_colors = ColorPhases(store_.ball_colors(), lanes::width),
-                                            .point_colors = ColorPhases(store_.point_colors(), lanes::width),
+  const ImpulseRounds<double, false> rounds{.ball_colors = ColorPhases(store_.ball_colors(), simd::width),
+                                            .point_colors = ColorPhases(store_.point_colors(), simd::width),
                                             .balls = store_.balls(),
                                             .points = store_.points(),
                                             .rolls = false,

@@ -2,11 +2,11 @@
 #pragma once
 
 #include "bench/solvers/problem.hpp"
-#include "sim/dynamics/direct.hpp"
-#include "sim/dynamics/sweep_plan.hpp"
-#include "sim/inspection.hpp"
-#include "sim/resident/contact_store.hpp"
-#include "sim/resident/inspection.hpp"
+#include "sim/contacts/contact_store.hpp"
+#include "sim/observe/inspection.hpp"
+#include "sim/response/contact_inspection.hpp"
+#include "sim/response/direct.hpp"
+#include "sim/response/sweep_plan.hpp"
 
 #include <cstdint>
 #include <vector>
@@ -46,10 +46,10 @@ class ScreeContacts {
 
   const ContactProblem& problem_;
   std::vector<Place> place_;  // of each contact
-  std::vector<resident::Slot> slots_;
-  resident::ContactStore<Host, double> store_;
+  std::vector<solver::Slot> slots_;
+  solver::ContactStore<Host, double> store_;
   std::int32_t nobody_;
-  Array<resident::BodyRecord<double>, Host> free_, solver_, last_;
+  Array<solver::BodyRecord<double>, Host> free_, solver_, last_;
 };
 
 }  // namespace scree::bench

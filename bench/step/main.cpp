@@ -13,7 +13,7 @@
 #include "core/timing.hpp"
 #include "sim/record/build_info.hpp"
 #include "sim/scene/reader.hpp"
-#include "sim/simulation.hpp"
+#include "sim/step/simulation.hpp"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>

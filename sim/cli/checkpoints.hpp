@@ -5,7 +5,7 @@
 #include "sim/cli/worker.hpp"
 #include "sim/record/checkpoint.hpp"
 #include "sim/record/run_identity.hpp"
-#include "sim/simulation.hpp"
+#include "sim/step/simulation.hpp"
 
 #include <chrono>
 #include <cstdint>
@@ -33,8 +33,8 @@ class Checkpoints {
 
   /// Takes one if it is time. Throws once, RunError as a rule, if an earlier one could not be written.
   void take_if_due(Simulation& simulation, Recorder& recorder);
-  /// Takes one of the present state, unless it is saved already; complete on return. An earlier one that could
-  /// not be written no longer matters then. Throws if this one cannot be written.
+  /// Takes one of the present state, unless it is saved already; complete on return. An earlier one that
+  /// could not be written no longer matters then. Throws if this one cannot be written.
   void take_last(Simulation& simulation, Recorder& recorder);
   /// Nobody will go on from here: removes all, and forgets what could not be written.
   void drop();

@@ -5,7 +5,7 @@
 #include "sim/record/exports.hpp"
 #include "sim/scene/scene.hpp"
 #include "sim/scene/variations.hpp"
-#include "sim/simulation.hpp"
+#include "sim/step/simulation.hpp"
 
 #include <filesystem>
 #include <optional>

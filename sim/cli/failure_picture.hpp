@@ -2,7 +2,7 @@
 #pragma once
 
 #include "render/renderer.hpp"
-#include "sim/simulation.hpp"
+#include "sim/step/simulation.hpp"
 
 #include <cstdint>
 #include <filesystem>

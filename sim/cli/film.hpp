@@ -7,7 +7,7 @@
 #include "sim/cli/worker.hpp"
 #include "sim/record/run_folder.hpp"
 #include "sim/scene/time_grid.hpp"
-#include "sim/simulation.hpp"
+#include "sim/step/simulation.hpp"
 
 #include <atomic>
 #include <cstdint>

@@ -4,9 +4,9 @@
 #include "render/annotation.hpp"
 #include "render/camera_path.hpp"
 #include "render/renderer.hpp"
-#include "sim/inspection.hpp"
+#include "sim/observe/inspection.hpp"
 #include "sim/scene/scene.hpp"
-#include "sim/simulation.hpp"
+#include "sim/step/simulation.hpp"
 
 #include <functional>
 #include <vector>

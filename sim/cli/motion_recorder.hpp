@@ -8,7 +8,7 @@
 #include "sim/record/run_folder.hpp"
 #include "sim/record/trajectory_writer.hpp"
 #include "sim/scene/time_grid.hpp"
-#include "sim/simulation.hpp"
+#include "sim/step/simulation.hpp"
 
 #include <cstdint>
 #include <optional>

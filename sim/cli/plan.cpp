@@ -3,7 +3,7 @@
 #include "sim/cli/commands.hpp"
 #include "sim/cli/difficulty.hpp"
 #include "sim/cli/trial.hpp"
-#include "sim/model.hpp"
+#include "sim/model/model.hpp"
 #include "sim/record/contact_writer.hpp"
 #include "sim/record/metrics.hpp"
 #include "sim/record/outcome.hpp"

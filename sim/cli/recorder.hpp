@@ -9,7 +9,7 @@
 #include "sim/record/metrics.hpp"
 #include "sim/record/run_folder.hpp"
 #include "sim/scene/time_grid.hpp"
-#include "sim/simulation.hpp"
+#include "sim/step/simulation.hpp"
 
 #include <cstdint>
 #include <optional>

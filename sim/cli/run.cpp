@@ -14,7 +14,7 @@
 #include "sim/record/report/report.hpp"
 #include "sim/record/run_folder.hpp"
 #include "sim/record/trajectory_reader.hpp"
-#include "sim/step_failure.hpp"
+#include "sim/step/step_failure.hpp"
 
 #include <fmt/format.h>
 

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "sim/record/checks.hpp"
-#include "sim/simulation.hpp"
+#include "sim/step/simulation.hpp"
 
 #include <vector>
 

@@ -4,7 +4,7 @@
 
 #include "core/archive.hpp"
 #include "core/snapshot.hpp"
-#include "sim/inspection.hpp"
+#include "sim/observe/inspection.hpp"
 #include "sim/record/frame_journal.hpp"
 #include "sim/record/trajectory_reader.hpp"
 #include "sim/scene/scene.hpp"

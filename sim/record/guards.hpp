@@ -2,7 +2,7 @@
 // count less.
 #pragma once
 
-#include "sim/observation.hpp"
+#include "sim/observe/observation.hpp"
 
 #include <array>
 #include <cstdint>

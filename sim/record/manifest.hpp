@@ -1,7 +1,7 @@
 // manifest.json: what made this folder, on what, and how it came out.
 #pragma once
 
-#include "sim/model.hpp"
+#include "sim/model/model.hpp"
 #include "sim/record/checks.hpp"
 #include "sim/record/guards.hpp"
 

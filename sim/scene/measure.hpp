@@ -1,7 +1,7 @@
 // The measures of the scene language: their grammar, and what each is worth.
 #pragma once
 
-#include "sim/observation.hpp"
+#include "sim/observe/observation.hpp"
 #include "sim/scene/scene.hpp"
 
 #include <cstdint>

@@ -7,7 +7,7 @@
 #include "core/error.hpp"
 #include "core/rng.hpp"
 #include "core/tolerances.hpp"
-#include "sim/simulation.hpp"
+#include "sim/step/simulation.hpp"
 
 #include <Eigen/Core>
 #include <gtest/gtest.h>

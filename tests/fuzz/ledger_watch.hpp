@@ -2,7 +2,7 @@
 #pragma once
 
 #include "sim/scene/scene.hpp"
-#include "sim/simulation.hpp"
+#include "sim/step/simulation.hpp"
 #include "tests/fuzz/random_scene.hpp"
 
 #include <map>

@@ -20,7 +20,7 @@ TYPED_TEST_SUITE(CandidatesTest, test::Spaces, test::SpaceName);
 constexpr std::int32_t count = 120;
 
 /// Balls of all mobilities, with planes first, in the middle and last.
-Bodies<Host> crowd() {
+Bodies<Host> random_bodies() {
   BodyTable table;
   for (std::int32_t k = 0; k < count; ++k) {
     Random random(3, static_cast<std::uint64_t>(k));
@@ -71,7 +71,7 @@ void expect_listed(const Bodies<Host>& bodies, const std::vector<Pair>& pcs,
 }
 
 TYPED_TEST(CandidatesTest, AreThePcsAndThePlanesInOrder) {
-  const Bodies<Host> bodies = crowd();
+  const Bodies<Host> bodies = random_bodies();
   const ConstBodyView b = view_of(bodies);
   Array<double, Host> margin(count);
   parallel::fill("margin", margin, 0.02);
@@ -115,7 +115,7 @@ TYPED_TEST(CandidatesTest, AreThePcsAndThePlanesInOrder) {
 /// Balls within a tilted tube, and some without: those near its wall or its caps are candidates.
 TYPED_TEST(CandidatesTest, OfATubeAreThoseNearItsSurface) {
   BodyTable table = {};
-  Bodies<Host> bodies = crowd();
+  Bodies<Host> bodies = random_bodies();
   copy_bodies(table, bodies);
   std::vector<Pair> pcs;
   table.shape.assign(count, Shape::sphere);

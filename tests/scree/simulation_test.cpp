@@ -2,7 +2,7 @@
 // against the program's files.
 #include "scree/simulation.hpp"
 
-#include "sim/simulation.hpp"
+#include "sim/step/simulation.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,7 +1,7 @@
 // The ways to take a step, for tests that hold in each: in which space, how precisely.
 #pragma once
 
-#include "tests/sim/dynamics/simulations.hpp"
+#include "tests/sim/step/simulations.hpp"
 
 #include <gtest/gtest.h>
 

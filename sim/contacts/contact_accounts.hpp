@@ -1,0 +1,232 @@
+// What the contacts of a substep have moved, once their impulses are found: for the ledger, for the
+// observation, and for the position correction that follows.
+#pragma once
+
+#include "core/space_atomic.hpp"
+#include "core/tolerances.hpp"
+#include "sim/contacts/layout.hpp"
+#include "sim/contacts/sweeps.hpp"
+#include "sim/laws/impulse_energy.hpp"
+#include "sim/laws/response_parameters.hpp"
+#include "sim/observe/observation.hpp"
+
+#include <cmath>
+#include <cstdint>
+
+namespace scree::solver {
+
+/// Sums over contacts.
+struct Books {
+  double restitution = 0;  ///< dissipated (J)
+  double friction = 0;
+  double work = 0;           ///< of bodies that are not free (J)
+  double gaps = 0;           ///< sum of |gap| of loaded points (m)
+  std::int64_t loaded = 0;   ///< points that carry an impulse
+  std::int64_t ends = 0;     ///< free bodies at loaded contacts
+  std::int64_t gaining = 0;  ///< contacts without which no set of them gains energy (Moved::gains)
+  double deepest = 0;        ///< overlap at the end, of the cap
+  double gap_power = 0;      ///< of normal impulses on what they leave undone: 0 when all are found (J)
+  double kick_power = 0;     ///< of impulses on what they have changed (J)
+
+  SCREE_HD friend Books operator+(const Books& a, const Books& b) {
+    return {a.restitution + b.restitution,
+            a.friction + b.friction,
+            a.work + b.work,
+            a.gaps + b.gaps,
+            a.loaded + b.loaded,
+            a.ends + b.ends,
+            a.gaining + b.gaining,
+            a.deepest > b.deepest ? a.deepest : b.deepest,
+            a.gap_power + b.gap_power,
+            a.kick_power + b.kick_power};
+  }
+
+  /// What all impulses have moved.
+  SCREE_HD Moved moved() const {
+    const double square = 0.5 * kick_power;
+    return {-(restitution + friction) - square, square};
+  }
+};
+
+/// A point of a contact: what acts on it, and the bodies that it acts on.
+struct BookedPoint {
+  Vec3 impulse;  ///< on j (N s)
+  Vec3 normal;
+  Vec3 arm_i, arm_j;
+  double target;  ///< of the normal velocity (m/s)
+};
+
+/// Velocity of j relative to i at a point: before the substep's forces, with these but without contacts, and
+/// with both (m/s).
+struct PointMotion {
+  Vec3 before, free, after;
+};
+
+/// Share of what impulses move that is rounding where they gain it. That of a float is of the velocities,
+/// which may be thousands of times the changes.
+template <class Real>
+inline constexpr double response_gain = tolerance::response_gain;
+template <>
+inline constexpr double response_gain<float> = tolerance::mixed_response_gain;
+
+/// What all contacts have in common.
+template <class Real>
+struct BookStage {
+  ConstView<Slot> places;
+  ConstBodyView bodies;
+  ConstView<BodyRecord<Real>> free;
+  ConstView<BodyRecord<Real>> solver;
+  ResponseParameters parameters;
+  double step;
+  View<std::uint32_t> loads;  ///< bytes of candidates: a bit for each part that is loaded
+  bool again = false;         ///< the gaps at the end are set already
+
+  /// Manifold::part of a slot's surface: the corners of a box all touch the one wall.
+  SCREE_HD int part_of(const Slot& slot) const {
+    const Shape a = bodies.shape[slot.i], b = bodies.shape[slot.j];
+    const bool corners = (a == Shape::tube && b == Shape::box) || (a == Shape::box && b == Shape::tube);
+    constexpr int box_corners = 8;
+    if (!corners) return slot.surface;
+    return slot.surface < box_corners ? 0 : slot.surface - box_corners + 1;
+  }
+  SCREE_HD void mark_loaded(const Slot& slot, int part) const {
+    const auto candidate = static_cast<std::uint32_t>(slot.candidate);
+    set_bits(&loads[candidate / 4], 1u << (8 * (candidate % 4) + static_cast<std::uint32_t>(part)));
+  }
+
+  SCREE_HD PointMotion motion_of(const Vec3& arm_i, const Vec3& arm_j, const Slot& slot,
+                                 const Ends& ends) const {
+    const Vec3 with_forces = velocity_of(free, ends.j, arm_j) - velocity_of(free, ends.i, arm_i);
+    return {with_forces - kick_of(slot.j, ends.j, arm_j) + kick_of(slot.i, ends.i, arm_i), with_forces,
+            velocity_of(solver, ends.j, arm_j) - velocity_of(solver, ends.i, arm_i)};
+  }
+
+  /// Adds what a point's impulse has moved: account(), at the arms given.
+  SCREE_HD void book(const BookedPoint& at, const Slot& slot, const Ends& ends, Books& books) const {
+    const Vec3& p = at.impulse;
+    const auto [before, free_u, after] = motion_of(at.arm_i, at.arm_j, slot, ends);
+    const double pn = p.dot(at.normal);
+    const double through_mean = 0.5 * p.dot(before + after);
+    const double normal_part = 0.5 * pn * at.normal.dot(before + after);
+    const double changed = p.dot(after - free_u);
+    books.restitution -= normal_part;
+    books.friction -= through_mean - normal_part;
+    if (!is_free(ends.i)) books.work += p.dot(velocity_of(solver, ends.i, at.arm_i));
+    if (!is_free(ends.j)) books.work -= p.dot(velocity_of(solver, ends.j, at.arm_j));
+    books.gap_power += pn * (after.dot(at.normal) - at.target);
+    books.kick_power += changed;
+  }
+  SCREE_HD bool is_free(std::int32_t end) const { return solver[end].inverse_mass > 0; }
+  /// Of one contact, whose points are booked.
+  SCREE_HD static void judge_gain(Books& books) {
+    books.gaining = books.moved().gains(response_gain<Real>) ? 1 : 0;
+  }
+  SCREE_HD std::int64_t free_ends(const Ends& ends) const {
+    return static_cast<int>(is_free(ends.i)) + static_cast<int>(is_free(ends.j));
+  }
+
+ private:
+  SCREE_HD static Vec3 velocity_of(ConstView<BodyRecord<Real>> records, std::int32_t end, const Vec3& arm) {
+    const BodyRecord<Real>& body = records[end];
+    return vec3(body.velocity) + vec3(body.spin).cross(arm);
+  }
+  /// What the substep's forces have added to the velocity of a body's point.
+  SCREE_HD Vec3 kick_of(std::int32_t body, std::int32_t end, const Vec3& arm) const {
+    Vec3 kick = is_free(end) ? Vec3(step * parameters.acceleration_of(body)) : Vec3(Vec3::Zero());
+    if (parameters.torque.size() > 0) kick += (vec3(free[end].spin) - bodies.spin[body]).cross(arm);
+    return kick;
+  }
+};
+
+/// What flies past is nearer to the other's tangent plane than to the other: its gap does not count.
+SCREE_HD inline bool passes(std::uint8_t flags, bool loaded) { return (flags & flag_flying) != 0 && !loaded; }
+
+/// Of contacts of balls. Sets their gaps at the end, and remembers their impulses.
+template <class Real>
+struct BookBalls {
+  static constexpr int blocks_at_once = 2;
+
+  BookStage<Real> stage;
+  BallContacts<Real> contacts;
+  View<BallMemory<Real>> memory;
+
+  SCREE_HD Books operator()(std::int64_t c) const {
+    using C = BallContacts<Real>;
+    const std::int64_t place = contacts.slot[c];
+    const Ends ends = contacts.ends[c];
+    const auto& f = contacts.fields;
+    const V3<Real> n = f.vector(C::normal, c);
+    const V3<Real> impulse = f.vector(C::impulse, c);
+    Books books;
+    memory[place] = {impulse};
+    const bool loaded = memory[place].is_loaded();
+    if (loaded) {
+      const Slot& slot = stage.places[place];
+      const Vec3 normal = vec3(n);
+      const auto number = [&](int field) { return static_cast<double>(f.at(field, c)); };
+      stage.book(
+          {vec3(impulse), normal, number(C::arm_i) * normal, number(C::arm_j) * normal, number(C::target)},
+          slot, ends, books);
+      books.gaps = fabs(static_cast<double>(contacts.gaps.at(C::gap, c)));
+      books.loaded = 1;
+      books.ends = stage.free_ends(ends);
+      stage.judge_gain(books);
+      if (stage.loads.size() > 0) stage.mark_loaded(slot, slot.surface);
+    }
+    Real& flown = contacts.gaps.at(C::flown, c);
+    if (contacts.flags[c] == 0) {
+      const V3<Real> u = stage.solver[ends.j].velocity - stage.solver[ends.i].velocity;
+      if (!stage.again) flown += static_cast<Real>(0.5 * stage.step) * dot(n, u);
+      books.deepest = fmax(0.0, static_cast<double>(-flown / contacts.gaps.at(C::cap, c)));
+    } else if (passes(contacts.flags[c], loaded)) {
+      flown = static_cast<Real>(HUGE_VAL);
+    }
+    return books;
+  }
+};
+
+/// Of the others.
+template <class Real>
+struct BookPoints {
+  BookStage<Real> stage;
+  std::int64_t first_place;
+  PointContacts<Real> contacts;
+  View<PointMemory<Real>> memory;
+
+  SCREE_HD Books operator()(std::int64_t c) const {
+    using C = PointContacts<Real>;
+    const std::int64_t place = contacts.slot[c];
+    const Slot& slot = stage.places[first_place + place];
+    const Ends ends = contacts.ends[c];
+    const Vec3 n = vec3(contacts.fields.vector(C::normal, c));
+    const double cap = static_cast<double>(contacts.fields.at(C::cap, c));
+    const auto& f = contacts.point_fields;
+    Books books;
+    for (int k = 0; k < contacts.points[c]; ++k) {
+      const auto number = [&](auto field) { return static_cast<double>(f.at(C::at_point(k, field), c)); };
+      const auto at = point_at<Scalar<Real>>(contacts, c, k);
+      const V3<Real> impulse = f.vector(C::at_point(k, C::impulse), c);
+      const bool loaded = !is_zero(impulse);
+      memory[place].impulse[k] = impulse;
+      if (loaded) {
+        stage.book({vec3(impulse), n, vec3(at.arm_i), vec3(at.arm_j), number(C::target)}, slot, ends, books);
+        books.gaps += fabs(static_cast<double>(contacts.gaps.at(C::at_point(k, C::gap), c)));
+        ++books.loaded;
+      }
+      Real& flown = contacts.gaps.at(C::at_point(k, C::flown), c);
+      if (passes(contacts.flags[c], loaded)) flown = static_cast<Real>(HUGE_VAL);
+      if (contacts.flags[c] != 0) continue;
+      const V3<Real> u = velocity_at(at, stage.solver[ends.i], stage.solver[ends.j]);
+      if (!stage.again)
+        flown += static_cast<Real>(0.5 * stage.step) * dot(contacts.fields.vector(C::normal, c), u);
+      books.deepest = fmax(books.deepest, static_cast<double>(-flown) / cap);
+    }
+    if (books.loaded == 0) return books;
+    books.ends = stage.free_ends(ends);
+    stage.judge_gain(books);
+    if (stage.loads.size() > 0) stage.mark_loaded(slot, stage.part_of(slot));
+    return books;
+  }
+};
+
+}  // namespace scree::solver

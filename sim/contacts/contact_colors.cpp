@@ -1,0 +1,222 @@
+#include "sim/contacts/contact_colors.hpp"
+
+#include "core/parallel.hpp"
+#include "core/space_atomic.hpp"
+#include "core/space_rounds.hpp"
+#include "sim/contacts/solver_bodies.hpp"
+
+#include <utility>
+#include <vector>
+
+namespace scree::solver {
+
+namespace {
+
+/// Free bodies of the solver that a contact acts on; -1 for others.
+struct FreeEnds {
+  std::int32_t i, j;
+};
+
+/// The contacts that are coloured.
+struct ColoredContacts {
+  ConstView<std::int32_t> found;
+  ConstView<Slot> slots;
+  ConstView<Mobility> mobility;
+  ConstView<BodyNumber> number;
+
+  SCREE_HD const Slot& slot(std::int64_t d) const { return slots[found[d]]; }
+  SCREE_HD FreeEnds ends(std::int64_t d) const {
+    const Slot& at = slot(d);
+    return {mobility[at.i] == Mobility::free ? at.end_i : -1,
+            mobility[at.j] == Mobility::free ? at.end_j : -1};
+  }
+  /// A contact's rank among its neighbours: as good as random, never the same twice (each step can be
+  /// undone), and a matter of the bodies' numbers alone. There are fewer than 2^30 bodies, since each takes
+  /// some 100 bytes, and at most 16 surfaces of a pair.
+  SCREE_HD std::uint64_t rank(std::int64_t d) const {
+    const Slot& at = slot(d);
+    const auto bits_of = [&](std::int32_t body) { return static_cast<std::uint64_t>(number[body]); };
+    std::uint64_t x = bits_of(at.i) << 34 | bits_of(at.j) << 4 | static_cast<std::uint64_t>(at.surface);
+    x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9u;
+    x = (x ^ (x >> 27)) * 0x94d049bb133111ebu;
+    return x ^ (x >> 31);
+  }
+};
+
+struct Uncolored {
+  static constexpr std::uint32_t none = 0xffffffffu;
+  ConstView<std::int32_t> found;
+  ConstView<std::uint8_t> remembered;
+  bool keep;
+  SCREE_HD std::uint32_t operator()(std::int64_t d) const {
+    return !keep || remembered[found[d]] == no_color ? static_cast<std::uint32_t>(d) : none;
+  }
+};
+
+/// What slots remember of contacts, if it is to be kept.
+struct KeepColors {
+  ColoredContacts contacts;
+  bool keep;
+  ConstView<std::uint8_t> remembered;
+  View<std::uint32_t> color;
+  View<std::uint32_t> slot;
+  View<std::uint64_t> taken;
+
+  SCREE_HD void operator()(std::int64_t d) const {
+    const std::uint8_t was = remembered[contacts.found[d]];
+    slot[d] = static_cast<std::uint32_t>(contacts.found[d]);
+    color[d] = no_color;
+    if (!keep || was == no_color) return;
+    color[d] = was % on_part;
+    const FreeEnds ends = contacts.ends(d);
+    if (ends.i >= 0) set_bits(&taken[ends.i], std::uint64_t{1} << color[d]);
+    if (ends.j >= 0) set_bits(&taken[ends.j], std::uint64_t{1} << color[d]);
+  }
+};
+
+/// Rounds of colouring: of the uncoloured contacts of each body the first in rank stands, and a contact that
+/// stands at both its bodies takes the lowest colour that both have left (Jones, Plassmann 1993, "A parallel
+/// graph coloring heuristic"). In each round the first in rank of all that are left finds its colour.
+struct ColorRounds {
+  struct State {
+    bool done;
+  };
+  struct Sum {
+    std::int64_t left = 0;
+    SCREE_HD friend Sum operator+(const Sum& a, const Sum& b) { return {a.left + b.left}; }
+  };
+  static constexpr int threads = 256;
+  static constexpr int blocks_at_once = 2;
+
+  ColoredContacts contacts;
+  ConstView<std::uint32_t> list;
+  View<std::uint32_t> color;
+  View<std::uint64_t> standing;
+  View<std::uint64_t> taken;
+
+  SCREE_HD int phases(const State& state) const { return state.done ? 0 : 2; }
+  SCREE_HD std::int64_t items(const State&, int) const { return list.size(); }
+  std::int64_t most_items() const { return list.size(); }
+  SCREE_HD Sum operator()(const State&, int phase, std::int64_t item) const {
+    const std::int64_t d = list[item];
+    if (color[d] != no_color) return {};
+    const FreeEnds ends = contacts.ends(d);
+    const std::uint64_t rank = contacts.rank(d);
+    if (phase == 0) {
+      if (ends.i >= 0) lower(&standing[ends.i], rank);
+      if (ends.j >= 0) lower(&standing[ends.j], rank);
+      return {};
+    }
+    if ((ends.i >= 0 && standing[ends.i] != rank) || (ends.j >= 0 && standing[ends.j] != rank)) return {1};
+    const std::uint64_t used = (ends.i >= 0 ? taken[ends.i] : 0) | (ends.j >= 0 ? taken[ends.j] : 0);
+    std::uint32_t lowest = 0;
+    while ((used >> lowest & 1) != 0) ++lowest;
+    color[d] = lowest;
+    if (ends.i >= 0) leave(ends.i, lowest);
+    if (ends.j >= 0) leave(ends.j, lowest);
+    return {};
+  }
+  SCREE_HD State judge(const State&, const Sum& sum) const { return {sum.left == 0}; }
+
+ private:
+  /// Nobody else stands here, so the next round may begin.
+  SCREE_HD void leave(std::int32_t end, std::uint32_t at) const {
+    taken[end] |= std::uint64_t{1} << at;
+    standing[end] = ~std::uint64_t{0};
+  }
+};
+
+struct RememberColors {
+  ColoredContacts contacts;
+  ConstView<std::uint32_t> color;
+  View<std::uint8_t> remembered;
+  SCREE_HD void operator()(std::int64_t d) const {
+    const bool part = is_on_part(contacts.mobility, contacts.slot(d));
+    remembered[contacts.found[d]] = static_cast<std::uint8_t>(color[d] | (part ? on_part : 0));
+  }
+};
+
+struct LoadColor {
+  ConstView<std::uint32_t> color;
+  SCREE_HD int operator()(std::int64_t d) const { return static_cast<int>(color[d]); }
+};
+
+template <class T>
+struct Fill {
+  View<T> of;
+  T value;
+  SCREE_HD void operator()(std::int64_t k) const { of[k] = value; }
+};
+
+struct PlaceContacts {
+  ConstView<std::uint32_t> color;
+  ConstView<std::uint32_t> slot;
+  ConstView<ColorStart> start;
+  View<std::int32_t> to;
+  SCREE_HD void operator()(std::int64_t k) const {
+    const ColorStart& of = start[color[k]];
+    to[of.place + (k - of.first)] = static_cast<std::int32_t>(slot[k]);
+  }
+};
+
+}  // namespace
+
+template <class Space>
+void ContactColors<Space>::find(ConstView<std::int32_t> found, ConstView<Slot> slots,
+                                const ConstBodyView& bodies, std::int64_t ends,
+                                View<std::uint8_t> remembered) {
+  // Colours that are kept leave gaps, so that their number creeps up.
+  constexpr int most_more = 3;
+  const std::int64_t n = found.size();
+  const ColoredContacts contacts{found, slots, bodies.mobility, bodies.id};
+  const bool keep = colors_ > 0 && colors_ <= colors_at_first_ + most_more;
+  parallel::select("contacts.color", n, Uncolored{found, remembered, keep}, Uncolored::none, uncolored_);
+  are_same_ = knows_slots_ && keep && uncolored_.empty() && n == color_.size();
+  knows_slots_ = true;
+  if (are_same_) return;
+  color_.resize(n);
+  slot_.resize(n);
+  standing_.resize(ends);
+  taken_.resize(ends);
+  parallel::fill("contacts.color", standing_, ~std::uint64_t{0});
+  parallel::fill("contacts.color", taken_, std::uint64_t{0});
+  parallel::for_each<Space>(
+      "contacts.color", n,
+      KeepColors{contacts, keep, remembered, color_.view(), slot_.view(), taken_.view()});
+  if (!uncolored_.empty()) {
+    parallel::run_rounds<Space>("contacts.color",
+                                ColorRounds{contacts, std::as_const(uncolored_).view(), color_.view(),
+                                            standing_.view(), taken_.view()},
+                                ColorRounds::State{false});
+  }
+  parallel::for_each<Space>("contacts.color", remembered.size(), Fill<std::uint8_t>{remembered, no_color});
+  parallel::for_each<Space>("contacts.color", n,
+                            RememberColors{contacts, std::as_const(color_).view(), remembered});
+  ranges_ = {};
+  if (n == 0) return;
+  parallel::sort_by_key("contacts.color", color_, slot_, 6);
+  parallel::histogram<Space>("contacts.color", n, LoadColor{std::as_const(color_).view()}, most_colors,
+                             counts_);
+  std::vector<ColorStart> start;
+  std::int64_t first = 0;
+  for (const std::uint32_t count : to_vector(counts_)) {
+    start.push_back({first, ranges_.places()});
+    first += count;
+    if (count > 0) ranges_.add(count);
+  }
+  copy(start_, start);
+  colors_ = ranges_.colors();
+  if (!keep) colors_at_first_ = colors_;
+}
+
+template <class Space>
+void ContactColors<Space>::place(View<std::int32_t> slot) const {
+  parallel::for_each<Space>("contacts.color", slot.size(), Fill<std::int32_t>{slot, Slot::empty});
+  parallel::for_each<Space>("contacts.color", color_.size(),
+                            PlaceContacts{color_.view(), slot_.view(), start_.view(), slot});
+}
+
+#define SCREE_INSTANTIATE(Space) template class ContactColors<Space>;
+SCREE_FOR_EACH_SPACE(SCREE_INSTANTIATE)
+
+}  // namespace scree::solver

@@ -1,0 +1,11 @@
+#include "sim/contacts/contact_finder_points.hpp"
+
+namespace scree::solver {
+
+#define SCREE_INSTANTIATE(Space)                                                                           \
+  template void ContactFinder<Space, double>::find_points(const FindStage<double>&, Slots<Space, double>&, \
+                                                          ConstView<LoadedParts>,                          \
+                                                          ContactStore<Space, double>&);
+SCREE_FOR_EACH_SPACE(SCREE_INSTANTIATE)
+
+}  // namespace scree::solver

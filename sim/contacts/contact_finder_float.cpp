@@ -1,0 +1,10 @@
+#include "sim/contacts/contact_finder_points.hpp"
+
+namespace scree::solver {
+
+#define SCREE_INSTANTIATE(Space)                          \
+  template void ContactFinder<Space, float>::find_points( \
+      const FindStage<float>&, Slots<Space, float>&, ConstView<LoadedParts>, ContactStore<Space, float>&);
+SCREE_FOR_EACH_SPACE(SCREE_INSTANTIATE)
+
+}  // namespace scree::solver

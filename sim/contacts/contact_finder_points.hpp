@@ -1,0 +1,35 @@
+// The part of ContactFinder for slots that are not of balls, by precision: contact_finder_double.cpp and
+// contact_finder_float.cpp.
+#pragma once
+
+#include "sim/contacts/contact_finder_approach.hpp"
+#include "sim/contacts/find_points.hpp"
+
+#include <utility>
+
+namespace scree::solver {
+
+template <class Space, class Real>
+void ContactFinder<Space, Real>::find_points(const FindStage<Real>& stage, Slots<Space, Real>& slots,
+                                             ConstView<LoadedParts> loads, ContactStore<Space, Real>& store) {
+  const std::int64_t tiles = slots.other_tiles();
+  if (tiles == 0) return store.take_points({});
+  const std::int64_t first = slots.ball_places();
+  manifolds_.resize(tiles * parallel::tile);
+  found_.start(tiles);
+  FindPoints<Real> find{stage, first, {}, slots.point_memory(), loads, {}, manifolds_.view()};
+  parallel::compact_tiles<Space>("contacts.find points", tiles,
+                                 FindSlots<FindPoints<Real>>{find, found_.places()}, found_.counts());
+  found_.join();
+  point_colors_.find(found_.all(), slots.places_of_others(), stage.bodies,
+                     slots.solver_bodies().first_wall_point(), slots.other_colors());
+  if (!point_colors_.are_same()) store.take_points(point_colors_.ranges());
+  find.contacts = store.points();
+  if (!point_colors_.are_same()) point_colors_.place(find.contacts.slot);
+  const std::int64_t contacts = find.contacts.slot.size();
+  find.approaching = clear_approaching(contacts);
+  parallel::for_each<Space>("contacts.make points", contacts, MakeContacts<FindPoints<Real>>{find});
+  judge(find.approaching, JudgePoints<Real>{stage, first, find.contacts, std::as_const(manifolds_).view()});
+}
+
+}  // namespace scree::solver

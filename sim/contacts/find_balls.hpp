@@ -1,0 +1,225 @@
+// From slots of balls to contacts: which of them have one, and what the sweeps need to know of it.
+#pragma once
+
+#include "narrowphase/any_contacts.hpp"
+#include "narrowphase/sphere_plane.hpp"
+#include "narrowphase/sphere_sphere.hpp"
+#include "sim/contacts/find_stage.hpp"
+
+namespace scree::solver {
+
+/// The contact of a slot of balls, at its time. With `rare`, of any; without, of balls and planes at the
+/// midpoint.
+template <bool rare, class Real>
+SCREE_HD inline bool meet(const FindStage<Real>& stage, const SlotBodies<Real>& at, double lead,
+                          Manifold& out) {
+  const bool ball_a = at.a.shape == Shape::sphere;
+  const bool ball_b = at.b.shape == Shape::sphere;
+  const auto ball = [&](const MidBody<Real>& body, std::int32_t k) {
+    return Solid{stage.centre(body, k, lead), Quat::Identity(), Vec3(body.size, 0, 0)};
+  };
+  out.part = 0;
+  const Period& period = stage.bodies.period;
+  if (ball_a && ball_b) {
+    const Solid a = ball(at.a, at.slot.i);
+    Solid b = ball(at.b, at.slot.j);
+    period.bring_near(a.position, b.position);
+    return sphere_sphere(a, b, at.margin(), out);
+  }
+  const Solid of_ball = ball_a ? ball(at.a, at.slot.i) : ball(at.b, at.slot.j);
+  Solid other = stage.solid(ball_a ? at.slot.j : at.slot.i, lead);
+  period.bring_near(of_ball.position, other.position);
+  const Shape shape = ball_a ? at.b.shape : at.a.shape;
+  bool found = false;
+  if (shape == Shape::plane) {
+    found = sphere_plane(of_ball, other, at.margin(), out);
+  } else if constexpr (rare) {
+    constexpr int most_manifolds = 3;  // of a ball and a tube
+    Manifold all[most_manifolds];
+    const PairShapes shapes = stage.shapes_of(ball_a ? at.slot.i : at.slot.j, ball_a ? at.slot.j : at.slot.i);
+    const int count =
+        find_any_contacts({Shape::sphere, of_ball}, {shape, other}, shapes, {.margin = at.margin()}, all);
+    const Manifold* on = manifold_on(at.slot.surface, false, all, count);
+    found = on != nullptr;
+    if (found) out = *on;
+  }
+  if (found && !ball_a) out.normal = -out.normal;
+  if constexpr (rare) {
+    if (found && out.at_edge)
+      take_normal_of_face(stage.struck, at.slot.i, at.slot.j, 1, out.points, out.normal);
+  }
+  return found;
+}
+
+/// A contact of one point.
+struct Touch {
+  Vec3 normal;
+  Vec3 position;
+  double gap;
+};
+
+SCREE_HD inline Touch touch_of(const Manifold& m) {
+  return {m.normal, m.points[0].position, m.points[0].gap};
+}
+
+/// What is rare must take no registers from the rest, and so it is called.
+template <class Real>
+[[gnu::noinline]] SCREE_HD bool meet_rarely(const FindStage<Real>& stage, const Slot& slot, double lead,
+                                            Touch& out) {
+  Manifold m;
+  const bool found = meet<true>(stage, stage.load(slot), lead, m);
+  if (found) out = touch_of(m);
+  return found;
+}
+
+template <class Real>
+SCREE_HD inline bool meet_balls(const FindStage<Real>& stage, std::int64_t place, const SlotBodies<Real>& at,
+                                double lead, Touch& out) {
+  const auto is_common = [](Shape shape) { return shape == Shape::sphere || shape == Shape::plane; };
+  if (lead > 0 || !is_common(at.a.shape) || !is_common(at.b.shape)) {
+    Touch rare;  // in memory, as what is called asks for
+    const bool found = meet_rarely(stage, stage.places[place], lead, rare);
+    if (found) out = rare;
+    return found;
+  }
+  Manifold m;
+  const bool found = meet<false>(stage, at, 0, m);
+  if (found) out = touch_of(m);
+  return found;
+}
+
+/// Contacts of balls, all as if they met and stayed. Those that may fly past or bounce are listed.
+template <class Real>
+struct FindBalls {
+  struct Record {
+    Vec3 normal;
+    double gap;
+    double arm_i, arm_j;  ///< along the normal
+    double lead;
+  };
+
+  static constexpr int blocks_at_once = 2;  // spilled registers cost more than threads that wait
+  static constexpr int kinds = 0;           // all are alike
+
+  FindStage<Real> stage;
+  BallContacts<Real> contacts;
+  View<BallMemory<Real>> memory;
+  View<BodyRecord<Real>> solver;  ///< gets the points of walls
+  ApproachList approaching;
+
+  bool is_end(std::int64_t place) const { return stage.places[place].i == Slot::empty; }
+  SCREE_HD bool find(std::int64_t place, Record& record) const {
+    const Slot slot = stage.places[place];
+    if (slot.i == Slot::empty) return false;
+    const SlotBodies<Real> at = stage.load(slot);
+    record.lead = stage.lead_of(slot);
+    Touch m;
+    if (!meet_balls(stage, place, at, record.lead, m)) {
+      memory[place] = {};
+      return false;
+    }
+    record.normal = m.normal;
+    record.gap = m.gap;
+    const auto arm = [&](const MidBody<Real>& body, std::int32_t k) {
+      if (!body.is_free()) return 0.0;
+      return m.normal.dot(stage.bodies.period.nearest(m.position - stage.centre(body, k, record.lead)));
+    };
+    record.arm_i = arm(at.a, slot.i);
+    record.arm_j = arm(at.b, slot.j);
+    return true;
+  }
+
+  /// Nothing is kept: make() reads the same bodies, and finds the contact again.
+  SCREE_HD void keep(std::int64_t, const Record&) const {}
+  /// Contact `to`, of a slot that has one.
+  SCREE_HD void make(std::int64_t to, std::int64_t place) const {
+    using C = BallContacts<Real>;
+    Record record;
+    find(place, record);
+    const Slot slot = stage.places[place];
+    SlotBodies<Real> at = stage.load(slot);
+    const BallMemory<Real> remembered = memory[place];
+    const Vec3& n = record.normal;
+    const double friction = stage.friction_of(at);
+    const double bend = stage.bend_of(at, n);
+    const double opened = stage.opened_by_then(at, n, bend, record.lead);
+    set_wall_points(at, record);
+    const double parting = n.dot(stage.relative_velocity(at));
+    const double closing = -n.dot(stage.kicked_relative_velocity(at));
+    const bool approaches =
+        !remembered.is_loaded() && stage.may_be_held_apart(record.gap, closing, record.lead);
+    const BallMasses masses = stage.masses_of(at, record.arm_i, record.arm_j);
+    contacts.ends[to] = {slot.end_i, slot.end_j};
+    contacts.flags[to] = static_cast<std::uint8_t>(record.lead > 0 ? flag_late : 0);
+    if (approaches) approaching.add(to);
+    const auto& f = contacts.fields;
+    const auto put = [&](int field, double value) { f.at(field, to) = static_cast<Real>(value); };
+    const V3<Real> impulse = v3<Real>(stage.remembered(remembered.impulse, n, friction));
+    f.set(C::normal, to, v3<Real>(n));
+    put(C::arm_i, record.arm_i);
+    put(C::arm_j, record.arm_j);
+    put(C::friction, friction);
+    put(C::target, stage.target_of(record.gap, 0.0, bend, parting, record.lead));
+    put(C::normal_mass, masses.normal);
+    put(C::tangent_mass, masses.tangent);
+    f.set(C::impulse, to, impulse);
+    f.set(C::last, to, impulse);
+    const auto put_gap = [&](int field, double value) {
+      contacts.gaps.at(field, to) = static_cast<Real>(value);
+    };
+    put_gap(C::gap, record.gap);
+    put_gap(C::flown, record.gap + opened);
+    put_gap(C::pushed, 0);
+    put_gap(C::cap, tolerance::correction_cap * at.size());
+  }
+
+ private:
+  /// The ball has the contact on its normal.
+  SCREE_HD void set_wall_points(SlotBodies<Real>& at, const Record& record) const {
+    const Slot& slot = at.slot;
+    if (stage.is_wall_point(at.a, slot.i, slot.end_i)) {
+      const Vec3 point = stage.centre(at.b, slot.j, record.lead) + record.arm_j * record.normal;
+      solver[slot.end_i].velocity = stage.wall_velocity(slot.i, point, record.lead);
+    } else if (stage.is_wall_point(at.b, slot.j, slot.end_j)) {
+      const Vec3 point = stage.centre(at.a, slot.i, record.lead) + record.arm_i * record.normal;
+      solver[slot.end_j].velocity = stage.wall_velocity(slot.j, point, record.lead);
+    } else {
+      return;
+    }
+    stage.take_wall_points(at);
+  }
+};
+
+/// Of the contacts of balls.
+template <class Real>
+struct JudgeBalls {
+  FindStage<Real> stage;
+  BallContacts<Real> contacts;
+
+  SCREE_HD void operator()(std::int64_t c) const {
+    using C = BallContacts<Real>;
+    SlotBodies<Real> at = stage.load(stage.places[contacts.slot[c]]);
+    const double lead = stage.lead_of(at.slot);
+    Manifold m;
+    if (!meet<true>(stage, at, lead, m)) return;
+    m.i = at.slot.i;
+    m.j = at.slot.j;
+    Real& target = contacts.fields.at(C::target, c);
+    if (!flight_of_contact(stage.struck, m, m.points, at.size(), false).flying) {
+      if (!stage.struck.stage.are_in_crowd(m.i, m.j)) return;
+      target = static_cast<Real>(stage.target_of_bounce(
+          at.slot, static_cast<double>(target), m.points[0].gap, m.normal.dot(stage.relative_velocity(at)),
+          m.normal.dot(stage.kicked_relative_velocity(at)), lead));
+      return;
+    }
+    contacts.flags[c] |= flag_flying;
+    stage.take_wall_points(at);
+    const Vec3 velocity_i = stage.kicked_velocity(at.a, at.slot.i);
+    const Vec3 velocity_j = stage.kicked_velocity(at.b, at.slot.j);
+    const double free = m.normal.dot(velocity_j - velocity_i);
+    target = static_cast<Real>(
+        stage.target_in_flight(static_cast<double>(target), free, velocity_i.norm() + velocity_j.norm()));
+  }
+};
+
+}  // namespace scree::solver

@@ -1,0 +1,267 @@
+// What contacts are made from: slots and their bodies at the midpoint.
+#pragma once
+
+#include "core/space_atomic.hpp"
+#include "core/tolerances.hpp"
+#include "narrowphase/any_contacts.hpp"
+#include "narrowphase/contact.hpp"
+#include "narrowphase/libccd_contacts.hpp"
+#include "narrowphase/tube.hpp"
+#include "sim/contacts/contact_flight.hpp"
+#include "sim/contacts/layout.hpp"
+#include "sim/laws/contact_laws.hpp"
+#include "sim/laws/contact_row.hpp"
+#include "sim/laws/response_parameters.hpp"
+
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <type_traits>
+
+namespace scree::solver {
+
+/// A slot and its bodies, read at once: memory is asked for less often than by field.
+template <class Real>
+struct SlotBodies {
+  Slot slot;
+  MidBody<Real> a, b;
+  SCREE_HD double margin() const { return static_cast<double>(a.margin) + static_cast<double>(b.margin); }
+  SCREE_HD double size() const { return fmin(a.size, b.size); }
+};
+
+/// What contacts are made from.
+template <class Real>
+struct FindStage {
+  ConstView<Slot> places;
+  ConstView<MidBody<Real>> mid;
+  ConstBodyView bodies;                ///< at the midpoint, before the kick
+  ConstView<BodyRecord<Real>> solver;  ///< kicked
+  ContactLaws laws;
+  ResponseParameters parameters;
+  double step;                       ///< s
+  double scale;                      ///< of remembered impulses
+  double noise;                      ///< parting speeds that count as none (m/s)
+  StruckFlights struck;              ///< the bodies after their impacts
+  bool any_is_late;                  ///< one was struck after the midpoint
+  LibccdContacts* libccd = nullptr;  ///< on Host; null: it is not asked about anything
+
+  SCREE_HD SlotBodies<Real> load(const Slot& slot) const { return {slot, mid[slot.i], mid[slot.j]}; }
+  SCREE_HD const PairLaw& law_of(const SlotBodies<Real>& at) const {
+    return laws.table[at.a.material * laws.materials + at.b.material];
+  }
+  SCREE_HD PairShapes shapes_of(std::int32_t i, std::int32_t j) const {
+    return {laws.shape_data(i), laws.shape_data(j)};
+  }
+  SCREE_HD double friction_of(const SlotBodies<Real>& at) const {
+    return parameters.friction ? law_of(at).friction : 0.0;
+  }
+  SCREE_HD BallMasses masses_of(const SlotBodies<Real>& at, double arm_i, double arm_j) const {
+    const auto [mass_i, inertia_i] = inverses_of(at.a, at.slot.i, at.slot.end_i);
+    const auto [mass_j, inertia_j] = inverses_of(at.b, at.slot.j, at.slot.end_j);
+    return ball_masses(mass_i, inertia_i, arm_i * arm_i, mass_j, inertia_j, arm_j * arm_j);
+  }
+  SCREE_HD Vec3 kick_of(const MidBody<Real>& body, std::int32_t k) const {
+    return body.is_free() ? Vec3(step * parameters.acceleration_of(k)) : Vec3(Vec3::Zero());
+  }
+  SCREE_HD Vec3 kicked_velocity(const MidBody<Real>& body, std::int32_t k) const {
+    return vec3(body.velocity) + kick_of(body, k);
+  }
+  /// Of j relative to i, before the kick and with it.
+  SCREE_HD static Vec3 relative_velocity(const SlotBodies<Real>& at) {
+    return vec3(at.b.velocity) - vec3(at.a.velocity);
+  }
+  SCREE_HD Vec3 kicked_relative_velocity(const SlotBodies<Real>& at) const {
+    return kicked_velocity(at.b, at.slot.j) - kicked_velocity(at.a, at.slot.i);
+  }
+  /// Whether a body that is not free is a point of a wall that turns, in the contact of a slot.
+  SCREE_HD static bool is_wall_point(const MidBody<Real>& body, std::int32_t k, std::int32_t end) {
+    return !body.is_free() && end != k;
+  }
+  /// Of a wall at a point, when a pair is seen (m/s). Rare: what is called takes no registers from the rest.
+  [[gnu::noinline]] SCREE_HD V3<Real> wall_velocity(std::int32_t wall, const Vec3& point, double lead) const {
+    const Vec3 centre = bodies.position[wall] + lead * bodies.velocity[wall];
+    return v3<Real>(bodies.velocity[wall] + bodies.spin[wall].cross(bodies.period.nearest(point - centre)));
+  }
+  /// Walls move as their points do.
+  SCREE_HD void take_wall_points(SlotBodies<Real>& at) const {
+    if (is_wall_point(at.a, at.slot.i, at.slot.end_i)) at.a.velocity = solver[at.slot.end_i].velocity;
+    if (is_wall_point(at.b, at.slot.j, at.slot.end_j)) at.b.velocity = solver[at.slot.end_j].velocity;
+  }
+  /// After the midpoint, when a pair is to be seen (s); 0 for nearly all.
+  SCREE_HD double lead_of(const Slot& slot) const { return any_is_late ? late_lead_of(slot.i, slot.j) : 0.0; }
+  SCREE_HD Solid solid(std::int32_t body, double lead) const {
+    if (lead > 0) return late_solid(body, lead);
+    return {bodies.position[body], bodies.orientation[body], bodies.size[body]};
+  }
+  /// Where the centre is when a pair is seen.
+  SCREE_HD Vec3 centre(const MidBody<Real>& body, std::int32_t k, double lead) const {
+    return lead > 0 ? Vec3(body.position + lead * kicked_velocity(body, k)) : body.position;
+  }
+  /// From there to a point of a contact (m).
+  SCREE_HD Vec3 arm(const MidBody<Real>& body, std::int32_t k, double lead, const Vec3& point) const {
+    return bodies.period.nearest(point - centre(body, k, lead));
+  }
+  SCREE_HD Vec3 remembered(const V3<Real>& impulse, const Vec3& normal, double friction) const {
+    if (!parameters.warm_start) return Vec3::Zero();
+    return project_on_cone(scale * vec3(impulse), normal, friction);
+  }
+
+  /// Normal velocity that a point may have at the end, so that the next midpoint does not overlap: the gap
+  /// may close by then, and no more. Held, a contact that was parting before the kick would gain energy: it
+  /// may close as fast.
+  SCREE_HD double target_of(double gap, double shell, double bend, double parting, double lead) const {
+    const double closing = gap > shell ? -(gap - shell) / (step - lead) : 0.0;
+    return fmin(closing - 0.5 * step * bend, noise - parting);
+  }
+  /// A look at the normal velocity of a point tells of nearly all that they are not held apart
+  /// (flight_of_contact).
+  SCREE_HD bool may_be_held_apart(double gap, double closing, double lead) const {
+    if (gap <= 0) return closing > 0;
+    return lead > 0 || closing * step > tolerance::likely_closing * gap;
+  }
+  /// Of what flies past: it is not held at all. `free` is the normal velocity without contacts, and `speed`
+  /// the sum of the two bodies' speeds there, whose rounding pushes nobody (m/s).
+  SCREE_HD static double target_in_flight(double target, double free, double speed) {
+    constexpr double rounding = tolerance::flight_roundings * std::numeric_limits<Real>::epsilon();
+    return fmin(target, free - tolerance::flight_margin * fabs(free) - rounding * speed);
+  }
+
+  /// Of two bodies in a crowd that approach: one that would be pushed anyway before it has closed its gap
+  /// bounces, as all contacts of the crowd at once (u+ = -e u-; Moreau 1999). `before` and `free` are the
+  /// normal velocities before the kick and with it (m/s).
+  SCREE_HD double target_of_bounce(const Slot& slot, double target, double gap, double before, double free,
+                                   double lead) const {
+    const FlightStage& flight = struck.stage;
+    const bool bounces = -before > flight.slowest_bounce(slot.i, slot.j) && -free * (step - lead) > gap;
+    return bounces ? -laws.between(slot.i, slot.j).restitution * before : target;
+  }
+
+  /// What the gap at the end has beside what the velocities after the response open (m): it bends; and a
+  /// late contact is told from where its centres will be then, so that where they are now goes off.
+  SCREE_HD double opened_by_then(const SlotBodies<Real>& at, const Vec3& n, double bend, double lead) const {
+    if (lead > 0)
+      return -n.dot(bodies.period.nearest(centre(at.b, at.slot.j, lead) - centre(at.a, at.slot.i, lead)));
+    return 0.125 * step * step * bend;
+  }
+
+  /// Acceleration of the gap by the turning of the normal: of balls on one another, and of a ball along the
+  /// wall of a tube (m/s^2).
+  SCREE_HD double bend_of(const SlotBodies<Real>& at, const Vec3& n) const {
+    const bool ball_a = at.a.shape == Shape::sphere;
+    const bool ball_b = at.b.shape == Shape::sphere;
+    if (!ball_a && !ball_b) return 0;
+    const Vec3 w = kicked_relative_velocity(at);
+    const Vec3 across = w - w.dot(n) * n;
+    if (ball_a && ball_b) return across.squaredNorm() / (at.a.size + at.b.size);
+    if ((ball_a ? at.b : at.a).shape != Shape::tube || at.slot.surface != tube_wall) return 0;
+    return bend_along_tube(across, ball_a ? at.slot.j : at.slot.i, at.size());
+  }
+
+ private:
+  struct Inverses {
+    double mass, inertia;
+  };
+  SCREE_HD Inverses inverses_of(const MidBody<Real>& body, std::int32_t k, std::int32_t end) const {
+    if (k == end) return {static_cast<double>(body.inverse_mass), static_cast<double>(body.inverse_inertia)};
+    return {static_cast<double>(solver[end].inverse_mass), static_cast<double>(solver[end].inverse_inertia)};
+  }
+  // What is rare must not take registers from the rest.
+  [[gnu::noinline]] SCREE_HD double late_lead_of(std::int32_t i, std::int32_t j) const {
+    return fmax(0.0, struck.time_of(i, j) - 0.5 * step);
+  }
+  [[gnu::noinline]] SCREE_HD Solid late_solid(std::int32_t body, double lead) const {
+    return struck.at(body, 0.5 * step + lead).solid;
+  }
+  [[gnu::noinline]] SCREE_HD double bend_along_tube(const Vec3& across, std::int32_t tube,
+                                                    double size) const {
+    const Vec3 axis = bodies.orientation[tube] * Vec3::UnitZ();
+    const double reach = bodies.size[tube].x() - size;
+    return reach > 0 ? -(across - across.dot(axis) * axis).squaredNorm() / reach : 0.0;
+  }
+};
+
+/// Which of a pair's manifolds is that of a surface of a slot, among those that its test has found.
+SCREE_HD inline const Manifold* manifold_on(int surface, bool corners, const Manifold* found, int count) {
+  constexpr int box_corners = 8;
+  for (int m = 0; m < count; ++m) {
+    int of = found[m].part;
+    if (corners) {
+      if (of == tube_wall) {
+        // The vertex of the box, a side of each axis.
+        const std::uint32_t vertex = found[m].points[0].feature;
+        of = static_cast<int>((vertex >> 1 & 1) | (vertex >> 3 & 1) << 1 | (vertex >> 5 & 1) << 2);
+      } else {
+        of += box_corners - 1;
+      }
+    }
+    if (of == surface) return &found[m];
+  }
+  return nullptr;
+}
+
+/// What is found at a slot that is not of balls.
+struct FoundManifold {
+  Manifold manifold;
+  double lead;
+};
+
+/// Contacts whose bodies approach, and which bore no load, in any order.
+struct ApproachList {
+  View<std::int32_t> contacts;
+  std::uint64_t* count;
+  SCREE_HD void add(std::int64_t c) const {
+    contacts[static_cast<std::int64_t>(count_up(count))] = static_cast<std::int32_t>(c);
+  }
+};
+
+/// Finds the slots that have a contact, by FindBalls or FindPoints, which remembers for make() what it has
+/// found.
+template <class Find>
+struct FindSlots {
+  using Record = typename Find::Record;
+  static constexpr int blocks_at_once = Find::blocks_at_once;
+  static constexpr int kinds = Find::kinds;
+
+  Find all;
+  std::int32_t* found;
+
+  bool is_end(std::int64_t place) const { return all.is_end(place); }
+  SCREE_HD int kind(std::int64_t place) const { return all.kind(place); }
+  SCREE_HD bool find(std::int64_t place, Record& record) const { return all.find(place, record); }
+  SCREE_HD void store(std::int64_t to, std::int64_t place, const Record& record) const {
+    found[to] = static_cast<std::int32_t>(place);
+    all.keep(place, record);
+  }
+};
+
+/// Makes the contacts of these slots.
+template <class Find>
+struct MakeContacts {
+  static constexpr int blocks_at_once = Find::blocks_at_once;
+
+  Find all;
+  SCREE_HD void operator()(std::int64_t c) const {
+    if (const std::int32_t place = all.contacts.slot[c]; place != Slot::empty) all.make(c, place);
+  }
+};
+
+/// Decides whether they fly past or bounce: work of another kind than that on the many which touch, and so it
+/// is done apart.
+template <class Judge>
+struct JudgeApproach {
+  /// Of which each takes one in so many.
+  template <class Space>
+  static constexpr std::int64_t threads = std::is_same_v<Space, Host> ? 64 : 1 << 15;
+
+  std::int64_t stride;
+
+  ApproachList approaching;
+  Judge judge;
+
+  SCREE_HD void operator()(std::int64_t thread) const {
+    const auto count = static_cast<std::int64_t>(*approaching.count);
+    for (std::int64_t k = thread; k < count; k += stride) judge(approaching.contacts[k]);
+  }
+};
+
+}  // namespace scree::solver

@@ -1,0 +1,280 @@
+#include "sim/contacts/solver_bodies.hpp"
+
+#include "core/parallel.hpp"
+#include "core/space_atomic.hpp"
+#include "core/space_tiles.hpp"
+#include "sim/contacts/contact_store.hpp"
+
+#include <bit>
+#include <cmath>
+#include <utility>
+
+namespace scree::solver {
+
+namespace {
+
+/// Slots that a free body may have before it is a hub, and those of a part of one. Two bodies leave one of 64
+/// colours for what they share. Most bodies of a heap have fewer; each colour that only few need is a wait
+/// for all.
+constexpr std::int32_t most_slots = 32;
+constexpr std::int32_t slots_of_part = 12;
+static_assert(2 * most_slots <= most_colors);
+
+struct CountSlots {
+  ConstView<Slot> slots;
+  ConstView<Mobility> mobility;
+  View<std::int32_t> counts;
+  SCREE_HD void operator()(std::int64_t s) const {
+    if (mobility[slots[s].i] == Mobility::free) add(&counts[slots[s].i], 1);
+    if (mobility[slots[s].j] == Mobility::free) add(&counts[slots[s].j], 1);
+  }
+};
+
+struct MarkHubs {
+  ConstView<std::int32_t> counts;
+  View<std::uint8_t> is_hub;
+  SCREE_HD void operator()(std::int64_t b) const { is_hub[b] = counts[b] > most_slots ? 1 : 0; }
+};
+
+struct ListHubs {
+  ConstView<std::int32_t> counts;
+  ConstView<std::int64_t> number;
+  View<Hub> hubs;
+  View<std::int32_t> parts;
+  SCREE_HD void operator()(std::int64_t b) const {
+    if (number[b] == number[b + 1]) return;
+    parts[number[b]] = (counts[b] + slots_of_part - 1) / slots_of_part;
+    hubs[number[b]] = {.body = static_cast<std::int32_t>(b), .first = 0, .parts = parts[number[b]]};
+  }
+};
+
+struct PlaceHubs {
+  ConstView<std::int64_t> first;
+  std::int64_t first_part;
+  View<Hub> hubs;
+  SCREE_HD void operator()(std::int64_t h) const {
+    hubs[h].first = static_cast<std::int32_t>(first_part + first[h]);
+  }
+};
+/// The hub of each part: the last that does not begin after it.
+struct NameHubs {
+  ConstView<std::int64_t> first;
+  View<std::int32_t> hub_of;
+  SCREE_HD void operator()(std::int64_t p) const {
+    std::int64_t low = 0, high = first.size() - 1;
+    while (high - low > 1) {
+      const std::int64_t middle = (low + high) / 2;
+      (first[middle] <= p ? low : high) = middle;
+    }
+    hub_of[p] = static_cast<std::int32_t>(low);
+  }
+};
+
+/// Ends of slots on hubs: 2 s for i, 2 s + 1 for j.
+struct MarkHubEnds {
+  ConstView<Slot> slots;
+  ConstView<std::int64_t> number;
+  View<std::uint8_t> on_hub;
+  SCREE_HD void operator()(std::int64_t e) const {
+    const Slot& slot = slots[e / 2];
+    const std::int32_t body = e % 2 == 0 ? slot.i : slot.j;
+    on_hub[e] = number[body + 1] > number[body] ? 1 : 0;
+  }
+};
+/// The ends on hubs, and the numbers of the other bodies, by which they are sorted first: the order of a
+/// hub's ends does not hang on where bodies lie.
+struct ListHubEnds {
+  ConstBodyView bodies;
+  ConstView<Slot> slots;
+  ConstView<std::int64_t> to;
+  View<std::uint64_t> key;
+  View<std::uint64_t> ends;
+  SCREE_HD void operator()(std::int64_t e) const {
+    if (to[e] == to[e + 1]) return;
+    const Slot& slot = slots[e / 2];
+    key[to[e]] = static_cast<std::uint64_t>(bodies.id[e % 2 == 0 ? slot.j : slot.i]);
+    ends[to[e]] = static_cast<std::uint64_t>(e);
+  }
+};
+/// Then they are sorted by their hubs, and those on the heaviest bodies come first: the bits of a float that
+/// is not negative are in the order of such floats.
+struct KeyOfHubEnd {
+  ConstBodyView bodies;
+  ConstView<Slot> slots;
+  ConstView<std::int64_t> number;
+  ConstView<std::uint64_t> ends;
+  View<std::uint64_t> key;
+  SCREE_HD void operator()(std::int64_t k) const {
+    const auto e = static_cast<std::int64_t>(ends[k]);
+    const Slot& slot = slots[e / 2];
+    const std::int32_t body = e % 2 == 0 ? slot.i : slot.j;
+    const auto lightness = static_cast<float>(bodies.inverse_mass[e % 2 == 0 ? slot.j : slot.i]);
+    key[k] = static_cast<std::uint64_t>(number[body]) << 32 | std::bit_cast<std::uint32_t>(lightness);
+  }
+};
+/// The ends of a hub, in their order, are dealt to its parts. Adds up what they weigh for each, but each at
+/// most as much as the hub: in integers, since sums of these do not hang on the order of threads.
+struct DealHubEnds {
+  ConstBodyView bodies;
+  ConstView<std::uint64_t> key;
+  ConstView<std::uint64_t> ends;
+  ConstView<Hub> hubs;
+  ConstView<std::int32_t> hub_of;
+  std::int64_t first_part;
+  View<Slot> slots;
+  View<std::int64_t> weight;
+  SCREE_HD void operator()(std::int64_t p) const {
+    constexpr double unit = 0x1p40;  // of the hub's mass
+    const std::int64_t begin = first_of(hub_of[p]) + (first_part + p - hubs[hub_of[p]].first) * slots_of_part;
+    const double least = bodies.inverse_mass[hubs[hub_of[p]].body];
+    std::int64_t sum = 0;
+    for (std::int64_t k = begin; k < begin + slots_of_part && k < ends.size() && hub_at(k) == hub_of[p];
+         ++k) {
+      Slot& slot = slots[static_cast<std::int64_t>(ends[k] / 2)];
+      const bool is_i = ends[k] % 2 == 0;
+      (is_i ? slot.end_i : slot.end_j) = static_cast<std::int32_t>(first_part + p);
+      sum += 1 + static_cast<std::int64_t>(
+                     unit * (least / fmax(least, bodies.inverse_mass[is_i ? slot.j : slot.i])));
+    }
+    weight[p] = sum;
+  }
+
+ private:
+  SCREE_HD std::int32_t hub_at(std::int64_t k) const { return static_cast<std::int32_t>(key[k] >> 32); }
+  SCREE_HD std::int64_t first_of(std::int32_t hub) const {
+    std::int64_t low = 0, high = key.size();
+    while (low < high) {
+      const std::int64_t middle = (low + high) / 2;
+      if (hub_at(middle) < hub) {
+        low = middle + 1;
+      } else {
+        high = middle;
+      }
+    }
+    return low;
+  }
+};
+/// Half by weight, half alike: `before` has the weights of all parts before each.
+struct ShareHub {
+  ConstView<Hub> hubs;
+  ConstView<std::int32_t> hub_of;
+  std::int64_t first_part;
+  ConstView<std::int64_t> weight, before;
+  View<double> share;
+  SCREE_HD void operator()(std::int64_t p) const {
+    const Hub& hub = hubs[hub_of[p]];
+    const std::int64_t first = hub.first - first_part;
+    const auto all = static_cast<double>(before[first + hub.parts] - before[first]);
+    share[p] = 0.5 * (static_cast<double>(weight[p]) / all + 1.0 / hub.parts);
+  }
+};
+
+SCREE_HD bool is_turning_wall(const ConstBodyView& bodies, std::int32_t body) {
+  return bodies.mobility[body] != Mobility::free && !bodies.spin[body].isZero(0);
+}
+struct CountTurningWalls {
+  ConstBodyView bodies;
+  SCREE_HD std::int64_t operator()(std::int64_t b) const {
+    return is_turning_wall(bodies, static_cast<std::int32_t>(b)) ? 1 : 0;
+  }
+};
+struct MarkWallPoints {
+  ConstBodyView bodies;
+  ConstView<Slot> slots;
+  View<std::uint8_t> marks;
+  SCREE_HD void operator()(std::int64_t s) const {
+    const Slot& slot = slots[s];
+    marks[s] =
+        is_of_balls(bodies, slot) && (is_turning_wall(bodies, slot.i) || is_turning_wall(bodies, slot.j));
+  }
+};
+struct NumberWallPoints {
+  ConstBodyView bodies;
+  ConstView<std::int64_t> number;
+  std::int64_t first;
+  View<Slot> slots;
+  SCREE_HD void operator()(std::int64_t s) const {
+    if (number[s] == number[s + 1]) return;
+    Slot& slot = slots[s];
+    (is_turning_wall(bodies, slot.i) ? slot.end_i : slot.end_j) =
+        static_cast<std::int32_t>(first + number[s]);
+  }
+};
+
+}  // namespace
+
+template <class Space>
+void SolverBodies<Space>::number(const ConstBodyView& bodies, View<Slot> slots) {
+  split_hubs(bodies, slots);
+  number_wall_points(bodies, slots);
+}
+
+template <class Space>
+void SolverBodies<Space>::split_hubs(const ConstBodyView& bodies, View<Slot> slots) {
+  const std::int64_t n = bodies.count();
+  const std::int64_t first_part = n + 1;
+  const std::int64_t ends = 2 * slots.size();
+  Array<std::int32_t, Space> counts(n);
+  Array<std::uint8_t, Space> marks(n);
+  Array<std::int64_t, Space> number, to;
+  parallel::fill("slots.degree", counts, 0);
+  parallel::for_each<Space>("slots.degree", slots.size(), CountSlots{slots, bodies.mobility, counts.view()});
+  parallel::for_each<Space>("slots.hubs", n, MarkHubs{std::as_const(counts).view(), marks.view()});
+  hubs_.resize(parallel::exclusive_scan("slots.hubs", marks, number));
+  count_ = first_part;
+  hub_of_.resize(0);
+  share_.resize(0);
+  if (hubs_.empty()) return;
+  Array<std::int32_t, Space> parts(hubs_.size());
+  parallel::for_each<Space>(
+      "slots.hubs", n,
+      ListHubs{std::as_const(counts).view(), std::as_const(number).view(), hubs_.view(), parts.view()});
+  hub_of_.resize(parallel::exclusive_scan("slots.hubs", parts, to));
+  count_ += hub_of_.size();
+  parallel::for_each<Space>("slots.hubs", hubs_.size(),
+                            PlaceHubs{std::as_const(to).view(), first_part, hubs_.view()});
+  parallel::for_each<Space>("slots.hubs", hub_of_.size(), NameHubs{std::as_const(to).view(), hub_of_.view()});
+  marks.resize(ends);
+  parallel::for_each<Space>("slots.hub ends", ends,
+                            MarkHubEnds{slots, std::as_const(number).view(), marks.view()});
+  const std::int64_t on_hubs = parallel::exclusive_scan("slots.hub ends", marks, to);
+  Array<std::uint64_t, Space> key(on_hubs), end(on_hubs);
+  parallel::for_each<Space>("slots.hub ends", ends,
+                            ListHubEnds{bodies, slots, std::as_const(to).view(), key.view(), end.view()});
+  parallel::sort_by_key("slots.hub ends", key, end, std::bit_width(static_cast<std::uint64_t>(n)));
+  parallel::for_each<Space>(
+      "slots.hub ends", on_hubs,
+      KeyOfHubEnd{bodies, slots, std::as_const(number).view(), std::as_const(end).view(), key.view()});
+  parallel::sort_by_key("slots.hub ends", key, end,
+                        32 + std::bit_width(static_cast<std::uint64_t>(hubs_.size())));
+  Array<std::int64_t, Space> weight(hub_of_.size()), before;
+  parallel::for_each<Space>(
+      "slots.hub ends", hub_of_.size(),
+      DealHubEnds{bodies, std::as_const(key).view(), std::as_const(end).view(), std::as_const(hubs_).view(),
+                  std::as_const(hub_of_).view(), first_part, slots, weight.view()});
+  parallel::exclusive_scan("slots.hub ends", weight, before);
+  share_.resize(hub_of_.size());
+  parallel::for_each<Space>(
+      "slots.hub ends", hub_of_.size(),
+      ShareHub{std::as_const(hubs_).view(), std::as_const(hub_of_).view(), first_part,
+               std::as_const(weight).view(), std::as_const(before).view(), share_.view()});
+}
+
+template <class Space>
+void SolverBodies<Space>::number_wall_points(const ConstBodyView& bodies, View<Slot> slots) {
+  first_wall_point_ = count_;
+  const auto walls =
+      parallel::sum_by_tiles<std::int64_t, Space>("slots.walls", bodies.count(), CountTurningWalls{bodies});
+  if (walls == 0) return;
+  Array<std::uint8_t, Space> marks(slots.size());
+  Array<std::int64_t, Space> number;
+  parallel::for_each<Space>("slots.walls", slots.size(), MarkWallPoints{bodies, slots, marks.view()});
+  count_ += parallel::exclusive_scan("slots.walls", marks, number);
+  parallel::for_each<Space>("slots.walls", slots.size(),
+                            NumberWallPoints{bodies, std::as_const(number).view(), first_wall_point_, slots});
+}
+
+#define SCREE_INSTANTIATE(Space) template class SolverBodies<Space>;
+SCREE_FOR_EACH_SPACE(SCREE_INSTANTIATE)
+
+}  // namespace scree::solver

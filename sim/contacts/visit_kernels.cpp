@@ -1,0 +1,326 @@
+// Compiled once for each instruction set, as dynamics/lanes/kernels.cpp; SCREE_SIMD names it.
+#include "sim/contacts/visit_kernels.hpp"
+
+#include "sim/laws/simd/kernels/vectors.hpp"
+
+#include <cmath>
+#include <cstddef>
+
+namespace scree::solver::SCREE_SIMD {
+
+namespace {
+
+using Vectors = simd::SCREE_SIMD::Lanes;
+using Vector = Vectors::V;
+constexpr int width = simd::width;
+
+static_assert(sizeof(BodyRecord<double>) == sizeof(Vector));
+static_assert(sizeof(CentreRecord<double>) == sizeof(Vector) / 2);
+
+/// What visits ask of an arithmetic beside what the laws do (Scalar).
+struct Lanes : Vectors {
+  using Real = double;
+  static constexpr int width = simd::width;
+
+  SCREE_LAW static V all(double a) { return a - V{}; }
+  SCREE_LAW static V get(const double* from) { return *reinterpret_cast<const V*>(from); }
+  SCREE_LAW static void set(double* to, const V& value) { *reinterpret_cast<V*>(to) = value; }
+  SCREE_LAW static std::int32_t most(const std::int32_t* of) {
+    std::int32_t most = 0;
+    for (int l = 0; l < width; ++l) most = of[l] > most ? of[l] : most;
+    return most;
+  }
+
+  template <End end>
+  SCREE_LAW static simd::Moving<Lanes> bodies(const BodyRecord<double>* from, const Ends* ends) {
+    V rows[width];
+    for (int l = 0; l < width; ++l) rows[l] = reinterpret_cast<const V&>(from[body_at<end>(ends[l])]);
+    simd::SCREE_SIMD::transpose<width>(rows);
+    return {{rows[0], rows[1], rows[2]}, rows[3], {rows[4], rows[5], rows[6]}, rows[7]};
+  }
+  template <End end>
+  SCREE_LAW static simd::Centre<Lanes> bodies(const CentreRecord<double>* from, const Ends* ends) {
+    V rows[half];
+    for (int l = 0; l < half; ++l) {
+      rows[l] = __builtin_shufflevector(half_of(from[body_at<end>(ends[l])]),
+                                        half_of(from[body_at<end>(ends[l + half])]), 0, 1, 2, 3, 4, 5, 6, 7);
+    }
+    simd::SCREE_SIMD::transpose<half>(rows);
+    return {{rows[0], rows[1], rows[2]}, rows[3]};
+  }
+  template <End end>
+  SCREE_LAW static void put(const simd::Moving<Lanes>& from, BodyRecord<double>* to, const Ends* ends) {
+    V rows[width] = {from.velocity.x, from.velocity.y, from.velocity.z, from.inverse_mass,
+                     from.spin.x,     from.spin.y,     from.spin.z,     from.inverse_inertia};
+    simd::SCREE_SIMD::transpose<width>(rows);
+    for (int l = 0; l < width; ++l) {
+      BodyRecord<double>& body = to[body_at<end>(ends[l])];
+      if (body.inverse_mass > 0) whole(body) = rows[l];
+    }
+  }
+  template <End end>
+  SCREE_LAW static void put(const simd::Centre<Lanes>& from, CentreRecord<double>* to, const Ends* ends) {
+    V rows[half] = {from.velocity.x, from.velocity.y, from.velocity.z, from.inverse_mass};
+    simd::SCREE_SIMD::transpose<half>(rows);
+    for (int l = 0; l < half; ++l) {
+      CentreRecord<double>& low = to[body_at<end>(ends[l])];
+      CentreRecord<double>& high = to[body_at<end>(ends[l + half])];
+      if (low.inverse_mass > 0) half_of(low) = __builtin_shufflevector(rows[l], rows[l], 0, 1, 2, 3);
+      if (high.inverse_mass > 0) half_of(high) = __builtin_shufflevector(rows[l], rows[l], 4, 5, 6, 7);
+    }
+  }
+
+  SCREE_LAW static V& whole(BodyRecord<double>& body) { return reinterpret_cast<V&>(body); }
+
+ private:
+  static constexpr int half = width / 2;
+  using Half = simd::SCREE_SIMD::Half;
+
+  SCREE_LAW static const Half& half_of(const CentreRecord<double>& body) {
+    return reinterpret_cast<const Half&>(body);
+  }
+  SCREE_LAW static Half& half_of(CentreRecord<double>& body) { return reinterpret_cast<Half&>(body); }
+};
+
+// Each has a copy of the visit, which what it writes cannot change.
+template <class Visit>
+void push_over(const Visit& given, Blocks blocks) {
+  const Visit visit = given;
+  for (std::int64_t k = 0; k < blocks.count; ++k) visit.template visit<Lanes>(blocks.place(k));
+}
+
+template <class Visit>
+SweepChange sweep_over(const Visit& given, Blocks blocks, double beta) {
+  const Visit visit = given;
+  ChangeOf<Lanes> sum;
+  for (std::int64_t k = 0; k < blocks.count; ++k)
+    sum = sum + visit.template visit<Lanes>(blocks.place(k), beta);
+  SweepChange total;
+  for (int l = 0; l < width; ++l) {
+    total.step += sum.step[l];
+    total.size += sum.size[l];
+  }
+  return total;
+}
+
+template <class Visit>
+Overlaps part_over(const Visit& given, Blocks blocks) {
+  const Visit visit = given;
+  Vector deepest{}, sum{}, count{};
+  for (std::int64_t k = 0; k < blocks.count; ++k) {
+    const Vector gap = visit.template visit<Lanes>(blocks.place(k));
+    const Vector depth = gap < 0 ? -gap : Vector{};
+    deepest = depth > deepest ? depth : deepest;
+    sum += depth;
+    count += depth > 0 ? Lanes::all(1) : Vector{};
+  }
+  Overlaps total;
+  for (int l = 0; l < width; ++l) {
+    const auto depth = static_cast<float>(deepest[l]);
+    total.deepest = total.deepest > depth ? total.deepest : depth;
+    total.sum += sum[l];
+    total.count += count[l];
+  }
+  return total;
+}
+
+/// Inverse mass and inertia stay: they are those of the last.
+void accelerate(const Accelerate<double>& visit, std::int64_t begin, std::int64_t end, double beta) {
+  for (std::int64_t k = begin; k < end; ++k) {
+    Vector& body = Lanes::whole(visit.bodies[k]);
+    Vector& last = Lanes::whole(visit.last[k]);
+    const Vector now = body;
+    if (beta > 0) body = now + beta * (now - last);
+    last = now;
+  }
+}
+
+using Half = simd::SCREE_SIMD::Half;
+using VectorOfMasks = decltype(Vector{} > Vector{});
+using Three = simd::V3<Lanes>;
+
+using simd::SCREE_SIMD::bits_of;
+
+/// As Period::nearest(). What is added and taken away again leaves a whole number, as rint() does.
+SCREE_LAW Vector nearest(const Vector& offset, double length, double per_length) {
+  constexpr double whole = 0x1.8p52;
+  return offset - length * ((offset * per_length + whole) - whole);
+}
+SCREE_LAW Three nearest(const Three& offset, const Period* period) {
+  if (period == nullptr) return offset;
+  const double* const length = period->length.data();
+  const double* const per_length = period->per_length.data();
+  return {nearest(offset.x, length[0], per_length[0]), nearest(offset.y, length[1], per_length[1]),
+          nearest(offset.z, length[2], per_length[2])};
+}
+
+std::uint64_t near(const Reach* reach, const Slot* slots, const Period* period) {
+  static_assert(sizeof(Reach) == sizeof(Half));
+  const Half sign = {-1, -1, -1, 1};
+  const auto at = [reach](std::int32_t k) { return *reinterpret_cast<const Half*>(reach + k); };
+  std::uint64_t bits = 0;
+  for (int first = 0; first < look; first += width) {
+    constexpr int half = width / 2;
+    Half offset[width];
+    for (int l = 0; l < width; ++l) offset[l] = at(slots[first + l].j) + sign * at(slots[first + l].i);
+    Vector rows[half];
+    for (int l = 0; l < half; ++l)
+      rows[l] = __builtin_shufflevector(offset[l], offset[l + half], 0, 1, 2, 3, 4, 5, 6, 7);
+    simd::SCREE_SIMD::transpose<half>(rows);
+    const Three apart = nearest(Three{rows[0], rows[1], rows[2]}, period);
+    const VectorOfMasks is_near = (rows[3] > 0) & (dot(apart, apart) <= rows[3] * rows[3]);
+    bits |= std::uint64_t{bits_of(is_near)} << first;
+  }
+  return bits;
+}
+
+static_assert(offsetof(MidBody<double>, size) == 24 && offsetof(MidBody<double>, velocity) == 32);
+SCREE_LAW simd::Round<Lanes> round_of(const MidBody<double>* mid, const std::int32_t* at, Three& position) {
+  Vector rows[width];
+  simd::Round<Lanes> ball;
+  for (int l = 0; l < width; ++l) {
+    __builtin_memcpy(&rows[l], mid + at[l], sizeof(Vector));
+    ball.inverse_mass[l] = mid[at[l]].inverse_mass;
+    ball.inverse_inertia[l] = mid[at[l]].inverse_inertia;
+  }
+  simd::SCREE_SIMD::transpose<width>(rows);
+  position = {rows[0], rows[1], rows[2]};
+  ball.radius = rows[3];
+  ball.velocity = {rows[4], rows[5], rows[6]};
+  return ball;
+}
+
+SCREE_LAW Three from(const V3<double>* of) {
+  Three all;
+  for (int l = 0; l < width; ++l) {
+    all.x[l] = of[l].x;
+    all.y[l] = of[l].y;
+    all.z[l] = of[l].z;
+  }
+  return all;
+}
+
+std::uint32_t prepare_balls(const PrepareBalls& given, const BallBlock& block, std::int64_t place) {
+  using C = BallContacts<double>;
+  const auto& f = given.contacts.fields;
+  const auto& gaps = given.contacts.gaps;
+  Three x_i, x_j;
+  const auto i = round_of(given.mid, block.i, x_i);
+  const auto j = round_of(given.mid, block.j, x_j);
+  const Vector friction = Lanes::get(block.friction);
+  const Three kick = from(block.kick);
+  const auto contact = simd::contact_of<Lanes>(nearest(x_j - x_i, given.period), friction, i, j, kick,
+                                               given.step, given.noise);
+  const auto& law = contact.law;
+  const Three start = simd::in_cone<Lanes>(from(block.impulse), law.normal, friction);
+  f.put<Lanes>(C::normal, place, law.normal);
+  f.put<Lanes>(C::arm_i, place, i.inverse_mass > 0 ? law.arm_i : Vector{});
+  f.put<Lanes>(C::arm_j, place, j.inverse_mass > 0 ? law.arm_j : Vector{});
+  f.put<Lanes>(C::friction, place, friction);
+  f.put<Lanes>(C::target, place, law.target);
+  f.put<Lanes>(C::normal_mass, place, law.normal_mass);
+  f.put<Lanes>(C::tangent_mass, place, law.tangent_mass);
+  f.put<Lanes>(C::impulse, place, start);
+  f.put<Lanes>(C::last, place, start);
+  const Vector smaller = i.radius < j.radius ? i.radius : j.radius;
+  gaps.put<Lanes>(C::gap, place, contact.gap);
+  gaps.put<Lanes>(C::flown, place, contact.gap + 0.125 * given.step * given.step * contact.bend);
+  gaps.put<Lanes>(C::pushed, place, Vector{});
+  gaps.put<Lanes>(C::cap, place, tolerance::correction_cap * smaller);
+  const Vector closing = -dot(law.normal, j.velocity - i.velocity + kick);
+  const Vector open = contact.gap > 0 ? contact.gap : Vector{};
+  return bits_of(closing * given.step > tolerance::likely_closing * open);
+}
+
+SCREE_LAW double sum_of(const Vector& v) {
+  double sum = 0;
+  for (int l = 0; l < width; ++l) sum += v[l];
+  return sum;
+}
+
+BlockBooks book_balls(const BookBlocks& given, Blocks blocks) {
+  using C = BallContacts<double>;
+  const BookBlocks by = given;
+  Vector restitution{}, friction{}, work{}, of_gaps{}, deepest{}, gap_power{}, kick_power{};
+  Vector loaded{}, ends{}, gaining{};
+  const Vector one = Lanes::all(1);
+  for (std::int64_t k = 0; k < blocks.count; ++k) {
+    const std::int64_t c = blocks.place(k);
+    const Ends* const at = by.contacts.ends + c;
+    const auto balls = balls_at<Lanes>(by.contacts, c);
+    const Three p = by.contacts.fields.vector<Lanes>(C::impulse, c);
+    const auto after = bodies_of<Lanes>(by.solver, at);
+    const Three u = velocity_at(balls, after.i, after.j);
+    const auto kicked = bodies_of<Lanes>(by.free, at);
+    const Three u_free = velocity_at(balls, kicked.i, kicked.j);
+    const auto before = bodies_of<Lanes>(by.before, at);
+    const Three u_before = velocity_at(balls, before.i, before.j);
+    const Vector pn = dot(p, balls.normal);
+    const Vector through_mean = 0.5 * dot(p, u_before + u);
+    const Vector normal_part = 0.5 * pn * dot(balls.normal, u_before + u);
+    const Vector changed = dot(p, u - u_free);
+    const VectorOfMasks carries = (p.x != 0) | (p.y != 0) | (p.z != 0);
+    const VectorOfMasks free_i = after.i.inverse_mass > 0, free_j = after.j.inverse_mass > 0;
+    const auto arm = [&](const Vector& length, const Three& spin) {
+      return cross(spin, length * balls.normal);
+    };
+    restitution = restitution - normal_part;
+    friction = friction - (through_mean - normal_part);
+    work = work + (free_i ? Vector{} : dot(p, after.i.velocity + arm(balls.arm_i, after.i.spin)));
+    work = work - (free_j ? Vector{} : dot(p, after.j.velocity + arm(balls.arm_j, after.j.spin)));
+    gap_power = gap_power + pn * (dot(u, balls.normal) - balls.target);
+    kick_power = kick_power + changed;
+    const Vector square = 0.5 * changed;
+    gaining = gaining + ((carries & (through_mean > by.rounding * square)) ? one : Vector{});
+    const Vector gap = by.contacts.gaps.get<Lanes>(C::gap, c);
+    of_gaps = of_gaps + (carries ? (gap < 0 ? -gap : gap) : Vector{});
+    loaded = loaded + (carries ? one : Vector{});
+    ends = ends + ((carries & free_i) ? one : Vector{}) + ((carries & free_j) ? one : Vector{});
+    Vector flown = by.contacts.gaps.get<Lanes>(C::flown, c);
+    const Vector cap = by.contacts.gaps.get<Lanes>(C::cap, c);
+    const std::uint8_t* const flags = by.contacts.flags.data() + c;
+    Vector met{}, passes{};
+    for (int l = 0; l < width; ++l) {
+      met[l] = flags[l] == 0 ? 1 : 0;
+      passes[l] = (flags[l] & flag_flying) != 0 ? 1 : 0;
+    }
+    if (!by.again)
+      flown =
+          met > 0 ? flown + 0.5 * by.step * dot(balls.normal, after.j.velocity - after.i.velocity) : flown;
+    flown = ((passes > 0) & !carries) ? Lanes::all(HUGE_VAL) : flown;
+    by.contacts.gaps.put<Lanes>(C::flown, c, flown);
+    const Vector depth = met > 0 ? -flown / cap : Vector{};
+    deepest = depth > deepest ? depth : deepest;
+  }
+  BlockBooks books;
+  books.restitution = sum_of(restitution);
+  books.friction = sum_of(friction);
+  books.work = sum_of(work);
+  books.gaps = sum_of(of_gaps);
+  books.gap_power = sum_of(gap_power);
+  books.kick_power = sum_of(kick_power);
+  books.loaded = static_cast<std::int64_t>(sum_of(loaded));
+  books.ends = static_cast<std::int64_t>(sum_of(ends));
+  books.gaining = static_cast<std::int64_t>(sum_of(gaining));
+  for (int l = 0; l < width; ++l) books.deepest = deepest[l] > books.deepest ? deepest[l] : books.deepest;
+  return books;
+}
+
+}  // namespace
+
+extern const VisitKernels visit_kernels = {.push_balls = push_over<PushBalls<double>>,
+                                           .push_points = push_over<PushPoints<double>>,
+                                           .push_rolling_balls = push_over<PushRollingBalls>,
+                                           .push_rolling_points = push_over<PushRollingPoints>,
+                                           .sweep_balls = sweep_over<SweepBalls<double>>,
+                                           .sweep_points = sweep_over<SweepPoints<double>>,
+                                           .roll_balls = sweep_over<RollBalls>,
+                                           .roll_points = sweep_over<RollPoints>,
+                                           .part_balls = part_over<PartBalls<double>>,
+                                           .part_points = part_over<PartPoints<double>>,
+                                           .near = near,
+                                           .prepare_balls = prepare_balls,
+                                           .book_balls = book_balls,
+                                           .accelerate = accelerate};
+
+}  // namespace scree::solver::SCREE_SIMD

@@ -1,0 +1,94 @@
+// Visits to contacts as Host makes them in double precision: to those that lie side by side at once, with the
+// widest instructions that the processor has.
+#pragma once
+
+#include "core/space.hpp"
+#include "sim/contacts/ball_blocks.hpp"
+#include "sim/contacts/rolling_visits.hpp"
+#include "sim/contacts/sweeps.hpp"
+
+#include <cstdint>
+
+namespace scree::solver {
+
+/// Contacts that one visit is made to.
+template <class Space, class Real>
+inline constexpr int visit_width = 1;
+template <>
+inline constexpr int visit_width<Host, double> = simd::width;
+
+using RollBalls = Roll<double, BallContacts<double>, TurnBalls>;
+using RollPoints = Roll<double, PointContacts<double>, TurnPoints>;
+using PushRollingBalls = PushRolling<double, BallContacts<double>, TurnBalls>;
+using PushRollingPoints = PushRolling<double, PointContacts<double>, TurnPoints>;
+
+/// Blocks of contacts (simd::width) one after the other.
+struct Blocks {
+  std::int64_t first;  ///< contact
+  std::int64_t count;  ///< of blocks
+  SCREE_LAW std::int64_t place(std::int64_t block) const { return first + block * simd::width; }
+};
+
+/// Each makes its visit to the contacts of some blocks of one colour, and returns the sum over them.
+struct VisitKernels {
+  void (*push_balls)(const PushBalls<double>&, Blocks);
+  void (*push_points)(const PushPoints<double>&, Blocks);
+  void (*push_rolling_balls)(const PushRollingBalls&, Blocks);
+  void (*push_rolling_points)(const PushRollingPoints&, Blocks);
+  SweepChange (*sweep_balls)(const SweepBalls<double>&, Blocks, double beta);
+  SweepChange (*sweep_points)(const SweepPoints<double>&, Blocks, double beta);
+  SweepChange (*roll_balls)(const RollBalls&, Blocks, double beta);
+  SweepChange (*roll_points)(const RollPoints&, Blocks, double beta);
+  Overlaps (*part_balls)(const PartBalls<double>&, Blocks);
+  Overlaps (*part_points)(const PartPoints<double>&, Blocks);
+  /// A bit for each of `look` slots whose bodies come as close as they reach. `reach` knows -1, too, which
+  /// reaches nobody.
+  std::uint64_t (*near)(const Reach* reach, const Slot* slots, const Period* period);
+  /// Sets the fields of the contacts of a block, which begins at a place. A bit for each that may be
+  /// held apart (FindStage::may_be_held_apart).
+  std::uint32_t (*prepare_balls)(const PrepareBalls&, const BallBlock&, std::int64_t place);
+  BlockBooks (*book_balls)(const BookBlocks&, Blocks);
+  /// Of the bodies from the first to the last.
+  void (*accelerate)(const Accelerate<double>&, std::int64_t begin, std::int64_t end, double beta);
+
+  void operator()(const PushBalls<double>& visit, Blocks blocks) const { push_balls(visit, blocks); }
+  void operator()(const PushPoints<double>& visit, Blocks blocks) const { push_points(visit, blocks); }
+  void operator()(const PushRollingBalls& visit, Blocks blocks) const { push_rolling_balls(visit, blocks); }
+  void operator()(const PushRollingPoints& visit, Blocks blocks) const { push_rolling_points(visit, blocks); }
+  SweepChange operator()(const SweepBalls<double>& visit, Blocks blocks, double beta) const {
+    return sweep_balls(visit, blocks, beta);
+  }
+  SweepChange operator()(const SweepPoints<double>& visit, Blocks blocks, double beta) const {
+    return sweep_points(visit, blocks, beta);
+  }
+  SweepChange operator()(const RollBalls& visit, Blocks blocks, double beta) const {
+    return roll_balls(visit, blocks, beta);
+  }
+  SweepChange operator()(const RollPoints& visit, Blocks blocks, double beta) const {
+    return roll_points(visit, blocks, beta);
+  }
+  Overlaps operator()(const PartBalls<double>& visit, Blocks blocks) const {
+    return part_balls(visit, blocks);
+  }
+  Overlaps operator()(const PartPoints<double>& visit, Blocks blocks) const {
+    return part_points(visit, blocks);
+  }
+};
+
+/// Those of an instruction set that simd::supported_kernels() names; all give the same bits.
+const VisitKernels& visit_kernels(const char* instruction_set);
+/// Of the widest that this processor has.
+const VisitKernels& visit_kernels();
+
+// One for each way in which visit_kernels.cpp is compiled; not all exist on every processor.
+namespace baseline {
+extern const VisitKernels visit_kernels;
+}
+namespace avx2 {
+extern const VisitKernels visit_kernels;
+}
+namespace avx512 {
+extern const VisitKernels visit_kernels;
+}
+
+}  // namespace scree::solver

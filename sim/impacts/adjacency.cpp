@@ -1,0 +1,66 @@
+#include "sim/impacts/adjacency.hpp"
+
+#include "core/parallel.hpp"
+#include "core/space_atomic.hpp"
+
+namespace scree {
+
+namespace {
+
+struct CountPairs {
+  ConstView<Pair> pairs;
+  ConstView<Mobility> mobility;
+  View<std::uint32_t> count;
+  SCREE_HD void operator()(std::int64_t k) const {
+    const auto [i, j] = pairs[k];
+    for (const std::int32_t body : {i, j})
+      if (mobility[body] == Mobility::free) add(&count[body], 1u);
+  }
+};
+
+/// Takes the counts down again.
+struct FillRows {
+  ConstView<Pair> pairs;
+  ConstView<Mobility> mobility;
+  ConstView<std::int64_t> begin;
+  View<std::uint32_t> count;
+  View<std::int32_t> row;
+  SCREE_HD void operator()(std::int64_t k) const {
+    const auto [i, j] = pairs[k];
+    for (const std::int32_t body : {i, j}) {
+      if (mobility[body] != Mobility::free) continue;
+      row[begin[body] + add(&count[body], ~0u) - 1] = static_cast<std::int32_t>(k);
+    }
+  }
+};
+
+constexpr std::int32_t no_pair = -1;
+
+struct PairOfHubs {
+  ConstView<Pair> pairs;
+  AdjacencyView adjacency;
+  SCREE_HD std::int32_t operator()(std::int64_t k) const {
+    const auto [i, j] = pairs[k];
+    return adjacency.is_hub(i) && adjacency.is_hub(j) ? static_cast<std::int32_t>(k) : no_pair;
+  }
+};
+
+}  // namespace
+
+template <class Space>
+void Adjacency<Space>::build(ConstView<Pair> pairs, ConstView<Mobility> mobility) {
+  count_.resize(mobility.size());
+  parallel::fill("adjacency", count_, 0u);
+  parallel::for_each<Space>("adjacency", pairs.size(), CountPairs{pairs, mobility, count_.view()});
+  row_.resize(parallel::exclusive_scan("adjacency", count_, begin_));
+  parallel::for_each<Space>(
+      "adjacency", pairs.size(),
+      FillRows{pairs, mobility, std::as_const(begin_).view(), count_.view(), row_.view()});
+  parallel::select("adjacency", pairs.size(), PairOfHubs{pairs, view()}, no_pair, between_hubs_);
+}
+
+#define SCREE_INSTANTIATE(Space) template class Adjacency<Space>;
+SCREE_FOR_EACH_SPACE(SCREE_INSTANTIATE)
+#undef SCREE_INSTANTIATE
+
+}  // namespace scree

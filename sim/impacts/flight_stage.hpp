@@ -1,0 +1,275 @@
+// The bodies of one flight, as the search for their impacts sees them, in either space.
+#pragma once
+
+#include "core/array.hpp"
+#include "core/bodies.hpp"
+#include "core/tolerances.hpp"
+#include "sim/impacts/meeting.hpp"
+#include "sim/laws/contact_laws.hpp"
+#include "sim/laws/response_parameters.hpp"
+#include "sim/laws/separated_flight.hpp"
+
+#include <algorithm>
+#include <cstdint>
+
+namespace scree {
+
+/// The impact budget of a body in a flight. A body that is caught between others would bounce ever faster
+/// (Zeno), so each impact has a cost. A body whose impacts have cost `bounces_end` does not bounce any more
+/// (e^k has fallen to 1/1000 then, after 4 to 64 impacts). A body whose impacts have cost `impacts_end` has
+/// no more impacts: the contacts of the substep hold it.
+inline constexpr double bounces_end = 8;
+inline constexpr double impacts_end = 16;
+SCREE_HD inline double impact_cost(double restitution) {
+  return fmax(0.125, fmin(-bounces_end / 3 * log10(fmax(restitution, 0.01)), 2.0));
+}
+
+/// What holds in one flight. It ends with the substep.
+struct FlightTerms {
+  ContactLaws laws;
+  double step;   ///< length of the substep (s)
+  double from;   ///< start of the flight, into the substep (s). If not 0, the last one began at 0 (who was
+                 ///< struck later in it starts then), and the response has kicked the bodies since
+  bool bounces;  ///< whether approaches faster than the threshold count; else only those that would go deep
+};
+
+/// Which parts of a pair carried an impulse in the last substep: these do not bounce.
+struct LoadedParts {
+  std::uint8_t bits = 0;  ///< one for each part
+
+  SCREE_HD bool is_loaded(int part) const { return (bits >> part & 1) != 0; }
+};
+
+/// Of each body in a flight.
+template <class Space>
+struct FlightLog {
+  Array<double, Space> clock;        ///< time of its last impact (s); the start if it had none
+  Array<double, Space> budget_used;  ///< what its impacts so far have cost, by impact_cost()
+  Array<double, Space> turn;         ///< bound on the speed that turning gives its surface (m/s)
+  Array<double, Space> top_speed;    ///< bound on that of its surface, but for what gravity adds (m/s)
+  Array<double, Space> reach;        ///< of its surface from the midpoint, to either end of the substep (m)
+  Array<double, Space> extent;  ///< how far from its centre it may be in the substep (m); infinite: boundary
+  /// 1: bore load together with another free body in the last substep. Empty: nobody did, or none counts.
+  Array<std::uint32_t, Space> in_crowd;
+
+  void resize(std::int64_t bodies) {
+    clock.resize(bodies);
+    budget_used.resize(bodies);
+    turn.resize(bodies);
+    top_speed.resize(bodies);
+    reach.resize(bodies);
+    extent.resize(bodies);
+  }
+};
+
+/// What counts as an impact of two bodies.
+struct ImpactLimits {
+  double earliest;  ///< into the substep (s)
+  double left;      ///< from then to its end (s)
+  double slowest;   ///< approach that bounces (m/s)
+  double farthest;  ///< approach until the end that is shallow enough to be none (m)
+
+  SCREE_HD bool may_bounce(double speed) const { return speed > slowest; }
+  SCREE_HD bool may_go_deep(double speed) const { return speed * left > farthest; }
+  SCREE_HD bool may_count(double speed) const { return may_bounce(speed) || may_go_deep(speed); }
+};
+
+/// The bodies in flight, and what has become of them. Cheap to copy; the bodies and the log are the caller's.
+struct FlightStage {
+  template <class Space>
+  FlightStage(const FlightTerms& t, const ResponseParameters& r, const BodyView& b, FlightLog<Space>& log)
+      : terms(t),
+        parameters(r),
+        bodies(b),
+        clock(log.clock.view()),
+        budget_used(log.budget_used.view()),
+        turn(log.turn.view()),
+        top_speed(log.top_speed.view()),
+        reach(log.reach.view()),
+        extent(log.extent.view()),
+        in_crowd(log.in_crowd.view()) {}
+
+  FlightTerms terms;
+  ResponseParameters parameters;
+  BodyView bodies;
+  View<double> clock;
+  View<double> budget_used;
+  View<double> turn;
+  View<double> top_speed;
+  View<double> reach;
+  View<double> extent;
+  View<std::uint32_t> in_crowd;
+  double least_impact_speed = -1;  ///< two bodies whose top speeds sum to no more have no impact (m/s)
+
+  SCREE_HD bool is_free(std::int32_t body) const { return bodies.mobility[body] == Mobility::free; }
+  /// Whether an impact with the other hardly moves a body.
+  SCREE_HD bool is_heavy_to(std::int32_t body, std::int32_t other) const {
+    return is_free(body) && tolerance::heavy_ratio * bodies.inverse_mass[body] <= bodies.inverse_mass[other];
+  }
+  SCREE_HD bool is_late(std::int32_t body) const { return clock[body] > 0.5 * terms.step; }
+  /// Whether two bodies bounce off each other together with the contacts that they bear load in, and not
+  /// before those: the order of impacts in a crowd is chaos, and its contacts are solved at once.
+  SCREE_HD bool are_in_crowd(std::int32_t i, std::int32_t j) const {
+    return in_crowd.size() > 0 && in_crowd[i] != 0 && in_crowd[j] != 0;
+  }
+
+  /// What the bodies' velocities have of the substep's kick already (m/s).
+  SCREE_HD Vec3 kick_of(std::int32_t body) const {
+    return terms.from > 0 && is_free(body) ? Vec3(terms.step * parameters.acceleration_of(body))
+                                           : Vec3(Vec3::Zero());
+  }
+
+  SCREE_HD BodyFlight flight(std::int32_t body) const {
+    return {.shape = bodies.shape[body],
+            .size = bodies.size[body],
+            .inverse_inertia = bodies.inverse_inertia[body],
+            .position = bodies.position[body],
+            .orientation = bodies.orientation[body],
+            .velocity = bodies.velocity[body] - kick_of(body),
+            .spin = parameters.rotation || !is_free(body) ? bodies.spin[body] : Vec3(Vec3::Zero()),
+            .acceleration = is_free(body) ? parameters.acceleration_of(body) : Vec3(Vec3::Zero()),
+            .midpoint = 0.5 * terms.step};
+  }
+
+  /// The slowest approach that bounces on a part without load, but for sinking_velocity() (m/s).
+  SCREE_HD double slowest_bounce(std::int32_t i, std::int32_t j) const {
+    const double restitution = terms.laws.between(i, j).restitution;
+    if (!parameters.restitution || restitution == 0) return HUGE_VAL;
+    const double rounding =
+        tolerance::closing_speed * (bodies.velocity[i].norm() + bodies.velocity[j].norm());
+    return std::max(parameters.restitution_threshold.of(restitution), rounding);
+  }
+
+  SCREE_HD PairShapes shapes_of(std::int32_t i, std::int32_t j) const {
+    return {terms.laws.shape_data(i), terms.laws.shape_data(j)};
+  }
+
+  /// Two bodies until the end of the substep; no meeting of theirs counts yet.
+  SCREE_HD PairFlight pair_of(std::int32_t i, std::int32_t j, double until) const {
+    PairFlight pair{.i = flight(i), .j = flight(j), .until = until, .slowest = {}, .shapes = shapes_of(i, j)};
+    bodies.period.bring_near(pair.i.position, pair.j.position);
+    for (double& slowest : pair.slowest) slowest = HUGE_VAL;
+    return pair;
+  }
+
+  /// Sets the turn and the reach of a body as it flies now.
+  SCREE_HD void bound(std::int32_t body) const {
+    const bool absent = bodies.mobility[body] == Mobility::absent;
+    turn[body] = absent ? 0.0 : fastest_turn(flight(body));
+    const double linear = (bodies.velocity[body] - kick_of(body)).norm();
+    const double gained = is_free(body) ? parameters.acceleration_of(body).norm() * terms.step : 0.0;
+    top_speed[body] =
+        absent ? 0.0 : linear + turn[body] + (parameters.acceleration.size() > 0 ? gained : 0.0);
+    reach[body] = absent ? 0.0 : (linear + gained + turn[body]) * (0.5 * terms.step);
+    extent[body] = is_boundary(bodies.shape[body])
+                       ? HUGE_VAL
+                       : bounding_radius(bodies.shape[body], bodies.size[body]) + reach[body];
+  }
+
+  /// The length to which the tolerances of a body that is there are relative (m); infinite for others.
+  SCREE_HD double size_of(std::int64_t body) const {
+    return bodies.mobility[body] == Mobility::absent ? HUGE_VAL
+                                                     : smallest_size(bodies.shape[body], bodies.size[body]);
+  }
+
+  /// Whether when it meets others is searched for (next_meeting). As bound() has seen it.
+  SCREE_HD bool needs_search(std::int32_t body) const {
+    if (bodies.mobility[body] == Mobility::absent || bodies.shape[body] == Shape::sphere) return false;
+    return !is_boundary(bodies.shape[body]) || turn[body] == HUGE_VAL;
+  }
+
+  /// What `least_impact_speed` may be, for the bodies as bound() has seen them (m/s): such two neither go
+  /// deep, nor do they close as fast as what bounces, even if gravity adds to it. `smallest`: the smallest
+  /// size_of() (m); `restitution`: the largest of the laws.
+  SCREE_HD double find_least_impact_speed(double smallest, double restitution) const {
+    double speed = HUGE_VAL;
+    if (parameters.continuous) speed = tolerance::deep_approach * smallest / terms.step;
+    if (terms.bounces && parameters.restitution)
+      speed = std::min(speed, parameters.restitution_threshold.of(restitution));
+    return speed - terms.step * parameters.gravity.norm();
+  }
+
+  /// Whether two bodies, of which one is free, may meet in an impact, told without a look at their shapes;
+  /// then sets what counts as one.
+  SCREE_HD bool may_meet(std::int32_t i, std::int32_t j, ImpactLimits& limits) const {
+    if (top_speed[i] + top_speed[j] <= least_impact_speed || are_far(i, j) ||
+        std::max(budget_used[i], budget_used[j]) >= impacts_end)
+      return false;
+    limits.earliest = std::max(clock[i], clock[j]);
+    if (!(limits.earliest < terms.step)) return false;
+    limits.left = terms.step - limits.earliest;
+    limits.slowest = terms.bounces && !are_in_crowd(i, j) ? slowest_bounce(i, j) : HUGE_VAL;
+    limits.farthest =
+        parameters.continuous ? tolerance::deep_approach * terms.laws.smaller_size(i, j) : HUGE_VAL;
+    return limits.may_count(fastest(i, j));
+  }
+
+  /// Of two bodies that may_meet(), whether an impact may count with these loads and they come near each
+  /// other, told by one look at their shapes. Balls are not looked at, since next() costs as little. It is
+  /// called, so that its many registers are not taken from searches.
+  template <class Loads>
+  [[gnu::noinline]] SCREE_HD bool come_near(std::int32_t i, std::int32_t j, const ImpactLimits& limits,
+                                            const Loads& loads) const {
+    if (!may_count(i, j, limits, loads, fastest(i, j))) return false;
+    if (bodies.shape[i] == Shape::sphere && bodies.shape[j] == Shape::sphere) return true;
+    return may_touch(pair_of(i, j, terms.step), limits.earliest);
+  }
+
+  /// The next impact of two bodies, of which one is free. `loads` are those of the pair, as LoadedParts.
+  template <class Loads>
+  SCREE_HD Meeting next(std::int32_t i, std::int32_t j, const Loads& loads) const {
+    ImpactLimits limits;
+    if (!may_meet(i, j, limits)) return {};
+    PairFlight pair = pair_of(i, j, terms.step);
+    const double speed = fastest_approach(pair);
+    if (!may_count(i, j, limits, loads, speed)) return {};
+    if (limits.may_bounce(speed)) {
+      for (int part = 0; part < PairFlight::parts; ++part) {
+        if (!loads.is_loaded(part)) pair.slowest[part] = limits.slowest;
+      }
+    }
+    if (limits.may_go_deep(speed)) pair.farthest = limits.farthest;
+    pair.sinking = sinking_velocity(pair.i, pair.j);
+    const Meeting meeting = next_meeting(pair, limits.earliest);
+    return meeting.time < HUGE_VAL && pass_by(pair, limits.earliest, meeting.time) ? Meeting{} : meeting;
+  }
+
+ private:
+  /// Whether an approach at this speed may go deep, or bounce on a part that bears no load.
+  template <class Loads>
+  SCREE_HD bool may_count(std::int32_t i, std::int32_t j, const ImpactLimits& limits, const Loads& loads,
+                          double speed) const {
+    if (limits.may_go_deep(speed)) return true;
+    if (!limits.may_bounce(speed)) return false;
+    const bool has_tube = bodies.shape[i] == Shape::tube || bodies.shape[j] == Shape::tube;
+    bool all_loaded = true;
+    for (int part = 0; part < (has_tube ? PairFlight::parts : 1); ++part)
+      all_loaded = all_loaded && loads.is_loaded(part);
+    return !all_loaded;
+  }
+  /// Bound on how fast two bodies come closer in the substep (m/s).
+  SCREE_HD double fastest(std::int32_t i, std::int32_t j) const {
+    Vec3 velocity = bodies.velocity[j] - bodies.velocity[i];
+    Vec3 gained = Vec3::Zero();
+    if (is_free(i) != is_free(j) || parameters.acceleration.size() > 0) {
+      velocity += kick_of(i) - kick_of(j);
+      if (is_free(i)) gained -= terms.step * parameters.acceleration_of(i);
+      if (is_free(j)) gained += terms.step * parameters.acceleration_of(j);
+    }
+    return velocity.norm() + gained.norm() + turn[i] + turn[j];
+  }
+
+  /// True if two bodies do not come near one another in the substep.
+  SCREE_HD bool are_far(std::int32_t i, std::int32_t j) const {
+    const double near = extent[i] + extent[j];
+    const Vec3 offset = bodies.period.nearest(bodies.position[j] - bodies.position[i]);
+    if (near < HUGE_VAL) return offset.squaredNorm() > near * near;
+    const bool boundary_i = is_boundary(bodies.shape[i]);
+    const std::int32_t boundary = boundary_i ? i : j;
+    if (bodies.shape[boundary] == Shape::tube) return false;
+    const Vec3 up = bodies.orientation[boundary] * Vec3::UnitZ();
+    return (boundary_i ? 1.0 : -1.0) * up.dot(offset) > extent[boundary_i ? j : i] + reach[boundary];
+  }
+};
+
+}  // namespace scree

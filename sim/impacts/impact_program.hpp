@@ -1,0 +1,582 @@
+// The rounds of impacts of a flight as phases (core/space_rounds.hpp). The first half of a round foresees
+// which pairs meet, the second one resolves the meetings that are first where they are.
+#pragma once
+
+#include "core/array.hpp"
+#include "core/space_atomic.hpp"
+#include "narrowphase/candidates.hpp"
+#include "sim/impacts/adjacency.hpp"
+#include "sim/impacts/impact.hpp"
+#include "sim/impacts/impact_group.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstdint>
+
+namespace scree::detail {
+
+/// A meeting, as foreseen.
+struct Foreseen {
+  double time;        ///< into the substep (s); infinite: it has come to nothing
+  std::int64_t pair;  ///< in the list of the pairs
+  std::int32_t part;
+  std::uint32_t next_of_wall = 0;  ///< ImpactProgram::walls_of
+};
+
+/// The order of pairs, which is that of their bodies' numbers: it does not hang on where bodies lie.
+struct PairNumbers {
+  std::uint64_t bits;
+
+  SCREE_HD static PairNumbers of(BodyNumber i, BodyNumber j) {
+    const BodyNumber low = i < j ? i : j;
+    const BodyNumber high = i < j ? j : i;
+    return {static_cast<std::uint64_t>(low) << 32 | static_cast<std::uint64_t>(high)};
+  }
+};
+
+/// An impact, and what it moved.
+struct Resolved {
+  Impact impact;
+  Ledger moved;
+};
+
+/// The bits of a number that is not negative are in the order of such numbers.
+SCREE_HD inline std::uint64_t ordered_bits(double x) { return std::bit_cast<std::uint64_t>(x + 0.0); }
+
+/// The first meeting of a body, in one word, so that the smaller of two is the earlier one: its time, in
+/// parts of 2^-32 of the substep, and the number of the partner. Of meetings in the same part that of the
+/// first pair is the smaller one (PairNumbers).
+struct FirstMeeting {
+  std::uint64_t bits;
+
+  SCREE_HD static FirstMeeting of(double time, double step, BodyNumber partner) {
+    const double part = fmin(floor(parts * (time / step)), parts - 2);
+    return {static_cast<std::uint64_t>(part) << 32 | static_cast<std::uint64_t>(partner)};
+  }
+  SCREE_HD bool is_none() const { return bits == ~std::uint64_t{0}; }
+  SCREE_HD std::uint64_t part() const { return bits >> 32; }
+  /// Into the substep, rounded down (s).
+  SCREE_HD double time(double step) const { return static_cast<double>(part()) / parts * step; }
+  SCREE_HD BodyNumber partner() const { return BodyNumber{static_cast<std::int32_t>(bits & 0xffffffffu)}; }
+
+ private:
+  static constexpr double parts = 0x1p32;
+};
+
+inline constexpr std::uint64_t no_meeting = ~std::uint64_t{0};
+inline constexpr std::uint32_t no_impact_group = ~std::uint32_t{0};  ///< of meetings
+
+/// How many a round has found.
+struct RoundCounts {
+  std::uint64_t suspects = 0;
+  std::uint64_t meetings = 0;
+  std::uint64_t with_heavy = 0;  ///< of these, with a body that is heavy to the other
+};
+
+/// The first meeting of all: by its exact time, of equal ones by its pair.
+struct FirstOfAll {
+  std::uint64_t time = no_meeting, pair = no_meeting;
+};
+
+/// What the threads of a flight tell each other, and the host at the end.
+struct ImpactProgress {
+  RoundCounts counts[2];          ///< of the even rounds and of the odd ones
+  FirstOfAll first[2];            ///< likewise
+  double least_impact_speed = 0;  ///< FlightStage::least_impact_speed; infinite where nobody is faster (m/s)
+  bool needs_search = false;      ///< some body's meetings have no closed form
+  std::uint64_t near = 0;         ///< pairs that come near each other, listed before the first round
+  std::uint64_t chunks = 0;       ///< listed by this round
+  std::uint64_t impacts = 0;
+  std::uint64_t struck = 0;  ///< bodies
+  std::uint32_t late = 0;    ///< whether one of them was struck after the midpoint
+  std::uint32_t hit_bound = 0;
+};
+
+/// Where the rounds are.
+struct RoundsState {
+  /// They halt at the end, or where there is no room to go on: in the lists of the first half, or for what
+  /// the second half may resolve, which also asks for the pairs of each body.
+  enum class Halt : std::uint8_t { none, end, lists, results };
+
+  Halt halt = Halt::none;
+  bool resolving = false;  ///< in the second half
+  std::uint32_t round = 1;
+  std::int64_t kept = 0;    ///< meetings of the round before
+  std::int64_t chunks = 0;  ///< of the pairs of bodies that were struck in it
+  RoundCounts counts;       ///< of this round, once its first half is over
+};
+
+SCREE_HD inline LoadedParts loads_at(ConstView<LoadedParts> loaded, std::int64_t pair) {
+  return loaded.size() > 0 ? loaded[pair] : LoadedParts{};
+}
+
+/// Nothing to add up.
+struct NoSum {
+  SCREE_HD friend NoSum operator+(NoSum, NoSum) { return {}; }
+};
+
+/// Some pairs of a body that has been struck: chunk_size of them from the one given on, among its own.
+struct StruckPairs {
+  std::int32_t body, first;
+};
+
+/// One round after another, until nobody meets.
+struct ImpactProgram {
+  using State = RoundsState;
+  using Sum = NoSum;
+  static constexpr int threads = 256;
+  static constexpr std::uint32_t most_rounds = 1 << 16;
+  static constexpr int chunk_size = 8;
+
+  FlightStage stage;
+  ConstView<Pair> pairs;
+  ConstView<LoadedParts> loaded;  ///< of each pair; empty: none
+  AdjacencyView adjacency;        ///< from the first second half on
+  bool one_by_one;                ///< in the order of their times, one a round
+  int lanes;                      ///< threads that look at the pairs of one body
+  ImpactProgress* progress;
+  // Of each body:
+  View<std::uint64_t> first[2];             ///< FirstMeeting in the even rounds and in the odd ones
+  View<std::uint32_t> struck_in, waits_in;  ///< the last such round, 0 for none
+  View<std::uint32_t> impact_group_of;      ///< its first meeting with a lighter one
+  /// One of its meetings with what is not free, from 1 on; the next is that meeting's next_of_wall. 0: none.
+  View<std::uint32_t> walls_of;
+  // As long as there is room:
+  ConstView<std::int64_t> near;     ///< pairs that come near each other, for the first round
+  View<std::int64_t> suspects;      ///< pairs whose meeting is to be searched for in this round
+  View<Foreseen> meetings[2];       ///< of the even rounds and of the odd ones, in any order
+  View<ImpactGroup> impact_groups;  ///< of each meeting
+  View<Resolved> resolved;          ///< impacts, in any order
+  View<std::uint64_t> key;          ///< of each one's place
+  View<StruckBody> struck;
+  View<StruckPairs> chunks;  ///< of those that were struck in the last round; there is room for all bodies
+
+  SCREE_HD int phases(const State& state) const {
+    if (state.halt != State::Halt::none) return 0;
+    if (state.resolving) return state.counts.with_heavy > 0 ? 5 : 2;
+    return 1 + (progress->needs_search ? 1 : 0);
+  }
+  SCREE_HD std::int64_t items(const State& state, int phase) const {
+    if (state.resolving) {
+      const std::int64_t meetings_now = meetings_of(state);
+      return phase == 0 ? state.kept + 2 * lanes * meetings_now : meetings_now;
+    }
+    if (phase == 0) return state.round == 1 ? near_listed() : state.kept + chunk_size * state.chunks;
+    return suspects_listed(state);
+  }
+  std::int64_t most_items() const { return std::max(near.size(), suspects.size()); }
+
+  SCREE_HD Sum operator()(const State& state, int phase, std::int64_t item) const {
+    if (state.resolving) {
+      resolve(state, phase, item);
+    } else {
+      foresee(state, phase, item);
+    }
+    return {};
+  }
+
+  SCREE_HD State judge(State state, const Sum&) const {
+    if (state.resolving) {
+      state.resolving = false;
+      state.kept = meetings_of(state);
+      state.chunks = static_cast<std::int64_t>(progress->chunks);
+      ++state.round;
+      return state;
+    }
+    state.counts = progress->counts[state.round % 2];
+    const auto lacks = [](std::uint64_t needed, std::int64_t room) {
+      return static_cast<std::int64_t>(needed) > room;
+    };
+    if (lacks(progress->near, near.size()) || lacks(state.counts.suspects, suspects.size()) ||
+        lacks(state.counts.meetings, meetings[0].size())) {
+      state.halt = State::Halt::lists;
+      return state;
+    }
+    state.resolving = state.counts.meetings > 0 && state.round <= most_rounds;
+    if (!state.resolving) {
+      state.halt = State::Halt::end;
+    } else if (adjacency.is_empty() ||
+               lacks(progress->impacts + state.counts.meetings, std::min(resolved.size(), key.size())) ||
+               lacks(progress->struck + 2 * state.counts.meetings, struck.size())) {
+      state.halt = State::Halt::results;
+    }
+    return state;
+  }
+
+ private:
+  SCREE_HD static std::int64_t meetings_of(const State& state) {
+    return static_cast<std::int64_t>(state.counts.meetings);
+  }
+  /// As far as there is room.
+  SCREE_HD std::int64_t near_listed() const {
+    return std::min(static_cast<std::int64_t>(progress->near), near.size());
+  }
+  SCREE_HD std::int64_t suspects_listed(const State& state) const {
+    return std::min(static_cast<std::int64_t>(progress->counts[state.round % 2].suspects), suspects.size());
+  }
+  SCREE_HD Foreseen& meeting(const State& state, std::int64_t e) const {
+    return meetings[state.round % 2][e];
+  }
+  SCREE_HD FirstMeeting first_of(const State& state, std::int32_t body) const {
+    return {first[state.round % 2][body]};
+  }
+  SCREE_HD BodyNumber number(std::int32_t body) const { return stage.bodies.id[body]; }
+  SCREE_HD PairNumbers numbers_of(std::int64_t pair) const {
+    const auto [i, j] = pairs[pair];
+    return PairNumbers::of(number(i), number(j));
+  }
+  SCREE_HD LoadedParts loads_of(std::int64_t pair) const { return loads_at(loaded, pair); }
+  SCREE_HD std::int32_t partner_in(std::int64_t pair, std::int32_t body) const {
+    const auto [i, j] = pairs[pair];
+    return i == body ? j : i;
+  }
+
+  // The first half: meetings of the last round that have stayed as they were, and those of pairs of which a
+  // body has been struck in it.
+  SCREE_HD void foresee(const State& state, int phase, std::int64_t item) const {
+    if (phase == 1) {
+      foresee_pair(state, suspects[item]);
+    } else if (state.round == 1) {
+      foresee_or_list(state, near[item]);
+    } else if (item < state.kept) {
+      keep(state, meetings[(state.round + 1) % 2][item]);
+    } else {
+      look_again(state, item - state.kept);
+    }
+  }
+
+  /// At a pair of a body that has been struck; if both have been, only as one of the first.
+  SCREE_HD void look_again(const State& state, std::int64_t item) const {
+    const StruckPairs of = chunks[item / chunk_size];
+    const std::int64_t place = of.first + item % chunk_size;
+    if (place >= adjacency.count(of.body)) return;
+    const std::int64_t k = adjacency.pair(of.body, place);
+    const auto [i, j] = pairs[k];
+    if (of.body == j && was_struck(state, i)) return;
+    if (stage.top_speed[i] + stage.top_speed[j] > progress->least_impact_speed) look(state, k);
+  }
+  SCREE_HD void keep(const State& state, const Foreseen& last) const {
+    const auto [i, j] = pairs[last.pair];
+    for (const std::int32_t body : {i, j}) put(&walls_of[body], 0u);
+    if (last.time == HUGE_VAL || was_struck(state, i) || was_struck(state, j)) return;
+    add_meeting(state, last);
+  }
+  SCREE_HD bool was_struck(const State& state, std::int32_t body) const {
+    return struck_in[body] == state.round - 1;
+  }
+  SCREE_HD void look(const State& state, std::int64_t k) const {
+    const auto [i, j] = pairs[k];
+    ImpactLimits limits;
+    if (stage.may_meet(i, j, limits) && stage.come_near(i, j, limits, loads_of(k))) foresee_or_list(state, k);
+  }
+  /// Foresees the meeting of a pair that comes near, or lists it if that takes a search: searches that lie
+  /// side by side keep all threads of a warp busy.
+  SCREE_HD void foresee_or_list(const State& state, std::int64_t k) const {
+    const auto [i, j] = pairs[k];
+    if (!stage.needs_search(i) && !stage.needs_search(j)) return foresee_pair(state, k);
+    const auto place =
+        static_cast<std::int64_t>(count_up_together(&progress->counts[state.round % 2].suspects));
+    if (place < suspects.size()) suspects[place] = k;
+  }
+  [[gnu::noinline]] SCREE_HD void foresee_pair(const State& state, std::int64_t k) const {
+    const auto [i, j] = pairs[k];
+    const Meeting meeting = stage.next(i, j, loads_of(k));
+    if (meeting.time <= stage.terms.step) add_meeting(state, {meeting.time, k, meeting.part});
+  }
+  SCREE_HD void add_meeting(const State& state, const Foreseen& meeting) const {
+    RoundCounts& counts = progress->counts[state.round % 2];
+    const View<Foreseen>& list = meetings[state.round % 2];
+    const auto place = static_cast<std::int64_t>(count_up_together(&counts.meetings));
+    if (place < list.size()) list[place] = meeting;
+    const auto [i, j] = pairs[meeting.pair];
+    if (is_of_heavy(i, j)) count_up(&counts.with_heavy);
+    lower_first(state, i, j, meeting.time);
+    lower_first(state, j, i, meeting.time);
+    if (one_by_one) lower(&progress->first[state.round % 2].time, ordered_bits(meeting.time));
+  }
+  SCREE_HD void lower_first(const State& state, std::int32_t body, std::int32_t other, double time) const {
+    if (counts_for(body, other)) lower(&first[state.round % 2][body], of_meeting(other, time).bits);
+  }
+  SCREE_HD FirstMeeting of_meeting(std::int32_t partner, double time) const {
+    return FirstMeeting::of(time, stage.terms.step, number(partner));
+  }
+  SCREE_HD bool is_of_heavy(std::int32_t i, std::int32_t j) const {
+    return stage.is_heavy_to(i, j) || stage.is_heavy_to(j, i);
+  }
+
+  // The second half.
+  SCREE_HD void resolve(const State& state, int phase, std::int64_t item) const {
+    const bool with_heavy = state.counts.with_heavy > 0;
+    if (phase == 0) {
+      // Nobody counts in those of the next round yet.
+      if (item == 0) {
+        progress->counts[(state.round + 1) % 2] = {};
+        progress->first[(state.round + 1) % 2] = {};
+        progress->chunks = 0;
+      }
+      if (item < state.kept) {
+        forget(state, meetings[(state.round + 1) % 2][item]);
+      } else {
+        prepare(state, item - state.kept);
+      }
+    } else if (!with_heavy || phase == 3) {
+      resolve_first(state, item);
+    } else if (phase == 1) {
+      scale_impact_groups(state, item);
+    } else if (phase == 2) {
+      gather_impact_groups(state, item);
+    } else {
+      end_impact_groups(state, item);
+    }
+  }
+
+  /// Whether a meeting with the other has its turn among those of a body.
+  SCREE_HD bool counts_for(std::int32_t body, std::int32_t other) const {
+    return stage.is_free(body) && !stage.is_heavy_to(body, other);
+  }
+  /// All that are first; no two of them share a body but one that is heavy to both others.
+  SCREE_HD bool is_first(const State& state, const Foreseen& of) const {
+    if (one_by_one) return progress->first[state.round % 2].pair == numbers_of(of.pair).bits;
+    const auto [i, j] = pairs[of.pair];
+    return is_first_of(state, i, j, of) && is_first_of(state, j, i, of);
+  }
+  SCREE_HD bool is_first_of(const State& state, std::int32_t body, std::int32_t other,
+                            const Foreseen& of) const {
+    if (!counts_for(body, other)) return true;
+    return first_of(state, body).bits == of_meeting(other, of.time).bits && waits_in[body] != state.round;
+  }
+  SCREE_HD ImpactGroup& impact_group(std::int32_t heavy) const {
+    return impact_groups[impact_group_of[heavy]];
+  }
+
+  /// Of a meeting of the last round: what was first then is asked for no more, and its place is the next
+  /// round's.
+  SCREE_HD void forget(const State& state, const Foreseen& last) const {
+    const auto [i, j] = pairs[last.pair];
+    for (const std::int32_t body : {i, j}) put(&first[(state.round + 1) % 2][body], no_meeting);
+  }
+  /// Each body of each meeting has `lanes` items.
+  SCREE_HD void prepare(const State& state, std::int64_t item) const {
+    const auto lane = static_cast<int>(item % lanes);
+    const std::int64_t e = item / lanes / 2;
+    Foreseen& of = meeting(state, e);
+    const auto [i, j] = pairs[of.pair];
+    const bool is_i = item / lanes % 2 == 0;
+    const std::int32_t body = is_i ? i : j;
+    const std::int32_t other = is_i ? j : i;
+    if (lane == 0) {
+      if (is_i) start_meeting(state, of, e);
+      if (stage.is_heavy_to(body, other)) lower(&impact_group_of[body], static_cast<std::uint32_t>(e));
+    }
+    if (!one_by_one && counts_for(body, other) &&
+        first_of(state, body).bits == of_meeting(other, of.time).bits)
+      find_waits(state, body, lane);
+  }
+  SCREE_HD void start_meeting(const State& state, Foreseen& of, std::int64_t e) const {
+    const auto [i, j] = pairs[of.pair];
+    if (stage.is_free(i) != stage.is_free(j))
+      of.next_of_wall = exchange(&walls_of[stage.is_free(i) ? i : j], static_cast<std::uint32_t>(e + 1));
+    if (is_of_heavy(i, j)) impact_groups[e] = {};
+    FirstOfAll& of_all = progress->first[state.round % 2];
+    if (one_by_one && of_all.time == ordered_bits(of.time)) lower(&of_all.pair, numbers_of(of.pair).bits);
+  }
+
+  /// Makes those wait that are to, of a body that has a meeting and of its partners that have one. A pair is
+  /// looked at from the body that is in fewer pairs, since a hub is in very many.
+  SCREE_HD void find_waits(const State& state, std::int32_t body, int lane) const {
+    if (adjacency.is_hub(body)) return find_waits_of_hubs(state, body, lane);
+    const std::int64_t own = adjacency.count(body);
+    for (std::int64_t place = lane; place < own; place += lanes) {
+      const std::int64_t k = adjacency.pair(body, place);
+      const std::int32_t other = partner_in(k, body);
+      if (!stage.is_free(other)) continue;
+      const std::int64_t others = adjacency.count(other);
+      if (own < others || (own == others && body < other)) make_wait(state, body, other);
+    }
+  }
+  SCREE_HD void find_waits_of_hubs(const State& state, std::int32_t body, int lane) const {
+    for (std::int64_t place = lane; place < adjacency.between_hubs.size(); place += lanes) {
+      const auto [i, j] = pairs[adjacency.between_hubs[place]];
+      if (i == body) make_wait(state, i, j);
+    }
+  }
+
+  /// Of two bodies that could meet, the one whose first meeting is later waits for the other's, if that could
+  /// drive the other into it before. Of meetings at the same time the first pair's goes first, if one body is
+  /// heavy to the other: both meetings would change that. Nobody waits in a circle: meetings are in one
+  /// order.
+  SCREE_HD void make_wait(const State& state, std::int32_t i, std::int32_t j) const {
+    const FirstMeeting of_i = first_of(state, i);
+    const FirstMeeting of_j = first_of(state, j);
+    if (of_i.is_none() || of_j.is_none()) return;
+    const bool with_j = of_i.partner() == number(j);
+    const bool with_i = of_j.partner() == number(i);
+    if (with_i && with_j) return;
+    const bool at_once = of_i.part() == of_j.part();
+    if (at_once && !is_of_heavy(i, j)) return;
+    const bool i_goes = at_once ? PairNumbers::of(number(i), of_i.partner()).bits <
+                                      PairNumbers::of(number(j), of_j.partner()).bits
+                                : of_i.part() < of_j.part();
+    const std::int32_t goes = i_goes ? i : j;
+    const std::int32_t waits = i_goes ? j : i;
+    const bool with_it = i_goes ? with_j : with_i;
+    if (with_it || may_meet_before(goes, waits, i_goes ? of_i : of_j, i_goes ? of_j : of_i))
+      put(&waits_in[waits], state.round);
+  }
+  /// Whether a body may meet another one between its first meeting and the other's.
+  SCREE_HD bool may_meet_before(std::int32_t body, std::int32_t other, const FirstMeeting& of_body,
+                                const FirstMeeting& of_other) const {
+    const std::int32_t partner = stage.bodies.place(of_body.partner());
+    const double from = of_body.time(stage.terms.step);
+    const double until = of_other.time(stage.terms.step);
+    const double driven = stage.top_speed[body] + 2 * stage.top_speed[partner];  // as by a moving wall
+    const BodyFlight flight = stage.flight(body);
+    const BodyFlight others = stage.flight(other);
+    const double reach = bounding_radius(flight.shape, flight.size) +
+                         bounding_radius(others.shape, others.size) +
+                         (driven + stage.top_speed[other]) * (until - from);
+    const Vec3 offset = stage.bodies.period.nearest(others.position_at(from) - flight.position_at(from));
+    return offset.squaredNorm() <= reach * reach;
+  }
+
+  /// Notes the fastest of the lighter bodies of each impact group, which sets the units of its sums.
+  SCREE_HD void scale_impact_groups(const State& state, std::int64_t e) const {
+    const auto [i, j] = pairs[meeting(state, e).pair];
+    scale_impact_group(i, j);
+    scale_impact_group(j, i);
+  }
+  SCREE_HD void scale_impact_group(std::int32_t body, std::int32_t other) const {
+    if (stage.is_heavy_to(body, other))
+      raise(&impact_group(body).fastest, ordered_bits(stage.top_speed[other]));
+  }
+  /// Adds up what the first meetings give to heavy bodies.
+  SCREE_HD void gather_impact_groups(const State& state, std::int64_t e) const {
+    const Foreseen& of = meeting(state, e);
+    const auto [i, j] = pairs[of.pair];
+    if (!is_of_heavy(i, j) || !is_first(state, of)) return;
+    SolvedImpact solved;
+    if (!solve(state, of, solved)) return;
+    const std::int32_t heavy = stage.is_heavy_to(i, j) ? i : j;
+    add_to_impact_group(stage, heavy, solved, numbers_of(of.pair).bits, impact_group(heavy));
+  }
+
+  SCREE_HD void resolve_first(const State& state, std::int64_t e) const {
+    Foreseen& of = meeting(state, e);
+    if (!is_first(state, of)) return;
+    const auto [i, j] = pairs[of.pair];
+    const StruckBody before_i = before_impacts(stage, i);
+    const StruckBody before_j = before_impacts(stage, j);
+    SolvedImpact solved;
+    if (!solve(state, of, solved)) {
+      of.time = HUGE_VAL;
+      return;
+    }
+    const bool heavy_i = stage.is_heavy_to(i, j);
+    const bool heavy_j = stage.is_heavy_to(j, i);
+    const auto place = static_cast<std::int64_t>(count_up(&progress->impacts));
+    if (heavy_i || heavy_j) {
+      const std::int32_t heavy = heavy_i ? i : j;
+      ImpactGroup& with = impact_group(heavy);
+      const double scale = ImpactGroupOutcome(stage, heavy, with).scale();
+      resolved[place].moved = fly_on_scaled(stage, heavy, solved, scale, resolved[place].impact);
+      if (with.first_missing == ~numbers_of(of.pair).bits) with.place = static_cast<std::uint64_t>(place);
+    } else {
+      resolved[place].moved = fly_on(stage, solved, resolved[place].impact);
+    }
+    if (!heavy_i) mark_struck(state, before_i);
+    if (!heavy_j) mark_struck(state, before_j);
+    key[place] = key_of(state, of.pair);
+    for (int k = 0; k < solved.count; ++k)
+      if (solved.is_first_of_wall(k)) add_impact_of_wall(state, solved, solved.wall[k]);
+    if (of.time > 0.5 * stage.terms.step) raise(&progress->late, 1u);
+    if (std::max(heavy_i ? 0.0 : stage.budget_used[i], heavy_j ? 0.0 : stage.budget_used[j]) >= impacts_end)
+      raise(&progress->hit_bound, 1u);
+  }
+  [[gnu::noinline]] SCREE_HD bool solve(const State& state, const Foreseen& of, SolvedImpact& solved) const {
+    const auto [i, j] = pairs[of.pair];
+    return solve_impact(stage, i, j, {.time = of.time, .part = of.part}, loads_of(of.pair),
+                        OtherWalls{*this, state, of.pair}, solved);
+  }
+  SCREE_HD std::uint64_t key_of(const State& state, std::int64_t pair) const {
+    return std::uint64_t{state.round} * static_cast<std::uint64_t>(pairs.size()) +
+           static_cast<std::uint64_t>(pair);
+  }
+
+  /// The meetings of a pair's free body with other walls, in the order of their pairs.
+  struct OtherWalls {
+    const ImpactProgram& program;
+    const State& state;
+    std::int64_t pair;
+
+    template <class Then>
+    SCREE_HD void operator()(const Then& then) const {
+      const auto [i, j] = program.pairs[pair];
+      const bool free_i = program.stage.is_free(i);
+      if (free_i == program.stage.is_free(j)) return;
+      const std::int32_t body = free_i ? i : j;
+      const Foreseen* of = from(body, 0);
+      for (; of != nullptr; of = from(body, program.numbers_of(of->pair).bits + 1)) {
+        const auto [first, second] = program.pairs[of->pair];
+        if (of->pair != pair) then(first == body ? second : first, of->part);
+      }
+    }
+    /// The first of a body's from a pair on; null if there is none.
+    SCREE_HD const Foreseen* from(std::int32_t body, std::uint64_t least) const {
+      const Foreseen* next = nullptr;
+      std::uint64_t of_next = ~std::uint64_t{0};
+      for (std::uint32_t e = program.walls_of[body]; e != 0;) {
+        const Foreseen& of = program.meeting(state, e - 1);
+        const std::uint64_t numbers = program.numbers_of(of.pair).bits;
+        if (numbers >= least && numbers < of_next) {
+          next = &of;
+          of_next = numbers;
+        }
+        e = of.next_of_wall;
+      }
+      return next;
+    }
+  };
+
+  /// There is room, since its meeting is not resolved besides.
+  SCREE_HD void add_impact_of_wall(const State& state, const SolvedImpact& solved, std::int32_t wall) const {
+    const std::int32_t body = stage.is_free(solved.i) ? solved.i : solved.j;
+    for (std::uint32_t e = walls_of[body]; e != 0;) {
+      const Foreseen& of = meeting(state, e - 1);
+      e = of.next_of_wall;
+      const auto [i, j] = pairs[of.pair];
+      if (i != wall && j != wall) continue;
+      const auto place = static_cast<std::int64_t>(count_up(&progress->impacts));
+      resolved[place] = {solved.of_wall(wall), Ledger{}};
+      key[place] = key_of(state, of.pair);
+    }
+  }
+  SCREE_HD void mark_struck(const State& state, const StruckBody& before) const {
+    const std::int32_t body = before.body;
+    if (!stage.is_free(body)) return;
+    if (struck_in[body] == 0) struck[static_cast<std::int64_t>(count_up(&progress->struck))] = before;
+    struck_in[body] = state.round;
+    const std::int64_t pairs_of_it = adjacency.count(body);
+    const std::int64_t needed = (pairs_of_it + chunk_size - 1) / chunk_size;
+    const auto place = static_cast<std::int64_t>(add(&progress->chunks, static_cast<std::uint64_t>(needed)));
+    for (std::int64_t c = 0; c < needed; ++c)
+      chunks[place + c] = {body, static_cast<std::int32_t>(c * chunk_size)};
+  }
+
+  /// Gives each impact group to its heavy body.
+  SCREE_HD void end_impact_groups(const State& state, std::int64_t e) const {
+    const auto [i, j] = pairs[meeting(state, e).pair];
+    if (!is_of_heavy(i, j)) return;
+    const std::int32_t heavy = stage.is_heavy_to(i, j) ? i : j;
+    if (impact_group_of[heavy] != static_cast<std::uint32_t>(e)) return;
+    impact_group_of[heavy] = no_impact_group;
+    const ImpactGroup& given = impact_groups[e];
+    if (given.impacts == 0) return;
+    mark_struck(state, before_impacts(stage, heavy));
+    const ImpactGroupOutcome outcome(stage, heavy, given);
+    Ledger& moved = resolved[static_cast<std::int64_t>(given.place)].moved;
+    moved = moved + outcome.fly_on(stage, heavy);
+  }
+};
+
+}  // namespace scree::detail

@@ -1,0 +1,321 @@
+#include "sim/impacts/impact_rounds.hpp"
+
+#include "core/parallel.hpp"
+#include "core/space_atomic.hpp"
+#include "core/space_rounds.hpp"
+#include "core/space_tiles.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <type_traits>
+#include <utility>
+
+namespace scree {
+
+namespace {
+
+using detail::FlightBounds;
+using detail::ImpactProgram;
+using detail::ImpactProgress;
+using detail::Resolved;
+using detail::RoundsState;
+
+/// Who has had an impact later than the flight begins has been where it was before that. Also looks at the
+/// laws.
+struct StartFlight {
+  FlightStage stage;
+  SCREE_HD FlightBounds operator()(std::int64_t k) const {
+    FlightBounds bounds;
+    const ConstView<PairLaw> laws = stage.terms.laws.table;
+    if (k < laws.size()) bounds.restitution = laws[k].restitution;
+    if (k >= stage.clock.size()) return bounds;
+    const double from = stage.terms.from;
+    stage.clock[k] = from > 0 ? fmax(stage.clock[k], from) : 0.0;
+    stage.budget_used[k] = 0;
+    stage.bound(static_cast<std::int32_t>(k));
+    bounds.top_speed = stage.top_speed[k];
+    bounds.smallest = stage.size_of(k);
+    bounds.needs_search = stage.needs_search(static_cast<std::int32_t>(k));
+    return bounds;
+  }
+};
+
+struct StartProgress {
+  FlightStage stage;
+  ConstView<FlightBounds> bounds;
+  ImpactProgress* progress;
+  SCREE_HD void operator()(std::int64_t) const {
+    const double least_impact_speed =
+        stage.find_least_impact_speed(bounds[0].smallest, bounds[0].restitution);
+    const bool nobody = 2 * bounds[0].top_speed <= least_impact_speed;
+    *progress = {};
+    progress->least_impact_speed = nobody ? HUGE_VAL : least_impact_speed;
+    progress->needs_search = bounds[0].needs_search;
+  }
+};
+
+struct MarkCrowd {
+  FlightStage stage;
+  ConstView<Pair> pairs;
+  ConstView<LoadedParts> loaded;
+  SCREE_HD void operator()(std::int64_t k) const {
+    if (loaded[k].bits == 0) return;
+    const auto [i, j] = pairs[k];
+    if (!stage.is_free(i) || !stage.is_free(j)) return;
+    for (const std::int32_t body : {i, j}) raise(&stage.in_crowd[body], 1u);
+  }
+};
+
+/// What the first round begins with.
+struct ResetBodies {
+  ImpactProgram program;
+  SCREE_HD void operator()(std::int64_t body) const {
+    program.first[0][body] = program.first[1][body] = detail::no_meeting;
+    program.struck_in[body] = program.waits_in[body] = program.walls_of[body] = 0;
+    program.impact_group_of[body] = detail::no_impact_group;
+  }
+};
+
+/// Pairs that come near each other. A loop of its own looks at more pairs at once than the rounds, which take
+/// many registers. Of four pairs the speeds are on their way together: most pairs are too slow.
+struct ListNear {
+  static constexpr int together = 4;
+  SCREE_HD static std::int64_t items(std::int64_t pairs) { return (pairs + together - 1) / together; }
+
+  FlightStage stage;
+  ConstView<Pair> pairs;
+  ConstView<LoadedParts> loaded;
+  ImpactProgress* progress;
+  View<std::int64_t> near;
+  SCREE_HD void operator()(std::int64_t item) const {
+    const std::int64_t stride = items(pairs.size());
+    const double least = progress->least_impact_speed;
+    bool is_fast[together];
+    for (int p = 0; p < together; ++p) {
+      const std::int64_t k = item + p * stride;
+      const Pair pair = pairs[k < pairs.size() ? k : item];
+      is_fast[p] = k < pairs.size() && stage.top_speed[pair.i] + stage.top_speed[pair.j] > least;
+    }
+    for (int p = 0; p < together; ++p)
+      if (is_fast[p]) look_at(item + p * stride);
+  }
+
+ private:
+  SCREE_HD void look_at(std::int64_t k) const {
+    const auto [i, j] = pairs[k];
+    ImpactLimits limits;
+    if (!stage.may_meet(i, j, limits) || !stage.come_near(i, j, limits, detail::loads_at(loaded, k))) return;
+    const auto place = static_cast<std::int64_t>(count_up_together(&progress->near));
+    if (place < near.size()) near[place] = k;
+  }
+};
+
+struct LoadOrdered {
+  ConstView<std::int64_t> order;
+  ConstView<Resolved> resolved;
+  SCREE_HD Ledger operator()(std::int64_t k) const { return resolved[order[k]].moved; }
+};
+
+struct PutInOrder {
+  ConstView<std::int64_t> order;
+  ConstView<Resolved> resolved;
+  ConstView<BodyNumber> number;
+  View<Impact> impacts;
+  SCREE_HD void operator()(std::int64_t k) const {
+    impacts[k] = resolved[order[k]].impact;
+    impacts[k].i = static_cast<std::int32_t>(number[impacts[k].i]);
+    impacts[k].j = static_cast<std::int32_t>(number[impacts[k].j]);
+  }
+};
+
+struct CountOff {
+  View<std::int64_t> order;
+  SCREE_HD void operator()(std::int64_t k) const { order[k] = k; }
+};
+
+struct Restore {
+  ConstView<StruckBody> struck;
+  BodyView bodies;
+  View<double> clock;
+  SCREE_HD void operator()(std::int64_t k) const { restore(struck[k], bodies, clock); }
+};
+
+constexpr std::int64_t least_room = 4096;
+constexpr int lanes_on_device = 8;
+
+/// Makes room for so many, and keeps the `used` first.
+template <class T, class Space>
+void grow(Array<T, Space>& list, std::int64_t used, std::int64_t needed) {
+  if (needed > list.capacity()) {
+    Array<T, Space> larger(std::max(needed, 2 * list.capacity()));
+    copy_bytes<Space, Space>(larger.data(), list.data(), static_cast<std::size_t>(used) * sizeof(T));
+    list.swap(larger);
+  }
+  list.resize(list.capacity());
+}
+
+std::int64_t signed_count(std::uint64_t count) { return static_cast<std::int64_t>(count); }
+
+}  // namespace
+
+template <class Space>
+bool ImpactRounds<Space>::any_may_meet(const FlightTerms& terms, const ResponseParameters& parameters,
+                                       BodyView bodies) {
+  log_.resize(bodies.count());
+  start({terms, parameters, bodies, log_});
+  copy_bytes<Host, Space>(&progress_, shared_progress_.data(), sizeof(progress_));
+  return progress_.least_impact_speed != HUGE_VAL;
+}
+
+template <class Space>
+Ledger ImpactRounds<Space>::resolve(const Problem& problem, const ResponseParameters& parameters,
+                                    BodyView bodies) {
+  log_.resize(bodies.count());
+  const bool has_crowds =
+      problem.terms.bounces && parameters.restitution && !problem.one_by_one && problem.loaded.size() > 0;
+  log_.in_crowd.resize(has_crowds ? bodies.count() : 0);
+  const FlightStage stage(problem.terms, parameters, bodies, log_);
+  impacts_.resize(0);
+  struck_.resize(0);
+  rounds_ = 0;
+  if (!any_may_meet(problem.terms, parameters, bodies)) {
+    log_.in_crowd.resize(0);
+    return {};
+  }
+  if (has_crowds) {
+    parallel::fill("impact.crowd", log_.in_crowd, 0u);
+    parallel::for_each<Space>("impact.crowd", problem.pairs.size(),
+                              MarkCrowd{stage, problem.pairs, problem.loaded});
+  }
+  if (problem.pairs_made == 0 || problem.pairs_made != adjacency_of_) adjacency_.clear();
+  parallel::for_each<Space>("impact.near", bodies.count(), ResetBodies{program(stage, problem)});
+  list_near(stage, problem);
+  RoundsState state;
+  for (;;) {
+    state = parallel::run_rounds<Space>("impact.rounds", program(stage, problem), state);
+    if (state.halt == RoundsState::Halt::end) break;
+    make_room(stage, problem, state);
+  }
+  rounds_ = state.round - 1;
+  if (state.round > 1 || state.counts.meetings > 0)
+    copy_bytes<Host, Space>(&progress_, shared_progress_.data(), sizeof(progress_));
+  if (state.counts.meetings > 0) progress_.hit_bound = 1;
+  struck_.resize(signed_count(progress_.struck));
+  return put_in_order(problem.pairs.size(), bodies.id);
+}
+
+template <class Space>
+void ImpactRounds<Space>::start(const FlightStage& stage) {
+  shared_progress_.resize(1);
+  bounds_.resize(1);
+  parallel::sum_into<FlightBounds, Space>("impact.start",
+                                          std::max(stage.bodies.count(), stage.terms.laws.table.size()),
+                                          StartFlight{stage}, bounds_scratch_, bounds_.data());
+  parallel::for_each<Space>("impact.start", 1,
+                            StartProgress{stage, std::as_const(bounds_).view(), shared_progress_.data()});
+}
+
+template <class Space>
+ImpactProgram ImpactRounds<Space>::program(const FlightStage& stage, const Problem& problem) {
+  const std::int64_t n = stage.bodies.count();
+  for (auto& of_bodies : first_) of_bodies.resize(n);
+  for (auto* of_bodies : {&struck_in_, &waits_in_, &impact_group_of_, &walls_of_}) of_bodies->resize(n);
+  grow(near_, near_.size(), least_room);
+  grow(suspects_, 0, least_room);
+  for (auto& list : meetings_) grow(list, list.size(), least_room);
+  grow(impact_groups_, 0, meetings_[0].size());
+  grow(resolved_, resolved_.size(), least_room);
+  grow(key_, key_.size(), least_room);
+  grow(struck_, struck_.size(), least_room);
+  return {.stage = stage,
+          .pairs = problem.pairs,
+          .loaded = problem.loaded,
+          .adjacency = adjacency_.view(),
+          .one_by_one = problem.one_by_one,
+          .lanes = std::is_same_v<Space, Host> ? 1 : lanes_on_device,
+          .progress = shared_progress_.data(),
+          .first = {first_[0].view(), first_[1].view()},
+          .struck_in = struck_in_.view(),
+          .waits_in = waits_in_.view(),
+          .impact_group_of = impact_group_of_.view(),
+          .walls_of = walls_of_.view(),
+          .near = near_.view(),
+          .suspects = suspects_.view(),
+          .meetings = {meetings_[0].view(), meetings_[1].view()},
+          .impact_groups = impact_groups_.view(),
+          .resolved = resolved_.view(),
+          .key = key_.view(),
+          .struck = struck_.view(),
+          .chunks = chunks_.view()};
+}
+
+template <class Space>
+void ImpactRounds<Space>::list_near(const FlightStage& stage, const Problem& problem) {
+  parallel::for_each<Space>(
+      "impact.near", ListNear::items(problem.pairs.size()),
+      ListNear{stage, problem.pairs, problem.loaded, shared_progress_.data(), near_.view()});
+}
+
+template <class Space>
+void ImpactRounds<Space>::make_room(const FlightStage& stage, const Problem& problem, RoundsState& state) {
+  ImpactProgress* progress = shared_progress_.data();
+  copy_bytes<Host, Space>(&progress_, progress, sizeof(progress_));
+  const std::int64_t meetings = signed_count(state.counts.meetings);
+  if (state.halt == RoundsState::Halt::lists) {
+    // The first half is done again.
+    grow(suspects_, 0, signed_count(state.counts.suspects));
+    for (auto& list : meetings_) grow(list, list.size(), std::max(meetings, meetings_[0].size()));
+    progress_.counts[state.round % 2] = {};
+    const std::int64_t near = signed_count(progress_.near);
+    const bool all_listed = near <= near_.size();
+    if (!all_listed) progress_.near = 0;
+    copy_bytes<Space, Host>(progress, &progress_, sizeof(progress_));
+    if (!all_listed) {
+      grow(near_, 0, near);
+      list_near(stage, problem);
+    }
+  } else {
+    const std::int64_t impacts = signed_count(progress_.impacts);
+    const std::int64_t struck = signed_count(progress_.struck);
+    grow(resolved_, impacts, impacts + meetings);
+    grow(key_, impacts, impacts + meetings);
+    grow(struck_, struck, struck + 2 * meetings);
+    if (adjacency_.view().is_empty()) {
+      adjacency_.build(problem.pairs, ConstView<Mobility>(stage.bodies.mobility));
+      adjacency_of_ = problem.pairs_made;
+      chunks_.resize(adjacency_.view().row.size() / ImpactProgram::chunk_size + stage.bodies.count());
+    }
+  }
+  state.halt = RoundsState::Halt::none;
+}
+
+/// Returns the sum of what the impacts moved.
+template <class Space>
+Ledger ImpactRounds<Space>::put_in_order(std::int64_t pairs, ConstView<BodyNumber> number) {
+  const std::int64_t n = signed_count(progress_.impacts);
+  impacts_.resize(n);
+  if (n == 0) return {};
+  key_.resize(n);
+  order_.resize(n);
+  parallel::for_each<Space>("impact.order", n, CountOff{order_.view()});
+  parallel::sort_by_key("impact.order", key_, order_,
+                        std::bit_width(static_cast<std::uint64_t>((rounds_ + 1) * pairs)));
+  const ConstView<std::int64_t> order = order_.view();
+  parallel::for_each<Space>("impact.order", n, PutInOrder{order, resolved_.view(), number, impacts_.view()});
+  return parallel::sum_by_tiles<Ledger, Space>("impact.moved", n, LoadOrdered{order, resolved_.view()});
+}
+
+template <class Space>
+void ImpactRounds<Space>::undo(BodyView bodies) {
+  parallel::for_each<Space>("impact.undo", struck_.size(),
+                            Restore{struck_.view(), bodies, log_.clock.view()});
+  struck_.resize(0);
+  impacts_.resize(0);
+  progress_ = {};
+}
+
+#define SCREE_INSTANTIATE(Space) template class ImpactRounds<Space>;
+SCREE_FOR_EACH_SPACE(SCREE_INSTANTIATE)
+#undef SCREE_INSTANTIATE
+
+}  // namespace scree

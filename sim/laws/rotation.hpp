@@ -1,0 +1,138 @@
+// Free rotation of a rigid body, exact in angular momentum.
+#pragma once
+
+#include "core/bodies.hpp"
+#include "core/math.hpp"
+#include "core/tolerances.hpp"
+#include "sim/laws/simd/free_turn.hpp"
+
+namespace scree {
+
+/// Kinetic energy of rotation (J); 0 for a body without inertia (not free).
+SCREE_HD inline double rotational_energy(const Quat& orientation, const Vec3& spin,
+                                         const Vec3& inverse_inertia) {
+  if (inverse_inertia.x() == 0) return 0;
+  const Vec3 w = orientation.conjugate() * spin;
+  return 0.5 * w.cwiseProduct(w).cwiseQuotient(inverse_inertia).sum();
+}
+
+/// Angular momentum about the centre of mass, world frame (kg m^2/s); 0 for a body that is not free.
+SCREE_HD inline Vec3 spin_momentum(const Quat& orientation, const Vec3& spin, const Vec3& inverse_inertia) {
+  if (inverse_inertia.x() == 0) return Vec3::Zero();
+  return orientation * (orientation.conjugate() * spin).cwiseQuotient(inverse_inertia);
+}
+
+/// Bound on the spin of a body in free rotation, at any time (rad/s), by its angular momentum in its own
+/// frame and by the energy that goes with it.
+SCREE_HD inline double fastest_spin(const Vec3& momentum, const Vec3& inverse_inertia) {
+  const double largest = inverse_inertia.maxCoeff();
+  const double twice_energy = momentum.cwiseProduct(momentum).dot(inverse_inertia);
+  return sqrt(fmin(largest * largest * momentum.squaredNorm(), largest * twice_energy));
+}
+SCREE_HD inline double fastest_spin(const Quat& orientation, const Vec3& spin, const Vec3& inverse_inertia) {
+  if (has_equal_moments(inverse_inertia)) return spin.norm();
+  return fastest_spin((orientation.conjugate() * spin).cwiseQuotient(inverse_inertia), inverse_inertia);
+}
+
+/// Arithmetic of one body.
+struct Number {
+  using V = double;
+  SCREE_HD static double root(double a) { return sqrt(a); }
+  SCREE_HD static bool any(bool condition) { return condition; }
+  SCREE_HD static simd::HalfTurn<Number> half_turn(double square) {
+    if (square <= simd::most_half_turn * simd::most_half_turn) return simd::half_turn_series<Number>(square);
+    const double angle = sqrt(square);
+    return {sin(angle) / angle, cos(angle)};
+  }
+};
+
+/// The axes of a body by ascending moment.
+struct AxisOrder {
+  int axis[3];
+  double side;  ///< -1 where the last one must be turned round, so that they are right-handed
+
+  SCREE_HD explicit AxisOrder(const Vec3& inverse_inertia) {
+    int smallest = 0;
+    int largest = 0;
+    for (int k = 1; k < 3; ++k) {
+      if (inverse_inertia[k] > inverse_inertia[smallest]) smallest = k;
+      if (inverse_inertia[k] <= inverse_inertia[largest]) largest = k;
+    }
+    axis[0] = smallest;
+    axis[1] = 3 - smallest - largest;
+    axis[2] = largest;
+    side = axis[1] == (smallest + 1) % 3 ? 1.0 : -1.0;
+  }
+
+  /// The moments, or what else has no direction.
+  SCREE_HD Vec3 ordered(const Vec3& a) const { return {a[axis[0]], a[axis[1]], a[axis[2]]}; }
+  /// A vector, or that of a quaternion: all of a body's and the world's may be so renamed together.
+  SCREE_HD Vec3 renamed(const Vec3& a) const { return {a[axis[0]], a[axis[1]], side * a[axis[2]]}; }
+  SCREE_HD Vec3 named_back(const Vec3& a) const {
+    Vec3 back;
+    back[axis[0]] = a.x();
+    back[axis[1]] = a.y();
+    back[axis[2]] = side * a.z();
+    return back;
+  }
+};
+
+enum class RotationOrder { second, fourth };
+
+namespace detail {
+
+/// rotate_freely() of a body with different moments: called and not copied to where it is used, since it is
+/// long.
+[[gnu::noinline]] SCREE_HD inline double rotate_unequal(Quat& orientation, Vec3& spin,
+                                                        const Vec3& inverse_inertia, double dt,
+                                                        RotationOrder order) {
+  const AxisOrder axes(inverse_inertia);
+  const auto v3 = [](const Vec3& a) { return simd::V3<Number>{a.x(), a.y(), a.z()}; };
+  const auto vec3 = [&axes](const simd::V3<Number>& a) { return axes.named_back(Vec3(a.x, a.y, a.z)); };
+  const Vec3 inverse = axes.ordered(inverse_inertia);
+  simd::Top<Number> top{{orientation.w(), v3(axes.renamed(orientation.vec()))},
+                        v3(axes.renamed(spin)),
+                        v3(inverse.cwiseInverse()),
+                        v3(inverse)};
+  const auto start = simd::start_of(top);
+  const double turn = start.fastest * fabs(dt);
+  double drift = 0;
+  if (turn < tolerance::hardly_a_turn) {
+    simd::turn_little(top, start, dt);
+  } else {
+    constexpr double most_steps = 1000;
+    const double steps = fmin(most_steps, fmax(1.0, ceil(turn / tolerance::split_turn)));
+    drift = simd::turn_by_splitting(top, start, dt, static_cast<int>(steps), order == RotationOrder::fourth);
+  }
+  orientation.w() = top.orientation.w;
+  orientation.vec() = vec3(top.orientation.v);
+  spin = vec3(top.spin);
+  return drift;
+}
+
+}  // namespace detail
+
+/// Turns a free body for the time dt (s). Equal moments: exact. Otherwise the symmetric three-axis splitting
+/// of the body-frame equations (Touma and Wisdom 1994; Dullweber, Leimkuhler, McLachlan 1997, sec. 3): second
+/// order, world angular momentum kept to rounding; then a small turn restores the energy, also to rounding.
+/// What turns far goes in several such steps.
+/// Fourth order: Suzuki's composition of five such steps, of p, p, 1 - 4 p, p, p times the length, p = 1 / (4
+/// - 4^(1/3)) (Suzuki 1990, "Fractal decomposition of exponential operators"). What hardly turns does so
+/// about its mean spin (Magnus' second term is of third order, and rounding here), at a quarter of the cost.
+/// Returns the drift of the rotational energy (J); where it is but rounding by construction, 0.
+SCREE_HD inline double rotate_freely(Quat& orientation, Vec3& spin, const Vec3& inverse_inertia, double dt,
+                                     RotationOrder order = RotationOrder::second) {
+  if (has_equal_moments(inverse_inertia)) {
+    orientation = (rotation_of(spin * dt) * orientation).normalized();
+    return 0;
+  }
+  return detail::rotate_unequal(orientation, spin, inverse_inertia, dt, order);
+}
+
+/// Inverse inertia tensor in the world frame.
+SCREE_HD inline Mat3 world_inverse_inertia(const Quat& orientation, const Vec3& inverse_inertia) {
+  if (has_equal_moments(inverse_inertia)) return inverse_inertia.x() * Mat3::Identity();
+  return rotated_diagonal(orientation.toRotationMatrix(), inverse_inertia);
+}
+
+}  // namespace scree

@@ -1,0 +1,49 @@
+// Bodies that turn freely.
+#pragma once
+
+#include "sim/laws/simd/kernels/vectors.hpp"
+
+namespace scree::simd::SCREE_SIMD {
+
+namespace {
+
+V get(const Lane& lane) { return *reinterpret_cast<const V*>(lane.at); }
+void set(Lane& lane, const V& value) { *reinterpret_cast<V*>(lane.at) = value; }
+V3 get(const LaneVec& lanes) { return {get(lanes.x), get(lanes.y), get(lanes.z)}; }
+void set(LaneVec& lanes, const V3& value) {
+  set(lanes.x, value.x);
+  set(lanes.y, value.y);
+  set(lanes.z, value.z);
+}
+
+void turn(Tops& tops, double dt, bool fourth_order) {
+  const V3 inverse_inertia = get(tops.inverse_inertia);
+  const V3 inertia = {1.0 / inverse_inertia.x, 1.0 / inverse_inertia.y, 1.0 / inverse_inertia.z};
+  Top<Lanes> top{{get(tops.w), get(tops.v)}, get(tops.spin), inertia, inverse_inertia};
+  const auto start = start_of(top);
+  const V turn = start.fastest * (dt < 0 ? -dt : dt);
+  const auto hardly = turn < tolerance::hardly_a_turn;
+  const auto splits = (turn >= tolerance::hardly_a_turn) & (turn <= tolerance::split_turn);
+  tops.far = static_cast<std::int32_t>(bits_of(turn > tolerance::split_turn));
+  V drift{};
+  const Top<Lanes> before = top;
+  if (Lanes::any(hardly)) {
+    Top<Lanes> turned = before;
+    turn_little(turned, start, dt);
+    choose(hardly, turned, top);
+  }
+  if (Lanes::any(splits)) {
+    Top<Lanes> turned = before;
+    const V drifted = turn_by_splitting(turned, start, dt, 1, fourth_order);
+    choose(splits, turned, top);
+    drift = splits ? drifted : drift;
+  }
+  set(tops.w, top.orientation.w);
+  set(tops.v, top.orientation.v);
+  set(tops.spin, top.spin);
+  set(tops.drift, drift);
+}
+
+}  // namespace
+
+}  // namespace scree::simd::SCREE_SIMD

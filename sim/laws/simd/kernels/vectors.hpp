@@ -1,0 +1,71 @@
+// Lanes as vectors of the instruction set, and what gathers them from bodies side by side in memory. A part
+// of kernels.cpp, as its neighbours: none of them stands alone.
+#pragma once
+
+#include "sim/laws/simd/free_turn.hpp"
+#include "sim/laws/simd/simd.hpp"
+#include "sim/laws/simd/wide_laws.hpp"
+
+#include <cstddef>
+#include <cstdint>
+
+namespace scree::simd::SCREE_SIMD {
+
+namespace {
+
+using V [[gnu::vector_size(sizeof(Lane)), gnu::may_alias]] = double;
+
+struct Lanes {
+  using V = scree::simd::SCREE_SIMD::V;
+  static V root(const V& a) {
+    V r = a;
+    for (int l = 0; l < width; ++l) r[l] = __builtin_sqrt(a[l]);
+    return r;
+  }
+  static bool any(const decltype(V{} > V{}) & condition) {
+    const auto fours = condition | __builtin_shufflevector(condition, condition, 4, 5, 6, 7, 0, 1, 2, 3);
+    const auto twos = fours | __builtin_shufflevector(fours, fours, 2, 3, 0, 1, 6, 7, 4, 5);
+    return (twos[0] | twos[1]) != 0;
+  }
+  static HalfTurn<Lanes> half_turn(const V& square) { return half_turn_series<Lanes>(square); }
+};
+using V3 = simd::V3<Lanes>;
+/// Squares of `size` numbers, side by side, each turned about its diagonal: pairs, then fours, then halves
+/// change places.
+template <int size>
+[[gnu::always_inline]] inline void transpose(V* rows) {
+  const auto exchange = [rows](int distance, auto low, auto high) {
+    for (int k = 0; k < size; ++k) {
+      if ((k & distance) != 0) continue;
+      const V a = rows[k];
+      const V b = rows[k + distance];
+      rows[k] = low(a, b);
+      rows[k + distance] = high(a, b);
+    }
+  };
+  exchange(
+      1, [](V a, V b) { return __builtin_shufflevector(a, b, 0, 8, 2, 10, 4, 12, 6, 14); },
+      [](V a, V b) { return __builtin_shufflevector(a, b, 1, 9, 3, 11, 5, 13, 7, 15); });
+  exchange(
+      2, [](V a, V b) { return __builtin_shufflevector(a, b, 0, 1, 8, 9, 4, 5, 12, 13); },
+      [](V a, V b) { return __builtin_shufflevector(a, b, 2, 3, 10, 11, 6, 7, 14, 15); });
+  if constexpr (size > 4) {
+    exchange(
+        4, [](V a, V b) { return __builtin_shufflevector(a, b, 0, 1, 2, 3, 8, 9, 10, 11); },
+        [](V a, V b) { return __builtin_shufflevector(a, b, 4, 5, 6, 7, 12, 13, 14, 15); });
+  }
+}
+
+/// A bit for each lane in which a condition holds.
+[[gnu::always_inline]] inline std::uint32_t bits_of(const decltype(V{} > V{}) & condition) {
+  std::uint32_t bits = 0;
+  for (int l = 0; l < width; ++l) bits |= static_cast<std::uint32_t>(condition[l] & 1) << l;
+  return bits;
+}
+
+constexpr int half = width / 2;
+using Half [[gnu::vector_size(sizeof(Lane) / 2), gnu::may_alias]] = double;
+
+}  // namespace
+
+}  // namespace scree::simd::SCREE_SIMD

@@ -1,0 +1,21 @@
+// The penetration of bodies in a space.
+#pragma once
+
+#include "broadphase/broad_phase.hpp"
+#include "core/array.hpp"
+#include "core/bodies.hpp"
+#include "core/shape_data.hpp"
+#include "sim/observe/observation.hpp"
+
+namespace scree::solver {
+
+/// Whether Penetration::p99 is found, for which all depths are sorted; else it is not a number.
+enum class Quantiles { none, p99 };
+
+/// Over all overlapping pairs among the candidates: of each its deepest point, true geometry. `shapes`: of
+/// each body, by its place; empty if no body's shape is general.
+template <class Space>
+Penetration measure_overlaps(const ConstBodyView& bodies, ConstView<ShapeData> shapes,
+                             ConstView<Pair> candidates, Quantiles quantiles = Quantiles::p99);
+
+}  // namespace scree::solver

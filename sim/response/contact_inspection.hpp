@@ -1,0 +1,146 @@
+// The contacts of a substep as they are shown: on Host, body by body.
+#pragma once
+
+#include "core/bodies.hpp"
+#include "sim/contacts/contact_store.hpp"
+#include "sim/contacts/rolling_visits.hpp"
+#include "sim/contacts/slots.hpp"
+#include "sim/contacts/sweeps.hpp"
+#include "sim/observe/inspection.hpp"
+
+#include <cstdint>
+#include <memory>
+#include <utility>
+#include <vector>
+
+namespace scree::solver {
+
+/// What is brought from Device.
+template <class Real>
+struct BroughtContacts {
+  std::vector<Slot> places;
+  std::vector<BodyNumber> number;
+  std::vector<BodyRecord<Real>> free;
+  ContactStore<Host, Real> store;
+  Array<Real, Host> ball_rolling, point_rolling;
+};
+
+/// Contacts on Host, where they are or where they have been brought.
+template <class Real>
+struct Inspection {
+  ConstView<Slot> places;
+  ConstView<BodyNumber> number;      ///< of each body, by place
+  ConstView<BodyRecord<Real>> free;  ///< bodies of the solver as they would be without contacts
+  ContactStore<Host, Real>* contacts = nullptr;
+  RollingFields<Real> ball_rolling, point_rolling;
+  bool rolls = false;
+  std::int64_t first_wall_point = 0;  ///< among the bodies of the solver
+  double step = 0;                    ///< length of the substep (s)
+  std::int64_t first_place = 0;       ///< of the slots that are not of balls
+  std::shared_ptr<BroughtContacts<Real>> brought;
+};
+
+struct SeenPoint {
+  Vec3 arm_i, arm_j;
+  double target;
+  Vec3 impulse;
+};
+
+struct SeenContact {
+  Slot slot;
+  std::int32_t i, j;   ///< bodies, or points of walls that turn
+  std::int64_t place;  ///< among those of its kind
+  Vec3 normal;
+  double friction;
+  double rolling_reach;  ///< couple against rolling for each normal impulse, at most (m)
+  Vec3 couple;           ///< on j (N m s)
+  bool balls;
+  std::int32_t count;  ///< of its points
+  SeenPoint points[Manifold::max_points];
+  Mat3 inertia_i, inertia_j;  ///< inverse, world frame, unless it is of balls
+
+  Vec3 impulse() const {
+    Vec3 sum = Vec3::Zero();
+    for (int k = 0; k < count; ++k) sum += points[k].impulse;
+    return sum;
+  }
+};
+
+/// visit(contact) for all of them, in the order of their places, those of balls first.
+template <class Real, class Visit>
+void for_each_contact(Inspection<Real>& seen, Visit visit) {
+  using B = BallContacts<Real>;
+  using P = PointContacts<Real>;
+  using R = RollingFields<Real>;
+  const auto number = [](Real value) { return static_cast<double>(value); };
+  const auto whole = [&](std::int32_t body, std::int32_t end) {
+    return end >= seen.first_wall_point ? end : body;
+  };
+  const auto set_rolling = [&](const RollingFields<Real>& rolling, std::int64_t c, SeenContact& contact) {
+    if (!seen.rolls) return;
+    contact.rolling_reach = number(rolling.fields.at(R::reach, c));
+    contact.couple = vec3(rolling.fields.vector(R::couple, c));
+  };
+  SeenContact contact{};
+  contact.couple.setZero();
+  contact.inertia_i.setZero();
+  contact.inertia_j.setZero();
+  contact.balls = true;
+  contact.count = 1;
+  const B balls = seen.contacts->balls();
+  for (std::int64_t c = 0; c < balls.slot.size(); ++c) {
+    if (balls.slot[c] == Slot::empty) continue;
+    const auto& f = balls.fields;
+    contact.slot = seen.places[balls.slot[c]];
+    contact.i = whole(contact.slot.i, contact.slot.end_i);
+    contact.j = whole(contact.slot.j, contact.slot.end_j);
+    contact.place = c;
+    contact.normal = vec3(f.vector(B::normal, c));
+    contact.friction = number(f.at(B::friction, c));
+    contact.points[0] = {number(f.at(B::arm_i, c)) * contact.normal,
+                         number(f.at(B::arm_j, c)) * contact.normal, number(f.at(B::target, c)),
+                         vec3(f.vector(B::impulse, c))};
+    set_rolling(seen.ball_rolling, c, contact);
+    visit(std::as_const(contact));
+  }
+  contact.balls = false;
+  const P points = seen.contacts->points();
+  for (std::int64_t c = 0; c < points.slot.size(); ++c) {
+    if (points.slot[c] == Slot::empty) continue;
+    contact.slot = seen.places[seen.first_place + points.slot[c]];
+    contact.i = contact.slot.i;
+    contact.j = contact.slot.j;
+    contact.place = c;
+    contact.normal = vec3(points.fields.vector(P::normal, c));
+    contact.friction = number(points.fields.at(P::friction, c));
+    contact.count = points.points[c];
+    const auto& f = points.point_fields;
+    for (int k = 0; k < contact.count; ++k) {
+      contact.points[k] = {
+          vec3(f.vector(P::at_point(k, P::arm_i), c)), vec3(f.vector(P::at_point(k, P::arm_j), c)),
+          number(f.at(P::at_point(k, P::target), c)), vec3(f.vector(P::at_point(k, P::impulse), c))};
+    }
+    const auto whole_inertia = [&](std::int32_t body, std::int32_t end, int first) {
+      const auto at = [&](int e) { return number(points.fields.at(first + e, c)); };
+      Mat3 inertia;
+      inertia << at(0), at(3), at(4), at(3), at(1), at(5), at(4), at(5), at(2);
+      if (body == end || inertia.isZero(0)) return inertia;
+      const auto inverse_mass = [&](std::int32_t k) { return number(seen.free[k].inverse_mass); };
+      return Mat3(inverse_mass(body) / inverse_mass(end) * inertia);
+    };
+    contact.inertia_i = whole_inertia(contact.slot.i, contact.slot.end_i, P::inertia_i);
+    contact.inertia_j = whole_inertia(contact.slot.j, contact.slot.end_j, P::inertia_j);
+    set_rolling(seen.point_rolling, c, contact);
+    visit(std::as_const(contact));
+  }
+}
+
+/// `bodies` lie as they do in the space.
+template <class Real>
+ContactProblem problem_of(Inspection<Real>& seen, const BodyTable& bodies);
+
+/// Of those that carried a force.
+template <class Real>
+std::vector<ContactForce> forces_of(Inspection<Real>& seen, const BodyTable& bodies);
+
+}  // namespace scree::solver

@@ -1,0 +1,714 @@
+#include "sim/response/contact_solver.hpp"
+
+#include "core/parallel.hpp"
+#include "core/space_rounds.hpp"
+#include "core/space_tiles.hpp"
+#include "core/tolerances.hpp"
+#include "sim/contacts/ball_tiles.hpp"
+#include "sim/response/contacts_on_host.hpp"
+#include "sim/response/padding.hpp"
+#include "sim/response/scaling.hpp"
+#include "sim/response/sweep_loop.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <type_traits>
+#include <utility>
+
+namespace scree::solver {
+
+namespace {
+
+/// Places and bodies that are worth their way from Device to Host and back.
+constexpr std::int64_t few_places = 1 << 16;
+constexpr std::int64_t few_bodies = 1 << 14;
+
+}  // namespace
+
+template <class Space, class Real>
+void ContactSolver<Space, Real>::take_candidates(ConstView<Pair> candidates, ConstView<std::int64_t> before,
+                                                 const ConstBodyView& bodies,
+                                                 const ResponseParameters& parameters) {
+  slots_.build(candidates, before, bodies, parameters.rolling_friction);
+  forget_contacts();
+  list_guided(parameters.guides);
+  wall_sums_.take(slots_.places(), bodies);
+  for (auto* loads : {&loads_, &next_loads_}) {
+    loads->resize((candidates.size() + 3) / 4);
+    parallel::fill("contacts.loads", *loads, 0u);
+  }
+  const BookStage<Real> stage{slots_.places(), bodies, {}, {}, {}, 0, loads_.view()};
+  parallel::for_each<Space>("contacts.loads", slots_.ball_places(),
+                            MarkBallLoads<Real>{stage, slots_.ball_memory()});
+  parallel::for_each<Space>("contacts.loads", slots_.places_of_others().size(),
+                            MarkPointLoads<Real>{stage, slots_.ball_places(), slots_.point_memory()});
+}
+
+/// Those of the last substep were of other slots.
+template <class Space, class Real>
+void ContactSolver<Space, Real>::forget_contacts() {
+  store_.take_balls({});
+  store_.take_points({});
+  finder_.forget_slots();
+  counts_ = {};
+}
+
+template <class Space, class Real>
+void ContactSolver<Space, Real>::archive(Archive& archive, const ConstBodyView& bodies,
+                                         const ResponseParameters& parameters) {
+  archive.part("slots", slots_, bodies);
+  archive.part("finder", finder_);
+  archive.part("sweep count", sweep_count_);
+  archive("loads", loads_);
+  if (!archive.is_loading()) return;
+  step_ = 0;
+  forget_contacts();
+  list_guided(parameters.guides);
+  wall_sums_.take(slots_.places(), bodies);
+  next_loads_.resize(loads_.size());
+}
+
+template <class Space, class Real>
+void ContactSolver<Space, Real>::loads_of(ConstView<std::int64_t> index,
+                                          Array<LoadedParts, Space>& loads) const {
+  loads.resize(index.size());
+  parallel::for_each<Space>("contacts.loads", index.size(), LoadsOfPairs{index, this->loads(), loads.view()});
+}
+
+template <class Space, class Real>
+Inspection<Real> ContactSolver<Space, Real>::inspect(const ConstBodyView& bodies) {
+  Inspection<Real> seen;
+  seen.rolls = rolls();
+  seen.first_wall_point = slots_.solver_bodies().first_wall_point();
+  seen.first_place = slots_.ball_places();
+  seen.step = step_;
+  if constexpr (std::is_same_v<Space, Host>) {
+    seen.places = slots_.places();
+    seen.number = bodies.id;
+    seen.free = std::as_const(free_).view();
+    seen.contacts = &store_;
+    seen.ball_rolling = rolling_of_balls();
+    seen.point_rolling = rolling_of_points();
+  } else {
+    seen.brought = std::make_shared<BroughtContacts<Real>>();
+    BroughtContacts<Real>& to = *seen.brought;
+    to.places.resize(static_cast<std::size_t>(slots_.places().size()));
+    copy_bytes<Host, Space>(to.places.data(), slots_.places().data(), to.places.size() * sizeof(Slot));
+    to.number.resize(static_cast<std::size_t>(bodies.id.size()));
+    copy_bytes<Host, Space>(to.number.data(), bodies.id.data(), to.number.size() * sizeof(BodyNumber));
+    copy(to.free, free_);
+    to.store.copy_from(store_);
+    copy(to.ball_rolling, ball_rolling_);
+    copy(to.point_rolling, point_rolling_);
+    using R = decltype(RollingFields<Real>::fields);
+    seen.places = {to.places.data(), slots_.places().size()};
+    seen.number = {to.number.data(), bodies.id.size()};
+    seen.free = {to.free.data(), free_.size()};
+    seen.contacts = &to.store;
+    seen.ball_rolling = {R(to.ball_rolling.data())};
+    seen.point_rolling = {R(to.point_rolling.data())};
+  }
+  return seen;
+}
+
+/// f(c) for the contacts of balls, or for the others.
+template <class Space, class Real>
+template <class F>
+void ContactSolver<Space, Real>::for_balls(const char* label, const F& f) {
+  const BallContacts<Real> balls = store_.balls();
+  parallel::for_each<Space>(label, balls.slot.size(), on_contacts(balls, f));
+}
+template <class Space, class Real>
+template <class F>
+void ContactSolver<Space, Real>::for_points(const char* label, const F& f) {
+  const PointContacts<Real> points = store_.points();
+  parallel::for_each<Space>(label, points.slot.size(), on_contacts(points, f));
+}
+
+/// Sum over all contacts of what `of_balls` and `of_points` make of them.
+template <class Space, class Real>
+template <class Sum, class OfBalls, class OfPoints>
+Sum ContactSolver<Space, Real>::sum_over_contacts(const char* label, const OfBalls& of_balls,
+                                                  const OfPoints& of_points) {
+  const auto sum = [label](const auto& contacts, const auto& of) {
+    return parallel::sum_by_tiles<Sum, Space>(label, contacts.slot.size(), on_contacts(contacts, of));
+  };
+  return sum(store_.balls(), of_balls) + sum(store_.points(), of_points);
+}
+
+template <class Space, class Real>
+void ContactSolver<Space, Real>::add_wall_impulses(const FlightStage& flight) {
+  if (wall_sums_.is_empty() || counts_.contacts == 0) return;
+  WallContacts<Real> among{.entry_of = wall_sums_.entry_of_place(),
+                           .impulses = wall_sums_.clear_impulses(),
+                           .first_place = 0,
+                           .places = slots_.places(),
+                           .mid = std::as_const(mid_).view(),
+                           .flight = flight};
+  for_balls("walls.impulses", PutBallOnWall<Real>{among, store_.balls()});
+  among.first_place = slots_.ball_places();
+  for_points("walls.impulses", PutPointsOnWall<Real>{among, store_.points()});
+  wall_sums_.add_up();
+}
+
+template <class Space, class Real>
+void ContactSolver<Space, Real>::load_bodies(const ConstBodyView& bodies, ConstView<double> margin,
+                                             const ResponseParameters& parameters) {
+  const std::int64_t n = bodies.count();
+  const std::int64_t all = slots_.solver_bodies().count();
+  mid_.resize(n);
+  for (auto* records : {&solver_, &free_, &last_}) records->resize(all);
+  displacement_.resize(all);
+  const bool only_balls = slots_.other_tiles() == 0;
+  turn_.resize(only_balls ? 0 : all);
+  parallel::for_each<Space>("contacts.bodies", n,
+                            LoadBody<Real>{bodies, margin, parameters, step_, mid_.view(), solver_.view()});
+  parallel::for_each<Space>(
+      "contacts.bodies", slots_.solver_bodies().hub_of_parts().size(),
+      LoadPart<Real>{slots_.solver_bodies().hubs(), slots_.solver_bodies().hub_of_parts(),
+                     slots_.solver_bodies().share_of_parts(), slots_.solver_bodies().first_part(),
+                     solver_.view()});
+  const std::int64_t walls = slots_.solver_bodies().first_wall_point();
+  parallel::for_each<Space>("contacts.bodies", all - walls, ClearNotFree<Real>{walls, solver_.view()});
+  parallel::for_each<Space>("contacts.bodies", 1,
+                            ClearNotFree<Real>{slots_.solver_bodies().nobody(), solver_.view()});
+}
+
+template <class Space, class Real>
+void ContactSolver<Space, Real>::find(ConstView<double> margin, double scale, const FlightStage& flight,
+                                      bool any_is_late, LibccdContacts* libccd) {
+  step_ = flight.terms.step;
+  const ConstBodyView bodies = read_only(flight.bodies);
+  const ResponseParameters& parameters = flight.parameters;
+  load_bodies(bodies, margin, parameters);
+  const FindStage<Real> stage{.places = slots_.places(),
+                              .mid = mid_.view(),
+                              .bodies = bodies,
+                              .solver = solver_.view(),
+                              .laws = flight.terms.laws,
+                              .parameters = parameters,
+                              .step = step_,
+                              .scale = scale,
+                              .noise = tolerance::parting_speed * step_ * parameters.gravity.norm(),
+                              .struck = {flight},
+                              .any_is_late = any_is_late,
+                              .libccd = libccd};
+  finder_.find(stage, slots_, loads(), solver_.view(), store_);
+  counts_.contacts = counts_.points = store_.ball_colors().contacts();
+  if (parameters.rolling_friction) start_rolling(stage);
+  copy(free_, solver_);
+  if constexpr (visit_width < Space, Real >> 1) pad();
+  if (store_.point_colors().contacts() == 0) return;
+  counts_.contacts += store_.point_colors().contacts();
+  const CountPoints<Real> count{store_.points()};
+  counts_.points += parallel::sum_by_tiles<std::int64_t, Space>("contacts.count", count.contacts.slot.size(),
+                                                                on_contacts(count.contacts, count));
+}
+
+/// What visits to several contacts at once find where there are fewer.
+template <class Space, class Real>
+void ContactSolver<Space, Real>::pad() {
+  const std::int32_t nobody = slots_.solver_bodies().nobody();
+  const PadBalls<Real> balls{store_.balls(), rolling_of_balls(), rolls(), nobody};
+  const PadPoints<Real> points{store_.points(), rolling_of_points(), rolls(), nobody};
+  parallel::for_each<Space>("contacts.pad", balls.contacts.slot.size() / simd::width, balls);
+  parallel::for_each<Space>("contacts.pad", points.contacts.slot.size() / simd::width, points);
+}
+
+/// The parts of hubs, too.
+template <class Space, class Real>
+void ContactSolver<Space, Real>::list_guided(ConstView<Guide> guides) {
+  guides_.resize(static_cast<std::size_t>(guides.size()));
+  if (guides_.empty()) return guided_.resize(0);
+  copy_bytes<Host, Space>(guides_.data(), guides.data(), guides_.size() * sizeof(Guide));
+  std::vector<Hub> hubs(static_cast<std::size_t>(slots_.solver_bodies().hubs().size()));
+  copy_bytes<Host, Space>(hubs.data(), slots_.solver_bodies().hubs().data(), hubs.size() * sizeof(Hub));
+  std::vector<Guide> guided = guides_;
+  for (const Guide& guide : guides_) {
+    for (const Hub& hub : hubs) {
+      if (hub.body != guide.body) continue;
+      for (std::int32_t part = 0; part < hub.parts; ++part) guided.push_back({hub.first + part, guide.axis});
+    }
+  }
+  copy(guided_, guided);
+}
+
+template <class Space, class Real>
+void ContactSolver<Space, Real>::start_rolling(const FindStage<Real>& stage) {
+  using R = RollingFields<Real>;
+  ball_rolling_.resize(decltype(R::fields)::size(store_.ball_colors().places()));
+  point_rolling_.resize(decltype(R::fields)::size(store_.point_colors().places()));
+  const ConstView<V3<Real>> couples = slots_.couples();
+  for_balls("rolling.start", StartRolling<Real, BallContacts<Real>>{
+                                 stage, 0, store_.balls(), rolling_of_balls(), couples, solver_.view()});
+  for_points("rolling.start",
+             StartRolling<Real, PointContacts<Real>>{stage, slots_.ball_places(), store_.points(),
+                                                     rolling_of_points(), couples, solver_.view()});
+}
+
+template <class Space, class Real>
+template <class Record>
+JoinHubs<Record> ContactSolver<Space, Real>::join_hubs(Array<Record, Space>& bodies) {
+  const ConstView<std::int32_t> hub_of = slots_.solver_bodies().hub_of_parts();
+  parts_sums_.resize(hub_of.size());
+  Record* const records = bodies.empty() ? nullptr : bodies.data();
+  return {slots_.solver_bodies().hubs(),       hub_of,  slots_.solver_bodies().share_of_parts(),
+          slots_.solver_bodies().first_part(), records, parts_sums_.data()};
+}
+
+template <class Space, class Real>
+template <bool only_balls>
+SweepState ContactSolver<Space, Real>::run_impulse_rounds(const SweepPlan& plan) {
+  return parallel::run_rounds<Space>(
+      "sweeps",
+      ImpulseRounds<Real, only_balls>{
+          .ball_colors = ColorPhases(store_.ball_colors(), visit_width<Space, Real>),
+          .point_colors = ColorPhases(store_.point_colors(), visit_width<Space, Real>),
+          .balls = store_.balls(),
+          .points = store_.points(),
+          .rolls = rolls(),
+          .ball_rolling = rolling_of_balls(),
+          .point_rolling = rolling_of_points(),
+          .bodies = solver_.data(),
+          .last = last_.data(),
+          .body_count = slots_.solver_bodies().first_wall_point(),
+          .hubs = join_hubs(solver_),
+          .guides = {guided_.view(), solver_.data()},
+          .least = plan.least,
+          .most = plan.most,
+          .block_sweeps = plan.block_sweeps,
+          .tolerance = plan.tolerance,
+          .first_with_momentum = plan.first_with_momentum},
+      SweepState{});
+}
+
+template <class Space, class Real>
+void ContactSolver<Space, Real>::find_impulses(const ConstBodyView& bodies,
+                                               const ResponseParameters& parameters, double share,
+                                               Counters& counters) {
+  SweepPlan plan =
+      plan_sweeps(parameters, counts_.contacts, counts_.points, sweep_count_.flows(), sweep_count_.change());
+  if (std::is_same_v<Real, float>) plan.tolerance = std::max(plan.tolerance, tolerance::mixed_change);
+  if (has_heap()) {
+    plan.least = sweep_count_.sweeps(plan.least, shares_loads(counts_.contacts, counts_.points), share);
+    if (parameters.iterations > 0) plan.least = std::min(plan.least, plan.most);
+    plan.most = std::max(plan.most, plan.least);
+    if (sweep_count_.is_calm()) plan.first_with_momentum = plan.least;
+  }
+  const bool islands = parameters.accurate || (plan.direct && fits_on_host());
+  const bool converged =
+      islands ? solve_islands(bodies, plan, parameters.accurate, counters) : sweep(plan, counters);
+  counters.unconverged += !converged;
+}
+
+template <class Space, class Real>
+bool ContactSolver<Space, Real>::fits_on_host() const {
+  return std::is_same_v<Space, Host> ||
+         (slots_.places().size() <= few_places && slots_.solver_bodies().first_wall_point() <= few_bodies);
+}
+
+/// The bodies of the solver are without contacts.
+template <class Space, class Real>
+bool ContactSolver<Space, Real>::sweep(const SweepPlan& plan, Counters& counters) {
+  const SweepState done =
+      store_.point_colors().colors() == 0 ? run_impulse_rounds<true>(plan) : run_impulse_rounds<false>(plan);
+  counters.sweeps += done.sweeps;
+  return done.converged;
+}
+
+/// Velocities become what the impulses give: the rounding of many sweeps is none.
+template <class Space, class Real>
+void ContactSolver<Space, Real>::set_velocities() {
+  SweepPlan push{.least = 0, .most = 0, .block_sweeps = 1, .tolerance = 0, .direct = false};
+  Counters none;
+  copy(solver_, free_);
+  sweep(push, none);
+}
+
+template <class Space, class Real>
+LoadSpread ContactSolver<Space, Real>::spread_of_loads() {
+  return sum_over_contacts<LoadSpread>("sweeps.loads", BallLoad<Real>{store_.balls()},
+                                       PointLoad<Real>{store_.points()});
+}
+
+/// Sweeps; islands on which they creep go to the direct solver on Host. In the accurate mode all do whose
+/// natural residual is beyond the tolerance.
+template <class Space, class Real>
+bool ContactSolver<Space, Real>::solve_islands(const ConstBodyView& bodies, const SweepPlan& plan,
+                                               bool accurate, Counters& counters) {
+  SweepPlan first = plan, rest = plan;
+  if (plan.direct) first.most = sweeps_before_direct(plan.most, counters);
+  rest.most = std::max(plan.most - first.most, few_sweeps);
+  const auto solve_directly = [&](const DirectLimits& limits, std::int64_t& solved, std::int64_t& failed) {
+    Inspection<Real> seen = inspect(bodies);
+    ContactsOnHost<Real> contacts(seen, guides_);
+    const bool all = contacts.solve(plan.tolerance, limits, solved, failed);
+    put_back(seen, contacts);
+    return all;
+  };
+  const auto sweep_many = [&](const SweepPlan& of) {
+    const std::int64_t before = counters.sweeps;
+    copy(solver_, free_);
+    const bool converged = sweep(of, counters);
+    if (counters.sweeps - before > few_sweeps) set_velocities();
+    return converged;
+  };
+  const bool converged = sweep_many(first);
+  if (!converged && !accurate && first.most == plan.most) return false;
+  if (converged && (accurate ? are_solved(plan.tolerance) : !spread_of_loads().is_wide(plan.tolerance)))
+    return true;
+  if (solve_directly(accurate ? thorough_limits : quick_limits, counters.direct, counters.direct_failed))
+    return true;
+  if (sweep_many(rest)) return true;
+  return !accurate && pays_long_solution(counters) &&
+         solve_directly(patient_limits, counters.patient, counters.patient_failed);
+}
+
+template <class Space, class Real>
+void ContactSolver<Space, Real>::put_back(Inspection<Real>& seen, const ContactsOnHost<Real>& contacts) {
+  contacts.put_back();
+  if (seen.brought != nullptr) {
+    store_.copy_from(seen.brought->store);
+    copy(ball_rolling_, seen.brought->ball_rolling);
+    copy(point_rolling_, seen.brought->point_rolling);
+  }
+  set_velocities();
+}
+
+template <class Space, class Real>
+Residual<Real, BallContacts<Real>, TurnBalls> ContactSolver<Space, Real>::residual_of_balls() {
+  return {store_.balls(), rolls(), rolling_of_balls(), std::as_const(solver_).view()};
+}
+template <class Space, class Real>
+Residual<Real, PointContacts<Real>, TurnPoints> ContactSolver<Space, Real>::residual_of_points() {
+  return {store_.points(), rolls(), rolling_of_points(), std::as_const(solver_).view()};
+}
+
+/// Sums of what `of_balls` and `of_points` make of their contacts.
+template <class Space, class Real>
+template <class Sum, class OfBalls, class OfPoints>
+IslandSums<Space, Sum> ContactSolver<Space, Real>::sum_by_island(const OfBalls& of_balls,
+                                                                 const OfPoints& of_points) {
+  const ConstView<Slot> places = slots_.places();
+  const ConstView<BodyRecord<Real>> solver = std::as_const(solver_).view();
+  IslandSums<Space, Sum> sums(slots_.solver_bodies().first_wall_point());
+  sums.add(TermOfIsland<Real, BallContacts<Real>, OfBalls>{places, 0, store_.balls(), solver, of_balls});
+  sums.add(TermOfIsland<Real, PointContacts<Real>, OfPoints>{places, slots_.ball_places(), store_.points(),
+                                                             solver, of_points});
+  return sums;
+}
+
+/// Whether the natural residual of each island is within the tolerance.
+template <class Space, class Real>
+bool ContactSolver<Space, Real>::are_solved(double tolerance) {
+  return sum_by_island<ImpulseChange>(residual_of_balls(), residual_of_points())
+      .all([tolerance](const ImpulseChange& residual) { return residual.within(tolerance); });
+}
+
+/// What the natural map changes in all impulses, of their size.
+template <class Space, class Real>
+double ContactSolver<Space, Real>::residual() {
+  const auto left =
+      sum_over_contacts<ImpulseChange>("response.residual", residual_of_balls(), residual_of_points());
+  return left.size > 0 ? std::sqrt(left.step / left.size) : 0.0;
+}
+
+template <class Space, class Real>
+double ContactSolver<Space, Real>::find_slip_end(const BookStage<Real>& stage) {
+  const SlipEnd<Real, BallContacts<Real>> of_balls{stage, 0, store_.balls(), loads()};
+  const SlipEnd<Real, PointContacts<Real>> of_points{stage, slots_.ball_places(), store_.points(), loads()};
+  const Earliest end = Earliest{1.0} + sum_over_contacts<Earliest>("response.slip", of_balls, of_points);
+  return end.time;
+}
+
+/// Bodies of the solver with the velocities that the bodies have.
+template <class Space, class Real>
+ReloadBody<Real> ContactSolver<Space, Real>::reload(const ConstBodyView& bodies,
+                                                    const Array<BodyRecord<Real>, Space>& from,
+                                                    Array<BodyRecord<Real>, Space>& to) {
+  const SolverBodies<Space>& all = slots_.solver_bodies();
+  return {bodies, all.hubs(), all.hub_of_parts(), all.first_part(), from.view(), to.view()};
+}
+
+/// Scales down impulses that would gain energy, to where they gain none: of each island where contacts are
+/// few, of a heap all alike, since it is one. Returns how many were scaled.
+template <class Space, class Real>
+int ContactSolver<Space, Real>::keep_from_gaining(const BookStage<Real>& stage) {
+  if (has_heap() || !fits_on_host()) {
+    const Moved moved = books_.moved();
+    if (!moved.gains(response_gain<Real>)) return 0;
+    copy(last_, solver_);
+    // Rounded down, so that the scale does not hang on the order in which the sums were added up.
+    constexpr double levels = 1 << 20;
+    scale_impulses(std::floor(levels * moved.scale_without_gain()) / levels);
+    fly_on_with_changes();
+    return 1;
+  }
+  if (no_island_gains(stage)) return 0;
+  Inspection<Real> seen = inspect(stage.bodies);
+  ContactsOnHost<Real> contacts(seen, guides_);
+  before_.resize(free_.size());
+  parallel::for_each<Space>("books.before", before_.size(), reload(stage.bodies, free_, before_));
+  const int scaled = contacts.keep_from_gaining(to_vector(before_));
+  if (scaled == 0) return 0;
+  copy(last_, solver_);
+  put_back(seen, contacts);
+  fly_on_with_changes();
+  return scaled;
+}
+
+/// Whether the impulses of no island gain energy: what each contact moves is booked once more.
+template <class Space, class Real>
+bool ContactSolver<Space, Real>::no_island_gains(BookStage<Real> stage) {
+  stage.again = true;
+  return sum_by_island<Moved>(MovedBy{rolls(), book_balls(stage), book_rolling_balls(stage)},
+                              MovedBy{rolls(), book_points(stage), book_rolling_points(stage)})
+      .all([](const Moved& moved) { return !moved.gains(response_gain<Real>); });
+}
+
+template <class Space, class Real>
+void ContactSolver<Space, Real>::scale_impulses(double by) {
+  const auto real = static_cast<Real>(by);
+  for_balls("response.scale", ScaleBalls<Real>{store_.balls(), real});
+  for_points("response.scale", ScalePoints<Real>{store_.points(), real});
+  if (rolls()) {
+    for_balls("response.scale", ScaleRolling<Real>{rolling_of_balls(), real});
+    for_points("response.scale", ScaleRolling<Real>{rolling_of_points(), real});
+  }
+  parallel::for_each<Space>("response.scale", solver_.size(),
+                            ScaleVelocities<Real>{free_.view(), solver_.view(), real});
+}
+
+template <class Space, class Real>
+BookStage<Real> ContactSolver<Space, Real>::book_stage(const ConstBodyView& bodies,
+                                                       const ResponseParameters& parameters) {
+  return {slots_.places(), bodies, free_.view(), solver_.view(), parameters, step_, next_loads_.view()};
+}
+
+template <class Space, class Real>
+BookBalls<Real> ContactSolver<Space, Real>::book_balls(const BookStage<Real>& stage) {
+  return {stage, store_.balls(), slots_.ball_memory()};
+}
+template <class Space, class Real>
+BookPoints<Real> ContactSolver<Space, Real>::book_points(const BookStage<Real>& stage) {
+  return {stage, slots_.ball_places(), store_.points(), slots_.point_memory()};
+}
+template <class Space, class Real>
+BookRolling<Real, BallContacts<Real>> ContactSolver<Space, Real>::book_rolling_balls(
+    const BookStage<Real>& stage) {
+  return {stage, 0, store_.balls(), rolling_of_balls(), slots_.couples()};
+}
+template <class Space, class Real>
+BookRolling<Real, PointContacts<Real>> ContactSolver<Space, Real>::book_rolling_points(
+    const BookStage<Real>& stage) {
+  return {stage, slots_.ball_places(), store_.points(), rolling_of_points(), slots_.couples()};
+}
+
+template <class Space, class Real>
+Books ContactSolver<Space, Real>::book_ball_blocks(const BookStage<Real>& stage) requires(
+    visit_width<Space, Real> > 1) {
+  before_.resize(free_.size());
+  parallel::for_each<Host>("books.before", before_.size(), reload(stage.bodies, free_, before_));
+  const BookBallBlocks book{.book = {.contacts = store_.balls(),
+                                     .before = before_.data(),
+                                     .free = free_.data(),
+                                     .solver = solver_.data(),
+                                     .step = stage.step,
+                                     .rounding = response_gain<Real>,
+                                     .again = stage.again},
+                            .stage = stage,
+                            .memory = slots_.ball_memory()};
+  return parallel::sum<Books, Host>("books.balls", book.runs(), book);
+}
+
+template <class Space, class Real>
+void ContactSolver<Space, Real>::book(const BookStage<Real>& stage) {
+  // Both kinds are waited for once, and one that is not there costs nothing.
+  books_totals_.resize(4);
+  std::size_t kinds = 0;
+  const auto add_up = [&](const char* label, const auto& book) {
+    const std::int64_t contacts = book.contacts.slot.size();
+    if (contacts == 0) return;
+    parallel::sum_into<Books, Space>(label, contacts, on_contacts(book.contacts, book), books_scratch_,
+                                     books_totals_.data() + kinds++);
+  };
+  if constexpr (visit_width<Space, Real> == 1) {
+    add_up("books.balls", book_balls(stage));
+  } else if (store_.ball_colors().contacts() > 0) {
+    books_totals_.view()[kinds++] = book_ball_blocks(stage);
+  }
+  add_up("books.points", book_points(stage));
+  if (rolls()) {
+    add_up("books.rolling", book_rolling_balls(stage));
+    add_up("books.rolling", book_rolling_points(stage));
+  }
+  Books of_kind[4];
+  copy_bytes<Host, Space>(of_kind, books_totals_.data(), kinds * sizeof(Books));
+  books_ = of_kind[0] + of_kind[1] + of_kind[2] + of_kind[3];
+}
+
+template <class Space, class Real>
+Ledger ContactSolver<Space, Real>::solve(const FlightStage& flight, bool any_is_late, double share,
+                                         Counters& counters) {
+  const ResponseParameters& parameters = flight.parameters;
+  const ConstBodyView bodies = read_only(flight.bodies);
+  Ledger ledger;
+  books_ = {};
+  slip_end_ = 1;
+  parallel::fill("books.loads", next_loads_, 0u);
+  if (counts_.contacts > 0) {
+    find_impulses(bodies, parameters, share, counters);
+    if (parameters.accurate) counters.residual = std::max(counters.residual, residual());
+    BookStage<Real> stage = book_stage(bodies, parameters);
+    book(stage);
+    if (books_.gaining > 0) {
+      if (const int scaled = keep_from_gaining(stage); scaled > 0) {
+        counters.scaled += scaled;
+        parallel::fill("books.loads", next_loads_, 0u);
+        stage = book_stage(bodies, parameters);
+        stage.again = true;
+        book(stage);
+      }
+    }
+    ledger.restitution = books_.restitution;
+    ledger.friction = books_.friction;
+    ledger.work = books_.work;
+    sweep_count_.judge(books_.gap_power, books_.kick_power, books_.restitution + books_.friction);
+    if (parameters.accurate && parameters.friction && !has_heap()) slip_end_ = find_slip_end(stage);
+  }
+  if (parameters.torque.size() > 0) {
+    ledger.work += parallel::sum_by_tiles<double, Space>(
+        "books.torque", bodies.count(), WorkOfTorque<Real>{bodies, solver_.view(), parameters.torque, step_});
+  }
+  parallel::for_each<Space>(
+      "contacts.velocities", bodies.count(),
+      StoreVelocities<Real>{free_.view(), solver_.view(), parameters, step_, flight.bodies});
+  if (any_is_late && counts_.contacts > 0) ledger = ledger + shift_late_bodies(flight);
+  return ledger;
+}
+
+template <class Space, class Real>
+Ledger ContactSolver<Space, Real>::shift_late_bodies(const FlightStage& flight) {
+  const LateMoments<Real> moments{flight, free_.view(), solver_.view()};
+  Array<Ledger, Space> totals(3);
+  const LateBallMoments<Real> of_balls{moments, store_.balls(), slots_.places()};
+  const LatePointMoments<Real> of_points{moments, store_.points(), slots_.places_of_others()};
+  parallel::sum_into<Ledger, Space>("late.moments", of_balls.contacts.slot.size(),
+                                    on_contacts(of_balls.contacts, of_balls), ledger_scratch_, totals.data());
+  parallel::sum_into<Ledger, Space>("late.moments", of_points.contacts.slot.size(),
+                                    on_contacts(of_points.contacts, of_points), ledger_scratch_,
+                                    totals.data() + 1);
+  parallel::sum_into<Ledger, Space>("late.shift", flight.bodies.count(),
+                                    ShiftLate<Real>{flight, free_.view(), solver_.view()}, ledger_scratch_,
+                                    totals.data() + 2);
+  Ledger parts[3];
+  copy_bytes<Host, Space>(parts, totals.data(), sizeof(parts));
+  return parts[0] + parts[1] + parts[2];
+}
+
+template <class Space, class Real>
+void ContactSolver<Space, Real>::take_velocities(const ConstBodyView& bodies) {
+  parallel::for_each<Space>("late.reload", solver_.size(), reload(bodies, solver_, last_));
+  solver_.swap(last_);
+  fly_on_with_changes();
+}
+
+/// Gaps at the end of the substep, since velocities are no longer those of `last_`.
+template <class Space, class Real>
+void ContactSolver<Space, Real>::fly_on_with_changes() {
+  for_balls("late.fly", FlyBalls<Real>{store_.balls(), last_.view(), solver_.view(), step_});
+  for_points("late.fly", FlyPoints<Real>{store_.points(), last_.view(), solver_.view(), step_});
+}
+
+template <class Space, class Real>
+void ContactSolver<Space, Real>::keep_memory() {
+  slots_.keep_memory();
+  kept_sweep_count_ = sweep_count_;
+}
+
+template <class Space, class Real>
+void ContactSolver<Space, Real>::recall_memory() {
+  slots_.recall_memory();
+  finder_.forget_slots();
+  sweep_count_ = kept_sweep_count_;
+}
+
+template <class Space, class Real>
+void ContactSolver<Space, Real>::fly_late(const FlightStage& flight) {
+  const ConstBodyView bodies = read_only(flight.bodies);
+  for_balls("late.fly", FlyLateBalls<Real>{store_.balls(), slots_.places(), solver_.view(), bodies, flight});
+  for_points("late.fly", FlyLatePoints<Real>{store_.points(), slots_.places_of_others(), bodies, flight});
+}
+
+template <class Space, class Real>
+Ledger ContactSolver<Space, Real>::correct(const FlightStage& flight, bool any_is_late) {
+  loads_.swap(next_loads_);
+  overlap_ = tolerance::correction_cap * books_.deepest;
+  if (counts_.contacts == 0) return {};
+  if (any_is_late) fly_late(flight);
+  if (overlap_ == 0 && !any_is_late) return {};
+  parallel::for_each<Space>("correction.start", displacement_.size(),
+                            ResetDisplacement<Real>{solver_.view(), displacement_.view(), turn_.view()});
+  const double quality = flight.parameters.quality;
+  const PartingPlan plan = plan_parting(quality);
+  const double left =
+      store_.point_colors().colors() == 0 ? run_parting_rounds<true>(plan) : run_parting_rounds<false>(plan);
+  sweep_count_.judge_overlap(quality * left);
+  const BodyView& bodies = flight.bodies;
+  Array<Ledger, Space> total(1);
+  parallel::sum_into<Ledger, Space>(
+      "correction.apply", bodies.count(),
+      Displace<Real>{displacement_.view(), turn_.view(), flight.parameters, bodies}, ledger_scratch_,
+      total.data());
+  Ledger ledger;
+  copy_bytes<Host, Space>(&ledger, total.data(), sizeof(ledger));
+  return ledger;
+}
+
+/// Of a heap the deepest contact is one of many, which wait for it only as long as it is too deep to be left.
+template <class Space, class Real>
+PartingPlan ContactSolver<Space, Real>::plan_parting(double quality) const {
+  using namespace tolerance;
+  constexpr int most = 100, most_of_heap = 60;
+  if (!has_heap()) return {1, most, most, corrected_overlap, corrected_overlap, corrected_overlap};
+  const bool shares = shares_loads(counts_.contacts, counts_.points);
+  return {.least = shares || sweep_count_.is_calm() ? 1 : 2,
+          .usual = shares ? 24 : 12,
+          .most = most_of_heap,
+          .deepest = heap_overlap / quality,
+          .mean = (shares ? shared_mean_overlap : heap_mean_overlap) / quality,
+          .too_deep = worst_overlap_left / quality};
+}
+
+template <class Space, class Real>
+template <bool only_balls>
+double ContactSolver<Space, Real>::run_parting_rounds(const PartingPlan& plan) {
+  const PartingState done = parallel::run_rounds<Space>(
+      "correction",
+      PartingRounds<Real, only_balls>{
+          .ball_colors = ColorPhases(store_.ball_colors(), visit_width<Space, Real>),
+          .point_colors = ColorPhases(store_.point_colors(), visit_width<Space, Real>),
+          .balls = store_.balls(),
+          .points = store_.points(),
+          .displacement = displacement_.data(),
+          .turn = turn_.data(),
+          .shifted_hubs = join_hubs(displacement_),
+          .turned_hubs = join_hubs(turn_),
+          .guides = {guided_.view(), displacement_.data()},
+          .share = static_cast<Real>(tolerance::correction_share),
+          .least = plan.least,
+          .usual = plan.usual,
+          .most = plan.most,
+          .deepest = static_cast<float>(plan.deepest / tolerance::correction_cap),
+          .mean = static_cast<float>(plan.mean / tolerance::correction_cap),
+          .too_deep = static_cast<float>(plan.too_deep / tolerance::correction_cap)},
+      PartingState{});
+  return tolerance::correction_cap * done.mean;
+}
+
+#define SCREE_INSTANTIATE(Space)               \
+  template class ContactSolver<Space, double>; \
+  template class ContactSolver<Space, float>;
+SCREE_FOR_EACH_SPACE(SCREE_INSTANTIATE)
+
+}  // namespace scree::solver

@@ -1,0 +1,237 @@
+#include "sim/response/contacts_on_host.hpp"
+
+#include "core/parallel_loops.hpp"
+#include "sim/contacts/contact_accounts.hpp"
+#include "sim/laws/impulse_energy.hpp"
+#include "sim/laws/rolling.hpp"
+
+#include <algorithm>
+#include <numeric>
+#include <tuple>
+#include <utility>
+
+namespace scree::solver {
+
+template <class Real>
+ContactsOnHost<Real>::ContactsOnHost(Inspection<Real>& seen, const std::vector<Guide>& guides) : seen_(seen) {
+  const std::int64_t n = seen.free.size();
+  bodies_.resize(n);
+  velocity_.resize(n);
+  spin_.resize(n);
+  index_.resize(static_cast<std::size_t>(n));
+  std::iota(index_.begin(), index_.end(), 0);
+  for (std::int64_t k = 0; k < seen.number.size(); ++k)
+    index_[static_cast<std::size_t>(k)] = static_cast<std::int32_t>(seen.number[k]);
+  const auto index = [this](std::int32_t body) { return index_[static_cast<std::size_t>(body)]; };
+  copy(guides_, guides);
+  for (Guide& guide : guides_.view()) guide.body = index(guide.body);
+  for (std::int32_t k = 0; k < n; ++k) {
+    const BodyRecord<Real>& free = seen.free[k];
+    SolverBody& body = bodies_.view()[index(k)];
+    body = {vec3(free.velocity), vec3(free.spin), static_cast<double>(free.inverse_mass),
+            static_cast<double>(free.inverse_inertia) * Mat3::Identity()};
+    velocity_.view()[index(k)] = body.velocity;
+    spin_.view()[index(k)] = body.spin;
+  }
+  struct Place {
+    std::int32_t i, j, surface, count;  // i, j: the bodies' numbers
+    std::int64_t nth;                   // in the order in which the contacts are seen
+  };
+  std::vector<Place> order;
+  for_each_contact(seen, [&](const SeenContact& c) {
+    order.push_back({index(c.slot.i), index(c.slot.j), c.slot.surface, c.count, std::ssize(order)});
+    if (c.balls) return;
+    bodies_.view()[index(c.i)].inverse_inertia = c.inertia_i;
+    bodies_.view()[index(c.j)].inverse_inertia = c.inertia_j;
+  });
+  std::ranges::sort(order, {}, [](const Place& at) { return std::tuple(at.i, at.j, at.surface); });
+  std::vector<std::int64_t> to(order.size());
+  contacts_.resize(std::ssize(order));
+  place_.resize(order.size());
+  couples_.resize(order.size());
+  std::int64_t rows = 0;
+  for (std::size_t k = 0; k < order.size(); ++k) {
+    to[static_cast<std::size_t>(order[k].nth)] = static_cast<std::int64_t>(k);
+    contacts_.view()[static_cast<std::int64_t>(k)].first_row = rows;
+    rows += order[k].count;
+  }
+  rows_.resize(rows);
+  std::size_t seen_so_far = 0;
+  for_each_contact(seen, [&](const SeenContact& c) {
+    const std::int64_t k = to[seen_so_far++];
+    const SolverBody& i = bodies_.view()[index(c.i)];
+    const SolverBody& j = bodies_.view()[index(c.j)];
+    Contact& contact = contacts_.view()[k];
+    contact = {.i = index(c.i),
+               .j = index(c.j),
+               .first_row = contact.first_row,
+               .count = c.count,
+               .balls = c.balls,
+               .normal = c.normal,
+               .friction = c.friction,
+               .rolling_reach = c.rolling_reach};
+    place_[static_cast<std::size_t>(k)] = c.place;
+    couples_[static_cast<std::size_t>(k)] = c.couple;
+    for (int p = 0; p < c.count; ++p) {
+      const SeenPoint& point = c.points[p];
+      RowCoupling coupling;
+      ContactRow& row = rows_.view()[contact.first_row + p];
+      row = c.balls ? make_ball_row(point.arm_i, point.arm_j, 0, i, j)
+                    : make_row(c.normal, point.arm_i, point.arm_j, 0, i, j, coupling);
+      row.target = point.target;
+      row.impulse = point.impulse;
+    }
+  });
+  set_velocities();
+  islands_.find(std::as_const(contacts_).view(), std::as_const(bodies_).view());
+}
+
+/// To what the impulses give, so that the rounding of many sweeps is none.
+template <class Real>
+void ContactsOnHost<Real>::set_velocities() {
+  for (std::int64_t k = 0; k < bodies_.size(); ++k) {
+    bodies_.view()[k].velocity = velocity_.view()[k];
+    bodies_.view()[k].spin = spin_.view()[k];
+  }
+  for (std::int64_t c = 0; c < contacts_.size(); ++c) {
+    const Contact& contact = contacts_.view()[c];
+    SolverBody& i = bodies_.view()[contact.i];
+    SolverBody& j = bodies_.view()[contact.j];
+    for (int k = 0; k < contact.count; ++k) {
+      const ContactRow& row = rows_.view()[contact.first_row + k];
+      row.push(row.impulse, i, j);
+    }
+    turn(couples_[static_cast<std::size_t>(c)], i, j);
+  }
+  for (const Guide& guide : guides_.view()) guide.hold(bodies_.view()[guide.body].velocity);
+}
+
+template <class Real>
+bool ContactsOnHost<Real>::rolls(std::int64_t island) const {
+  return std::ranges::any_of(islands_.contacts(island),
+                             [&](std::int32_t c) { return contacts_.view()[c].rolling_reach > 0; });
+}
+
+template <class Real>
+ImpulseChange ContactsOnHost<Real>::residual_of(const IslandProblem& problem) const {
+  ImpulseChange residual = natural_residual(problem);
+  for (const std::int32_t c : islands_.contacts(problem.island)) {
+    const Contact& contact = problem.contacts[c];
+    if (contact.rolling_reach == 0) continue;
+    const SolverBody& i = problem.solver[contact.i];
+    const SolverBody& j = problem.solver[contact.j];
+    const double mass = rolling_mass(i, j, contact.normal);
+    if (mass == 0) continue;
+    double pn = 0;
+    for (int k = 0; k < contact.count; ++k)
+      pn += problem.rows[contact.first_row + k].impulse.dot(contact.normal);
+    const Vec3& now = couples_[static_cast<std::size_t>(c)];
+    const Vec3 couple =
+        rolling_couple(now, contact.normal, contact.rolling_reach * pn, mass, j.spin - i.spin);
+    residual = residual + ImpulseChange{(couple - now).squaredNorm() / mass, now.squaredNorm() / mass};
+  }
+  return residual;
+}
+
+template <class Real>
+bool ContactsOnHost<Real>::solve(double tolerance, const DirectLimits& limits, std::int64_t& solved,
+                                 std::int64_t& failed) {
+  Array<DirectOutcome, Host> outcomes(islands_.count());
+  const View<DirectOutcome> outcome = outcomes.view();
+  parallel::for_each<Host>("response.islands", islands_.count(), [&](std::int64_t island) {
+    const IslandProblem problem{.contacts = std::as_const(contacts_).view(),
+                                .rows = rows_.view(),
+                                .solver = bodies_.view(),
+                                .velocity = std::as_const(velocity_).view(),
+                                .spin = std::as_const(spin_).view(),
+                                .islands = islands_,
+                                .island = island,
+                                .guides = std::as_const(guides_).view()};
+    outcome[island] = residual_of(problem).within(tolerance) ? DirectOutcome::not_needed
+                      : rolls(island)                        ? DirectOutcome::too_large
+                                                             : solve_directly(problem, tolerance, limits);
+  });
+  solved += std::ranges::count(outcome, DirectOutcome::solved);
+  failed += std::ranges::count(outcome, DirectOutcome::failed);
+  return std::ranges::all_of(outcome, [](DirectOutcome of) {
+    return of == DirectOutcome::solved || of == DirectOutcome::not_needed;
+  });
+}
+
+template <class Real>
+int ContactsOnHost<Real>::keep_from_gaining(const std::vector<BodyRecord<Real>>& before_by_place) {
+  std::vector<BodyRecord<Real>> before(before_by_place.size());
+  for (std::size_t k = 0; k < before.size(); ++k)
+    before[static_cast<std::size_t>(index_[k])] = before_by_place[k];
+  int scaled = 0;
+  for (std::int64_t island = 0; island < islands_.count(); ++island) {
+    Moved moved;
+    for (const std::int32_t c : islands_.contacts(island)) {
+      const Contact& contact = contacts_.view()[c];
+      const SolverBody& i = bodies_.view()[contact.i];
+      const SolverBody& j = bodies_.view()[contact.j];
+      const BodyRecord<Real>& before_i = before[static_cast<std::size_t>(contact.i)];
+      const BodyRecord<Real>& before_j = before[static_cast<std::size_t>(contact.j)];
+      double through_mean = 0, square = 0;
+      for (int k = 0; k < contact.count; ++k) {
+        const ContactRow& row = rows_.view()[contact.first_row + k];
+        const Vec3 u = row.relative_velocity(i, j);
+        const Vec3 u_before = row.relative_velocity(vec3(before_i.velocity), vec3(before_i.spin),
+                                                    vec3(before_j.velocity), vec3(before_j.spin));
+        const Vec3 u_free = row.relative_velocity(velocity_.view()[contact.i], spin_.view()[contact.i],
+                                                  velocity_.view()[contact.j], spin_.view()[contact.j]);
+        through_mean += 0.5 * row.impulse.dot(u_before + u);
+        square += 0.5 * row.impulse.dot(u - u_free);
+      }
+      const Vec3& couple = couples_[static_cast<std::size_t>(c)];
+      const Vec3 spin = j.spin - i.spin;
+      through_mean += 0.5 * couple.dot(vec3(before_j.spin) - vec3(before_i.spin) + spin);
+      square += 0.5 * couple.dot(spin - spin_.view()[contact.j] + spin_.view()[contact.i]);
+      moved = moved + Moved{through_mean - square, square};
+    }
+    if (!moved.gains(response_gain<Real>)) continue;
+    const double by = moved.scale_without_gain();
+    ++scaled;
+    for (const std::int32_t c : islands_.contacts(island)) {
+      const Contact& contact = contacts_.view()[c];
+      for (int k = 0; k < contact.count; ++k) rows_.view()[contact.first_row + k].impulse *= by;
+      couples_[static_cast<std::size_t>(c)] *= by;
+    }
+  }
+  if (scaled > 0) set_velocities();
+  return scaled;
+}
+
+template <class Real>
+void ContactsOnHost<Real>::put_back() const {
+  using B = BallContacts<Real>;
+  using P = PointContacts<Real>;
+  using R = RollingFields<Real>;
+  const B balls = seen_.contacts->balls();
+  const P points = seen_.contacts->points();
+  for (std::int64_t c = 0; c < contacts_.size(); ++c) {
+    const Contact& contact = contacts_.view()[c];
+    const std::int64_t place = place_[static_cast<std::size_t>(c)];
+    for (int k = 0; k < contact.count; ++k) {
+      const V3<Real> impulse = v3<Real>(rows_.view()[contact.first_row + k].impulse);
+      for (const bool last : {false, true}) {
+        if (contact.balls) {
+          balls.fields.set(last ? B::last : B::impulse, place, impulse);
+        } else {
+          points.point_fields.set(P::at_point(k, last ? P::last : P::impulse), place, impulse);
+        }
+      }
+    }
+    if (seen_.rolls) {
+      const auto& fields = (contact.balls ? seen_.ball_rolling : seen_.point_rolling).fields;
+      const V3<Real> couple = v3<Real>(couples_[static_cast<std::size_t>(c)]);
+      fields.set(R::couple, place, couple);
+      fields.set(R::last, place, couple);
+    }
+  }
+}
+
+template class ContactsOnHost<double>;
+template class ContactsOnHost<float>;
+
+}  // namespace scree::solver

@@ -1,0 +1,433 @@
+#include "sim/response/direct.hpp"
+
+#include "core/tolerances.hpp"
+
+#include <Eigen/SparseCholesky>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+namespace scree {
+
+namespace {
+
+/// Bounds of r, in units of the normal mass of the row. Stiffer: fewer passes to the solution, but more
+/// points that change their state within a pass, and more rounding in the impulses (r times that of the
+/// velocities).
+constexpr double softest = 1e2;
+constexpr double stiffest = 1e8;
+constexpr double stiffening = 10;  // from pass to pass
+
+constexpr int most_newton_steps = 20;      // in a pass
+constexpr int most_shortenings = 12;       // of a step
+constexpr double kept_slope = 0.1;         // that may be left, turned, at the end of a step
+constexpr double least_decrement = 1e-12;  // relative
+
+using Vector = Eigen::VectorXd;
+
+/// Factorization L D L^T, which tells what it will cost. Free of square roots, it gives the same motion for
+/// the same scene in other units.
+class Factorization : public Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>, Eigen::Lower> {
+ public:
+  /// Products, after analyzePattern().
+  double cost() const { return m_nonZerosPerCol.cast<double>().squaredNorm(); }
+};
+
+/// A row within a pass.
+struct PassRow {
+  ContactRow* row;
+  const Contact* contact;
+  Eigen::Index i, j;  // first unknown of each body; negative if it is not free
+  double closing;     // normal velocity at the start of the pass, less the target (m/s)
+  Vec3 slide;         // tangential velocity at the start of the pass (m/s)
+  double slip;        // its length (m/s)
+  double lag;         // by how much the slip taken for constant exceeds that (m/s)
+  Vec3 impulse;       // multiplier
+  Vec3 projected;     // its successor, the nearest point of the cone to y
+  Mat3 derivative;    // of that by y
+
+  /// Sets the last two for y = impulse - r (u - (target - mu (slip + lag)) n), where u has changed by so much
+  /// since the start. The terms are ordered so that r, large, multiplies no difference of large numbers.
+  void project(const Vec3& change, double r) {
+    const Vec3& n = contact->normal;
+    const double mu = contact->friction;
+    const double pn = impulse.dot(n);
+    const double cn = change.dot(n);
+    const Vec3 left = impulse - pn * n - r * (change - cn * n);
+    const Vec3 yt = left - r * slide;
+    const double length = yt.norm();
+    const double without_slip = pn - r * (closing + cn + mu * lag);
+    const double yn = without_slip - r * mu * slip;
+    projected.setZero();
+    derivative.setZero();
+    if (length <= mu * yn) {
+      projected = yn * n + yt;
+      derivative.setIdentity();
+      return;
+    }
+    const double excess =
+        length > 0 ? left.dot(left - 2 * r * slide) / (length + r * slip) : 0.0;  // length - r slip
+    const double along = (without_slip + mu * excess) / (1 + mu * mu);
+    if (along <= 0) return;
+    const Vec3 t = length > 0 ? Vec3(yt / length) : Vec3(Vec3::Zero());
+    const Vec3 edge = n + mu * t;
+    projected = along * edge;
+    derivative = edge * edge.transpose() / (1 + mu * mu);
+    if (mu > 0 && length > 0) {
+      const Vec3 b = n.cross(t);
+      derivative += (mu * along / length) * b * b.transpose();
+    }
+  }
+};
+
+class IslandSolver {
+ public:
+  IslandSolver(const IslandProblem& problem, const DirectLimits& limits)
+      : problem_(problem), limits_(limits) {
+    load_bodies();
+    load_rows();
+    lay_out_matrix();
+  }
+
+  bool is_cheap() {
+    factor_.analyzePattern(matrix_);
+    return factor_.cost() <= limits_.products;
+  }
+
+  DirectOutcome solve(double tolerance) {
+    const ImpulseChange before = natural_residual(problem_);
+    std::vector<Vec3> start;
+    for (const PassRow& row : rows_) start.push_back(row.impulse);
+    const ImpulseChange after = approach(before, tolerance);
+    if (after.within(tolerance)) return DirectOutcome::solved;
+    if (!(after.step * before.size < before.step * after.size)) {
+      for (std::size_t k = 0; k < rows_.size(); ++k) rows_[k].impulse = start[k];
+      store();
+    }
+    return DirectOutcome::failed;
+  }
+
+ private:
+  Eigen::Index unknown_of(std::int32_t body) const {
+    return problem_.solver[body].is_free() ? 6 * problem_.islands.place(body) : -1;
+  }
+
+  void load_bodies() {
+    const auto bodies = problem_.islands.bodies(problem_.island);
+    change_.resize(6 * bodies.size());
+    for (std::int64_t k = 0; k < bodies.size(); ++k) {
+      inertia_.push_back(problem_.solver[bodies[k]].inverse_inertia.inverse());
+      for (const Guide& guide : problem_.guides) {
+        if (guide.body != bodies[k]) continue;
+        guides_.push_back({6 * k, guide});
+        inertia_.back().setIdentity();  // any will do: nothing turns it
+      }
+    }
+  }
+
+  /// The unknowns of a body in a guide are six as those of the others, of which five stay 0.
+  struct GuidedUnknowns {
+    Eigen::Index first;
+    Guide guide;
+
+    void hold(Vector& v) const {
+      Vec3 along = v.segment<3>(first);
+      guide.hold(along);
+      v.segment<3>(first) = along;
+      v.segment<3>(first + 3).setZero();
+    }
+  };
+
+  const Guide* guide_at(Eigen::Index unknown) const {
+    for (const GuidedUnknowns& guided : guides_)
+      if (guided.first == unknown) return &guided.guide;
+    return nullptr;
+  }
+
+  void load_rows() {
+    for (const std::int32_t c : problem_.islands.contacts(problem_.island)) {
+      const Contact& contact = problem_.contacts[c];
+      for (int k = 0; k < contact.count; ++k) {
+        ContactRow& row = problem_.rows[contact.first_row + k];
+        rows_.push_back({.row = &row,
+                         .contact = &contact,
+                         .i = unknown_of(contact.i),
+                         .j = unknown_of(contact.j),
+                         .closing = 0,
+                         .slide = Vec3::Zero(),
+                         .slip = 0,
+                         .lag = 0,
+                         .impulse = row.impulse,
+                         .projected = Vec3::Zero(),
+                         .derivative = Mat3::Zero()});
+      }
+    }
+    start_pass(1.0);
+  }
+
+  /// From the velocities as they are. The slips are taken so much of the way to theirs.
+  void start_pass(double share) {
+    change_.setZero();
+    for (PassRow& row : rows_) {
+      const Vec3& n = row.contact->normal;
+      const Vec3 u =
+          row.row->relative_velocity(problem_.solver[row.contact->i], problem_.solver[row.contact->j]);
+      const double un = u.dot(n);
+      const double slip = row.slip + row.lag;
+      row.closing = un - row.row->target;
+      row.slide = u - un * n;
+      row.slip = row.slide.norm();
+      row.lag = (1 - share) * (slip - row.slip);
+    }
+  }
+
+  /// The lower triangle has blocks at the bodies, and where two are in contact; it is compressed by columns.
+  void lay_out_matrix() {
+    const auto n = static_cast<std::size_t>(change_.size() / 6);
+    below_.resize(n);
+    for (const PassRow& row : rows_) {
+      if (row.i < 0 || row.j < 0) continue;
+      below_[static_cast<std::size_t>(std::min(row.i, row.j) / 6)].push_back(std::max(row.i, row.j));
+    }
+    matrix_.resize(change_.size(), change_.size());
+    std::vector<int> entries(6 * n);
+    for (std::size_t k = 0; k < n; ++k) {
+      auto& below = below_[k];
+      std::sort(below.begin(), below.end());
+      below.erase(std::unique(below.begin(), below.end()), below.end());
+      for (std::size_t c = 0; c < 6; ++c) entries[6 * k + c] = static_cast<int>(6 - c + 6 * below.size());
+    }
+    matrix_.reserve(entries);
+    for (std::size_t k = 0; k < n; ++k) {
+      const auto first = static_cast<Eigen::Index>(6 * k);
+      for (Eigen::Index c = first; c < first + 6; ++c) {
+        for (Eigen::Index r = c; r < first + 6; ++r) matrix_.insert(r, c) = 0;
+        for (const Eigen::Index other : below_[k]) {
+          for (Eigen::Index r = other; r < other + 6; ++r) matrix_.insert(r, c) = 0;
+        }
+      }
+    }
+    matrix_.makeCompressed();
+  }
+
+  Vec3 change_at(const PassRow& row, const Vector& change) const {
+    Vec3 u = Vec3::Zero();
+    if (row.j >= 0) u += change.segment<3>(row.j) + change.segment<3>(row.j + 3).cross(row.row->arm_j);
+    if (row.i >= 0) u -= change.segment<3>(row.i) + change.segment<3>(row.i + 3).cross(row.row->arm_i);
+    return u;
+  }
+
+  /// Of the function to minimise; sets the rows' projections.
+  Vector gradient(const Vector& change) {
+    Vector g(change.size());
+    const auto bodies = problem_.islands.bodies(problem_.island);
+    for (std::int64_t k = 0; k < bodies.size(); ++k) {
+      g.segment<3>(6 * k) = change.segment<3>(6 * k) / problem_.solver[bodies[k]].inverse_mass;
+      g.segment<3>(6 * k + 3) = inertia_[static_cast<std::size_t>(k)] * change.segment<3>(6 * k + 3);
+    }
+    for (PassRow& row : rows_) {
+      row.project(change_at(row, change), stiffness_ * row.row->normal_mass);
+      const Vec3 p = row.projected - row.impulse;
+      if (row.i >= 0) {
+        g.segment<3>(row.i) += p;
+        g.segment<3>(row.i + 3) += row.row->arm_i.cross(p);
+      }
+      if (row.j >= 0) {
+        g.segment<3>(row.j) -= p;
+        g.segment<3>(row.j + 3) -= row.row->arm_j.cross(p);
+      }
+    }
+    for (const GuidedUnknowns& guided : guides_) guided.hold(g);
+    return g;
+  }
+
+  using Jacobian = Eigen::Matrix<double, 3, 6>;
+  Jacobian jacobian(const Vec3& arm, Eigen::Index unknown) const {
+    Jacobian j;
+    if (const Guide* guide = guide_at(unknown)) {
+      j << guide->axis * guide->axis.transpose(), Mat3::Zero();
+      return j;
+    }
+    j << Mat3::Identity(), Mat3::Zero();
+    j.col(3) = Vec3::UnitX().cross(arm);
+    j.col(4) = Vec3::UnitY().cross(arm);
+    j.col(5) = Vec3::UnitZ().cross(arm);
+    return j;
+  }
+
+  using Block = Eigen::Matrix<double, 6, 6>;
+  /// Adds to the block at body `column` of body `row`, of the lower triangle.
+  void add(Eigen::Index row, Eigen::Index column, const Block& block) {
+    Eigen::Index place = 0;
+    if (row != column) {
+      const auto& below = below_[static_cast<std::size_t>(column / 6)];
+      place = 6 * (std::lower_bound(below.begin(), below.end(), row) - below.begin());
+    }
+    for (Eigen::Index c = 0; c < 6; ++c) {
+      double* values = matrix_.valuePtr() + matrix_.outerIndexPtr()[column + c];
+      if (row == column) {
+        for (Eigen::Index r = c; r < 6; ++r) values[r - c] += block(r, c);
+      } else {
+        for (Eigen::Index r = 0; r < 6; ++r) values[6 - c + place + r] += block(r, c);
+      }
+    }
+  }
+
+  /// Of the rows as gradient() has set them.
+  void factorize() {
+    std::fill_n(matrix_.valuePtr(), matrix_.nonZeros(), 0.0);
+    const auto bodies = problem_.islands.bodies(problem_.island);
+    for (std::int64_t k = 0; k < bodies.size(); ++k) {
+      Block mass = Block::Zero();
+      mass.topLeftCorner<3, 3>() = Mat3::Identity() / problem_.solver[bodies[k]].inverse_mass;
+      mass.bottomRightCorner<3, 3>() = inertia_[static_cast<std::size_t>(k)];
+      add(6 * k, 6 * k, mass);
+    }
+    for (const PassRow& row : rows_) {
+      const Mat3 a = stiffness_ * row.row->normal_mass * row.derivative;
+      if (a.isZero(0)) continue;
+      const Jacobian ji = jacobian(row.row->arm_i, row.i);
+      const Jacobian jj = jacobian(row.row->arm_j, row.j);
+      if (row.i >= 0) add(row.i, row.i, ji.transpose() * a * ji);
+      if (row.j >= 0) add(row.j, row.j, jj.transpose() * a * jj);
+      if (row.i < 0 || row.j < 0) continue;
+      if (row.i < row.j)
+        add(row.j, row.i, -jj.transpose() * a * ji);
+      else
+        add(row.i, row.j, -ji.transpose() * a * jj);
+    }
+    factor_.factorize(matrix_);
+    ++factorizations_;
+  }
+
+  /// Passes of the multipliers, each as stiff as the one before it allows. The problem holds the last one's
+  /// impulses; returns what is left of the residual.
+  ImpulseChange approach(ImpulseChange residual, double tolerance) {
+    const double accuracy = residual.step > 0 ? std::sqrt(residual.size / residual.step) : stiffest;
+    stiffness_ = std::clamp(accuracy, softest, stiffest);
+    for (int pass = 0; pass < limits_.passes && can_go_on(); ++pass) {
+      if (!minimise()) {
+        stiffness_ /= stiffening;
+        change_.setZero();
+        continue;
+      }
+      for (PassRow& row : rows_) row.impulse = row.projected;
+      store();
+      const ImpulseChange last = residual;
+      residual = natural_residual(problem_);
+      if (residual.within(tolerance::direct_share * tolerance)) break;
+      const double share = residual.step * last.size / (last.step * residual.size);  // squared
+      // Slips that overshoot to and fro are taken half the way.
+      start_pass(share > 0.25 ? 0.5 : 1.0);
+      if (share < 1) stiffness_ = std::min(stiffness_ * stiffening, stiffest);
+    }
+    return residual;
+  }
+
+  bool can_go_on() const { return factorizations_ * factor_.cost() <= limits_.products_in_all; }
+
+  /// Newton's method. The function is convex: a step is long enough where its slope has turned, and shortened
+  /// until little of it is left. False if it does not get there.
+  bool minimise() {
+    Vector g = gradient(change_);
+    for (int step = 0; step < most_newton_steps && can_go_on(); ++step) {
+      factorize();
+      if (factor_.info() != Eigen::Success) return false;
+      const Vector direction = factor_.solve(-g);
+      const double slope = g.dot(direction);
+      if (!(slope < 0)) return true;
+      double length = 1;
+      Vector next = change_ + direction;
+      g = gradient(next);
+      for (int shortening = 0; shortening < most_shortenings; ++shortening) {
+        const double end_slope = g.dot(direction);
+        if (end_slope <= -kept_slope * slope) break;
+        length *= std::clamp(slope / (slope - end_slope), 0.1, 0.9);
+        next = change_ + length * direction;
+        g = gradient(next);
+      }
+      change_ = next;
+      if (-slope <= least_decrement * least_decrement * size()) return true;
+    }
+    return false;
+  }
+
+  /// Of the impulses that gradient() has found, as ImpulseChange::size.
+  double size() const {
+    double sum = 0;
+    for (const PassRow& row : rows_) sum += row.projected.squaredNorm() / row.row->normal_mass;
+    return sum;
+  }
+
+  void store() {
+    for (const PassRow& row : rows_) row.row->impulse = row.impulse;
+    for (const std::int32_t body : problem_.islands.bodies(problem_.island)) {
+      problem_.solver[body].velocity = problem_.velocity[body];
+      problem_.solver[body].spin = problem_.spin[body];
+    }
+    for (const std::int32_t c : problem_.islands.contacts(problem_.island)) {
+      const Contact& contact = problem_.contacts[c];
+      for (int k = 0; k < contact.count; ++k) {
+        const ContactRow& row = problem_.rows[contact.first_row + k];
+        row.push(row.impulse, problem_.solver[contact.i], problem_.solver[contact.j]);
+      }
+    }
+    for (const GuidedUnknowns& guided : guides_)
+      guided.guide.hold(problem_.solver[guided.guide.body].velocity);
+  }
+
+  const IslandProblem& problem_;
+  const DirectLimits& limits_;
+  std::vector<PassRow> rows_;
+  std::vector<Mat3> inertia_;                     // of each body
+  std::vector<GuidedUnknowns> guides_;            // of bodies in guides
+  Vector change_;                                 // of the velocities, in a pass
+  std::vector<std::vector<Eigen::Index>> below_;  // first unknowns of the later bodies in contact with each
+  Eigen::SparseMatrix<double> matrix_;
+  Factorization factor_;
+  double stiffness_ = 0;  // r by the normal mass
+  int factorizations_ = 0;
+};
+
+}  // namespace
+
+ImpulseChange natural_residual(const IslandProblem& problem) {
+  ImpulseChange residual;
+  for (const std::int32_t c : problem.islands.contacts(problem.island)) {
+    const Contact& contact = problem.contacts[c];
+    residual = residual + natural_residual(contact, &problem.rows[contact.first_row],
+                                           problem.solver[contact.i], problem.solver[contact.j]);
+  }
+  return residual;
+}
+
+DirectOutcome solve_directly(const IslandProblem& problem, double tolerance, const DirectLimits& limits) {
+  IslandSolver solver(problem, limits);
+  return solver.is_cheap() ? solver.solve(tolerance) : DirectOutcome::too_large;
+}
+
+namespace {
+
+/// So few solutions have failed that more are worth their time.
+bool mostly_succeed(std::int64_t solved, std::int64_t failed) {
+  constexpr std::int64_t failures_to_start = 2;
+  constexpr std::int64_t solved_per_failure = 4;
+  return failed <= failures_to_start + solved / solved_per_failure;
+}
+
+}  // namespace
+
+bool pays_long_solution(const Counters& counters) {
+  return mostly_succeed(counters.patient, counters.patient_failed);
+}
+
+int sweeps_before_direct(int most, const Counters& counters) {
+  constexpr int many_sweeps = 200;
+  const int sweeps = mostly_succeed(counters.direct, counters.direct_failed)
+                         ? few_sweeps
+                         : std::clamp(most / 2, few_sweeps, many_sweeps);
+  return std::min(most, sweeps);
+}
+
+}  // namespace scree

@@ -1,0 +1,83 @@
+// What fills up blocks of contacts, so that a visit to a whole block finds nothing to do where there is no
+// contact.
+#pragma once
+
+#include "sim/contacts/layout.hpp"
+#include "sim/contacts/rolling_visits.hpp"
+
+#include <cstdint>
+
+namespace scree::solver {
+
+/// A target that every velocity meets (m/s).
+inline constexpr double no_target = -1e30;
+
+/// Of a block of contacts of balls.
+template <class Real>
+struct PadBalls {
+  BallContacts<Real> contacts;
+  RollingFields<Real> rolling;
+  bool rolls;
+  std::int32_t nobody;  ///< a body of the solver that is not free
+
+  SCREE_HD void operator()(std::int64_t block) const {
+    using C = BallContacts<Real>;
+    const std::int64_t begin = block * simd::width;
+    for (std::int64_t c = begin; c < begin + simd::width; ++c) {
+      if (contacts.slot[c] != Slot::empty) continue;
+      contacts.ends[c] = {nobody, nobody};
+      contacts.flags[c] = 0;
+      for (int field = 0; field < C::count; ++field) contacts.fields.at(field, c) = 0;
+      contacts.fields.at(C::normal_mass, c) = 1;
+      contacts.gaps.at(C::flown, c) = contacts.gaps.at(C::cap, c) = 1;
+      contacts.gaps.at(C::pushed, c) = 0;
+      contacts.fields.at(C::target, c) = static_cast<Real>(no_target);
+      for (int field = 0; rolls && field < RollingFields<Real>::count; ++field)
+        rolling.fields.at(field, c) = 0;
+    }
+  }
+};
+
+/// The same of contacts of several points. Those of a block have as many as one of them has.
+template <class Real>
+struct PadPoints {
+  PointContacts<Real> contacts;
+  RollingFields<Real> rolling;
+  bool rolls;
+  std::int32_t nobody;
+
+  SCREE_HD void operator()(std::int64_t block) const {
+    using C = PointContacts<Real>;
+    const std::int64_t begin = block * simd::width;
+    std::int32_t points = 0;
+    for (std::int64_t c = begin; c < begin + simd::width; ++c) {
+      if (contacts.slot[c] != Slot::empty) {
+        points = contacts.points[c] > points ? contacts.points[c] : points;
+        continue;
+      }
+      contacts.ends[c] = {nobody, nobody};
+      contacts.flags[c] = 0;
+      contacts.points[c] = 0;
+      for (int field = 0; field < C::count; ++field) contacts.fields.at(field, c) = 0;
+      contacts.fields.at(C::cap, c) = 1;
+      for (int field = 0; rolls && field < RollingFields<Real>::count; ++field)
+        rolling.fields.at(field, c) = 0;
+    }
+    for (std::int64_t c = begin; c < begin + simd::width; ++c)
+      for (std::int32_t k = contacts.points[c]; k < points; ++k) pad_point(c, k);
+  }
+
+ private:
+  SCREE_HD void pad_point(std::int64_t c, std::int32_t k) const {
+    using C = PointContacts<Real>;
+    const auto& f = contacts.point_fields;
+    const int first = C::at_point(k, C::arm_i);
+    for (int field = first; field < first + C::point_count; ++field) f.at(field, c) = 0;
+    f.at(C::at_point(k, C::normal_mass), c) = 1;
+    f.at(C::at_point(k, C::target), c) = static_cast<Real>(no_target);
+    contacts.gaps.at(C::at_point(k, C::flown), c) = 1;
+    contacts.gaps.at(C::at_point(k, C::pushed), c) = 0;
+  }
+};
+
+}  // namespace scree::solver

@@ -1,0 +1,85 @@
+// Couples of rolling friction: what they start from, and what they have moved.
+#pragma once
+
+#include "sim/contacts/contact_accounts.hpp"
+#include "sim/contacts/find_stage.hpp"
+#include "sim/contacts/rolling_visits.hpp"
+
+#include <cstdint>
+
+namespace scree::solver {
+
+/// Starts from what the places remember, as far as the impulses that the contacts start from allow. Points of
+/// walls that turn get the spins of these.
+template <class Real, class Contacts>
+struct StartRolling {
+  FindStage<Real> stage;
+  std::int64_t first_place;
+  Contacts contacts;
+  RollingFields<Real> rolling;
+  ConstView<V3<Real>> couples;  ///< of all places
+  View<BodyRecord<Real>> solver;
+
+  SCREE_HD void operator()(std::int64_t c) const {
+    using R = RollingFields<Real>;
+    const std::int64_t place = first_place + contacts.slot[c];
+    const Slot slot = stage.places[place];
+    const SlotBodies<Real> at = stage.load(slot);
+    const auto reach = static_cast<Real>(stage.laws.rolling_reach(slot.i, slot.j));
+    const V3<Real> n = contacts.fields.vector(Contacts::normal, c);
+    const auto share = static_cast<Real>(stage.parameters.warm_start ? stage.scale : 0.0);
+    const V3<Real> couple = simd::couple_of<Scalar<Real>>(
+        n, reach * normal_impulse_of<Scalar<Real>>(contacts, c), Real{}, share * couples[place], V3<Real>{});
+    rolling.fields.at(R::reach, c) = reach;
+    rolling.fields.set(R::couple, c, couple);
+    rolling.fields.set(R::last, c, couple);
+    if (stage.is_wall_point(at.a, slot.i, slot.end_i))
+      solver[slot.end_i].spin = v3<Real>(stage.bodies.spin[slot.i]);
+    if (stage.is_wall_point(at.b, slot.j, slot.end_j))
+      solver[slot.end_j].spin = v3<Real>(stage.bodies.spin[slot.j]);
+  }
+};
+
+/// What the couple of a contact has moved, which its place remembers: account_couple().
+template <class Real, class Contacts>
+struct BookRolling {
+  BookStage<Real> stage;
+  std::int64_t first_place;
+  Contacts contacts;
+  RollingFields<Real> rolling;
+  View<V3<Real>> couples;  ///< of all places
+
+  SCREE_HD Books operator()(std::int64_t c) const {
+    const std::int64_t place = first_place + contacts.slot[c];
+    const V3<Real> found = rolling.fields.vector(RollingFields<Real>::couple, c);
+    couples[place] = found;
+    Books books;
+    if (is_zero(found)) return books;
+    const Slot slot = stage.places[place];
+    const Ends ends = contacts.ends[c];
+    const Vec3 couple = vec3(found);
+    const Vec3 spin_i = vec3(stage.solver[ends.i].spin);
+    const Vec3 spin_j = vec3(stage.solver[ends.j].spin);
+    const Vec3 before = stage.bodies.spin[slot.j] - stage.bodies.spin[slot.i];
+    const Vec3 free = vec3(stage.free[ends.j].spin) - vec3(stage.free[ends.i].spin);
+    books.friction = -0.5 * couple.dot(before + spin_j - spin_i);
+    books.kick_power = couple.dot(spin_j - spin_i - free);
+    stage.judge_gain(books);
+    if (!stage.is_free(ends.i)) books.work += couple.dot(spin_i);
+    if (!stage.is_free(ends.j)) books.work -= couple.dot(spin_j);
+    return books;
+  }
+};
+
+/// What the impulses of a contact and its couple move: `Book` is BookBalls or BookPoints.
+template <class Book, class Rolling>
+struct MovedBy {
+  bool rolls;
+  Book book;
+  Rolling rolling;
+  SCREE_HD Moved operator()(std::int64_t c) const {
+    return rolls ? book(c).moved() + rolling(c).moved() : book(c).moved();
+  }
+};
+
+}  // namespace scree::solver

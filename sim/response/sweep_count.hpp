@@ -1,0 +1,60 @@
+// The adaptive number of sweeps of a heap. It follows what the sweeps of the last substeps left undone.
+#pragma once
+
+#include "core/archive.hpp"
+
+#include <algorithm>
+
+namespace scree::solver {
+
+/// A sweep changes little in the slow modes of a heap of many layers, so the change of the impulses does not
+/// show whether these modes have converged. The undone power does: it is the power of the normal impulses on
+/// the relative velocities that they leave, and it is compared with the power of all impulses on all that
+/// they change (docs/decisions/0024, 0029). Where bodies slide on one another some power is always undone: a
+/// few hundredths of what is dissipated. In a slow mode it is a third and more (0046).
+class SweepCount {
+ public:
+  /// The least number of sweeps of the next substep. `usual` is the number of plan_sweeps(), `shared` tells
+  /// that bodies share several contact points, and `share` is the length of the substep in steps.
+  int sweeps(int usual, bool shared, double share);
+
+  /// Is called after each substep, with the powers (W) and what was dissipated (W).
+  void judge(double undone, double kicked, double dissipated);
+
+  /// Is called after the position correction of each substep. `mean`: mean overlap of the contacts, as a
+  /// share of the smaller body's size.
+  void judge_overlap(double mean) { overlap_ = std::max(overlap_, mean); }
+
+  /// Whether the heap flows: it dissipates more than tolerance::flowing_power of the power of its impulses.
+  bool flows() const { return flows_; }
+  /// The tolerance of the sweeps: they end when one changes the impulses by no more than this share of their
+  /// size. It is larger while the heap flows and its contacts hardly overlap.
+  double change() const;
+  /// Whether the slow modes have converged, so that the least number of sweeps will do.
+  bool is_calm() const { return degree_ == 0; }
+
+  void archive(Archive& archive) {
+    archive("degree", degree_);
+    archive("undone", undone_);
+    archive("kicked", kicked_);
+    archive("dissipated", dissipated_);
+    archive("moves", moves_);
+    archive("flows", flows_);
+    archive("judged", judged_);
+    archive("looseness", looseness_);
+    archive("overlap", overlap_);
+  }
+
+ private:
+  int next_looseness() const;
+
+  int degree_ = 2;      // 0, 1, 2... are 2, 3, 6, 12... sweeps of balls
+  bool moves_ = false;  // bodies slide on one another somewhere (tolerance::moving_power)
+  bool flows_ = false;  // and nearly everywhere (tolerance::flowing_power)
+  double undone_ = 0, kicked_ = 0, dissipated_ = 0;
+  int judged_ = 0;      // substeps since it was last changed
+  double overlap_ = 0;  // the largest mean overlap in these
+  int looseness_ = 0;   // change() is 2^looseness times that at rest
+};
+
+}  // namespace scree::solver

@@ -1,0 +1,349 @@
+// The rounds of a substep: sweeps over all contacts, colour by colour, until their impulses have converged,
+// and until nothing overlaps (core/space_rounds.hpp).
+#pragma once
+
+#include "core/space_rounds.hpp"
+#include "sim/contacts/contact_store.hpp"
+#include "sim/contacts/layout.hpp"
+#include "sim/contacts/rolling_visits.hpp"
+#include "sim/contacts/slots.hpp"
+#include "sim/contacts/sweeps.hpp"
+#include "sim/contacts/visit_kernels.hpp"
+#include "sim/laws/response_parameters.hpp"
+#include "sim/response/hubs.hpp"
+
+#include <algorithm>
+#include <cstdint>
+#include <type_traits>
+
+namespace scree::solver {
+
+/// Visits to the contacts of one kind, the colours being phases.
+struct ColorPhases {
+  int count = 0;
+  int width;                        ///< contacts of a visit
+  std::int32_t begin[most_colors];  ///< first contact of each colour
+  std::int32_t visits[most_colors];
+
+  ColorPhases(const ColorRanges& colors, int contacts_of_visit)
+      : count(colors.colors()), width(contacts_of_visit) {
+    for (std::size_t k = 0; k < colors.count.size(); ++k) {
+      begin[k] = static_cast<std::int32_t>(colors.begin[k]);
+      visits[k] = static_cast<std::int32_t>((colors.count[k] + width - 1) / width);
+    }
+  }
+  SCREE_HD std::int64_t items(int color) const { return visits[color]; }
+  SCREE_HD std::int64_t place(int color, std::int64_t item) const { return begin[color] + item * width; }
+  std::int64_t most_items() const {
+    std::int64_t most = 0;
+    for (int c = 0; c < count; ++c) most = std::max(most, items(c));
+    return most;
+  }
+};
+
+/// Work on one item of a phase, by a thread of its own.
+template <class Number>
+struct OneItem {
+  using Real = Number;
+  std::int64_t item;
+
+  template <class Visit, class... More>
+  SCREE_HD auto visit(const ColorPhases& colors, int color, const Visit& visit, More... more) const {
+    return visit.template visit<Scalar<Real>>(colors.place(color, item), more...);
+  }
+  template <class Visit>
+  SCREE_HD Overlaps part(const ColorPhases& colors, int color, const Visit& visit) const {
+    return Overlaps::of_gap(static_cast<float>(this->visit(colors, color, visit)));
+  }
+  SCREE_HD void accelerate(const Accelerate<Real>& bodies, Real beta) const { bodies.visit(item, beta); }
+  template <class F>
+  SCREE_HD void each(const F& f) const {
+    f(item);
+  }
+};
+
+/// Work on a run of items by Host.
+template <class Number>
+struct RunOfItems {
+  using Real = Number;
+  std::int64_t begin, end;
+
+  template <class Visit, class... More>
+  auto visit(const ColorPhases& colors, int color, const Visit& visit, More... more) const {
+    const auto place = [&](std::int64_t k) { return colors.place(color, k); };
+    if constexpr (by_kernels) {
+      return visit_kernels()(visit, Blocks{place(begin), end - begin}, more...);
+    } else {
+      using One = decltype(visit.template visit<Scalar<Real>>(0, more...));
+      if constexpr (std::is_void_v<One>) {
+        for (std::int64_t k = begin; k < end; ++k) visit.template visit<Scalar<Real>>(place(k), more...);
+      } else {
+        SweepChange sum;
+        for (std::int64_t k = begin; k < end; ++k)
+          sum = sum + visit.template visit<Scalar<Real>>(place(k), more...);
+        return sum;
+      }
+    }
+  }
+  template <class Visit>
+  Overlaps part(const ColorPhases& colors, int color, const Visit& visit) const {
+    if constexpr (by_kernels) {
+      return this->visit(colors, color, visit);
+    } else {
+      Overlaps sum;
+      for (std::int64_t k = begin; k < end; ++k) sum = sum + OneItem<Real>{k}.part(colors, color, visit);
+      return sum;
+    }
+  }
+  void accelerate(const Accelerate<Real>& bodies, Real beta) const {
+    if constexpr (by_kernels) {
+      visit_kernels().accelerate(bodies, begin, end, beta);
+    } else {
+      for (std::int64_t k = begin; k < end; ++k) bodies.visit(k, beta);
+    }
+  }
+  template <class F>
+  void each(const F& f) const {
+    for (std::int64_t k = begin; k < end; ++k) f(k);
+  }
+
+ private:
+  static constexpr bool by_kernels = visit_width<Host, Real> != 1;
+};
+
+/// Bodies of the solver that move along one axis alone do so, once the contacts have taken them for free
+/// ones. The last phase of a round, if there are any.
+template <class Record>
+struct HoldToGuides {
+  ConstView<Guide> guides;  ///< Guide::body is a body of the solver
+  Record* bodies;
+
+  SCREE_HD int phases() const { return guides.size() > 0 && bodies != nullptr ? 1 : 0; }
+  SCREE_HD void operator()(std::int64_t g) const {
+    using Real = decltype(Record::inverse_mass);
+    Record& body = bodies[guides[g].body];
+    Vec3 along = vec3(body.velocity);
+    guides[g].hold(along);
+    body.velocity = v3<Real>(along);
+  }
+};
+
+/// Finds impulses. The first round gives the bodies what their contacts remember, each other one is a sweep:
+/// the bodies go on by beta (with momentum), then each colour, then the couples of each colour if anything
+/// rolls, then the parts of hubs agree, and bodies in guides are held to them.
+/// only_balls: there are no other contacts, whose laws ask for many registers.
+template <class Real, bool only_balls>
+struct ImpulseRounds {
+  using State = SweepState;
+  using Sum = SweepChange;
+  /// Memory is waited for: many contacts must be on their way.
+  static constexpr int threads = only_balls ? 512 : 256;
+  static constexpr int blocks_at_once = only_balls && std::is_same_v<Real, float> ? 2 : 1;
+
+  ColorPhases ball_colors, point_colors;
+  BallContacts<Real> balls;
+  PointContacts<Real> points;
+  bool rolls;
+  RollingFields<Real> ball_rolling, point_rolling;
+  BodyRecord<Real>* bodies;
+  BodyRecord<Real>* last;
+  std::int64_t body_count;
+  JoinHubs<BodyRecord<Real>> hubs;
+  HoldToGuides<BodyRecord<Real>> guides;
+  int least, most, block_sweeps;
+  double tolerance;
+  int first_with_momentum;  ///< sweep, counted from 0; those before it are plain
+
+  SCREE_HD bool goes_on(const State& state) const {
+    return state.pushed && state.sweeps >= first_with_momentum;
+  }
+  SCREE_HD int phases(const State& state) const {
+    if (state.pushed && (state.converged || state.sweeps >= most)) return 0;
+    return (goes_on(state) ? 1 : 0) + (rolls ? 2 : 1) * (ball_colors.count + point_colors.count) +
+           hubs.phases() + guides.phases();
+  }
+  SCREE_HD std::int64_t items(const State& state, int phase) const {
+    if (goes_on(state) && phase-- == 0) return body_count;
+    if (phase < ball_colors.count) return ball_colors.items(phase);
+    phase -= ball_colors.count;
+    if (phase < point_colors.count) return point_colors.items(phase);
+    phase -= point_colors.count;
+    if (rolls) {
+      if (phase < ball_colors.count) return ball_colors.items(phase);
+      phase -= ball_colors.count;
+      if (phase < point_colors.count) return point_colors.items(phase);
+      phase -= point_colors.count;
+    }
+    return phase < hubs.phases() ? hubs.items(phase) : guides.guides.size();
+  }
+  std::int64_t most_items() const {
+    return std::max({body_count, ball_colors.most_items(), point_colors.most_items()});
+  }
+  SCREE_HD Sum operator()(const State& state, int phase, std::int64_t item) const {
+    return work(state, phase, OneItem<Real>{item});
+  }
+  Sum over(const State& state, int phase, std::int64_t begin, std::int64_t end) const {
+    return work(state, phase, RunOfItems<Real>{begin, end});
+  }
+  /// After a sweep: have the impulses converged, and by how much does the next one go on (Sweeps).
+  SCREE_HD State judge(State state, const Sum& change) const {
+    if (!state.pushed) {
+      state.pushed = true;
+      return state;
+    }
+    const bool remembered = goes_on(state);
+    ++state.sweeps;
+    state.converged = state.sweeps >= least && change.step <= tolerance * tolerance * change.size;
+    const double ratio = remembered && state.sweeps > 1 ? change.step / state.last_step : 0.0;
+    state.beta = ratio < 1.0 ? rounded(ratio) : 0.0;
+    state.last_step = change.step;
+    return state;
+  }
+
+ private:
+  /// Sums whose terms are added in another order, by another GPU or for other places of the bodies, differ in
+  /// their last digits; what is rounded from them does not, but for one in some 1e12. Ratios of small
+  /// integers, as symmetric heaps have them, are far from where the rounding leaps.
+  SCREE_HD static double rounded(double ratio) {
+    constexpr double levels = 1024;
+    constexpr double leap = 0.618;
+    return fmin(floor(levels * ratio + leap), levels - 1) / levels;
+  }
+
+  SCREE_CALLS_ITS_ARGUMENTS
+  template <class Items>
+  SCREE_HD Sum work(const State& state, int phase, const Items& items) const {
+    const auto beta = static_cast<Real>(state.beta);
+    const bool remembers = goes_on(state);
+    if (remembers && phase-- == 0) {
+      items.accelerate(Accelerate<Real>{bodies, last}, beta);
+      return {};
+    }
+    if (phase < ball_colors.count) {
+      if (state.pushed)
+        return items.visit(ball_colors, phase, SweepBalls<Real>{balls, bodies, remembers}, beta);
+      items.visit(ball_colors, phase, PushBalls<Real>{balls, bodies});
+      return {};
+    }
+    phase -= ball_colors.count;
+    if constexpr (!only_balls) {
+      if (phase < point_colors.count) {
+        if (state.pushed)
+          return items.visit(point_colors, phase, SweepPoints<Real>{points, bodies, block_sweeps}, beta);
+        items.visit(point_colors, phase, PushPoints<Real>{points, bodies});
+        return {};
+      }
+    }
+    phase -= point_colors.count;
+    if (rolls) {
+      if (phase < ball_colors.count)
+        return roll(state, phase, ball_colors, balls, ball_rolling, TurnBalls{}, items);
+      phase -= ball_colors.count;
+      if constexpr (!only_balls) {
+        if (phase < point_colors.count)
+          return roll(state, phase, point_colors, points, point_rolling, TurnPoints{}, items);
+      }
+      phase -= point_colors.count;
+    }
+    items.each([&](std::int64_t item) {
+      if (phase < hubs.phases()) {
+        hubs(phase, item);
+      } else {
+        guides(item);
+      }
+    });
+    return {};
+  }
+  SCREE_CALLS_ITS_ARGUMENTS
+  template <class Contacts, class Turn, class Items>
+  SCREE_HD Sum roll(const State& state, int color, const ColorPhases& colors, const Contacts& contacts,
+                    const RollingFields<Real>& rolling, const Turn&, const Items& items) const {
+    if (state.pushed)
+      return items.visit(colors, color, Roll<Real, Contacts, Turn>{contacts, rolling, bodies, goes_on(state)},
+                         static_cast<Real>(state.beta));
+    items.visit(colors, color, PushRolling<Real, Contacts, Turn>{contacts, rolling, bodies});
+    return {};
+  }
+};
+
+struct PartingState {
+  std::int32_t sweeps = 0;
+  bool corrected = false;
+  double mean = 0;  ///< of the overlaps that the last sweep has seen (of the cap)
+};
+
+/// Parts what overlaps, as the position correction of Host: displacements and turns of bodies that start
+/// where they are.
+template <class Real, bool only_balls>
+struct PartingRounds {
+  using State = PartingState;
+  using Sum = Overlaps;
+  static constexpr int threads = only_balls ? 512 : 256;
+  static constexpr int blocks_at_once = only_balls ? 2 : 1;
+
+  ColorPhases ball_colors, point_colors;
+  BallContacts<Real> balls;
+  PointContacts<Real> points;
+  CentreRecord<Real>* displacement;
+  CentreRecord<Real>* turn;  ///< none if all contacts are of balls
+  JoinHubs<CentreRecord<Real>> shifted_hubs, turned_hubs;
+  HoldToGuides<CentreRecord<Real>> guides;
+  Real share;
+  int least, usual, most;         ///< PartingPlan
+  float deepest, mean, too_deep;  ///< likewise (of the cap)
+
+  SCREE_HD int phases(const State& state) const {
+    if (state.corrected || state.sweeps >= most) return 0;
+    return ball_colors.count + point_colors.count + shifted_hubs.phases() + turned_hubs.phases() +
+           guides.phases();
+  }
+  SCREE_HD std::int64_t items(const State&, int phase) const {
+    if (phase < ball_colors.count) return ball_colors.items(phase);
+    phase -= ball_colors.count;
+    if (phase < point_colors.count) return point_colors.items(phase);
+    phase -= point_colors.count;
+    if (phase < shifted_hubs.phases()) return shifted_hubs.items(phase);
+    phase -= shifted_hubs.phases();
+    return phase < turned_hubs.phases() ? turned_hubs.items(phase) : guides.guides.size();
+  }
+  std::int64_t most_items() const { return std::max(ball_colors.most_items(), point_colors.most_items()); }
+  SCREE_HD Sum operator()(const State&, int phase, std::int64_t item) const {
+    return work(phase, OneItem<Real>{item});
+  }
+  Sum over(const State&, int phase, std::int64_t begin, std::int64_t end) const {
+    return work(phase, RunOfItems<Real>{begin, end});
+  }
+  SCREE_HD State judge(const State& state, const Sum& seen) const {
+    const int sweeps = state.sweeps + 1;
+    const bool are_small =
+        sweeps >= least && seen.deepest <= deepest && seen.sum <= static_cast<double>(mean) * seen.count;
+    return {sweeps, are_small || (sweeps >= usual && seen.deepest <= too_deep),
+            seen.count > 0 ? seen.sum / seen.count : 0.0};
+  }
+
+ private:
+  SCREE_CALLS_ITS_ARGUMENTS
+  template <class Items>
+  SCREE_HD Sum work(int phase, const Items& items) const {
+    if (phase < ball_colors.count)
+      return items.part(ball_colors, phase, PartBalls<Real>{balls, displacement, share});
+    phase -= ball_colors.count;
+    if constexpr (!only_balls) {
+      if (phase < point_colors.count)
+        return items.part(point_colors, phase, PartPoints<Real>{points, displacement, turn, share});
+    }
+    phase -= point_colors.count;
+    items.each([&](std::int64_t item) {
+      if (phase < shifted_hubs.phases()) {
+        shifted_hubs(phase, item);
+      } else if (phase - shifted_hubs.phases() < turned_hubs.phases()) {
+        turned_hubs(phase - shifted_hubs.phases(), item);
+      } else {
+        guides(item);
+      }
+    });
+    return {};
+  }
+};
+
+}  // namespace scree::solver

@@ -1,0 +1,175 @@
+#include "sim/response/wall_sums.hpp"
+
+#include "core/parallel.hpp"
+
+#include <bit>
+#include <utility>
+
+namespace scree::solver {
+
+namespace {
+
+constexpr std::int64_t together = 32;  // neighbours of a group
+
+SCREE_HD bool is_wall(ConstView<Mobility> mobility, std::int32_t body) {
+  return mobility[body] != Mobility::free;
+}
+
+struct IsOnWall {
+  static constexpr std::uint32_t none = 0xffffffffu;
+  ConstView<Slot> places;
+  ConstView<Mobility> mobility;
+  SCREE_HD std::uint32_t operator()(std::int64_t place) const {
+    const Slot& slot = places[place];
+    const bool found = slot.i != Slot::empty && (is_wall(mobility, slot.i) || is_wall(mobility, slot.j));
+    return found ? static_cast<std::uint32_t>(place) : none;
+  }
+};
+
+struct NameWall {
+  ConstView<Slot> places;
+  ConstView<Mobility> mobility;
+  ConstView<std::uint32_t> place;
+  View<std::uint32_t> body;
+  SCREE_HD void operator()(std::int64_t e) const {
+    const Slot& slot = places[place[e]];
+    body[e] = static_cast<std::uint32_t>(is_wall(mobility, slot.i) ? slot.i : slot.j);
+  }
+};
+
+struct NumberPlaces {
+  ConstView<std::uint32_t> place, key;
+  View<std::int32_t> entry_of, body;
+  SCREE_HD void operator()(std::int64_t e) const {
+    entry_of[place[e]] = static_cast<std::int32_t>(e);
+    body[e] = static_cast<std::int32_t>(key[e]);
+  }
+};
+
+/// Whether a group begins here: there, and then at each so many of the same body.
+struct MarkGroups {
+  ConstView<std::int32_t> body;
+  View<std::uint8_t> marks;
+  SCREE_HD void operator()(std::int64_t e) const {
+    marks[e] = (e - first_of(body[e])) % together == 0 ? 1 : 0;
+  }
+
+ private:
+  SCREE_HD std::int64_t first_of(std::int32_t wanted) const {
+    std::int64_t low = 0, high = body.size();
+    while (low < high) {
+      const std::int64_t middle = (low + high) / 2;
+      if (body[middle] < wanted) {
+        low = middle + 1;
+      } else {
+        high = middle;
+      }
+    }
+    return low;
+  }
+};
+
+struct ListGroups {
+  ConstView<std::int32_t> body;
+  ConstView<std::int64_t> number;
+  View<std::int64_t> begin;
+  View<std::int32_t> group_body;
+  SCREE_HD void operator()(std::int64_t e) const {
+    if (e + 1 == number.size()) {
+      begin[number[e]] = e;
+    } else if (number[e] < number[e + 1]) {
+      begin[number[e]] = e;
+      group_body[number[e]] = body[e];
+    }
+  }
+};
+
+struct AddGroup {
+  ConstView<std::int64_t> begin;
+  ConstView<WallImpulse> below;
+  View<WallImpulse> sums;
+  SCREE_HD void operator()(std::int64_t g) const {
+    WallImpulse sum;
+    for (std::int64_t e = begin[g]; e < begin[g + 1]; ++e) sum = sum + below[e];
+    sums[g] = sum;
+  }
+};
+
+struct AddToTotal {
+  ConstView<std::int32_t> body;
+  ConstView<WallImpulse> sums;
+  View<WallImpulse> totals;
+  SCREE_HD void operator()(std::int64_t g) const { totals[body[g]] = totals[body[g]] + sums[g]; }
+};
+
+}  // namespace
+
+template <class Space>
+void WallSums<Space>::take(ConstView<Slot> places, const ConstBodyView& bodies) {
+  Array<std::uint32_t, Space> place, key;
+  parallel::select("walls.list", places.size(), IsOnWall{places, bodies.mobility}, IsOnWall::none, place);
+  const std::int64_t n = place.size();
+  impulses_.resize(n);
+  body_.resize(n);
+  used_levels_ = 0;
+  if (n == 0) return;
+  key.resize(n);
+  parallel::for_each<Space>("walls.list", n,
+                            NameWall{places, bodies.mobility, std::as_const(place).view(), key.view()});
+  parallel::sort_by_key("walls.list", key, place, std::bit_width(static_cast<std::uint64_t>(bodies.count())));
+  entry_of_.resize(places.size());
+  parallel::fill("walls.list", entry_of_, -1);
+  parallel::for_each<Space>(
+      "walls.list", n,
+      NumberPlaces{std::as_const(place).view(), std::as_const(key).view(), entry_of_.view(), body_.view()});
+  Array<std::uint8_t, Space> marks;
+  Array<std::int64_t, Space> number;
+  const Array<std::int32_t, Space>* below = &body_;
+  for (;;) {
+    if (used_levels_ == levels_.size()) levels_.emplace_back();
+    marks.resize(below->size());
+    parallel::for_each<Space>("walls.groups", marks.size(), MarkGroups{below->view(), marks.view()});
+    const std::int64_t groups = parallel::exclusive_scan("walls.groups", marks, number);
+    if (groups == below->size() && used_levels_ > 0) return;
+    Level& level = levels_[used_levels_++];
+    level.begin.resize(groups + 1);
+    level.body.resize(groups);
+    level.sums.resize(groups);
+    parallel::for_each<Space>(
+        "walls.groups", below->size() + 1,
+        ListGroups{below->view(), std::as_const(number).view(), level.begin.view(), level.body.view()});
+    below = &level.body;
+  }
+}
+
+template <class Space>
+void WallSums<Space>::start_step(std::int64_t bodies) {
+  totals_.resize(bodies);
+  parallel::fill("walls.clear", totals_, WallImpulse{});
+}
+
+template <class Space>
+View<WallImpulse> WallSums<Space>::clear_impulses() {
+  parallel::fill("walls.clear", impulses_, WallImpulse{});
+  return impulses_.view();
+}
+
+template <class Space>
+void WallSums<Space>::add_up() {
+  if (used_levels_ == 0) return;
+  ConstView<WallImpulse> below = std::as_const(impulses_).view();
+  for (std::size_t l = 0; l < used_levels_; ++l) {
+    Level& level = levels_[l];
+    parallel::for_each<Space>("walls.sums", level.sums.size(),
+                              AddGroup{std::as_const(level.begin).view(), below, level.sums.view()});
+    below = std::as_const(level.sums).view();
+  }
+  const Level& last = levels_[used_levels_ - 1];
+  parallel::for_each<Space>("walls.sums", last.body.size(),
+                            AddToTotal{last.body.view(), below, totals_.view()});
+}
+
+#define SCREE_INSTANTIATE(Space) template class WallSums<Space>;
+SCREE_FOR_EACH_SPACE(SCREE_INSTANTIATE)
+
+}  // namespace scree::solver

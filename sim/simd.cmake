@@ -1,0 +1,21 @@
+# scree_simd_sources(TARGET FILE...): compiles sources of this folder once for each instruction set that they know, as
+# parts of a target. SCREE_SIMD names the set. The host's compiler has the vector types.
+set(scree_processor any)
+if(CMAKE_SYSTEM_PROCESSOR STREQUAL x86_64)
+  set(scree_processor x86)
+endif()
+function(scree_simd_sources target)
+  add_simd_objects(${target} baseline "" ${ARGN})
+  if(scree_processor STREQUAL x86)
+    add_simd_objects(${target} avx2 "-mavx2" ${ARGN})
+    add_simd_objects(${target} avx512 "-mavx512f;-mavx512dq;-mavx512vl;-mfma;-mprefer-vector-width=512" ${ARGN})
+  endif()
+endfunction()
+function(add_simd_objects target set options)
+  add_library(${target}_${set} OBJECT ${ARGN})
+  target_link_libraries(${target}_${set} PRIVATE scree_options)
+  target_compile_definitions(${target}_${set} PRIVATE SCREE_SIMD=${set})
+  # The vectors cross no call.
+  target_compile_options(${target}_${set} PRIVATE -Wno-psabi ${options})
+  target_sources(${target} PRIVATE $<TARGET_OBJECTS:${target}_${set}>)
+endfunction()

@@ -1,0 +1,60 @@
+// Steps whose outcome is judged: what has failed is taken again, in smaller substeps, and only then given up.
+#pragma once
+
+#include "core/archive.hpp"
+#include "sim/model/substep_count.hpp"
+#include "sim/scene/scene.hpp"
+#include "sim/step/measurement.hpp"
+#include "sim/step/stepper.hpp"
+
+#include <cstdint>
+#include <exception>
+#include <string>
+#include <vector>
+
+namespace scree {
+
+class StepFailure;
+
+class GuardedSteps {
+ public:
+  /// `scene` must outlive this. Potential energies are about `origin`.
+  GuardedSteps(const Scene& scene, const Vec3& origin)
+      : scene_(scene), origin_(origin), substeps_(scene.response.quality) {}
+  void start(const Stepper& stepper, double least_scale);
+
+  /// Takes the step that starts at `time` and is `length` long (s). `exchange`: what bodies brought and took
+  /// so far. Throws StepFailure if a body's state stops being finite, if energy comes or goes that the ledger
+  /// does not explain, if a body leaves the world and the scene says to stop, or if the stepper throws, but
+  /// for std::bad_alloc, which passes. Whatever is thrown, the state and the books are then as they were.
+  void take(std::int64_t step, double time, double length, const Exchange& exchange, Stepper& stepper);
+  /// Bodies have come or gone between two steps, whose potential energy when they appeared was so much in sum
+  /// (J, likewise).
+  void change_bodies(double first_potential, const Exchange& exchange, const Stepper& stepper);
+
+  const EnergyBaseline& baseline() const { return baseline_; }
+  void archive(Archive& archive);
+
+ private:
+  /// What a step changes besides the state.
+  struct Books {
+    EnergyBaseline baseline;
+    Counters counters;
+  };
+
+  void take_once_or_twice(std::int64_t step, double time, double length, const Exchange& exchange,
+                          const Books& before, Stepper& stepper);
+  void take_in(int substeps, std::int64_t step, double length, const Exchange& exchange, Stepper& stepper);
+  void judge(const Exchange& exchange, const Stepper& stepper);
+  void choose_substeps(int taken, double deepest, const Stepper& stepper);
+  [[noreturn]] void fail(const std::vector<std::int32_t>& bodies, const std::string& how) const;
+  void extend_baseline(const Energies& energies, const Exchange& exchange, const Stepper& stepper);
+  void undo(const Books& before, Stepper& stepper);
+
+  const Scene& scene_;
+  Vec3 origin_;
+  SubstepCount substeps_;
+  EnergyBaseline baseline_;
+};
+
+}  // namespace scree

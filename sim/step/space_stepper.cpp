@@ -1,0 +1,682 @@
+#include "sim/step/space_stepper.hpp"
+
+#include "core/error.hpp"
+#include "core/geometry.hpp"
+#include "core/space_chosen.hpp"
+#include "core/timing.hpp"
+#include "core/tolerances.hpp"
+#include "sim/bodies/applied_forces.hpp"
+#include "sim/bodies/body_order.hpp"
+#include "sim/bodies/coming_and_going.hpp"
+#include "sim/bodies/motion.hpp"
+#include "sim/bodies/turning_gravity.hpp"
+#include "sim/impacts/impact_rounds.hpp"
+#include "sim/model/resolved_response.hpp"
+#include "sim/observe/overlaps.hpp"
+#include "sim/pairs/pair_finder.hpp"
+#include "sim/response/contact_inspection.hpp"
+#include "sim/response/contact_solver.hpp"
+#include "sim/scene/measure.hpp"
+#include "sim/step/moving_state.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <string>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+namespace scree {
+
+namespace {
+
+/// Whether each number from 0 on stands there once.
+bool are_numbers(std::vector<BodyNumber> list) {
+  std::ranges::sort(list);
+  for (std::size_t k = 0; k < list.size(); ++k)
+    if (index_of(list[k]) != k) return false;
+  return true;
+}
+
+/// Real: of impulses and of the velocities that they are found with.
+template <class Space, class Real>
+class SpaceStepper final : public Stepper {
+ public:
+  /// With options.on_device the PCS of bodies on Host is made there.
+  SpaceStepper(const Scene& scene, const TimeGrid& grid, const PathTable& paths,
+               const StepperOptions& options)
+      : grid_(grid),
+        steps_in_order_(options.steps_in_order),
+        geometry_(scene.geometry),
+        paths_(paths),
+        parameters_(response_parameters_of(scene)),
+        forces_(scene, grid),
+        gravity_(scene),
+        order_(scene.bodies, options.origin),
+        kept_pairs_(scene.broadphase, options.on_device, options.origin),
+        seen_pairs_(scene.broadphase, options.on_device, options.origin),
+        libccd_(scene.narrowphase) {
+    copy_bodies(bodies_, scene.bodies);
+    find_places<Space>(bodies_);
+    for (const Servo& servo : scene.servos) servo_axis_[BodyNumber{servo.body}] = servo.axis;
+    find_guides();
+    copy(laws_, pair_laws_of(scene));
+    materials_ = static_cast<std::int64_t>(scene.materials.size());
+    find_shapes();
+    find_walls(scene.bodies.id, scene.bodies.mobility);
+    start_.save(bodies_);
+  }
+
+  void start_step(std::int64_t step) override {
+    step_ = step;
+    start_ledger_ = ledger;
+    start_gravity_ = parameters_.gravity;
+    start_.save(bodies_);
+    if (step % steps_in_order_ == 0) {
+      sort_bodies();  // where there is no memory for it, the bodies stay where they are, and are saved
+      start_.save(bodies_);
+    }
+    gravity_.start_step();
+    clear_wall_impulses();
+    forces_.act(step, bodies_, parameters_);
+  }
+
+  void substep(double h, double done) override;
+  double overlap() const override { return contacts_.overlap(); }
+  bool has_heap() const override { return contacts_.has_heap(); }
+  OverlapsLeft overlaps_left() const override {
+    const timing::Region region("correction");
+    const Penetration left = solver::measure_overlaps<Space>(view_of(bodies_), std::as_const(shapes_).view(),
+                                                             kept_pairs_.pairs(), solver::Quantiles::none);
+    return {left.relative_mean, left.relative_max};
+  }
+
+  void undo_step() override {
+    start_.restore(bodies_);
+    ledger = start_ledger_;
+    parameters_.gravity = start_gravity_;
+    forget_pairs();
+    contacts_ = {};
+    struck_.clear();
+    have_moved_ = false;
+  }
+
+  void change_bodies(const std::function<void(Bodies<Host>&)>& change) override {
+    Bodies<Host> on_host;
+    copy_bodies(on_host, bodies_);
+    change(on_host);
+    copy_bodies(bodies_, on_host);
+    find_walls(to_vector(on_host.id), to_vector(on_host.mobility));
+    forget_pairs();
+  }
+  BodyTable take_out(const std::vector<BodyNumber>& numbers) override {
+    BodyTable gone = scree::take_out<Space>(numbers, bodies_);
+    forget_pairs();
+    return gone;
+  }
+  void bring_in(const BodyTable& bodies) override {
+    scree::bring_in<Space>(bodies, bodies_);
+    forget_pairs();
+  }
+
+  void archive(Archive& archive) override;
+
+  void copy_state(BodyTable& out) const override { copy_by_number<Space>(out, bodies_); }
+  SteppedBody body(BodyNumber number) const override;
+  Vec3 gravity() const override { return parameters_.gravity; }
+  Energies energies(const Vec3& reference) const override {
+    return energies_of<Space>(bodies_, parameters_.gravity, reference);
+  }
+  Totals totals(const Vec3& reference) const override {
+    return totals_of<Space>(bodies_, parameters_.gravity, reference);
+  }
+  double largest_speed() const override { return scree::largest_speed<Space>(bodies_); }
+  RegionContents contents_of(const Region& region) const override;
+  std::vector<BodyNumber> bodies_beyond(const World& world) const override {
+    return scree::bodies_beyond<Space>(world, bodies_);
+  }
+  std::vector<BodyNumber> bodies_in(const Region& region) const override {
+    return scree::bodies_in<Space>(region, bodies_);
+  }
+  BodyTable bodies_near(const Vec3& low, const Vec3& high) const override {
+    return scree::bodies_near<Space>(low, high, bodies_);
+  }
+
+  std::vector<BodyPair> pairs() override;
+  GridOccupancy grid_occupancy() override {
+    pairs_now();
+    GridOccupancy grid = pairs_seen().grid_occupancy();
+    grid.level = by_number(grid.level);
+    return grid;
+  }
+  std::vector<BodyBox> boxes() const override { return by_number(kept_pairs_.boxes()); }
+  void measure_overlaps(Observation& out) override {
+    const ConstView<Pair> pairs = pairs_now();
+    out.pairs = pairs_seen().size();
+    out.penetration = solver::measure_overlaps<Space>(view_of(std::as_const(bodies_)), shapes_.view(), pairs);
+  }
+
+  ContactProblem contact_problem() const override;
+  std::vector<ContactForce> contact_forces() const override;
+  void measure_contacts(std::int64_t free_bodies, Observation& out) const override;
+
+  const char* space_name() const override { return kept_pairs_.space_name(); }
+
+ private:
+  static constexpr bool is_device = !std::is_same_v<Space, Host>;
+
+  BodyView views() { return view_of(bodies_); }
+  /// What was found for the places that the bodies had goes with them, but for what contacts remember. New
+  /// pairs have their boxes put around the bodies as fast as these are now, and not as they once were.
+  void sort_bodies() {
+    const timing::Region region("broadphase");
+    order_.sort(bodies_);
+    have_moved_ = true;
+    forces_.forget();
+    kept_pairs_.forget();
+    seen_pairs_.forget();
+    find_shapes();
+    find_guides();
+  }
+  void find_walls(const std::vector<BodyNumber>& numbers, const std::vector<Mobility>& mobility) {
+    is_wall_.resize(numbers.size());
+    for (std::size_t k = 0; k < numbers.size(); ++k)
+      is_wall_[index_of(numbers[k])] = mobility[k] != Mobility::free && mobility[k] != Mobility::absent;
+  }
+  void clear_wall_impulses() {
+    contacts_.wall_sums().start_step(bodies_.count());
+    struck_walls_.clear();
+  }
+  void find_guides() {
+    std::vector<Guide> guides;
+    for (const auto& [number, axis] : servo_axis_) guides.push_back({place(number), axis});
+    copy(guides_, guides);
+    parameters_.guides = std::as_const(guides_).view();
+  }
+  ConstView<std::int32_t> place_before() const {
+    return have_moved_ ? order_.place_before() : ConstView<std::int32_t>{};
+  }
+  /// General shapes are known on Host alone.
+  void find_shapes() {
+    if constexpr (!is_device) {
+      if (!geometry_) return;
+      shapes_.resize(bodies_.count());
+      for (std::int64_t k = 0; k < bodies_.count(); ++k)
+        shapes_.view()[k] = geometry_->of_body[index_of(bodies_.id.view()[k])];
+    }
+  }
+  std::int32_t place(BodyNumber number) const {
+    std::int32_t place;
+    copy_bytes<Host, Space>(&place, bodies_.place_of.data() + index_of(number), sizeof(place));
+    return place;
+  }
+  /// Of a field of the bodies, or another list by place.
+  template <class List>
+  auto value_at(const List& list, std::int32_t place) const {
+    std::remove_cvref_t<decltype(list.data()[0])> value;
+    copy_bytes<Host, Space>(&value, list.data() + place, sizeof(value));
+    return value;
+  }
+  /// A list by place, which may be empty, in the order of the bodies' numbers.
+  template <class T>
+  std::vector<T> by_number(const std::vector<T>& by_place) const {
+    std::vector<T> ordered;
+    if (by_place.empty()) return ordered;
+    for (const std::int32_t place : to_vector(bodies_.place_of))
+      ordered.push_back(by_place[static_cast<std::size_t>(place)]);
+    return ordered;
+  }
+  /// Others of the bodies are there now, or somewhere else.
+  void forget_pairs() {
+    forces_.forget();
+    kept_pairs_.forget();
+    seen_pairs_.forget();
+    contacts_.change_bodies();
+  }
+  FlightTerms terms(double h, double from) const {
+    return {.laws = {bodies_.shape.view(), bodies_.size.view(), bodies_.mobility.view(),
+                     bodies_.material.view(), laws_.view(), materials_, shapes_.view()},
+            .step = h,
+            .from = from,
+            .bounces = from == 0};
+  }
+  double reach_from(double h, double done) const { return grid_.length(step_ + 1) - done + h; }
+
+  /// To what it is at a time (s), the midpoint of the substep that begins.
+  void turn_gravity(double midpoint) {
+    if (!gravity_.turns()) return;
+    ledger.work += gravity_.turn_to<Space>(midpoint, bodies_, parameters_);
+    forces_.forget();
+    forces_.act(step_, bodies_, parameters_);
+  }
+  void fly(double time, double dt) {
+    const timing::Region region("integration");
+    ledger.integration += advance<Space>(bodies_, dt, parameters_);
+    place_prescribed<Space>(paths_, time, bodies_);
+  }
+  bool fly_and_respond(double h, double done, bool may_be_undone);
+  void fly_on(double h, double done, bool late);
+  void give_candidates(ConstView<Pair> pairs);
+  ConstView<std::int64_t> known(ConstView<Pair> pairs);
+  ConstView<LoadedParts> loads_of(ConstView<Pair> pairs);
+  bool resolve_impacts(double h, double from, double foresight, double reach);
+  void add_impulse_on_walls(const Impact& impact);
+  void archive_wall_impulses(Archive& archive);
+
+  /// For the state as it is; which pairs the step keeps must not hang on who looks at it.
+  ConstView<Pair> pairs_now();
+  const KeptPairs<Space>& pairs_seen() const { return sees_kept_ ? kept_pairs_ : seen_pairs_; }
+  TimeGrid grid_;
+  std::int64_t steps_in_order_;
+  std::shared_ptr<const Geometry> geometry_;
+  std::int64_t step_ = 0;
+  Bodies<Space> bodies_;
+  Array<ShapeData, Space> shapes_;  // by place; empty if no body's shape is general
+  std::map<BodyNumber, Vec3> servo_axis_;
+  Array<Guide, Space> guides_;  // by place
+  PrescribedPaths<Space> paths_;
+  ResponseParameters parameters_;
+  Array<PairLaw, Space> laws_;
+  std::int64_t materials_ = 0;
+  AppliedForces<Space> forces_;
+  TurningGravity gravity_;
+  BodyOrder<Space> order_;
+  bool have_moved_ = false;  // to other places since the contacts last took candidates
+  KeptPairs<Space> kept_pairs_;
+  KeptPairs<Space> seen_pairs_;
+  bool sees_kept_ = true;
+  std::int64_t pairs_taken_ = 0;  // how often they had been made when the contacts last took them
+  std::int64_t pairs_known_ = 0;  // the same of `known_`
+  Array<std::int64_t, Space> known_;
+  Array<LoadedParts, Space> loads_;
+  LibccdContacts libccd_;
+  ImpactRounds<Space> impacts_;
+  mutable solver::ContactSolver<Space, Real> contacts_;  // shown on Host where they are
+
+  double last_substep_ = 0;  // its length; scales the remembered impulses
+  MovingState<Space> start_;
+  Ledger start_ledger_;
+  Vec3 start_gravity_ = Vec3::Zero();
+  // Bodies that are not free:
+  std::map<BodyNumber, solver::WallImpulse> struck_walls_;  // what impacts gave to them in the step
+  std::vector<std::uint8_t> is_wall_;                       // by number
+  /// What the first half of a substep changes, beside what contacts remember.
+  struct Restart {
+    MovingState<Space> state;
+    Vec3 gravity;
+    Ledger ledger;
+    std::int64_t impacts = 0, unfinished_impacts = 0;
+    Array<solver::WallImpulse, Space> on_walls;
+    std::map<BodyNumber, solver::WallImpulse> struck_walls;
+
+    void save(const SpaceStepper& now);
+    void restore(SpaceStepper& now) const;
+  };
+  Restart before_;  // of the last substep, in the accurate mode
+  Array<double, Space> contact_margin_;
+  std::vector<Impact> struck_;  // in the last substep
+};
+
+/// In the accurate mode in parts that end where contacts come to stick. What stops by a blow and not by
+/// friction does so no sooner in a shorter part: then cuts do not help, and there are none.
+template <class Space, class Real>
+void SpaceStepper<Space, Real>::substep(double h, double done) {
+  constexpr int most_cuts = 16;
+  constexpr double helps = 0.25;  // of what the cut before it found too long
+  const double end = done + h;
+  int cuts = 0;
+  bool cuts_help = parameters_.accurate;
+  while (done < end) {
+    double part = end - done;
+    if (cuts_help) before_.save(*this);
+    bool late = fly_and_respond(part, done, cuts_help);
+    double last = HUGE_VAL;
+    while (cuts_help && contacts_.slip_end() < 1) {
+      const double too_long = 1 - contacts_.slip_end();
+      cuts_help = too_long < helps * last && ++cuts <= most_cuts;
+      part = cuts_help ? contacts_.slip_end() * part : end - done;
+      last = too_long;
+      before_.restore(*this);
+      late = fly_and_respond(part, done, cuts_help);
+    }
+    fly_on(part, done, late);
+    done = part < end - done ? done + part : end;
+  }
+  counters.cuts += cuts;
+}
+
+/// Moreau's midpoint step. Its first half: free flight to the midpoint, impacts on the way, contacts there,
+/// impulses. Returns whether a body was struck after the midpoint. `done`: how much of the step went before
+/// (s); `may_be_undone`: before_ may be restored after it.
+template <class Space, class Real>
+bool SpaceStepper<Space, Real>::fly_and_respond(double h, double done, bool may_be_undone) {
+  struck_.clear();
+  turn_gravity(grid_.time(step_) + done + 0.5 * h);
+  forces_.start_substep(bodies_);
+  fly(grid_.time(step_) + done + 0.5 * h, 0.5 * h);
+  const bool struck = resolve_impacts(h, 0, h, reach_from(h, done));
+  const bool late = impacts_.any_is_late();
+  give_candidates(struck ? kept_pairs_.covering(bodies_, contact_margin_, reach_from(h, done), parameters_)
+                         : kept_pairs_.pairs());
+  counters.pcs_made = kept_pairs_.times_made();
+  if (may_be_undone) contacts_.keep_memory();
+  const double scale = last_substep_ > 0 ? h / last_substep_ : 1.0;
+  const FlightStage flight = impacts_.stage(terms(h, 0), parameters_, views());
+  {
+    const timing::Region region("narrowphase");
+    libccd_.start_search();
+    contacts_.find(std::as_const(contact_margin_).view(), scale, flight, late,
+                   libccd_.is_needed() ? &libccd_ : nullptr);
+    counters.narrowphase.tested += contacts_.slots().candidates().size();
+    counters.narrowphase += libccd_.take_stats();
+  }
+  const timing::Region region("response");
+  ledger = ledger + contacts_.solve(flight, late, h / grid_.length(step_ + 1), counters);
+  return late;
+}
+
+/// And its second: impacts on the way, since the response has changed it, and free flight to the end.
+template <class Space, class Real>
+void SpaceStepper<Space, Real>::fly_on(double h, double done, bool late) {
+  const FlightStage flight = impacts_.stage(terms(h, 0), parameters_, views());
+  contacts_.add_wall_impulses(flight);
+  if (resolve_impacts(h, 0.5 * h, 0.5 * h, reach_from(h, done)))
+    contacts_.take_velocities(view_of(std::as_const(bodies_)));
+  fly(grid_.time(step_) + done + h, 0.5 * h);
+  ledger.work += forces_.work(bodies_);
+  gravity_.count(h, parameters_);
+  {
+    const timing::Region region("correction");
+    ledger = ledger + contacts_.correct(flight, late);
+  }
+  last_substep_ = h;
+}
+
+template <class Space, class Real>
+void SpaceStepper<Space, Real>::Restart::save(const SpaceStepper& now) {
+  state.save(now.bodies_);
+  gravity = now.parameters_.gravity;
+  ledger = now.ledger;
+  impacts = now.counters.impacts;
+  unfinished_impacts = now.counters.unfinished_impacts;
+  copy(on_walls, now.contacts_.wall_sums().totals());
+  struck_walls = now.struck_walls_;
+}
+
+template <class Space, class Real>
+void SpaceStepper<Space, Real>::Restart::restore(SpaceStepper& now) const {
+  state.restore(now.bodies_);
+  now.parameters_.gravity = gravity;
+  now.ledger = ledger;
+  now.counters.impacts = impacts;
+  now.counters.unfinished_impacts = unfinished_impacts;
+  now.contacts_.wall_sums().restore_totals(on_walls);
+  now.struck_walls_ = struck_walls;
+  now.contacts_.recall_memory();
+}
+
+template <class Space, class Real>
+void SpaceStepper<Space, Real>::archive(Archive& archive) {
+  archive("step", step_);
+  archive("last_substep", last_substep_);
+  archive("ledger", ledger);
+  archive("counters", counters);
+  archive.part("bodies", bodies_);
+  if (archive.is_loading()) {
+    struck_.clear();
+    have_moved_ = false;
+    archive.expect(are_numbers(to_vector(bodies_.id)), "bodies/id");
+    find_places<Space>(bodies_);
+    find_shapes();
+    find_guides();
+    find_walls(to_vector(bodies_.id), to_vector(bodies_.mobility));
+  }
+  archive("velocity_before", start_.velocity);
+  archive.expect(start_.velocity.size() == bodies_.count(), "velocity_before");
+  archive_wall_impulses(archive);
+  archive.part("kept_pairs", kept_pairs_);
+  archive.part("seen_pairs", seen_pairs_);
+  archive("sees_kept", sees_kept_);
+  archive("pairs_taken", pairs_taken_);
+  if (archive.is_loading()) {
+    pairs_known_ = 0;
+    impacts_ = {};
+  }
+  archive.part("contacts", contacts_, view_of(std::as_const(bodies_)), parameters_);
+  gravity_.archive(archive, parameters_);
+  if (!archive.is_loading()) return;
+  forces_.forget();
+  forces_.act(step_, bodies_, parameters_);
+}
+
+/// Which of the pairs that were made anew are among the contacts' candidates (Slots::look_up).
+template <class Space, class Real>
+ConstView<std::int64_t> SpaceStepper<Space, Real>::known(ConstView<Pair> pairs) {
+  if (pairs_known_ != kept_pairs_.times_made()) contacts_.slots().look_up(pairs, place_before(), known_);
+  pairs_known_ = kept_pairs_.times_made();
+  return std::as_const(known_).view();
+}
+
+/// Lets the contacts know of candidates that were made anew.
+template <class Space, class Real>
+void SpaceStepper<Space, Real>::give_candidates(ConstView<Pair> pairs) {
+  if (pairs_taken_ == kept_pairs_.times_made()) return;
+  const timing::Region region("slots");
+  contacts_.take_candidates(pairs, known(pairs), view_of(std::as_const(bodies_)), parameters_);
+  have_moved_ = false;
+  pairs_taken_ = kept_pairs_.times_made();
+}
+
+/// Of the last substep. The contacts of this one must stay until its end, whatever candidates are made.
+template <class Space, class Real>
+ConstView<LoadedParts> SpaceStepper<Space, Real>::loads_of(ConstView<Pair> pairs) {
+  if (pairs_taken_ == kept_pairs_.times_made()) return contacts_.loads();
+  contacts_.loads_of(known(pairs), loads_);
+  return std::as_const(loads_).view();
+}
+
+/// Impacts of the flight of a substep from `from` on; whether there were any. Margins are set for contacts
+/// within `foresight` (s) from now on, at least the flight's end, unless all are too slow in the second half.
+/// `reach`: to the end of the step (s).
+template <class Space, class Real>
+bool SpaceStepper<Space, Real>::resolve_impacts(double h, double from, double foresight, double reach) {
+  constexpr int most_attempts = 8;
+  if (from > 0) {
+    const timing::Region region("impacts");
+    if (!impacts_.any_may_meet(terms(h, from), parameters_, views())) return false;
+  }
+  const auto cover = [&] {
+    const timing::Region region("broadphase");
+    return kept_pairs_.cover(bodies_, foresight, parameters_, contact_margin_);
+  };
+  bool covered = cover();
+  for (int attempt = 1;; ++attempt) {
+    const ConstView<Pair> pairs =
+        covered ? kept_pairs_.pairs() : kept_pairs_.make(bodies_, contact_margin_, reach, parameters_);
+    const timing::Region region("impacts");
+    const Ledger moved = impacts_.resolve({.pairs = pairs,
+                                           .loaded = loads_of(pairs),
+                                           .terms = terms(h, from),
+                                           .one_by_one = parameters_.accurate,
+                                           .pairs_made = kept_pairs_.times_made()},
+                                          parameters_, views());
+    if (impacts_.impacts().size() == 0) return false;
+    // What was struck may have left the boxes: others that it can meet now are not among the pairs.
+    if (cover() || attempt == most_attempts) {
+      ledger = ledger + moved;
+      break;
+    }
+    kept_pairs_.add_travel(bodies_, contact_margin_);
+    impacts_.undo(views());
+    covered = false;
+  }
+  counters.impacts += impacts_.impacts().size();
+  if (impacts_.hit_bound()) ++counters.unfinished_impacts;
+  const std::size_t before = struck_.size();
+  struck_.resize(before + static_cast<std::size_t>(impacts_.impacts().size()));
+  copy_bytes<Host, Space>(struck_.data() + before, impacts_.impacts().data(),
+                          (struck_.size() - before) * sizeof(Impact));
+  for (std::size_t k = before; k < struck_.size(); ++k) add_impulse_on_walls(struck_[k]);
+  return true;
+}
+
+template <class Space, class Real>
+void SpaceStepper<Space, Real>::add_impulse_on_walls(const Impact& impact) {
+  for (const auto& [number, sign] : {std::pair(impact.i, -1.0), std::pair(impact.j, 1.0)}) {
+    if (is_wall_[static_cast<std::size_t>(number)] == 0) continue;
+    solver::WallImpulse& on = struck_walls_[BodyNumber{number}];
+    on.impulse += sign * impact.impulse;
+    if (!geometry_) continue;  // the moment is asked for of meshes alone
+    const Vec3 centre = value_at(bodies_.position, place(BodyNumber{number}));
+    on.moment += sign * bodies_.period.nearest(impact.point - centre).cross(impact.impulse);
+  }
+}
+
+/// Of those that have any.
+template <class Space, class Real>
+void SpaceStepper<Space, Real>::archive_wall_impulses(Archive& archive) {
+  std::vector<BodyNumber> walls;
+  std::vector<Vec3> impulses;
+  if (!archive.is_loading()) {
+    std::vector<solver::WallImpulse> on_walls = by_number(to_vector(contacts_.wall_sums().totals()));
+    on_walls.resize(is_wall_.size());
+    for (const auto& [number, on] : struck_walls_)
+      on_walls[index_of(number)] = on_walls[index_of(number)] + on;
+    for (std::size_t k = 0; k < on_walls.size(); ++k) {
+      if (on_walls[k].impulse.isZero(0) && on_walls[k].moment.isZero(0)) continue;
+      walls.push_back(BodyNumber{static_cast<std::int32_t>(k)});
+      impulses.insert(impulses.end(), {on_walls[k].impulse, on_walls[k].moment});
+    }
+  }
+  archive("walls", walls);
+  archive("on_walls", impulses);
+  archive.expect(impulses.size() == 2 * walls.size(), "on_walls");
+  if (!archive.is_loading()) return;
+  clear_wall_impulses();
+  for (std::size_t k = 0; k < walls.size(); ++k)
+    struck_walls_[walls[k]] = {impulses[2 * k], impulses[2 * k + 1]};
+}
+
+template <class Space, class Real>
+SteppedBody SpaceStepper<Space, Real>::body(BodyNumber number) const {
+  const std::int32_t k = place(number);
+  SteppedBody body{.mobility = value_at(bodies_.mobility, k),
+                   .inverse_mass = value_at(bodies_.inverse_mass, k),
+                   .position = value_at(bodies_.position, k),
+                   .orientation = value_at(bodies_.orientation, k),
+                   .velocity = value_at(bodies_.velocity, k),
+                   .spin = value_at(bodies_.spin, k),
+                   .velocity_before = value_at(start_.velocity, k),
+                   .acceleration = parameters_.gravity,
+                   .contact_impulse = Vec3::Zero(),
+                   .contact_moment = Vec3::Zero()};
+  if (parameters_.acceleration.size() > 0) body.acceleration += value_at(parameters_.acceleration, k);
+  // A servo's drive bears its weight, whatever that is.
+  if (!servo_axis_.contains(number))
+    body.acceleration += gravity_.excess_of_mean(grid_.length(step_ + 1), parameters_);
+  if (is_wall_[index_of(number)] == 0) return body;
+  if (const auto& totals = contacts_.wall_sums().totals(); totals.size() > 0) {
+    const auto on = value_at(totals, k);
+    body.contact_impulse = on.impulse;
+    body.contact_moment = on.moment;
+  }
+  if (const auto on = struck_walls_.find(number); on != struck_walls_.end()) {
+    body.contact_impulse += on->second.impulse;
+    body.contact_moment += on->second.moment;
+  }
+  return body;
+}
+
+/// The volume of polyhedra is not told by their sizes.
+template <class Space, class Real>
+RegionContents SpaceStepper<Space, Real>::contents_of(const Region& region) const {
+  RegionContents contents = scree::contents_of<Space>(region, bodies_);
+  if (!geometry_) return contents;
+  for (const BodyNumber number : bodies_in(region)) {
+    const Hull* hull = geometry_->of_body[index_of(number)].hull;
+    if (hull)
+      contents.volume += hull->volume - volume_of(Shape::polyhedron, value_at(bodies_.size, place(number)));
+  }
+  return contents;
+}
+
+template <class Space, class Real>
+ConstView<Pair> SpaceStepper<Space, Real>::pairs_now() {
+  contact_margins<Space>(bodies_, 0, tolerance::contact_slack, parameters_, contact_margin_);
+  sees_kept_ = kept_pairs_.cover(bodies_, contact_margin_);
+  return (sees_kept_ ? kept_pairs_ : seen_pairs_).covering(bodies_, contact_margin_, 0, parameters_);
+}
+
+template <class Space, class Real>
+std::vector<BodyPair> SpaceStepper<Space, Real>::pairs() {
+  const ConstView<Pair> found = pairs_now();
+  std::vector<Pair> on_host(static_cast<std::size_t>(found.size()));
+  copy_bytes<Host, Space>(on_host.data(), found.data(), on_host.size() * sizeof(Pair));
+  const std::vector<Shape> shape = to_vector(bodies_.shape);
+  const std::vector<BodyNumber> numbers = to_vector(bodies_.id);
+  const auto number = [&numbers](std::size_t place) { return static_cast<std::int32_t>(numbers[place]); };
+  std::vector<BodyPair> pairs;
+  for (const Pair& pair : on_host) {
+    const auto i = static_cast<std::size_t>(pair.i), j = static_cast<std::size_t>(pair.j);
+    if (shape[i] != Shape::plane && shape[j] != Shape::plane) pairs.push_back({number(i), number(j)});
+  }
+  std::ranges::sort(pairs);
+  return pairs;
+}
+
+template <class Space, class Real>
+ContactProblem SpaceStepper<Space, Real>::contact_problem() const {
+  solver::Inspection<Real> seen = contacts_.inspect(view_of(bodies_));
+  BodyTable bodies;
+  copy_bodies(bodies, bodies_);
+  return problem_of(seen, bodies);
+}
+
+template <class Space, class Real>
+std::vector<ContactForce> SpaceStepper<Space, Real>::contact_forces() const {
+  solver::Inspection<Real> seen = contacts_.inspect(view_of(bodies_));
+  BodyTable bodies;
+  copy_bodies(bodies, bodies_);
+  std::vector<ContactForce> forces = forces_of(seen, bodies);
+  for (const Impact& impact : struck_)
+    forces.push_back({impact.i, impact.j, impact.impulse / last_substep_, impact.point});
+  return forces;
+}
+
+template <class Space, class Real>
+void SpaceStepper<Space, Real>::measure_contacts(std::int64_t free_bodies, Observation& out) const {
+  const solver::Books& books = contacts_.books();
+  const auto mean = [](double sum, std::int64_t of) { return of > 0 ? sum / static_cast<double>(of) : 0.0; };
+  out.contacts = books.loaded;
+  out.gap_mean = mean(books.gaps, books.loaded);
+  out.coordination_mean = mean(static_cast<double>(books.ends), free_bodies);
+}
+
+/// Whether a scene has what is known on Host alone: general shapes, and contacts by libccd.
+bool needs_host(const Scene& scene) {
+  return scene.geometry != nullptr || LibccdContacts(scene.narrowphase).is_needed();
+}
+
+}  // namespace
+
+std::unique_ptr<Stepper> make_resident_stepper(const Scene& scene, const TimeGrid& grid,
+                                               const PathTable& paths, const StepperOptions& options) {
+  if (needs_host(scene)) {
+    if (scene.precision == Precision::mixed)
+      throw InputError(
+          "meshes, capsules, cylinders, polyhedra and what asks libccd are stepped on the host, in double "
+          "precision: leave out `precision: mixed`");
+    return std::make_unique<SpaceStepper<Host, double>>(scene, grid, paths, options);
+  }
+  return in_chosen_space(options.on_device, [&](auto space) -> std::unique_ptr<Stepper> {
+    using Space = decltype(space);
+    if (scene.precision == Precision::mixed)
+      return std::make_unique<SpaceStepper<Space, float>>(scene, grid, paths, options);
+    return std::make_unique<SpaceStepper<Space, double>>(scene, grid, paths, options);
+  });
+}
+
+}  // namespace scree
