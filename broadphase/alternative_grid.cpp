@@ -145,7 +145,7 @@ struct CellSearch : RunSearch {
   }
 
  private:
-  /// In steps that double: the end is near, but for the cells of giants.
+  /// In steps that double: the end is near, but for the cells of oversize objects.
   SCREE_HD std::int64_t end_of_cell(std::int64_t k) const {
     const std::uint64_t last = key[k] | 1;
     std::int64_t begin = k + 1;

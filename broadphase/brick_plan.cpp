@@ -73,7 +73,7 @@ struct Summary {
       }
       if (count == 0) continue;
       octave.size /= count;
-      // One that was seen alone may be alone: floors and giants are.
+      // One that was seen alone may be alone: floors and oversize objects are.
       octave.share = count == 1 ? 1 / present : count / seen;
       octaves.push_back(octave);
     }

@@ -16,8 +16,8 @@ constexpr double own_rows = 5;
 constexpr double own_cells = 13.5;
 // Share of space that the cubes around objects fill where they are. It bounds the occupancy of cells from
 // below where the domain is mostly empty: one outlier must not make the model believe that all others are far
-// apart. An object counts with at most the cube of widest_neighbour cells: a giant says little about the
-// space in which small objects live.
+// apart. An object counts with at most the cube of widest_neighbour cells: an oversize object says little
+// about the space in which small objects live.
 constexpr double widest_neighbour = 8;
 constexpr double fill_share = 0.3;
 // A dense table has at most this many cells per object of its level, beside a floor that any level may have.

@@ -149,8 +149,8 @@ struct UpSearch : PlainSearch<Space> {
 };
 
 /// A query, and how it is cut into work items: into runs of cells of one row or, where these are too
-/// many for the objects there are, into all objects of the level. A giant is thus spread over as many threads
-/// as it needs.
+/// many for the objects there are, into all objects of the level. an oversize object is thus spread over as
+/// many threads as it needs.
 struct Query {
   static constexpr int parts = 3;  // of an item
   static constexpr int runs_per_item = parts * runs_at_once;

@@ -125,7 +125,8 @@ SCREE_HD bool holds(const Node& outer, const Node& inner) {
 
 /// Searches the leaves after leaf k, so that each pair is found once, and needs no stack. Calls
 /// found(first, end) for leaves that all overlap leaf k: at once for all of a node that it holds, so that
-/// giants, and many bodies at one point, do not cost a test for each pair. Returns the number of tests.
+/// oversize objects, and many bodies at one point, do not cost a test for each pair. Returns the number of
+/// tests.
 template <class Found>
 SCREE_HD std::uint32_t search(const Tree& tree, std::int64_t k, const Found& found) {
   const Node self = tree.at(~static_cast<std::int32_t>(k));

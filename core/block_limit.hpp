@@ -6,7 +6,7 @@
 
 namespace scree::parallel {
 
-/// Blocks that share a launch of rounds (core/space_rounds.hpp) at most, as on a smaller GPU.
+/// The most blocks of a launch of a program of phases (core/space_phases.hpp), to act as a smaller GPU.
 inline std::atomic<int> block_limit{std::numeric_limits<int>::max()};
 
 }  // namespace scree::parallel

@@ -5,8 +5,8 @@
 #pragma once
 
 #include "core/array.hpp"
-#include "core/crew.hpp"
 #include "core/space.hpp"
+#include "core/thread_pool.hpp"
 #include "core/timing.hpp"
 
 #include <algorithm>
@@ -20,7 +20,7 @@ namespace scree::parallel {
 inline constexpr std::int64_t few = 256;
 
 /// Whether the host has but one thread to work with.
-inline bool is_alone() { return scree::detail::Crew::most_threads() == 1; }
+inline bool is_alone() { return scree::detail::ThreadPool::most_threads() == 1; }
 
 /// Calls f(i) for 0 <= i < n, in any order and at once. f is a copyable function object over views; on
 /// Device the call returns before the work is done. `label` names the work to a profiler. `fewest`: items
@@ -35,7 +35,7 @@ void for_each(const char* label, std::int64_t n, F f, [[maybe_unused]] std::int6
     if (n < fewest || is_alone()) {
       run(0, n);
     } else {
-      scree::detail::Crew::get().share(n, run);
+      scree::detail::ThreadPool::get().for_ranges(n, run);
     }
   } else {
     launch_for_each(Space{}, n, f);
@@ -134,7 +134,8 @@ T reduce(const char* label, std::int64_t n, F f, T neutral, Join join) {
       return all;
     };
     if (n < few || is_alone()) return of_range(0, n);
-    const std::int64_t blocks = std::min<std::int64_t>(n / few + 1, 4 * scree::detail::Crew::most_threads());
+    const std::int64_t blocks =
+        std::min<std::int64_t>(n / few + 1, 4 * scree::detail::ThreadPool::most_threads());
     std::vector<T> parts(static_cast<std::size_t>(blocks), neutral);
     scree::detail::for_each_block(n, blocks, [&](std::int64_t b, std::int64_t begin, std::int64_t end) {
       parts[static_cast<std::size_t>(b)] = of_range(begin, end);

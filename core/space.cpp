@@ -1,7 +1,7 @@
 #include "core/space.hpp"
 
-#include "core/crew.hpp"
 #include "core/error.hpp"
+#include "core/thread_pool.hpp"
 
 #include <algorithm>
 #include <cstdint>
@@ -64,9 +64,10 @@ void copy_bytes<Host, Host>(void* to, const void* from, std::size_t bytes) {
     return;
   }
   const std::size_t pages = (bytes + page - 1) / page;
-  detail::Crew::get().share(static_cast<std::int64_t>(pages), [&](std::int64_t begin, std::int64_t end) {
-    copy(static_cast<std::size_t>(begin) * page, std::min(static_cast<std::size_t>(end) * page, bytes));
-  });
+  detail::ThreadPool::get().for_ranges(
+      static_cast<std::int64_t>(pages), [&](std::int64_t begin, std::int64_t end) {
+        copy(static_cast<std::size_t>(begin) * page, std::min(static_cast<std::size_t>(end) * page, bytes));
+      });
 }
 
 #if SCREE_WITH_CUDA

@@ -3,8 +3,8 @@
 #pragma once
 
 #include "core/array.hpp"
-#include "core/crew.hpp"
 #include "core/matches.hpp"
+#include "core/thread_pool.hpp"
 #include "core/timing.hpp"
 
 #include <tbb/concurrent_queue.h>
@@ -254,7 +254,7 @@ class MatchFinder<Host, Match> {
       idle.push(chunk);
     };
     using tbb::filter_mode;
-    detail::Crew::get().dismiss();
+    detail::ThreadPool::get().release_workers();
     tbb::parallel_pipeline(under_way,
                            tbb::make_filter<void, Chunk*>(filter_mode::serial_in_order, begin) &
                                tbb::make_filter<Chunk*, Chunk*>(filter_mode::parallel, find) &

@@ -2,9 +2,9 @@
 // alone: include parallel.hpp instead.
 #pragma once
 
-#include "core/crew.hpp"
 #include "core/error.hpp"
 #include "core/space.hpp"
+#include "core/thread_pool.hpp"
 
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_reduce.h>
@@ -30,7 +30,7 @@
 namespace scree::detail {
 
 inline auto policy(Host) {
-  Crew::get().dismiss();
+  ThreadPool::get().release_workers();
   return thrust::tbb::par;
 }
 
@@ -44,7 +44,7 @@ void sort_by_digits(Key*& keys, Key*& spare_keys, std::int64_t n, int bits, cons
   const int passes = std::max(1, (bits + most_bits - 1) / most_bits);
   const int digit_bits = (bits + passes - 1) / passes;
   const std::int64_t buckets = std::int64_t{1} << digit_bits;
-  const std::int64_t blocks = std::clamp<std::int64_t>(n / 16384, 1, 4 * Crew::most_threads());
+  const std::int64_t blocks = std::clamp<std::int64_t>(n / 16384, 1, 4 * ThreadPool::most_threads());
   std::vector<std::int64_t> places(static_cast<std::size_t>(blocks * buckets));
   for (int shift = 0; shift < passes * digit_bits; shift += digit_bits) {
     const auto digit = [=](Key key) { return static_cast<std::int64_t>(key >> shift) & (buckets - 1); };
@@ -101,7 +101,7 @@ void sort_keys(Host, Key*& keys, Key*& spare_keys, std::int64_t n, int bits) {
 template <class Samples>
 void histogram(Host, Samples samples, std::int64_t n, int bins, std::uint32_t* counts) {
   using Counts = std::vector<std::uint32_t>;
-  Crew::get().dismiss();
+  ThreadPool::get().release_workers();
   const Counts total = tbb::parallel_reduce(
       tbb::blocked_range<std::int64_t>(0, n, 4096), Counts(static_cast<std::size_t>(bins)),
       [samples](const tbb::blocked_range<std::int64_t>& range, Counts sum) {

@@ -118,15 +118,15 @@ inline constexpr double much_overlap_in_flow = 4e-4;
 /// is swept twice as often in the next substeps, and under which half as often: it shows slow modes of many
 /// layers, of which one sweep's change tells nothing. Smaller: heaps come to rest sooner, and cost more until
 /// then.
-inline constexpr double undone_power = 0.01;
+inline constexpr double residual_power = 0.01;
 inline constexpr double done_power = 0.004;
 /// Under this much (likewise) a heap is swept half as often as one usually is at least, and then a third;
 /// over the second no longer that.
-inline constexpr double calm_power = 0.0004;
+inline constexpr double least_sweeps_power = 0.0004;
 inline constexpr double stirring_power = 0.001;
 /// What is dissipated in a heap that flows leaves 0.01 to 0.08 of it undone; slow modes 0.3 to 1. Larger:
 /// heaps come to rest later. Smaller: heaps in motion are swept more often, which changes nothing in them.
-inline constexpr double undone_of_dissipated = 0.1;
+inline constexpr double residual_of_dissipated = 0.1;
 /// Of the power of all impulses, what is dissipated in a heap that moves: 0.5 to 1 where it flows, under 0.1
 /// at rest.
 inline constexpr double moving_power = 0.25;
@@ -138,9 +138,9 @@ inline constexpr double flowing_power = 0.75;
 /// Of the power of one substep's impulses, what is undone as it is when a heap has just fallen on its ground;
 /// where it flows, 0.005 to 0.09. Larger: deep heaps sink in while they land. Smaller: what only moves is
 /// swept as often as any.
-inline constexpr double all_undone = 0.5;
+inline constexpr double all_residual = 0.5;
 /// What is that many times too much is followed at once, or by two degrees.
-inline constexpr double much_undone = 4;
+inline constexpr double much_residual = 4;
 /// The least change with impulses in float, whose rounding is 1e-7.
 inline constexpr double mixed_change = 2e-6;
 
@@ -218,8 +218,8 @@ inline constexpr double unit_length = 1e-14;
 inline constexpr double step_count = 1e-9;
 
 static_assert(moving_power < flowing_power);
-static_assert(calm_power < stirring_power && stirring_power < done_power);
-static_assert(done_power < undone_power);
+static_assert(least_sweeps_power < stirring_power && stirring_power < done_power);
+static_assert(done_power < residual_power);
 static_assert(closed_gap < contact_slack);
 static_assert(corrected_overlap < closed_gap);
 static_assert(4 * coarser_overlap < substep_overlap);

@@ -45,7 +45,7 @@ LIBRARIES = {
     "CLI11": r"CLI/", "Boost": r"boost/", "nlohmann-json": r"nlohmann/", "xxHash": r"xxhash\.h", "zlib": r"zlib\.h",
 }
 THRUST_HEADERS = ["core/parallel.hpp", "core/space_matches.hpp", "core/space_matches_device.hpp", "core/space_matches_host.hpp",
-                  "core/space_policy.hpp", "core/space_warp.hpp", "core/space_rounds.hpp", "core/space_tiles.hpp"]
+                  "core/space_policy.hpp", "core/space_warp.hpp", "core/space_phases.hpp", "core/space_tiles.hpp"]
 DRIVERS = ["core/space.cpp"]  # calls the GPU's driver, and no Thrust
 THRUST = re.compile(r"(thrust|cub|cuda)/|cooperative_groups\.h")
 

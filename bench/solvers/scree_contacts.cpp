@@ -1,6 +1,6 @@
 #include "bench/solvers/scree_contacts.hpp"
 
-#include "core/space_rounds.hpp"
+#include "core/space_phases.hpp"
 #include "sim/response/contacts_on_host.hpp"
 #include "sim/response/padding.hpp"
 #include "sim/response/sweep_loop.hpp"
@@ -185,7 +185,7 @@ bool ScreeContacts::sweep(const SweepPlan& plan) {
                                             .block_sweeps = plan.block_sweeps,
                                             .tolerance = plan.tolerance,
                                             .first_with_momentum = plan.first_with_momentum};
-  return parallel::run_rounds<Host>("sweeps", rounds, SweepState{}).converged;
+  return parallel::run_in_phases<Host>("sweeps", rounds, SweepState{}).converged;
 }
 
 bool ScreeContacts::solve_islands(double tolerance, const DirectLimits& limits, std::int64_t& solved,

@@ -16,9 +16,9 @@ using detail::Word;
 struct BrickState {
   /// Number of bodies less that of the first one whose box is not proper; 0 if all are.
   Word first_bad;
-  std::uint32_t giants;     ///< objects wider than a brick
-  std::uint32_t chunks;     ///< in use
-  std::uint32_t over_full;  ///< whether a brick has more objects than there is room for
+  std::uint32_t oversize_objects;  ///< objects wider than a brick
+  std::uint32_t chunks;            ///< in use
+  std::uint32_t over_full;         ///< whether a brick has more objects than there is room for
   // Of a search.
   std::uint32_t crowded;  ///< whether the objects of a brick have more entries than there is room for
   Word pairs;
@@ -35,9 +35,9 @@ struct BrickInput {
 struct BrickStore {
   BrickPlan plan;
   BrickState* state;
-  std::uint32_t* giants;  ///< bodies
-  std::uint32_t* counts;  ///< entries of each brick, with those that found no room
-  Entry* entries;         ///< brick_objects for each brick
+  std::uint32_t* oversize_objects;  ///< bodies
+  std::uint32_t* counts;            ///< entries of each brick, with those that found no room
+  Entry* entries;                   ///< brick_objects for each brick
 
   /// Puts an entry where the brick has room for it.
   __device__ void add(std::uint32_t brick, const Entry& entry) const {
@@ -51,7 +51,7 @@ struct BrickStore {
 };
 
 /// An object on its way: for each axis the lower number from that of its bucket on (17 bits), and the extent.
-struct alignas(16) Parcel {
+struct alignas(16) StagedRecord {
   std::uint32_t axis[3];
   std::uint32_t tag;
 
@@ -68,7 +68,7 @@ struct alignas(16) Parcel {
 struct Located {
   LatticeBox box;
   std::uint32_t tag;
-  bool here;  ///< else absent, bad or a giant
+  bool here;  ///< else absent, bad or an oversize object
 };
 
 /// Of a body; absent beyond the last one.
@@ -100,10 +100,11 @@ __device__ inline Located locate(const Loaded& loaded, const BrickInput& input, 
   object.tag = static_cast<std::uint32_t>(i);
   if (loaded.mobility != Mobility::fixed) object.tag |= not_fixed;
   object.box = store.plan.lattice.numbers_of(box);
-  bool giant = false;
-  for (int a = 0; a < 3; ++a) giant |= object.box.hi[a] - object.box.lo[a] > brick_points;
-  if (giant) store.giants[atomicAdd(&store.state->giants, 1u)] = static_cast<std::uint32_t>(i);
-  object.here = !giant;
+  bool oversize_object = false;
+  for (int a = 0; a < 3; ++a) oversize_object |= object.box.hi[a] - object.box.lo[a] > brick_points;
+  if (oversize_object)
+    store.oversize_objects[atomicAdd(&store.state->oversize_objects, 1u)] = static_cast<std::uint32_t>(i);
+  object.here = !oversize_object;
   return object;
 }
 
@@ -123,15 +124,15 @@ __device__ void for_each_brick(const LatticeBox& box, const F& f) {
 
 /// Giants to their bricks, entered by `blocks` blocks, of which this is number `block`: if they are fewer
 /// than the blocks, several share one.
-inline constexpr unsigned giant_blocks = 64;
-__device__ inline void scatter_giants(const BrickInput& input, const BrickStore& store, unsigned block,
-                                      unsigned blocks) {
-  const std::uint32_t giants = store.state->giants;
-  if (giants == 0) return;
-  const std::uint32_t shares = max(blocks / giants, 1u);
-  for (std::uint32_t item = block; item < giants * shares; item += blocks) {
-    const std::uint32_t body = store.giants[item % giants];
-    const std::uint32_t share = item / giants;
+inline constexpr unsigned oversize_blocks = 64;
+__device__ inline void scatter_oversize_objects(const BrickInput& input, const BrickStore& store,
+                                                unsigned block, unsigned blocks) {
+  const std::uint32_t oversize_objects = store.state->oversize_objects;
+  if (oversize_objects == 0) return;
+  const std::uint32_t shares = max(blocks / oversize_objects, 1u);
+  for (std::uint32_t item = block; item < oversize_objects * shares; item += blocks) {
+    const std::uint32_t body = store.oversize_objects[item % oversize_objects];
+    const std::uint32_t share = item / oversize_objects;
     const LatticeBox box = store.plan.lattice.numbers_of(input.bounds[body]);
     const std::uint32_t tag = body | (input.mobility[body] != Mobility::fixed ? not_fixed : 0);
     std::int32_t first[3];
@@ -151,10 +152,10 @@ __device__ inline void scatter_giants(const BrickInput& input, const BrickStore&
 }
 
 /// Buckets grow by chunks, which whoever needs the first place of one takes from all that there are.
-inline constexpr std::uint32_t chunk_parcels = 2048;
+inline constexpr std::uint32_t chunk_records = 2048;
 struct BucketStore {
-  Parcel* parcels;           ///< chunk_parcels in each chunk
-  std::uint32_t* counts;     ///< parcels of each bucket
+  StagedRecord* records;     ///< chunk_records in each chunk
+  std::uint32_t* counts;     ///< records of each bucket
   std::uint32_t* chunk;      ///< of each bucket its chunks in order, each plus one; 0: not taken yet
   std::uint32_t per_bucket;  ///< chunks that it can have
   std::uint32_t* owner;      ///< of each chunk: its place in `chunk`
@@ -164,7 +165,7 @@ inline constexpr int scatter_threads = 256;
 inline constexpr int scatter_items = 8;  // of a thread
 inline constexpr int loads_at_once = 4;  // of them
 inline constexpr std::uint32_t scatter_tile = scatter_threads * scatter_items;
-static_assert(scatter_tile <= chunk_parcels);
+static_assert(scatter_tile <= chunk_records);
 
 /// counts[0..n) become the sums of what stands before them; entered by the block.
 template <int threads>
@@ -199,8 +200,8 @@ __device__ inline void take_chunk(const BrickStore& store, const BucketStore& bu
 
 /// What goes to one bucket from a tile.
 struct BucketRun {
-  std::uint32_t split;     ///< as many parcels go to the first chunk, the others to a second one
-  std::uint32_t place[2];  ///< of the first parcel in each, in all chunks
+  std::uint32_t split;     ///< as many records go to the first chunk, the others to a second one
+  std::uint32_t place[2];  ///< of the first record in each, in all chunks
 };
 
 /// Tiles of objects, to buckets: sorted by bucket in shared memory, so that what is written lies together.
@@ -210,13 +211,13 @@ __global__ void __launch_bounds__(scatter_threads, 4)
   extern __shared__ uint4 shared[];
   __shared__ std::uint32_t sums[scatter_threads / 32];
   const int count = store.plan.total_buckets();
-  auto* stage = reinterpret_cast<Parcel*>(shared);
+  auto* stage = reinterpret_cast<StagedRecord*>(shared);
   auto* run = reinterpret_cast<BucketRun*>(stage + scatter_tile);
   auto* begin = reinterpret_cast<std::uint32_t*>(run + count);
   auto* bucket_of = reinterpret_cast<std::uint16_t*>(begin + count);
   for (int b = static_cast<int>(threadIdx.x); b < count; b += scatter_threads) begin[b] = 0;
   __syncthreads();
-  Parcel parcel[scatter_items];
+  StagedRecord record[scatter_items];
   std::uint32_t rank[scatter_items];  // in its bucket, and 2^16 times the bucket
   Loaded loaded[loads_at_once];
   const std::int64_t first = std::int64_t{blockIdx.x} * scatter_tile + threadIdx.x;
@@ -234,10 +235,10 @@ __global__ void __launch_bounds__(scatter_threads, 4)
     for (int a = 0; a < 3; ++a) {
       at[a] = (object.box.lo[a] >> brick_bits) / store.plan.bucket_width;
       const std::int32_t base = at[a] * store.plan.bucket_width << brick_bits;
-      parcel[k].axis[a] = static_cast<std::uint32_t>(object.box.lo[a] - base) |
+      record[k].axis[a] = static_cast<std::uint32_t>(object.box.lo[a] - base) |
                           static_cast<std::uint32_t>(object.box.hi[a] - object.box.lo[a]) << 17;
     }
-    parcel[k].tag = object.tag;
+    record[k].tag = object.tag;
     const auto bucket =
         static_cast<std::uint32_t>((at[2] * store.plan.buckets[1] + at[1]) * store.plan.buckets[0] + at[0]);
     rank[k] = atomicAdd(&begin[bucket], 1u) | bucket << 16;
@@ -248,12 +249,12 @@ __global__ void __launch_bounds__(scatter_threads, 4)
     if (n == 0) continue;
     // The places in the bucket, and the chunks that these are in.
     const std::uint32_t first = atomicAdd(&buckets.counts[b], n);
-    const std::uint32_t slot = static_cast<std::uint32_t>(b) * buckets.per_bucket + first / chunk_parcels;
-    const std::uint32_t room = chunk_parcels - first % chunk_parcels;
-    if (first % chunk_parcels == 0) take_chunk(store, buckets, slot);
+    const std::uint32_t slot = static_cast<std::uint32_t>(b) * buckets.per_bucket + first / chunk_records;
+    const std::uint32_t room = chunk_records - first % chunk_records;
+    if (first % chunk_records == 0) take_chunk(store, buckets, slot);
     if (n > room) take_chunk(store, buckets, slot + 1);
     run[b].split = room;
-    run[b].place[0] = first % chunk_parcels;
+    run[b].place[0] = first % chunk_records;
     run[b].place[1] = slot;
   }
   __syncthreads();
@@ -261,8 +262,8 @@ __global__ void __launch_bounds__(scatter_threads, 4)
     const std::uint32_t n = begin[b];
     if (n == 0) continue;
     const std::uint32_t slot = run[b].place[1];
-    run[b].place[0] += (load_when_set(buckets.chunk + slot) - 1) * chunk_parcels;
-    if (n > run[b].split) run[b].place[1] = (load_when_set(buckets.chunk + slot + 1) - 1) * chunk_parcels;
+    run[b].place[0] += (load_when_set(buckets.chunk + slot) - 1) * chunk_records;
+    if (n > run[b].split) run[b].place[1] = (load_when_set(buckets.chunk + slot + 1) - 1) * chunk_records;
   }
   __syncthreads();
   const std::uint32_t staged = scan_in_block<scatter_threads>(begin, count, sums);
@@ -271,7 +272,7 @@ __global__ void __launch_bounds__(scatter_threads, 4)
     if (rank[k] == ~0u) continue;
     const std::uint32_t bucket = rank[k] >> 16;
     const std::uint32_t at = begin[bucket] + (rank[k] & 0xffffu);
-    stage[at] = parcel[k];
+    stage[at] = record[k];
     bucket_of[at] = static_cast<std::uint16_t>(bucket);
   }
   __syncthreads();
@@ -279,7 +280,7 @@ __global__ void __launch_bounds__(scatter_threads, 4)
     const std::uint32_t bucket = bucket_of[t];
     const BucketRun& to = run[bucket];
     const std::uint32_t k = t - begin[bucket];
-    buckets.parcels[k < to.split ? to.place[0] + k : to.place[1] + (k - to.split)] = stage[t];
+    buckets.records[k < to.split ? to.place[0] + k : to.place[1] + (k - to.split)] = stage[t];
   }
 }
 
@@ -324,10 +325,10 @@ struct BucketBricks {
 /// The objects of a chunk to the bricks that they overlap: each to the brick of its lower corner, and its
 /// copies to the others from a list, so that no lanes wait for those that have some. They are put in order
 /// before they are written, so that what goes to a brick lies together. Blocks beyond the chunks deal the
-/// giants.
+/// oversize objects.
 inline constexpr int copies_of_thread = 5;
 inline constexpr std::uint32_t most_listed = copies_of_thread * scatter_threads;
-inline constexpr std::uint32_t most_ordered = chunk_parcels + most_listed;
+inline constexpr std::uint32_t most_ordered = chunk_records + most_listed;
 __global__ void __launch_bounds__(scatter_threads, 5)
     scatter_to_bricks(const __grid_constant__ BrickInput input, const __grid_constant__ BrickStore store,
                       const __grid_constant__ BucketStore buckets) {
@@ -335,19 +336,19 @@ __global__ void __launch_bounds__(scatter_threads, 5)
   __shared__ std::uint32_t sums[scatter_threads / 32];
   __shared__ std::uint32_t wide;
   __shared__ std::uint32_t listed;
-  __shared__ std::uint16_t wider[chunk_parcels];  // parcels that overlap more than one brick
-  __shared__ std::uint32_t list[most_listed];     // parcel, and 2^16 times the local brick
+  __shared__ std::uint16_t wider[chunk_records];  // records that overlap more than one brick
+  __shared__ std::uint32_t list[most_listed];     // record, and 2^16 times the local brick
   __shared__ std::uint32_t order[most_ordered];   // likewise
   const std::uint32_t chunks = store.state->chunks;
   if (blockIdx.x >= chunks) {
-    scatter_giants(input, store, blockIdx.x - chunks, gridDim.x - chunks);
+    scatter_oversize_objects(input, store, blockIdx.x - chunks, gridDim.x - chunks);
     return;
   }
   const std::uint32_t slot = buckets.owner[blockIdx.x];
   const std::uint32_t bucket = slot / buckets.per_bucket;
-  const std::uint32_t before = slot % buckets.per_bucket * chunk_parcels;
-  const std::uint32_t parcels = min(buckets.counts[bucket] - before, chunk_parcels);
-  const Parcel* from = buckets.parcels + std::size_t{blockIdx.x} * chunk_parcels;
+  const std::uint32_t before = slot % buckets.per_bucket * chunk_records;
+  const std::uint32_t records = min(buckets.counts[bucket] - before, chunk_records);
+  const StagedRecord* from = buckets.records + std::size_t{blockIdx.x} * chunk_records;
   const BucketBricks bricks(store.plan, bucket);
   const int count = bricks.side * bricks.side * bricks.side;
   auto* run = reinterpret_cast<BrickRun*>(shared);
@@ -356,16 +357,16 @@ __global__ void __launch_bounds__(scatter_threads, 5)
   if (threadIdx.x == 0) wide = listed = 0;
   __syncthreads();
   std::uint32_t rank[scatter_items];  // in its brick, and 2^16 times the brick
-  Parcel loaded[loads_at_once];
+  StagedRecord loaded[loads_at_once];
 #pragma unroll
   for (int k = 0; k < scatter_items; ++k) {
     const std::uint32_t t = static_cast<unsigned>(k) * scatter_threads + threadIdx.x;
     if (k % loads_at_once == 0) {
 #pragma unroll
       for (std::uint32_t l = 0; l < loads_at_once; ++l)
-        loaded[l] = from[min(t + l * scatter_threads, parcels - 1)];
+        loaded[l] = from[min(t + l * scatter_threads, records - 1)];
     }
-    if (t >= parcels) continue;
+    if (t >= records) continue;
     const LatticeBox box = loaded[k % loads_at_once].box();
     std::int32_t at[3];
     std::int32_t further[3];
@@ -381,7 +382,7 @@ __global__ void __launch_bounds__(scatter_threads, 5)
   __syncthreads();
   for (std::uint32_t w = threadIdx.x; w < wide; w += scatter_threads) {
     const std::uint32_t t = wider[w];
-    const Parcel sent = from[t];
+    const StagedRecord sent = from[t];
     const LatticeBox box = sent.box();
     for_each_brick(box, [&](std::int32_t x, std::int32_t y, std::int32_t z) {
       if (x == box.lo[0] >> brick_bits && y == box.lo[1] >> brick_bits && z == box.lo[2] >> brick_bits)
@@ -421,7 +422,7 @@ __global__ void __launch_bounds__(scatter_threads, 5)
 #pragma unroll
   for (int k = 0; k < scatter_items; ++k) {
     const std::uint32_t t = static_cast<unsigned>(k) * scatter_threads + threadIdx.x;
-    if (t < parcels) order[begin[rank[k] >> 16] + (rank[k] & 0xffffu)] = t | (rank[k] & 0xffff0000u);
+    if (t < records) order[begin[rank[k] >> 16] + (rank[k] & 0xffffu)] = t | (rank[k] & 0xffff0000u);
   }
 #pragma unroll
   for (int k = 0; k < copies_of_thread; ++k) {
@@ -432,7 +433,7 @@ __global__ void __launch_bounds__(scatter_threads, 5)
   for (std::uint32_t k = threadIdx.x; k < entries; k += scatter_threads) {
     const std::uint32_t local = order[k] >> 16;
     if (k >= run[local].end) continue;
-    const Parcel sent = from[order[k] & 0xffffu];
+    const StagedRecord sent = from[order[k] & 0xffffu];
     std::int32_t at[3];
     bricks.locate(local, at);
     store.entries[run[local].to + k] = entry_in_brick(sent.box(), sent.tag, at[0], at[1], at[2]);

@@ -23,7 +23,8 @@ unsigned blocks_for(std::int64_t items, std::int64_t of_block) {
 constexpr std::size_t shared_to_search =
     std::max(sizeof(SearchMemory<BrickMethod::stencil>), sizeof(SearchMemory<BrickMethod::rows>));
 constexpr std::size_t shared_to_buckets(std::int64_t buckets) {
-  return scatter_tile * (sizeof(Parcel) + 2) + static_cast<std::size_t>(buckets) * (sizeof(BucketRun) + 4);
+  return scatter_tile * (sizeof(StagedRecord) + 2) +
+         static_cast<std::size_t>(buckets) * (sizeof(BucketRun) + 4);
 }
 constexpr std::size_t shared_to_bricks(std::int32_t bucket_width) {
   const auto side = static_cast<std::size_t>(bucket_width) + 1;
@@ -73,9 +74,9 @@ struct Bricks<Device>::Arrays {
   Array<BrickSample, Device> sample{1};
   /// All that has to be zero: the state, the tiles of the search, and the counts.
   Array<Word, Device> zeros;
-  Array<std::uint32_t, Device> giants;
+  Array<std::uint32_t, Device> oversize_objects;
   Array<std::uint32_t, Device> owners;
-  Array<Parcel, Device> parcels;
+  Array<StagedRecord, Device> records;
   Array<Entry, Device> entries;
   Array<Pair, Device> pairs;
 
@@ -114,18 +115,18 @@ struct Bricks<Device>::Arrays {
   BrickStore scatter(const BrickPlan& plan, const BrickInput& input) {
     const std::int64_t bricks = plan.lattice.total();
     const std::int64_t buckets = plan.total_buckets();
-    const std::int64_t per_bucket = input.count / chunk_parcels + 1;
-    const std::int64_t most_chunks = input.count / chunk_parcels + buckets;
+    const std::int64_t per_bucket = input.count / chunk_records + 1;
+    const std::int64_t most_chunks = input.count / chunk_records + buckets;
     const std::int64_t counts = bricks + buckets + buckets * per_bucket;
-    giants.resize(input.count);
+    oversize_objects.resize(input.count);
     entries.resize(bricks * std::int64_t{brick_objects});
-    parcels.resize(most_chunks * chunk_parcels);
+    records.resize(most_chunks * chunk_records);
     owners.resize(most_chunks);
     zeros.resize(state_words + bricks + (counts + 1) / 2);
     detail::clear_bytes(zeros.data(), static_cast<std::size_t>(zeros.size()) * sizeof(Word));
     auto* const count = reinterpret_cast<std::uint32_t*>(tiles() + bricks);
-    const BrickStore store{plan, state(), giants.data(), count, entries.data()};
-    const BucketStore to{parcels.data(), count + bricks, count + bricks + buckets,
+    const BrickStore store{plan, state(), oversize_objects.data(), count, entries.data()};
+    const BucketStore to{records.data(), count + bricks, count + bricks + buckets,
                          static_cast<std::uint32_t>(per_bucket), owners.data()};
     {
       const timing::Call<Device> call("broadphase.sort.buckets");
@@ -136,7 +137,7 @@ struct Bricks<Device>::Arrays {
     }
     const timing::Call<Device> call("broadphase.sort.bricks");
     const std::size_t shared = shared_to_bricks(plan.bucket_width);
-    const auto blocks = static_cast<unsigned>(most_chunks) + giant_blocks;
+    const auto blocks = static_cast<unsigned>(most_chunks) + oversize_blocks;
     scatter_to_bricks<<<blocks, scatter_threads, shared>>>(input, store, to);
     detail::require_launched("scatter_to_bricks");
     return store;

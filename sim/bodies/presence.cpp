@@ -99,8 +99,8 @@ bool Presence::changes(std::int64_t step) const {
 }
 
 /// Adds what a body has, or takes it away.
-void Presence::book(const ConstBodyView& bodies, std::int64_t k, double sign, const Scene& scene,
-                    const PotentialField& field, Change& change) {
+void Presence::account(const ConstBodyView& bodies, std::int64_t k, double sign, const Scene& scene,
+                       const PotentialField& field, Change& change) {
   const Totals body = totals_of_body(bodies, k, field.gravity, field.reference);
   change.exchange.mass += sign * body.mass;
   change.exchange.energy += sign * (body.kinetic() + body.potential);
@@ -124,30 +124,30 @@ Presence::Change Presence::update(std::int64_t step, const Scene& scene, const P
       const std::int32_t k = views.place(BodyNumber{window.bodies.first + number});
       if (comes) set_present(k, scene.bodies, views);
       if (views.mobility[k] == Mobility::absent) continue;  // it has left before its time
-      book(view_of(std::as_const(bodies)), k, comes ? 1 : -1, scene, field, change);
+      account(view_of(std::as_const(bodies)), k, comes ? 1 : -1, scene, field, change);
       if (!comes) set_absent(k, views);
     }
   }
   return change;
 }
 
-Presence::Change Presence::book_all(const BodyTable& table, double sign, const Scene& scene,
-                                    const PotentialField& field) {
+Presence::Change Presence::account_all(const BodyTable& table, double sign, const Scene& scene,
+                                       const PotentialField& field) {
   Change change;
   Bodies<Host> bodies;
   copy_bodies(bodies, table);
   for (std::int64_t k = 0; k < bodies.count(); ++k)
-    book(view_of(std::as_const(bodies)), k, sign, scene, field, change);
+    account(view_of(std::as_const(bodies)), k, sign, scene, field, change);
   return change;
 }
 
 Presence::Change Presence::take_leave_of(const BodyTable& gone, const Scene& scene,
                                          const PotentialField& field) {
-  return book_all(gone, -1, scene, field);
+  return account_all(gone, -1, scene, field);
 }
 
 Presence::Change Presence::welcome(const BodyTable& come, const Scene& scene, const PotentialField& field) {
-  return book_all(come, 1, scene, field);
+  return account_all(come, 1, scene, field);
 }
 
 }  // namespace scree

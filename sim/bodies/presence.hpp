@@ -59,9 +59,9 @@ class Presence {
   };
   const Window* window_of(std::int32_t body) const;
   const Emission* emission_of(std::int32_t body) const;
-  void book(const ConstBodyView& bodies, std::int64_t k, double sign, const Scene& scene,
-            const PotentialField& field, Change& change);
-  Change book_all(const BodyTable& table, double sign, const Scene& scene, const PotentialField& field);
+  void account(const ConstBodyView& bodies, std::int64_t k, double sign, const Scene& scene,
+               const PotentialField& field, Change& change);
+  Change account_all(const BodyTable& table, double sign, const Scene& scene, const PotentialField& field);
 
   std::vector<Window> windows_;      // by ascending body
   std::vector<Emission> emissions_;  // likewise

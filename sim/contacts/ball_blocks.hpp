@@ -1,4 +1,4 @@
-// Contacts of balls as Host finds and books them in double precision: eight side by side, by the kernels of
+// Contacts of balls as Host finds and totals them in double precision: eight side by side, by the kernels of
 // visit_kernels.cpp. What is asked for and given here no function comes with.
 #pragma once
 
@@ -35,8 +35,8 @@ struct PrepareBalls {
   double noise;          ///< parting speeds that count as none (m/s)
 };
 
-/// What blocks of contacts have moved: sums of Books.
-struct BlockBooks {
+/// What blocks of contacts have moved: sums of ContactTotals.
+struct BlockTotals {
   double restitution = 0, friction = 0, work = 0;
   double gaps = 0;
   double deepest = 0;
@@ -44,8 +44,8 @@ struct BlockBooks {
   std::int64_t loaded = 0, ends = 0, gaining = 0;
 };
 
-/// Books contacts of balls, and sets their gaps at the end.
-struct BookBlocks {
+/// ContactTotals contacts of balls, and sets their gaps at the end.
+struct AccountBlocks {
   BallContacts<double> contacts;
   // Of each body of the solver: before the substep's forces, with these, and with the contacts.
   const BodyRecord<double>* before;

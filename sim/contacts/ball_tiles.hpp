@@ -1,5 +1,5 @@
 // What Host does for contacts of balls in double precision by the kernels: it finds those of a tile of slots,
-// makes those of a block, and books those of some blocks.
+// makes those of a block, and totals those of some blocks.
 #pragma once
 
 #include "core/space_tiles.hpp"
@@ -13,7 +13,7 @@
 
 namespace scree::solver {
 
-/// Of each body, and before the first of nobody.
+/// Of each body, and before the first of padding_body.
 struct SetReach {
   FindStage<double> stage;
   Reach* reach;  ///< of the first body
@@ -24,7 +24,8 @@ struct SetReach {
       return;
     }
     const MidBody<double>& mid = stage.mid[body];
-    const bool apart = mid.shape != Shape::sphere || (stage.any_is_late && stage.struck.stage.is_late(body));
+    const bool apart =
+        mid.shape != Shape::sphere || (stage.any_late_impact && stage.struck.stage.has_late_impact(body));
     const Vec3& x = mid.position;
     reach[body] = {x.x(), x.y(), x.z(), apart ? HUGE_VAL : mid.size + mid.margin};
   }
@@ -114,19 +115,19 @@ struct MakeBallBlock {
   }
 };
 
-/// Of a run of blocks: BookBalls.
-struct BookBallBlocks {
+/// Of a run of blocks: AccountBalls.
+struct AccountBallBlocks {
   static constexpr std::int64_t together = 32;
 
-  BookBlocks book;
-  BookStage<double> stage;
+  AccountBlocks account;
+  AccountStage<double> stage;
   View<BallMemory<double>> memory;
 
   std::int64_t runs() const { return (blocks() + together - 1) / together; }
-  Books operator()(std::int64_t run) const {
+  ContactTotals operator()(std::int64_t run) const {
     const std::int64_t first = run * together;
     const Blocks of{first * simd::width, std::min(together, blocks() - first)};
-    const BlockBooks sums = visit_kernels().book_balls(book, of);
+    const BlockTotals sums = visit_kernels().account_balls(account, of);
     for (std::int64_t b = 0; b < of.count; ++b) remember(of.place(b));
     return {.restitution = sums.restitution,
             .friction = sums.friction,
@@ -141,9 +142,9 @@ struct BookBallBlocks {
   }
 
  private:
-  std::int64_t blocks() const { return book.contacts.slot.size() / simd::width; }
+  std::int64_t blocks() const { return account.contacts.slot.size() / simd::width; }
   void remember(std::int64_t first) const {
-    const BallContacts<double>& contacts = book.contacts;
+    const BallContacts<double>& contacts = account.contacts;
     for (std::int64_t c = first; c < first + simd::width && contacts.slot[c] != Slot::empty; ++c) {
       const std::int32_t place = contacts.slot[c];
       memory[place] = {contacts.fields.vector(BallContacts<double>::impulse, c)};

@@ -16,7 +16,7 @@
 namespace scree::solver {
 
 /// Sums over contacts.
-struct Books {
+struct ContactTotals {
   double restitution = 0;  ///< dissipated (J)
   double friction = 0;
   double work = 0;           ///< of bodies that are not free (J)
@@ -28,7 +28,7 @@ struct Books {
   double gap_power = 0;      ///< of normal impulses on what they leave undone: 0 when all are found (J)
   double kick_power = 0;     ///< of impulses on what they have changed (J)
 
-  SCREE_HD friend Books operator+(const Books& a, const Books& b) {
+  SCREE_HD friend ContactTotals operator+(const ContactTotals& a, const ContactTotals& b) {
     return {a.restitution + b.restitution,
             a.friction + b.friction,
             a.work + b.work,
@@ -49,7 +49,7 @@ struct Books {
 };
 
 /// A point of a contact: what acts on it, and the bodies that it acts on.
-struct BookedPoint {
+struct AccountedPoint {
   Vec3 impulse;  ///< on j (N s)
   Vec3 normal;
   Vec3 arm_i, arm_j;
@@ -71,7 +71,7 @@ inline constexpr double response_gain<float> = tolerance::mixed_response_gain;
 
 /// What all contacts have in common.
 template <class Real>
-struct BookStage {
+struct AccountStage {
   ConstView<Slot> places;
   ConstBodyView bodies;
   ConstView<BodyRecord<Real>> free;
@@ -102,24 +102,25 @@ struct BookStage {
   }
 
   /// Adds what a point's impulse has moved: account(), at the arms given.
-  SCREE_HD void book(const BookedPoint& at, const Slot& slot, const Ends& ends, Books& books) const {
+  SCREE_HD void account(const AccountedPoint& at, const Slot& slot, const Ends& ends,
+                        ContactTotals& totals) const {
     const Vec3& p = at.impulse;
     const auto [before, free_u, after] = motion_of(at.arm_i, at.arm_j, slot, ends);
     const double pn = p.dot(at.normal);
     const double through_mean = 0.5 * p.dot(before + after);
     const double normal_part = 0.5 * pn * at.normal.dot(before + after);
     const double changed = p.dot(after - free_u);
-    books.restitution -= normal_part;
-    books.friction -= through_mean - normal_part;
-    if (!is_free(ends.i)) books.work += p.dot(velocity_of(solver, ends.i, at.arm_i));
-    if (!is_free(ends.j)) books.work -= p.dot(velocity_of(solver, ends.j, at.arm_j));
-    books.gap_power += pn * (after.dot(at.normal) - at.target);
-    books.kick_power += changed;
+    totals.restitution -= normal_part;
+    totals.friction -= through_mean - normal_part;
+    if (!is_free(ends.i)) totals.work += p.dot(velocity_of(solver, ends.i, at.arm_i));
+    if (!is_free(ends.j)) totals.work -= p.dot(velocity_of(solver, ends.j, at.arm_j));
+    totals.gap_power += pn * (after.dot(at.normal) - at.target);
+    totals.kick_power += changed;
   }
   SCREE_HD bool is_free(std::int32_t end) const { return solver[end].inverse_mass > 0; }
   /// Of one contact, whose points are booked.
-  SCREE_HD static void judge_gain(Books& books) {
-    books.gaining = books.moved().gains(response_gain<Real>) ? 1 : 0;
+  SCREE_HD static void judge_gain(ContactTotals& totals) {
+    totals.gaining = totals.moved().gains(response_gain<Real>) ? 1 : 0;
   }
   SCREE_HD std::int64_t free_ends(const Ends& ends) const {
     return static_cast<int>(is_free(ends.i)) + static_cast<int>(is_free(ends.j));
@@ -143,57 +144,57 @@ SCREE_HD inline bool passes(std::uint8_t flags, bool loaded) { return (flags & f
 
 /// Of contacts of balls. Sets their gaps at the end, and remembers their impulses.
 template <class Real>
-struct BookBalls {
+struct AccountBalls {
   static constexpr int blocks_at_once = 2;
 
-  BookStage<Real> stage;
+  AccountStage<Real> stage;
   BallContacts<Real> contacts;
   View<BallMemory<Real>> memory;
 
-  SCREE_HD Books operator()(std::int64_t c) const {
+  SCREE_HD ContactTotals operator()(std::int64_t c) const {
     using C = BallContacts<Real>;
     const std::int64_t place = contacts.slot[c];
     const Ends ends = contacts.ends[c];
     const auto& f = contacts.fields;
     const V3<Real> n = f.vector(C::normal, c);
     const V3<Real> impulse = f.vector(C::impulse, c);
-    Books books;
+    ContactTotals totals;
     memory[place] = {impulse};
     const bool loaded = memory[place].is_loaded();
     if (loaded) {
       const Slot& slot = stage.places[place];
       const Vec3 normal = vec3(n);
       const auto number = [&](int field) { return static_cast<double>(f.at(field, c)); };
-      stage.book(
+      stage.account(
           {vec3(impulse), normal, number(C::arm_i) * normal, number(C::arm_j) * normal, number(C::target)},
-          slot, ends, books);
-      books.gaps = fabs(static_cast<double>(contacts.gaps.at(C::gap, c)));
-      books.loaded = 1;
-      books.ends = stage.free_ends(ends);
-      stage.judge_gain(books);
+          slot, ends, totals);
+      totals.gaps = fabs(static_cast<double>(contacts.gaps.at(C::gap, c)));
+      totals.loaded = 1;
+      totals.ends = stage.free_ends(ends);
+      stage.judge_gain(totals);
       if (stage.loads.size() > 0) stage.mark_loaded(slot, slot.surface);
     }
-    Real& flown = contacts.gaps.at(C::flown, c);
+    Real& predicted_gap = contacts.gaps.at(C::predicted_gap, c);
     if (contacts.flags[c] == 0) {
       const V3<Real> u = stage.solver[ends.j].velocity - stage.solver[ends.i].velocity;
-      if (!stage.again) flown += static_cast<Real>(0.5 * stage.step) * dot(n, u);
-      books.deepest = fmax(0.0, static_cast<double>(-flown / contacts.gaps.at(C::cap, c)));
+      if (!stage.again) predicted_gap += static_cast<Real>(0.5 * stage.step) * dot(n, u);
+      totals.deepest = fmax(0.0, static_cast<double>(-predicted_gap / contacts.gaps.at(C::cap, c)));
     } else if (passes(contacts.flags[c], loaded)) {
-      flown = static_cast<Real>(HUGE_VAL);
+      predicted_gap = static_cast<Real>(HUGE_VAL);
     }
-    return books;
+    return totals;
   }
 };
 
 /// Of the others.
 template <class Real>
-struct BookPoints {
-  BookStage<Real> stage;
+struct AccountPoints {
+  AccountStage<Real> stage;
   std::int64_t first_place;
   PointContacts<Real> contacts;
   View<PointMemory<Real>> memory;
 
-  SCREE_HD Books operator()(std::int64_t c) const {
+  SCREE_HD ContactTotals operator()(std::int64_t c) const {
     using C = PointContacts<Real>;
     const std::int64_t place = contacts.slot[c];
     const Slot& slot = stage.places[first_place + place];
@@ -201,7 +202,7 @@ struct BookPoints {
     const Vec3 n = vec3(contacts.fields.vector(C::normal, c));
     const double cap = static_cast<double>(contacts.fields.at(C::cap, c));
     const auto& f = contacts.point_fields;
-    Books books;
+    ContactTotals totals;
     for (int k = 0; k < contacts.points[c]; ++k) {
       const auto number = [&](auto field) { return static_cast<double>(f.at(C::at_point(k, field), c)); };
       const auto at = point_at<Scalar<Real>>(contacts, c, k);
@@ -209,23 +210,24 @@ struct BookPoints {
       const bool loaded = !is_zero(impulse);
       memory[place].impulse[k] = impulse;
       if (loaded) {
-        stage.book({vec3(impulse), n, vec3(at.arm_i), vec3(at.arm_j), number(C::target)}, slot, ends, books);
-        books.gaps += fabs(static_cast<double>(contacts.gaps.at(C::at_point(k, C::gap), c)));
-        ++books.loaded;
+        stage.account({vec3(impulse), n, vec3(at.arm_i), vec3(at.arm_j), number(C::target)}, slot, ends,
+                      totals);
+        totals.gaps += fabs(static_cast<double>(contacts.gaps.at(C::at_point(k, C::gap), c)));
+        ++totals.loaded;
       }
-      Real& flown = contacts.gaps.at(C::at_point(k, C::flown), c);
-      if (passes(contacts.flags[c], loaded)) flown = static_cast<Real>(HUGE_VAL);
+      Real& predicted_gap = contacts.gaps.at(C::at_point(k, C::predicted_gap), c);
+      if (passes(contacts.flags[c], loaded)) predicted_gap = static_cast<Real>(HUGE_VAL);
       if (contacts.flags[c] != 0) continue;
       const V3<Real> u = velocity_at(at, stage.solver[ends.i], stage.solver[ends.j]);
       if (!stage.again)
-        flown += static_cast<Real>(0.5 * stage.step) * dot(contacts.fields.vector(C::normal, c), u);
-      books.deepest = fmax(books.deepest, static_cast<double>(-flown) / cap);
+        predicted_gap += static_cast<Real>(0.5 * stage.step) * dot(contacts.fields.vector(C::normal, c), u);
+      totals.deepest = fmax(totals.deepest, static_cast<double>(-predicted_gap) / cap);
     }
-    if (books.loaded == 0) return books;
-    books.ends = stage.free_ends(ends);
-    stage.judge_gain(books);
+    if (totals.loaded == 0) return totals;
+    totals.ends = stage.free_ends(ends);
+    stage.judge_gain(totals);
     if (stage.loads.size() > 0) stage.mark_loaded(slot, stage.part_of(slot));
-    return books;
+    return totals;
   }
 };
 

@@ -2,7 +2,7 @@
 
 #include "core/parallel.hpp"
 #include "core/space_atomic.hpp"
-#include "core/space_rounds.hpp"
+#include "core/space_phases.hpp"
 #include "sim/contacts/solver_bodies.hpp"
 
 #include <utility>
@@ -184,10 +184,10 @@ void ContactColors<Space>::find(ConstView<std::int32_t> found, ConstView<Slot> s
       "contacts.color", n,
       KeepColors{contacts, keep, remembered, color_.view(), slot_.view(), taken_.view()});
   if (!uncolored_.empty()) {
-    parallel::run_rounds<Space>("contacts.color",
-                                ColorRounds{contacts, std::as_const(uncolored_).view(), color_.view(),
-                                            standing_.view(), taken_.view()},
-                                ColorRounds::State{false});
+    parallel::run_in_phases<Space>("contacts.color",
+                                   ColorRounds{contacts, std::as_const(uncolored_).view(), color_.view(),
+                                               standing_.view(), taken_.view()},
+                                   ColorRounds::State{false});
   }
   parallel::for_each<Space>("contacts.color", remembered.size(), Fill<std::uint8_t>{remembered, no_color});
   parallel::for_each<Space>("contacts.color", n,

@@ -43,7 +43,7 @@ class ContactFinder {
   FoundSlots<Space> found_;
   ContactColors<Space> ball_colors_, point_colors_;
   Array<FoundManifold, Space> manifolds_;  // of slots
-  Array<Reach, Host> reach_;               // of nobody, and of each body; where the kernels find contacts
+  Array<Reach, Host> reach_;  // of padding_body, and of each body; where the kernels find contacts
   Array<std::int32_t, Space> approaching_;
   Array<std::uint64_t, Space> approaching_count_;
 };

@@ -4,7 +4,9 @@
 #include "core/tolerances.hpp"
 #include "narrowphase/contact.hpp"
 #include "sim/impacts/flight_stage.hpp"
+#include "sim/laws/response_parameters.hpp"
 #include "sim/laws/separated_flight.hpp"
+#include "sim/observe/observation.hpp"
 
 #include <algorithm>
 
@@ -78,8 +80,8 @@ struct StruckFlights {
 
 /// How the response is to see a contact.
 struct ContactFlight {
-  double lead;  ///< how long after the midpoint its geometry is of (s)
-  bool flying;  ///< known not to meet in this substep: its rows only guard what the flight leaves free
+  double delay;  ///< how long after the midpoint its geometry is of (s)
+  bool flying;   ///< known not to meet in this substep: its rows only guard what the flight leaves free
 };
 
 namespace detail {
@@ -126,32 +128,33 @@ SCREE_HD ContactFlight flight_of_contact(const StruckFlights& struck, const Head
   const FlightStage& stage = struck.stage;
   const double step = stage.terms.step;
   const double seen = std::max(0.5 * step, struck.time_of(m.i, m.j));
-  ContactFlight contact{.lead = seen - 0.5 * step, .flying = false};
+  ContactFlight contact{.delay = seen - 0.5 * step, .flying = false};
   if (loaded || !detail::would_push_apart(struck, m, points, size, seen)) return contact;
   PairFlight pair = stage.pair_of(m.i, m.j, 1.5 * step);
   pair.slowest[m.part] = 0;
   const bool bounces =
-      !stage.are_in_crowd(m.i, m.j) && fastest_approach(pair) > stage.slowest_bounce(m.i, m.j);
+      !stage.both_bore_load(m.i, m.j) && fastest_approach(pair) > stage.slowest_bounce(m.i, m.j);
   const Meeting meeting = next_meeting(pair, struck.time_of(m.i, m.j), bounces ? step : HUGE_VAL);
   const bool bounces_later = bounces && meeting.time > step;
   contact.flying = meeting.time == HUGE_VAL || bounces_later;
   return contact;
 }
 
-/// Angular momentum (kg m^2/s) that an impulse on a free body adds by acting `lead` after the midpoint (s):
+/// Angular momentum (kg m^2/s) that an impulse on a free body adds by acting `delay` after the midpoint (s):
 /// beside it by as much as the body flies until then. `total`: all that the response gave to the body (N s).
-/// Of many impulses the sum may be given, each times its lead, with a lead of 1 s.
-SCREE_HD inline Vec3 moment_of_lead(const BodyView& bodies, std::int32_t body, const Vec3& total, double lead,
-                                    const Vec3& impulse) {
+/// Of many impulses the sum may be given, each times its delay, with a delay of 1 s.
+SCREE_HD inline Vec3 moment_of_delay(const BodyView& bodies, std::int32_t body, const Vec3& total,
+                                     double delay, const Vec3& impulse) {
   const Vec3 before = bodies.velocity[body] - bodies.inverse_mass[body] * total;
-  return -lead * before.cross(impulse);
+  return -delay * before.cross(impulse);
 }
 
 /// After the response: a free body that was struck late has been where it was until then, so its midpoint
 /// moves to that from which its new flight leads on from its last impact. Returns what that moved; for others
 /// it does nothing. `total`: as above.
-SCREE_HD inline Ledger shift_late(const FlightStage& stage, std::int32_t body, const Vec3& total) {
-  if (!stage.is_late(body)) return {};
+SCREE_HD inline Ledger shift_after_late_impact(const FlightStage& stage, std::int32_t body,
+                                               const Vec3& total) {
+  if (!stage.has_late_impact(body)) return {};
   const BodyView& bodies = stage.bodies;
   Vec3 moment = (stage.clock[body] - 0.5 * stage.terms.step) * total;
   hold_to_guide(stage.parameters.guides, body, moment);

@@ -11,12 +11,12 @@ namespace scree::solver {
 /// The contact of a slot of balls, at its time. With `rare`, of any; without, of balls and planes at the
 /// midpoint.
 template <bool rare, class Real>
-SCREE_HD inline bool meet(const FindStage<Real>& stage, const SlotBodies<Real>& at, double lead,
+SCREE_HD inline bool meet(const FindStage<Real>& stage, const SlotBodies<Real>& at, double delay,
                           Manifold& out) {
   const bool ball_a = at.a.shape == Shape::sphere;
   const bool ball_b = at.b.shape == Shape::sphere;
   const auto ball = [&](const MidBody<Real>& body, std::int32_t k) {
-    return Solid{stage.centre(body, k, lead), Quat::Identity(), Vec3(body.size, 0, 0)};
+    return Solid{stage.centre(body, k, delay), Quat::Identity(), Vec3(body.size, 0, 0)};
   };
   out.part = 0;
   const Period& period = stage.bodies.period;
@@ -27,7 +27,7 @@ SCREE_HD inline bool meet(const FindStage<Real>& stage, const SlotBodies<Real>& 
     return sphere_sphere(a, b, at.margin(), out);
   }
   const Solid of_ball = ball_a ? ball(at.a, at.slot.i) : ball(at.b, at.slot.j);
-  Solid other = stage.solid(ball_a ? at.slot.j : at.slot.i, lead);
+  Solid other = stage.solid(ball_a ? at.slot.j : at.slot.i, delay);
   period.bring_near(of_ball.position, other.position);
   const Shape shape = ball_a ? at.b.shape : at.a.shape;
   bool found = false;
@@ -64,21 +64,21 @@ SCREE_HD inline Touch touch_of(const Manifold& m) {
 
 /// What is rare must take no registers from the rest, and so it is called.
 template <class Real>
-[[gnu::noinline]] SCREE_HD bool meet_rarely(const FindStage<Real>& stage, const Slot& slot, double lead,
+[[gnu::noinline]] SCREE_HD bool meet_rarely(const FindStage<Real>& stage, const Slot& slot, double delay,
                                             Touch& out) {
   Manifold m;
-  const bool found = meet<true>(stage, stage.load(slot), lead, m);
+  const bool found = meet<true>(stage, stage.load(slot), delay, m);
   if (found) out = touch_of(m);
   return found;
 }
 
 template <class Real>
 SCREE_HD inline bool meet_balls(const FindStage<Real>& stage, std::int64_t place, const SlotBodies<Real>& at,
-                                double lead, Touch& out) {
+                                double delay, Touch& out) {
   const auto is_common = [](Shape shape) { return shape == Shape::sphere || shape == Shape::plane; };
-  if (lead > 0 || !is_common(at.a.shape) || !is_common(at.b.shape)) {
+  if (delay > 0 || !is_common(at.a.shape) || !is_common(at.b.shape)) {
     Touch rare;  // in memory, as what is called asks for
-    const bool found = meet_rarely(stage, stage.places[place], lead, rare);
+    const bool found = meet_rarely(stage, stage.places[place], delay, rare);
     if (found) out = rare;
     return found;
   }
@@ -95,7 +95,7 @@ struct FindBalls {
     Vec3 normal;
     double gap;
     double arm_i, arm_j;  ///< along the normal
-    double lead;
+    double delay;
   };
 
   static constexpr int blocks_at_once = 2;  // spilled registers cost more than threads that wait
@@ -112,9 +112,9 @@ struct FindBalls {
     const Slot slot = stage.places[place];
     if (slot.i == Slot::empty) return false;
     const SlotBodies<Real> at = stage.load(slot);
-    record.lead = stage.lead_of(slot);
+    record.delay = stage.delay_of(slot);
     Touch m;
-    if (!meet_balls(stage, place, at, record.lead, m)) {
+    if (!meet_balls(stage, place, at, record.delay, m)) {
       memory[place] = {};
       return false;
     }
@@ -122,7 +122,7 @@ struct FindBalls {
     record.gap = m.gap;
     const auto arm = [&](const MidBody<Real>& body, std::int32_t k) {
       if (!body.is_free()) return 0.0;
-      return m.normal.dot(stage.bodies.period.nearest(m.position - stage.centre(body, k, record.lead)));
+      return m.normal.dot(stage.bodies.period.nearest(m.position - stage.centre(body, k, record.delay)));
     };
     record.arm_i = arm(at.a, slot.i);
     record.arm_j = arm(at.b, slot.j);
@@ -141,16 +141,16 @@ struct FindBalls {
     const BallMemory<Real> remembered = memory[place];
     const Vec3& n = record.normal;
     const double friction = stage.friction_of(at);
-    const double bend = stage.bend_of(at, n);
-    const double opened = stage.opened_by_then(at, n, bend, record.lead);
+    const double curvature = stage.curvature_of(at, n);
+    const double opened = stage.opened_by_then(at, n, curvature, record.delay);
     set_wall_points(at, record);
     const double parting = n.dot(stage.relative_velocity(at));
     const double closing = -n.dot(stage.kicked_relative_velocity(at));
     const bool approaches =
-        !remembered.is_loaded() && stage.may_be_held_apart(record.gap, closing, record.lead);
+        !remembered.is_loaded() && stage.may_be_held_apart(record.gap, closing, record.delay);
     const BallMasses masses = stage.masses_of(at, record.arm_i, record.arm_j);
     contacts.ends[to] = {slot.end_i, slot.end_j};
-    contacts.flags[to] = static_cast<std::uint8_t>(record.lead > 0 ? flag_late : 0);
+    contacts.flags[to] = static_cast<std::uint8_t>(record.delay > 0 ? flag_late_impact : 0);
     if (approaches) approaching.add(to);
     const auto& f = contacts.fields;
     const auto put = [&](int field, double value) { f.at(field, to) = static_cast<Real>(value); };
@@ -159,7 +159,7 @@ struct FindBalls {
     put(C::arm_i, record.arm_i);
     put(C::arm_j, record.arm_j);
     put(C::friction, friction);
-    put(C::target, stage.target_of(record.gap, 0.0, bend, parting, record.lead));
+    put(C::target, stage.target_of(record.gap, 0.0, curvature, parting, record.delay));
     put(C::normal_mass, masses.normal);
     put(C::tangent_mass, masses.tangent);
     f.set(C::impulse, to, impulse);
@@ -168,7 +168,7 @@ struct FindBalls {
       contacts.gaps.at(field, to) = static_cast<Real>(value);
     };
     put_gap(C::gap, record.gap);
-    put_gap(C::flown, record.gap + opened);
+    put_gap(C::predicted_gap, record.gap + opened);
     put_gap(C::pushed, 0);
     put_gap(C::cap, tolerance::correction_cap * at.size());
   }
@@ -178,11 +178,11 @@ struct FindBalls {
   SCREE_HD void set_wall_points(SlotBodies<Real>& at, const Record& record) const {
     const Slot& slot = at.slot;
     if (stage.is_wall_point(at.a, slot.i, slot.end_i)) {
-      const Vec3 point = stage.centre(at.b, slot.j, record.lead) + record.arm_j * record.normal;
-      solver[slot.end_i].velocity = stage.wall_velocity(slot.i, point, record.lead);
+      const Vec3 point = stage.centre(at.b, slot.j, record.delay) + record.arm_j * record.normal;
+      solver[slot.end_i].velocity = stage.wall_velocity(slot.i, point, record.delay);
     } else if (stage.is_wall_point(at.b, slot.j, slot.end_j)) {
-      const Vec3 point = stage.centre(at.a, slot.i, record.lead) + record.arm_i * record.normal;
-      solver[slot.end_j].velocity = stage.wall_velocity(slot.j, point, record.lead);
+      const Vec3 point = stage.centre(at.a, slot.i, record.delay) + record.arm_i * record.normal;
+      solver[slot.end_j].velocity = stage.wall_velocity(slot.j, point, record.delay);
     } else {
       return;
     }
@@ -199,17 +199,17 @@ struct JudgeBalls {
   SCREE_HD void operator()(std::int64_t c) const {
     using C = BallContacts<Real>;
     SlotBodies<Real> at = stage.load(stage.places[contacts.slot[c]]);
-    const double lead = stage.lead_of(at.slot);
+    const double delay = stage.delay_of(at.slot);
     Manifold m;
-    if (!meet<true>(stage, at, lead, m)) return;
+    if (!meet<true>(stage, at, delay, m)) return;
     m.i = at.slot.i;
     m.j = at.slot.j;
     Real& target = contacts.fields.at(C::target, c);
     if (!flight_of_contact(stage.struck, m, m.points, at.size(), false).flying) {
-      if (!stage.struck.stage.are_in_crowd(m.i, m.j)) return;
+      if (!stage.struck.stage.both_bore_load(m.i, m.j)) return;
       target = static_cast<Real>(stage.target_of_bounce(
           at.slot, static_cast<double>(target), m.points[0].gap, m.normal.dot(stage.relative_velocity(at)),
-          m.normal.dot(stage.kicked_relative_velocity(at)), lead));
+          m.normal.dot(stage.kicked_relative_velocity(at)), delay));
       return;
     }
     contacts.flags[c] |= flag_flying;

@@ -20,19 +20,19 @@ SCREE_HD inline bool are_far(const FindStage<Real>& stage, const SlotBodies<Real
 
 /// Body j of a slot, where it is nearest to body i.
 template <class Real>
-SCREE_HD inline Solid solid_near(const FindStage<Real>& stage, const SlotBodies<Real>& at, double lead) {
-  Solid b = stage.solid(at.slot.j, lead);
-  stage.bodies.period.bring_near(stage.solid(at.slot.i, lead).position, b.position);
+SCREE_HD inline Solid solid_near(const FindStage<Real>& stage, const SlotBodies<Real>& at, double delay) {
+  Solid b = stage.solid(at.slot.j, delay);
+  stage.bodies.period.bring_near(stage.solid(at.slot.i, delay).position, b.position);
   return b;
 }
 
 /// What is rare must take no registers from the rest, and so it is called.
 template <class Real>
 [[gnu::noinline]] SCREE_HD bool meet_any(const FindStage<Real>& stage, const SlotBodies<Real>& at,
-                                         double lead, Manifold& out) {
+                                         double delay, Manifold& out) {
   Manifold all[max_pair_manifolds];
-  const Solid a = stage.solid(at.slot.i, lead);
-  Solid b = stage.solid(at.slot.j, lead);
+  const Solid a = stage.solid(at.slot.i, delay);
+  Solid b = stage.solid(at.slot.j, delay);
   stage.bodies.period.bring_near(a.position, b.position);
   const int count = find_any_contacts({at.a.shape, a}, {at.b.shape, b}, stage.shapes_of(at.slot.i, at.slot.j),
                                       {.margin = at.margin()}, all);
@@ -45,19 +45,19 @@ template <class Real>
 
 /// The contact of a slot that is not of balls, as the narrow phase finds it.
 template <class Real>
-SCREE_HD inline bool find_points(const FindStage<Real>& stage, const SlotBodies<Real>& at, double lead,
+SCREE_HD inline bool find_points(const FindStage<Real>& stage, const SlotBodies<Real>& at, double delay,
                                  Manifold& out) {
-  if (lead == 0 && are_far(stage, at)) return false;
+  if (delay == 0 && are_far(stage, at)) return false;
   SCREE_ON_HOST(
       if (stage.libccd != nullptr && stage.libccd->decides(at.a.shape, at.b.shape)) return stage.libccd->find(
-          {at.a.shape, stage.solid(at.slot.i, lead)}, {at.b.shape, solid_near(stage, at, lead)},
+          {at.a.shape, stage.solid(at.slot.i, delay)}, {at.b.shape, solid_near(stage, at, delay)},
           stage.shapes_of(at.slot.i, at.slot.j), at.margin(), &out) > 0;)
   const bool box_a = at.a.shape == Shape::box;
   const bool box_b = at.b.shape == Shape::box;
   const bool plane = at.a.shape == Shape::plane || at.b.shape == Shape::plane;
-  if (!(box_a && box_b) && !((box_a || box_b) && plane)) return meet_any(stage, at, lead, out);
-  const Solid a = stage.solid(at.slot.i, lead);
-  Solid b = stage.solid(at.slot.j, lead);
+  if (!(box_a && box_b) && !((box_a || box_b) && plane)) return meet_any(stage, at, delay, out);
+  const Solid a = stage.solid(at.slot.i, delay);
+  Solid b = stage.solid(at.slot.j, delay);
   stage.bodies.period.bring_near(a.position, b.position);
   out.part = 0;
   if (!plane) return box_box(a, b, at.margin(), out);
@@ -68,9 +68,9 @@ SCREE_HD inline bool find_points(const FindStage<Real>& stage, const SlotBodies<
 
 /// The contact of a slot that is not of balls.
 template <class Real>
-SCREE_HD inline bool meet_points(const FindStage<Real>& stage, const SlotBodies<Real>& at, double lead,
+SCREE_HD inline bool meet_points(const FindStage<Real>& stage, const SlotBodies<Real>& at, double delay,
                                  Manifold& out) {
-  if (!find_points(stage, at, lead, out)) return false;
+  if (!find_points(stage, at, delay, out)) return false;
   if (out.at_edge) take_normal_of_face(stage.struck, at.slot.i, at.slot.j, out.count, out.points, out.normal);
   return true;
 }
@@ -97,7 +97,7 @@ struct FindPoints {
     const Slot slot = stage.places[first_place + k];
     if (slot.i == Slot::empty) return -1;
     const SlotBodies<Real> at = stage.load(slot);
-    if (stage.lead_of(slot) == 0 && are_far(stage, at)) {
+    if (stage.delay_of(slot) == 0 && are_far(stage, at)) {
       memory[k].count = 0;
       return -1;
     }
@@ -109,10 +109,10 @@ struct FindPoints {
   SCREE_HD bool find(std::int64_t k, Record& record) const {
     const Slot slot = stage.places[first_place + k];
     if (slot.i == Slot::empty) return false;
-    record.lead = stage.lead_of(slot);
+    record.delay = stage.delay_of(slot);
     const SlotBodies<Real> at = stage.load(slot);
-    SCREE_ON_HOST(if (stage.libccd != nullptr) crosscheck(at, record.lead);)
-    if (meet_points(stage, at, record.lead, record.manifold)) return true;
+    SCREE_ON_HOST(if (stage.libccd != nullptr) crosscheck(at, record.delay);)
+    if (meet_points(stage, at, record.delay, record.manifold)) return true;
     memory[k].count = 0;
     return false;
   }
@@ -123,7 +123,7 @@ struct FindPoints {
     using C = PointContacts<Real>;
     const Record& record = records[k];
     const Manifold& m = record.manifold;
-    const double lead = record.lead;
+    const double delay = record.delay;
     const Slot slot = stage.places[first_place + k];
     const SlotBodies<Real> pair = stage.load(slot);
     const double friction = stage.friction_of(pair);
@@ -134,7 +134,7 @@ struct FindPoints {
     PointMemory<Real> old = memory[k];
     PointMemory<Real>& now = memory[k];
     contacts.ends[to] = {slot.end_i, slot.end_j};
-    contacts.flags[to] = static_cast<std::uint8_t>(lead > 0 ? flag_late : 0);
+    contacts.flags[to] = static_cast<std::uint8_t>(delay > 0 ? flag_late_impact : 0);
     contacts.points[to] = m.count;
     contacts.fields.set(C::normal, to, v3<Real>(m.normal));
     contacts.fields.at(C::friction, to) = static_cast<Real>(friction);
@@ -142,14 +142,14 @@ struct FindPoints {
     put_inertia(C::inertia_i, to, i.inverse_inertia);
     put_inertia(C::inertia_j, to, j.inverse_inertia);
     now.count = m.count;
-    const double bend = stage.bend_of(pair, m.normal);
+    const double curvature = stage.curvature_of(pair, m.normal);
     bool approaches = false;
     for (int p = 0; p < m.count; ++p) {
       const ContactPoint& point = m.points[p];
       RowCoupling coupling;
       const ContactRow row =
-          make_row(m.normal, stage.arm(pair.a, slot.i, lead, point.position),
-                   stage.arm(pair.b, slot.j, lead, point.position), point.gap, i, j, coupling);
+          make_row(m.normal, stage.arm(pair.a, slot.i, delay, point.position),
+                   stage.arm(pair.b, slot.j, delay, point.position), point.gap, i, j, coupling);
       now.feature[p] = point.feature;
       V3<Real> last{};
       for (int q = 0; q < old.count; ++q)
@@ -157,7 +157,7 @@ struct FindPoints {
       const V3<Real> impulse = v3<Real>(stage.remembered(last, m.normal, friction));
       const double parting = m.normal.dot(row.relative_velocity(i, j));
       const double closing = -(parting + m.normal.dot(kick));
-      approaches = approaches || stage.may_be_held_apart(point.gap, closing, lead);
+      approaches = approaches || stage.may_be_held_apart(point.gap, closing, delay);
       const auto at = [p](auto field) { return C::at_point(p, field); };
       const auto& f = contacts.point_fields;
       const auto put = [&](auto field, double value) { f.at(at(field), to) = static_cast<Real>(value); };
@@ -167,7 +167,7 @@ struct FindPoints {
       const double stick[] = {w(0, 0), w(1, 1), w(2, 2), w(0, 1), w(0, 2), w(1, 2)};
       for (int e = 0; e < 6; ++e) f.at(at(C::stick) + e, to) = static_cast<Real>(stick[e]);
       f.set(at(C::coupling), to, v3<Real>(coupling.normal));
-      put(C::target, stage.target_of(point.gap, shell, bend, parting, lead));
+      put(C::target, stage.target_of(point.gap, shell, curvature, parting, delay));
       put(C::normal_mass, row.normal_mass);
       put(C::tangent_mass, row.tangent_mass);
       f.set(at(C::impulse), to, impulse);
@@ -176,7 +176,7 @@ struct FindPoints {
         contacts.gaps.at(C::at_point(p, field), to) = static_cast<Real>(value);
       };
       put_gap(C::gap, point.gap);
-      put_gap(C::flown, point.gap + stage.opened_by_then(pair, m.normal, bend, lead));
+      put_gap(C::predicted_gap, point.gap + stage.opened_by_then(pair, m.normal, curvature, delay));
       put_gap(C::pushed, 0);
     }
     if (approaches && !loads[slot.candidate].is_loaded(m.part)) approaching.add(to);
@@ -184,12 +184,12 @@ struct FindPoints {
 
  private:
   /// Asks libccd about a slot that is one of those to be checked.
-  void crosscheck(const SlotBodies<Real>& at, double lead) const {
+  void crosscheck(const SlotBodies<Real>& at, double delay) const {
     const auto number = [&](std::int32_t k) { return static_cast<std::int32_t>(stage.bodies.id[k]); };
     const Slot& slot = at.slot;
     if (stage.libccd->checks(at.a.shape, at.b.shape, number(slot.i), number(slot.j)))
-      stage.libccd->check({at.a.shape, stage.solid(slot.i, lead)}, {at.b.shape, solid_near(stage, at, lead)},
-                          stage.shapes_of(slot.i, slot.j));
+      stage.libccd->check({at.a.shape, stage.solid(slot.i, delay)},
+                          {at.b.shape, solid_near(stage, at, delay)}, stage.shapes_of(slot.i, slot.j));
   }
   SCREE_HD void put_inertia(int first, std::int64_t to, const Mat3& m) const {
     const double elements[] = {m(0, 0), m(1, 1), m(2, 2), m(0, 1), m(0, 2), m(1, 2)};
@@ -219,16 +219,16 @@ struct JudgePoints {
     const std::int32_t place = contacts.slot[c];
     const Slot slot = stage.places[first_place + place];
     const SlotBodies<Real> at = stage.load(slot);
-    const double lead = records[place].lead;
+    const double delay = records[place].delay;
     Manifold m = records[place].manifold;
     m.i = slot.i;
     m.j = slot.j;
     const bool flying = flight_of_contact(stage.struck, m, m.points, at.size(), false).flying;
-    if (!flying && !stage.struck.stage.are_in_crowd(slot.i, slot.j)) return;
+    if (!flying && !stage.struck.stage.both_bore_load(slot.i, slot.j)) return;
     if (flying) contacts.flags[c] |= flag_flying;
     const auto velocity_at = [&](const MidBody<Real>& at_mid, std::int32_t body, const Vec3& point) {
       return Vec3(stage.bodies.velocity[body] +
-                  stage.bodies.spin[body].cross(stage.arm(at_mid, body, lead, point)));
+                  stage.bodies.spin[body].cross(stage.arm(at_mid, body, delay, point)));
     };
     const Vec3 kick_i = stage.kick_of(at.a, slot.i), kick_j = stage.kick_of(at.b, slot.j);
     for (int p = 0; p < m.count; ++p) {
@@ -242,7 +242,7 @@ struct JudgePoints {
       target = static_cast<Real>(
           flying ? stage.target_in_flight(otherwise, free,
                                           (before_i + kick_i).norm() + (before_j + kick_j).norm())
-                 : stage.target_of_bounce(slot, otherwise, m.points[p].gap, before, free, lead));
+                 : stage.target_of_bounce(slot, otherwise, m.points[p].gap, before, free, delay));
     }
   }
 };

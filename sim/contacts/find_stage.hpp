@@ -42,7 +42,7 @@ struct FindStage {
   double scale;                      ///< of remembered impulses
   double noise;                      ///< parting speeds that count as none (m/s)
   StruckFlights struck;              ///< the bodies after their impacts
-  bool any_is_late;                  ///< one was struck after the midpoint
+  bool any_late_impact;              ///< one was struck after the midpoint
   LibccdContacts* libccd = nullptr;  ///< on Host; null: it is not asked about anything
 
   SCREE_HD SlotBodies<Real> load(const Slot& slot) const { return {slot, mid[slot.i], mid[slot.j]}; }
@@ -78,8 +78,9 @@ struct FindStage {
     return !body.is_free() && end != k;
   }
   /// Of a wall at a point, when a pair is seen (m/s). Rare: what is called takes no registers from the rest.
-  [[gnu::noinline]] SCREE_HD V3<Real> wall_velocity(std::int32_t wall, const Vec3& point, double lead) const {
-    const Vec3 centre = bodies.position[wall] + lead * bodies.velocity[wall];
+  [[gnu::noinline]] SCREE_HD V3<Real> wall_velocity(std::int32_t wall, const Vec3& point,
+                                                    double delay) const {
+    const Vec3 centre = bodies.position[wall] + delay * bodies.velocity[wall];
     return v3<Real>(bodies.velocity[wall] + bodies.spin[wall].cross(bodies.period.nearest(point - centre)));
   }
   /// Walls move as their points do.
@@ -88,18 +89,20 @@ struct FindStage {
     if (is_wall_point(at.b, at.slot.j, at.slot.end_j)) at.b.velocity = solver[at.slot.end_j].velocity;
   }
   /// After the midpoint, when a pair is to be seen (s); 0 for nearly all.
-  SCREE_HD double lead_of(const Slot& slot) const { return any_is_late ? late_lead_of(slot.i, slot.j) : 0.0; }
-  SCREE_HD Solid solid(std::int32_t body, double lead) const {
-    if (lead > 0) return late_solid(body, lead);
+  SCREE_HD double delay_of(const Slot& slot) const {
+    return any_late_impact ? late_delay_of(slot.i, slot.j) : 0.0;
+  }
+  SCREE_HD Solid solid(std::int32_t body, double delay) const {
+    if (delay > 0) return solid_after_midpoint(body, delay);
     return {bodies.position[body], bodies.orientation[body], bodies.size[body]};
   }
   /// Where the centre is when a pair is seen.
-  SCREE_HD Vec3 centre(const MidBody<Real>& body, std::int32_t k, double lead) const {
-    return lead > 0 ? Vec3(body.position + lead * kicked_velocity(body, k)) : body.position;
+  SCREE_HD Vec3 centre(const MidBody<Real>& body, std::int32_t k, double delay) const {
+    return delay > 0 ? Vec3(body.position + delay * kicked_velocity(body, k)) : body.position;
   }
   /// From there to a point of a contact (m).
-  SCREE_HD Vec3 arm(const MidBody<Real>& body, std::int32_t k, double lead, const Vec3& point) const {
-    return bodies.period.nearest(point - centre(body, k, lead));
+  SCREE_HD Vec3 arm(const MidBody<Real>& body, std::int32_t k, double delay, const Vec3& point) const {
+    return bodies.period.nearest(point - centre(body, k, delay));
   }
   SCREE_HD Vec3 remembered(const V3<Real>& impulse, const Vec3& normal, double friction) const {
     if (!parameters.warm_start) return Vec3::Zero();
@@ -109,18 +112,18 @@ struct FindStage {
   /// Normal velocity that a point may have at the end, so that the next midpoint does not overlap: the gap
   /// may close by then, and no more. Held, a contact that was parting before the kick would gain energy: it
   /// may close as fast.
-  SCREE_HD double target_of(double gap, double shell, double bend, double parting, double lead) const {
-    const double closing = gap > shell ? -(gap - shell) / (step - lead) : 0.0;
-    return fmin(closing - 0.5 * step * bend, noise - parting);
+  SCREE_HD double target_of(double gap, double shell, double curvature, double parting, double delay) const {
+    const double closing = gap > shell ? -(gap - shell) / (step - delay) : 0.0;
+    return fmin(closing - 0.5 * step * curvature, noise - parting);
   }
   /// A look at the normal velocity of a point tells of nearly all that they are not held apart
   /// (flight_of_contact).
-  SCREE_HD bool may_be_held_apart(double gap, double closing, double lead) const {
+  SCREE_HD bool may_be_held_apart(double gap, double closing, double delay) const {
     if (gap <= 0) return closing > 0;
-    return lead > 0 || closing * step > tolerance::likely_closing * gap;
+    return delay > 0 || closing * step > tolerance::likely_closing * gap;
   }
   /// Of what flies past: it is not held at all. `free` is the normal velocity without contacts, and `speed`
-  /// the sum of the two bodies' speeds there, whose rounding pushes nobody (m/s).
+  /// the sum of the two bodies' speeds there, whose rounding pushes padding_body (m/s).
   SCREE_HD static double target_in_flight(double target, double free, double speed) {
     constexpr double rounding = tolerance::flight_roundings * std::numeric_limits<Real>::epsilon();
     return fmin(target, free - tolerance::flight_margin * fabs(free) - rounding * speed);
@@ -130,23 +133,24 @@ struct FindStage {
   /// bounces, as all contacts of the crowd at once (u+ = -e u-; Moreau 1999). `before` and `free` are the
   /// normal velocities before the kick and with it (m/s).
   SCREE_HD double target_of_bounce(const Slot& slot, double target, double gap, double before, double free,
-                                   double lead) const {
+                                   double delay) const {
     const FlightStage& flight = struck.stage;
-    const bool bounces = -before > flight.slowest_bounce(slot.i, slot.j) && -free * (step - lead) > gap;
+    const bool bounces = -before > flight.slowest_bounce(slot.i, slot.j) && -free * (step - delay) > gap;
     return bounces ? -laws.between(slot.i, slot.j).restitution * before : target;
   }
 
   /// What the gap at the end has beside what the velocities after the response open (m): it bends; and a
   /// late contact is told from where its centres will be then, so that where they are now goes off.
-  SCREE_HD double opened_by_then(const SlotBodies<Real>& at, const Vec3& n, double bend, double lead) const {
-    if (lead > 0)
-      return -n.dot(bodies.period.nearest(centre(at.b, at.slot.j, lead) - centre(at.a, at.slot.i, lead)));
-    return 0.125 * step * step * bend;
+  SCREE_HD double opened_by_then(const SlotBodies<Real>& at, const Vec3& n, double curvature,
+                                 double delay) const {
+    if (delay > 0)
+      return -n.dot(bodies.period.nearest(centre(at.b, at.slot.j, delay) - centre(at.a, at.slot.i, delay)));
+    return 0.125 * step * step * curvature;
   }
 
   /// Acceleration of the gap by the turning of the normal: of balls on one another, and of a ball along the
   /// wall of a tube (m/s^2).
-  SCREE_HD double bend_of(const SlotBodies<Real>& at, const Vec3& n) const {
+  SCREE_HD double curvature_of(const SlotBodies<Real>& at, const Vec3& n) const {
     const bool ball_a = at.a.shape == Shape::sphere;
     const bool ball_b = at.b.shape == Shape::sphere;
     if (!ball_a && !ball_b) return 0;
@@ -154,7 +158,7 @@ struct FindStage {
     const Vec3 across = w - w.dot(n) * n;
     if (ball_a && ball_b) return across.squaredNorm() / (at.a.size + at.b.size);
     if ((ball_a ? at.b : at.a).shape != Shape::tube || at.slot.surface != tube_wall) return 0;
-    return bend_along_tube(across, ball_a ? at.slot.j : at.slot.i, at.size());
+    return curvature_along_tube(across, ball_a ? at.slot.j : at.slot.i, at.size());
   }
 
  private:
@@ -166,14 +170,14 @@ struct FindStage {
     return {static_cast<double>(solver[end].inverse_mass), static_cast<double>(solver[end].inverse_inertia)};
   }
   // What is rare must not take registers from the rest.
-  [[gnu::noinline]] SCREE_HD double late_lead_of(std::int32_t i, std::int32_t j) const {
+  [[gnu::noinline]] SCREE_HD double late_delay_of(std::int32_t i, std::int32_t j) const {
     return fmax(0.0, struck.time_of(i, j) - 0.5 * step);
   }
-  [[gnu::noinline]] SCREE_HD Solid late_solid(std::int32_t body, double lead) const {
-    return struck.at(body, 0.5 * step + lead).solid;
+  [[gnu::noinline]] SCREE_HD Solid solid_after_midpoint(std::int32_t body, double delay) const {
+    return struck.at(body, 0.5 * step + delay).solid;
   }
-  [[gnu::noinline]] SCREE_HD double bend_along_tube(const Vec3& across, std::int32_t tube,
-                                                    double size) const {
+  [[gnu::noinline]] SCREE_HD double curvature_along_tube(const Vec3& across, std::int32_t tube,
+                                                         double size) const {
     const Vec3 axis = bodies.orientation[tube] * Vec3::UnitZ();
     const double reach = bodies.size[tube].x() - size;
     return reach > 0 ? -(across - across.dot(axis) * axis).squaredNorm() / reach : 0.0;
@@ -202,7 +206,7 @@ SCREE_HD inline const Manifold* manifold_on(int surface, bool corners, const Man
 /// What is found at a slot that is not of balls.
 struct FoundManifold {
   Manifold manifold;
-  double lead;
+  double delay;
 };
 
 /// Contacts whose bodies approach, and which bore no load, in any order.

@@ -177,8 +177,8 @@ struct BallContacts {
   };
   /// What the sweeps do not ask for.
   enum GapField {
-    gap,    ///< at the midpoint (m)
-    flown,  ///< at the end of the substep, without correction (m)
+    gap,            ///< at the midpoint (m)
+    predicted_gap,  ///< at the end of the substep, without correction (m)
     pushed,
     cap,
     gap_count
@@ -214,7 +214,7 @@ struct PointContacts {
     last = impulse + 3,
     point_count = last + 3
   };
-  enum GapField { gap, flown, pushed, gap_count };
+  enum GapField { gap, predicted_gap, pushed, gap_count };
 
   Ends* ends;
   View<std::int32_t> slot;
@@ -232,7 +232,7 @@ struct PointContacts {
 /// Of contacts.
 enum Flag : std::uint8_t {
   flag_flying = 1,  ///< known not to meet in this substep: its rows only guard what the flight leaves free
-  flag_late = 2     ///< its geometry is of a time after the midpoint
+  flag_late_impact = 2  ///< its geometry is of a time after the midpoint
 };
 
 /// What slots remember from substep to substep.

@@ -35,8 +35,8 @@ SCREE_HD inline bool is_of_balls(const ConstBodyView& bodies, const Slot& slot) 
   return is_ball(slot.i) && is_ball(slot.j);
 }
 
-/// First all bodies, then nobody, a body that is not free, then the parts of the hubs, then what balls touch
-/// of walls that turn: a body for each slot, which is not free, and moves as the wall does there.
+/// First all bodies, then padding_body, a body that is not free, then the parts of the hubs, then what balls
+/// touch of walls that turn: a body for each slot, which is not free, and moves as the wall does there.
 template <class Space>
 class SolverBodies {
  public:
@@ -45,7 +45,7 @@ class SolverBodies {
   void number(const ConstBodyView& bodies, View<Slot> slots);
 
   std::int64_t count() const { return count_; }
-  std::int32_t nobody() const { return static_cast<std::int32_t>(first_part() - 1); }
+  std::int32_t padding_body() const { return static_cast<std::int32_t>(first_part() - 1); }
   ConstView<Hub> hubs() const { return hubs_.view(); }
   /// Number of its hub, of each part of hubs.
   ConstView<std::int32_t> hub_of_parts() const { return hub_of_.view(); }

@@ -23,7 +23,7 @@ struct SweepState {
 };
 
 /// Change of the impulses by a sweep, and their size: as ImpulseChange. In double, since what is decided by
-/// these sums (ImpulseRounds::judge) must not hang on the order of their terms.
+/// these sums (ImpulsePhases::judge) must not hang on the order of their terms.
 struct SweepChange {
   double step = 0, size = 0;
   SCREE_HD friend SweepChange operator+(const SweepChange& a, const SweepChange& b) {
@@ -276,7 +276,7 @@ struct Overlaps {
 /// Parts the bodies of a contact of balls, and returns the gap that there was, of the cap; 0 or more where
 /// nothing overlapped.
 template <class Real>
-struct PartBalls {
+struct CorrectBalls {
   BallContacts<Real> contacts;
   CentreRecord<Real>* bodies;
   Real share;
@@ -288,7 +288,8 @@ struct PartBalls {
     const Ends* const ends = contacts.ends + c;
     auto two = bodies_of<A>(bodies, ends);
     const simd::V3<A> n = f.template vector<A>(C::normal, c);
-    const auto gap = contacts.gaps.template get<A>(C::flown, c) + dot(n, two.j.velocity - two.i.velocity);
+    const auto gap =
+        contacts.gaps.template get<A>(C::predicted_gap, c) + dot(n, two.j.velocity - two.i.velocity);
     auto pushed = contacts.gaps.template get<A>(C::pushed, c);
     if (!A::any((gap < 0) | (pushed > 0))) return typename A::V{};
     const auto cap = contacts.gaps.template get<A>(C::cap, c);
@@ -303,7 +304,7 @@ struct PartBalls {
 /// Parts the bodies of a contact of several points. They all have its normal, so that along it the bodies
 /// part alike.
 template <class Real>
-struct PartPoints {
+struct CorrectPoints {
   PointContacts<Real> contacts;
   CentreRecord<Real>* bodies;
   CentreRecord<Real>* turns;
@@ -324,14 +325,14 @@ struct PartPoints {
     V pushed_apart{}, least{};
     const int count = A::most(contacts.points + c);
     simd::Point<A> points[most_points]{};
-    V flown[most_points]{}, pushed[most_points]{}, masses_there[most_points]{};
+    V predicted_gap[most_points]{}, pushed[most_points]{}, masses_there[most_points]{};
     bool parts[most_points]{};
     const auto mass_at = [&](int p) {
       return contacts.point_fields.template get<A>(C::at_point(p, C::normal_mass), c);
     };
     SCREE_UNROLL for (int p = 0; p < most_points; ++p) {
       if (p >= count) continue;
-      flown[p] = contacts.gaps.template get<A>(C::at_point(p, C::flown), c);
+      predicted_gap[p] = contacts.gaps.template get<A>(C::at_point(p, C::predicted_gap), c);
       pushed[p] = contacts.gaps.template get<A>(C::at_point(p, C::pushed), c);
       if constexpr (is_gpu_code) {
         points[p] = point_at<A>(contacts, c, p);
@@ -342,7 +343,8 @@ struct PartPoints {
       if (p >= count) continue;
       const auto at = is_gpu_code ? points[p] : point_at<A>(contacts, c, p);
       const simd::V3<A> lever_i = cross(at.arm_i, n), lever_j = cross(at.arm_j, n);
-      const V gap = flown[p] + apart + (dot(lever_j, turned.j.velocity) - dot(lever_i, turned.i.velocity));
+      const V gap =
+          predicted_gap[p] + apart + (dot(lever_j, turned.j.velocity) - dot(lever_i, turned.i.velocity));
       parts[p] = A::any((gap < 0) | (pushed[p] > 0));
       if (parts[p]) {
         const V mass = is_gpu_code ? masses_there[p] : mass_at(p);

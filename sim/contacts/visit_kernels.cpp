@@ -104,7 +104,7 @@ SweepChange sweep_over(const Visit& given, Blocks blocks, double beta) {
 }
 
 template <class Visit>
-Overlaps part_over(const Visit& given, Blocks blocks) {
+Overlaps correct_over(const Visit& given, Blocks blocks) {
   const Visit visit = given;
   Vector deepest{}, sum{}, count{};
   for (std::int64_t k = 0; k < blocks.count; ++k) {
@@ -224,7 +224,7 @@ std::uint32_t prepare_balls(const PrepareBalls& given, const BallBlock& block, s
   f.put<Lanes>(C::last, place, start);
   const Vector smaller = i.radius < j.radius ? i.radius : j.radius;
   gaps.put<Lanes>(C::gap, place, contact.gap);
-  gaps.put<Lanes>(C::flown, place, contact.gap + 0.125 * given.step * given.step * contact.bend);
+  gaps.put<Lanes>(C::predicted_gap, place, contact.gap + 0.125 * given.step * given.step * contact.curvature);
   gaps.put<Lanes>(C::pushed, place, Vector{});
   gaps.put<Lanes>(C::cap, place, tolerance::correction_cap * smaller);
   const Vector closing = -dot(law.normal, j.velocity - i.velocity + kick);
@@ -238,9 +238,9 @@ SCREE_LAW double sum_of(const Vector& v) {
   return sum;
 }
 
-BlockBooks book_balls(const BookBlocks& given, Blocks blocks) {
+BlockTotals account_balls(const AccountBlocks& given, Blocks blocks) {
   using C = BallContacts<double>;
-  const BookBlocks by = given;
+  const AccountBlocks by = given;
   Vector restitution{}, friction{}, work{}, of_gaps{}, deepest{}, gap_power{}, kick_power{};
   Vector loaded{}, ends{}, gaining{};
   const Vector one = Lanes::all(1);
@@ -276,7 +276,7 @@ BlockBooks book_balls(const BookBlocks& given, Blocks blocks) {
     of_gaps = of_gaps + (carries ? (gap < 0 ? -gap : gap) : Vector{});
     loaded = loaded + (carries ? one : Vector{});
     ends = ends + ((carries & free_i) ? one : Vector{}) + ((carries & free_j) ? one : Vector{});
-    Vector flown = by.contacts.gaps.get<Lanes>(C::flown, c);
+    Vector predicted_gap = by.contacts.gaps.get<Lanes>(C::predicted_gap, c);
     const Vector cap = by.contacts.gaps.get<Lanes>(C::cap, c);
     const std::uint8_t* const flags = by.contacts.flags.data() + c;
     Vector met{}, passes{};
@@ -285,25 +285,26 @@ BlockBooks book_balls(const BookBlocks& given, Blocks blocks) {
       passes[l] = (flags[l] & flag_flying) != 0 ? 1 : 0;
     }
     if (!by.again)
-      flown =
-          met > 0 ? flown + 0.5 * by.step * dot(balls.normal, after.j.velocity - after.i.velocity) : flown;
-    flown = ((passes > 0) & !carries) ? Lanes::all(HUGE_VAL) : flown;
-    by.contacts.gaps.put<Lanes>(C::flown, c, flown);
-    const Vector depth = met > 0 ? -flown / cap : Vector{};
+      predicted_gap =
+          met > 0 ? predicted_gap + 0.5 * by.step * dot(balls.normal, after.j.velocity - after.i.velocity)
+                  : predicted_gap;
+    predicted_gap = ((passes > 0) & !carries) ? Lanes::all(HUGE_VAL) : predicted_gap;
+    by.contacts.gaps.put<Lanes>(C::predicted_gap, c, predicted_gap);
+    const Vector depth = met > 0 ? -predicted_gap / cap : Vector{};
     deepest = depth > deepest ? depth : deepest;
   }
-  BlockBooks books;
-  books.restitution = sum_of(restitution);
-  books.friction = sum_of(friction);
-  books.work = sum_of(work);
-  books.gaps = sum_of(of_gaps);
-  books.gap_power = sum_of(gap_power);
-  books.kick_power = sum_of(kick_power);
-  books.loaded = static_cast<std::int64_t>(sum_of(loaded));
-  books.ends = static_cast<std::int64_t>(sum_of(ends));
-  books.gaining = static_cast<std::int64_t>(sum_of(gaining));
-  for (int l = 0; l < width; ++l) books.deepest = deepest[l] > books.deepest ? deepest[l] : books.deepest;
-  return books;
+  BlockTotals totals;
+  totals.restitution = sum_of(restitution);
+  totals.friction = sum_of(friction);
+  totals.work = sum_of(work);
+  totals.gaps = sum_of(of_gaps);
+  totals.gap_power = sum_of(gap_power);
+  totals.kick_power = sum_of(kick_power);
+  totals.loaded = static_cast<std::int64_t>(sum_of(loaded));
+  totals.ends = static_cast<std::int64_t>(sum_of(ends));
+  totals.gaining = static_cast<std::int64_t>(sum_of(gaining));
+  for (int l = 0; l < width; ++l) totals.deepest = deepest[l] > totals.deepest ? deepest[l] : totals.deepest;
+  return totals;
 }
 
 }  // namespace
@@ -316,11 +317,11 @@ extern const VisitKernels visit_kernels = {.push_balls = push_over<PushBalls<dou
                                            .sweep_points = sweep_over<SweepPoints<double>>,
                                            .roll_balls = sweep_over<RollBalls>,
                                            .roll_points = sweep_over<RollPoints>,
-                                           .part_balls = part_over<PartBalls<double>>,
-                                           .part_points = part_over<PartPoints<double>>,
+                                           .correct_balls = correct_over<CorrectBalls<double>>,
+                                           .correct_points = correct_over<CorrectPoints<double>>,
                                            .near = near,
                                            .prepare_balls = prepare_balls,
-                                           .book_balls = book_balls,
+                                           .account_balls = account_balls,
                                            .accelerate = accelerate};
 
 }  // namespace scree::solver::SCREE_SIMD

@@ -39,15 +39,15 @@ struct VisitKernels {
   SweepChange (*sweep_points)(const SweepPoints<double>&, Blocks, double beta);
   SweepChange (*roll_balls)(const RollBalls&, Blocks, double beta);
   SweepChange (*roll_points)(const RollPoints&, Blocks, double beta);
-  Overlaps (*part_balls)(const PartBalls<double>&, Blocks);
-  Overlaps (*part_points)(const PartPoints<double>&, Blocks);
+  Overlaps (*correct_balls)(const CorrectBalls<double>&, Blocks);
+  Overlaps (*correct_points)(const CorrectPoints<double>&, Blocks);
   /// A bit for each of `look` slots whose bodies come as close as they reach. `reach` knows -1, too, which
-  /// reaches nobody.
+  /// reaches padding_body.
   std::uint64_t (*near)(const Reach* reach, const Slot* slots, const Period* period);
   /// Sets the fields of the contacts of a block, which begins at a place. A bit for each that may be
   /// held apart (FindStage::may_be_held_apart).
   std::uint32_t (*prepare_balls)(const PrepareBalls&, const BallBlock&, std::int64_t place);
-  BlockBooks (*book_balls)(const BookBlocks&, Blocks);
+  BlockTotals (*account_balls)(const AccountBlocks&, Blocks);
   /// Of the bodies from the first to the last.
   void (*accelerate)(const Accelerate<double>&, std::int64_t begin, std::int64_t end, double beta);
 
@@ -67,11 +67,11 @@ struct VisitKernels {
   SweepChange operator()(const RollPoints& visit, Blocks blocks, double beta) const {
     return roll_points(visit, blocks, beta);
   }
-  Overlaps operator()(const PartBalls<double>& visit, Blocks blocks) const {
-    return part_balls(visit, blocks);
+  Overlaps operator()(const CorrectBalls<double>& visit, Blocks blocks) const {
+    return correct_balls(visit, blocks);
   }
-  Overlaps operator()(const PartPoints<double>& visit, Blocks blocks) const {
-    return part_points(visit, blocks);
+  Overlaps operator()(const CorrectPoints<double>& visit, Blocks blocks) const {
+    return correct_points(visit, blocks);
   }
 };
 

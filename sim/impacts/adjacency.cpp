@@ -41,7 +41,8 @@ struct PairOfHubs {
   AdjacencyView adjacency;
   SCREE_HD std::int32_t operator()(std::int64_t k) const {
     const auto [i, j] = pairs[k];
-    return adjacency.is_hub(i) && adjacency.is_hub(j) ? static_cast<std::int32_t>(k) : no_pair;
+    return adjacency.has_many_pairs(i) && adjacency.has_many_pairs(j) ? static_cast<std::int32_t>(k)
+                                                                      : no_pair;
   }
 };
 
@@ -56,7 +57,7 @@ void Adjacency<Space>::build(ConstView<Pair> pairs, ConstView<Mobility> mobility
   parallel::for_each<Space>(
       "adjacency", pairs.size(),
       FillRows{pairs, mobility, std::as_const(begin_).view(), count_.view(), row_.view()});
-  parallel::select("adjacency", pairs.size(), PairOfHubs{pairs, view()}, no_pair, between_hubs_);
+  parallel::select("adjacency", pairs.size(), PairOfHubs{pairs, view()}, no_pair, between_many_);
 }
 
 #define SCREE_INSTANTIATE(Space) template class Adjacency<Space>;

@@ -50,7 +50,7 @@ struct FlightLog {
   Array<double, Space> reach;        ///< of its surface from the midpoint, to either end of the substep (m)
   Array<double, Space> extent;  ///< how far from its centre it may be in the substep (m); infinite: boundary
   /// 1: bore load together with another free body in the last substep. Empty: nobody did, or none counts.
-  Array<std::uint32_t, Space> in_crowd;
+  Array<std::uint32_t, Space> bore_load;
 
   void resize(std::int64_t bodies) {
     clock.resize(bodies);
@@ -87,7 +87,7 @@ struct FlightStage {
         top_speed(log.top_speed.view()),
         reach(log.reach.view()),
         extent(log.extent.view()),
-        in_crowd(log.in_crowd.view()) {}
+        bore_load(log.bore_load.view()) {}
 
   FlightTerms terms;
   ResponseParameters parameters;
@@ -98,7 +98,7 @@ struct FlightStage {
   View<double> top_speed;
   View<double> reach;
   View<double> extent;
-  View<std::uint32_t> in_crowd;
+  View<std::uint32_t> bore_load;
   double least_impact_speed = -1;  ///< two bodies whose top speeds sum to no more have no impact (m/s)
 
   SCREE_HD bool is_free(std::int32_t body) const { return bodies.mobility[body] == Mobility::free; }
@@ -106,11 +106,11 @@ struct FlightStage {
   SCREE_HD bool is_heavy_to(std::int32_t body, std::int32_t other) const {
     return is_free(body) && tolerance::heavy_ratio * bodies.inverse_mass[body] <= bodies.inverse_mass[other];
   }
-  SCREE_HD bool is_late(std::int32_t body) const { return clock[body] > 0.5 * terms.step; }
+  SCREE_HD bool has_late_impact(std::int32_t body) const { return clock[body] > 0.5 * terms.step; }
   /// Whether two bodies bounce off each other together with the contacts that they bear load in, and not
   /// before those: the order of impacts in a crowd is chaos, and its contacts are solved at once.
-  SCREE_HD bool are_in_crowd(std::int32_t i, std::int32_t j) const {
-    return in_crowd.size() > 0 && in_crowd[i] != 0 && in_crowd[j] != 0;
+  SCREE_HD bool both_bore_load(std::int32_t i, std::int32_t j) const {
+    return bore_load.size() > 0 && bore_load[i] != 0 && bore_load[j] != 0;
   }
 
   /// What the bodies' velocities have of the substep's kick already (m/s).
@@ -198,7 +198,7 @@ struct FlightStage {
     limits.earliest = std::max(clock[i], clock[j]);
     if (!(limits.earliest < terms.step)) return false;
     limits.left = terms.step - limits.earliest;
-    limits.slowest = terms.bounces && !are_in_crowd(i, j) ? slowest_bounce(i, j) : HUGE_VAL;
+    limits.slowest = terms.bounces && !both_bore_load(i, j) ? slowest_bounce(i, j) : HUGE_VAL;
     limits.farthest =
         parameters.continuous ? tolerance::deep_approach * terms.laws.smaller_size(i, j) : HUGE_VAL;
     return limits.may_count(fastest(i, j));

@@ -406,7 +406,7 @@ SCREE_HD inline void count_impact_cost(const FlightStage& stage, const SolvedImp
   charge(solved.j, solved.i);
 }
 
-/// Gives both bodies the flights that lead on from an impact. Returns what it moved.
+/// Gives both bodies the flights that delay on from an impact. Returns what it moved.
 SCREE_HD inline Ledger fly_on(const FlightStage& stage, const SolvedImpact& solved, Impact& impact) {
   impact = solved.of_pair();
   count_impact_cost(stage, solved);

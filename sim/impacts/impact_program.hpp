@@ -1,4 +1,4 @@
-// The rounds of impacts of a flight as phases (core/space_rounds.hpp). The first half of a round foresees
+// The rounds of impacts of a flight as phases (core/space_phases.hpp). The first half of a round predicts
 // which pairs meet, the second one resolves the meetings that are first where they are.
 #pragma once
 
@@ -8,6 +8,7 @@
 #include "sim/impacts/adjacency.hpp"
 #include "sim/impacts/impact.hpp"
 #include "sim/impacts/impact_group.hpp"
+#include "sim/observe/observation.hpp"
 
 #include <algorithm>
 #include <bit>
@@ -17,7 +18,7 @@
 namespace scree::detail {
 
 /// A meeting, as foreseen.
-struct Foreseen {
+struct PredictedMeeting {
   double time;        ///< into the substep (s); infinite: it has come to nothing
   std::int64_t pair;  ///< in the list of the pairs
   std::int32_t part;
@@ -69,7 +70,7 @@ inline constexpr std::uint32_t no_impact_group = ~std::uint32_t{0};  ///< of mee
 
 /// How many a round has found.
 struct RoundCounts {
-  std::uint64_t suspects = 0;
+  std::uint64_t to_search = 0;
   std::uint64_t meetings = 0;
   std::uint64_t with_heavy = 0;  ///< of these, with a body that is heavy to the other
 };
@@ -88,8 +89,8 @@ struct ImpactProgress {
   std::uint64_t near = 0;         ///< pairs that come near each other, listed before the first round
   std::uint64_t chunks = 0;       ///< listed by this round
   std::uint64_t impacts = 0;
-  std::uint64_t struck = 0;  ///< bodies
-  std::uint32_t late = 0;    ///< whether one of them was struck after the midpoint
+  std::uint64_t struck = 0;       ///< bodies
+  std::uint32_t late_impact = 0;  ///< whether one of them was struck after the midpoint
   std::uint32_t hit_bound = 0;
 };
 
@@ -143,12 +144,12 @@ struct ImpactProgram {
   /// One of its meetings with what is not free, from 1 on; the next is that meeting's next_of_wall. 0: none.
   View<std::uint32_t> walls_of;
   // As long as there is room:
-  ConstView<std::int64_t> near;     ///< pairs that come near each other, for the first round
-  View<std::int64_t> suspects;      ///< pairs whose meeting is to be searched for in this round
-  View<Foreseen> meetings[2];       ///< of the even rounds and of the odd ones, in any order
-  View<ImpactGroup> impact_groups;  ///< of each meeting
-  View<Resolved> resolved;          ///< impacts, in any order
-  View<std::uint64_t> key;          ///< of each one's place
+  ConstView<std::int64_t> near;        ///< pairs that come near each other, for the first round
+  View<std::int64_t> to_search;        ///< pairs whose meeting is to be searched for in this round
+  View<PredictedMeeting> meetings[2];  ///< of the even rounds and of the odd ones, in any order
+  View<ImpactGroup> impact_groups;     ///< of each meeting
+  View<Resolved> resolved;             ///< impacts, in any order
+  View<std::uint64_t> key;             ///< of each one's place
   View<StruckBody> struck;
   View<StruckPairs> chunks;  ///< of those that were struck in the last round; there is room for all bodies
 
@@ -163,15 +164,15 @@ struct ImpactProgram {
       return phase == 0 ? state.kept + 2 * lanes * meetings_now : meetings_now;
     }
     if (phase == 0) return state.round == 1 ? near_listed() : state.kept + chunk_size * state.chunks;
-    return suspects_listed(state);
+    return listed_to_search(state);
   }
-  std::int64_t most_items() const { return std::max(near.size(), suspects.size()); }
+  std::int64_t most_items() const { return std::max(near.size(), to_search.size()); }
 
   SCREE_HD Sum operator()(const State& state, int phase, std::int64_t item) const {
     if (state.resolving) {
       resolve(state, phase, item);
     } else {
-      foresee(state, phase, item);
+      predict(state, phase, item);
     }
     return {};
   }
@@ -188,7 +189,7 @@ struct ImpactProgram {
     const auto lacks = [](std::uint64_t needed, std::int64_t room) {
       return static_cast<std::int64_t>(needed) > room;
     };
-    if (lacks(progress->near, near.size()) || lacks(state.counts.suspects, suspects.size()) ||
+    if (lacks(progress->near, near.size()) || lacks(state.counts.to_search, to_search.size()) ||
         lacks(state.counts.meetings, meetings[0].size())) {
       state.halt = State::Halt::lists;
       return state;
@@ -212,10 +213,10 @@ struct ImpactProgram {
   SCREE_HD std::int64_t near_listed() const {
     return std::min(static_cast<std::int64_t>(progress->near), near.size());
   }
-  SCREE_HD std::int64_t suspects_listed(const State& state) const {
-    return std::min(static_cast<std::int64_t>(progress->counts[state.round % 2].suspects), suspects.size());
+  SCREE_HD std::int64_t listed_to_search(const State& state) const {
+    return std::min(static_cast<std::int64_t>(progress->counts[state.round % 2].to_search), to_search.size());
   }
-  SCREE_HD Foreseen& meeting(const State& state, std::int64_t e) const {
+  SCREE_HD PredictedMeeting& meeting(const State& state, std::int64_t e) const {
     return meetings[state.round % 2][e];
   }
   SCREE_HD FirstMeeting first_of(const State& state, std::int32_t body) const {
@@ -234,11 +235,11 @@ struct ImpactProgram {
 
   // The first half: meetings of the last round that have stayed as they were, and those of pairs of which a
   // body has been struck in it.
-  SCREE_HD void foresee(const State& state, int phase, std::int64_t item) const {
+  SCREE_HD void predict(const State& state, int phase, std::int64_t item) const {
     if (phase == 1) {
-      foresee_pair(state, suspects[item]);
+      predict_pair(state, to_search[item]);
     } else if (state.round == 1) {
-      foresee_or_list(state, near[item]);
+      predict_or_list(state, near[item]);
     } else if (item < state.kept) {
       keep(state, meetings[(state.round + 1) % 2][item]);
     } else {
@@ -256,7 +257,7 @@ struct ImpactProgram {
     if (of.body == j && was_struck(state, i)) return;
     if (stage.top_speed[i] + stage.top_speed[j] > progress->least_impact_speed) look(state, k);
   }
-  SCREE_HD void keep(const State& state, const Foreseen& last) const {
+  SCREE_HD void keep(const State& state, const PredictedMeeting& last) const {
     const auto [i, j] = pairs[last.pair];
     for (const std::int32_t body : {i, j}) put(&walls_of[body], 0u);
     if (last.time == HUGE_VAL || was_struck(state, i) || was_struck(state, j)) return;
@@ -268,25 +269,25 @@ struct ImpactProgram {
   SCREE_HD void look(const State& state, std::int64_t k) const {
     const auto [i, j] = pairs[k];
     ImpactLimits limits;
-    if (stage.may_meet(i, j, limits) && stage.come_near(i, j, limits, loads_of(k))) foresee_or_list(state, k);
+    if (stage.may_meet(i, j, limits) && stage.come_near(i, j, limits, loads_of(k))) predict_or_list(state, k);
   }
   /// Foresees the meeting of a pair that comes near, or lists it if that takes a search: searches that lie
   /// side by side keep all threads of a warp busy.
-  SCREE_HD void foresee_or_list(const State& state, std::int64_t k) const {
+  SCREE_HD void predict_or_list(const State& state, std::int64_t k) const {
     const auto [i, j] = pairs[k];
-    if (!stage.needs_search(i) && !stage.needs_search(j)) return foresee_pair(state, k);
+    if (!stage.needs_search(i) && !stage.needs_search(j)) return predict_pair(state, k);
     const auto place =
-        static_cast<std::int64_t>(count_up_together(&progress->counts[state.round % 2].suspects));
-    if (place < suspects.size()) suspects[place] = k;
+        static_cast<std::int64_t>(count_up_together(&progress->counts[state.round % 2].to_search));
+    if (place < to_search.size()) to_search[place] = k;
   }
-  [[gnu::noinline]] SCREE_HD void foresee_pair(const State& state, std::int64_t k) const {
+  [[gnu::noinline]] SCREE_HD void predict_pair(const State& state, std::int64_t k) const {
     const auto [i, j] = pairs[k];
     const Meeting meeting = stage.next(i, j, loads_of(k));
     if (meeting.time <= stage.terms.step) add_meeting(state, {meeting.time, k, meeting.part});
   }
-  SCREE_HD void add_meeting(const State& state, const Foreseen& meeting) const {
+  SCREE_HD void add_meeting(const State& state, const PredictedMeeting& meeting) const {
     RoundCounts& counts = progress->counts[state.round % 2];
-    const View<Foreseen>& list = meetings[state.round % 2];
+    const View<PredictedMeeting>& list = meetings[state.round % 2];
     const auto place = static_cast<std::int64_t>(count_up_together(&counts.meetings));
     if (place < list.size()) list[place] = meeting;
     const auto [i, j] = pairs[meeting.pair];
@@ -336,13 +337,13 @@ struct ImpactProgram {
     return stage.is_free(body) && !stage.is_heavy_to(body, other);
   }
   /// All that are first; no two of them share a body but one that is heavy to both others.
-  SCREE_HD bool is_first(const State& state, const Foreseen& of) const {
+  SCREE_HD bool is_first(const State& state, const PredictedMeeting& of) const {
     if (one_by_one) return progress->first[state.round % 2].pair == numbers_of(of.pair).bits;
     const auto [i, j] = pairs[of.pair];
     return is_first_of(state, i, j, of) && is_first_of(state, j, i, of);
   }
   SCREE_HD bool is_first_of(const State& state, std::int32_t body, std::int32_t other,
-                            const Foreseen& of) const {
+                            const PredictedMeeting& of) const {
     if (!counts_for(body, other)) return true;
     return first_of(state, body).bits == of_meeting(other, of.time).bits && waits_in[body] != state.round;
   }
@@ -352,7 +353,7 @@ struct ImpactProgram {
 
   /// Of a meeting of the last round: what was first then is asked for no more, and its place is the next
   /// round's.
-  SCREE_HD void forget(const State& state, const Foreseen& last) const {
+  SCREE_HD void forget(const State& state, const PredictedMeeting& last) const {
     const auto [i, j] = pairs[last.pair];
     for (const std::int32_t body : {i, j}) put(&first[(state.round + 1) % 2][body], no_meeting);
   }
@@ -360,7 +361,7 @@ struct ImpactProgram {
   SCREE_HD void prepare(const State& state, std::int64_t item) const {
     const auto lane = static_cast<int>(item % lanes);
     const std::int64_t e = item / lanes / 2;
-    Foreseen& of = meeting(state, e);
+    PredictedMeeting& of = meeting(state, e);
     const auto [i, j] = pairs[of.pair];
     const bool is_i = item / lanes % 2 == 0;
     const std::int32_t body = is_i ? i : j;
@@ -373,7 +374,7 @@ struct ImpactProgram {
         first_of(state, body).bits == of_meeting(other, of.time).bits)
       find_waits(state, body, lane);
   }
-  SCREE_HD void start_meeting(const State& state, Foreseen& of, std::int64_t e) const {
+  SCREE_HD void start_meeting(const State& state, PredictedMeeting& of, std::int64_t e) const {
     const auto [i, j] = pairs[of.pair];
     if (stage.is_free(i) != stage.is_free(j))
       of.next_of_wall = exchange(&walls_of[stage.is_free(i) ? i : j], static_cast<std::uint32_t>(e + 1));
@@ -383,9 +384,9 @@ struct ImpactProgram {
   }
 
   /// Makes those wait that are to, of a body that has a meeting and of its partners that have one. A pair is
-  /// looked at from the body that is in fewer pairs, since a hub is in very many.
+  /// looked at from the body that is in fewer pairs, since a body with many pairs may be in very many.
   SCREE_HD void find_waits(const State& state, std::int32_t body, int lane) const {
-    if (adjacency.is_hub(body)) return find_waits_of_hubs(state, body, lane);
+    if (adjacency.has_many_pairs(body)) return find_waits_of_many(state, body, lane);
     const std::int64_t own = adjacency.count(body);
     for (std::int64_t place = lane; place < own; place += lanes) {
       const std::int64_t k = adjacency.pair(body, place);
@@ -395,9 +396,9 @@ struct ImpactProgram {
       if (own < others || (own == others && body < other)) make_wait(state, body, other);
     }
   }
-  SCREE_HD void find_waits_of_hubs(const State& state, std::int32_t body, int lane) const {
-    for (std::int64_t place = lane; place < adjacency.between_hubs.size(); place += lanes) {
-      const auto [i, j] = pairs[adjacency.between_hubs[place]];
+  SCREE_HD void find_waits_of_many(const State& state, std::int32_t body, int lane) const {
+    for (std::int64_t place = lane; place < adjacency.between_many.size(); place += lanes) {
+      const auto [i, j] = pairs[adjacency.between_many[place]];
       if (i == body) make_wait(state, i, j);
     }
   }
@@ -452,7 +453,7 @@ struct ImpactProgram {
   }
   /// Adds up what the first meetings give to heavy bodies.
   SCREE_HD void gather_impact_groups(const State& state, std::int64_t e) const {
-    const Foreseen& of = meeting(state, e);
+    const PredictedMeeting& of = meeting(state, e);
     const auto [i, j] = pairs[of.pair];
     if (!is_of_heavy(i, j) || !is_first(state, of)) return;
     SolvedImpact solved;
@@ -462,7 +463,7 @@ struct ImpactProgram {
   }
 
   SCREE_HD void resolve_first(const State& state, std::int64_t e) const {
-    Foreseen& of = meeting(state, e);
+    PredictedMeeting& of = meeting(state, e);
     if (!is_first(state, of)) return;
     const auto [i, j] = pairs[of.pair];
     const StruckBody before_i = before_impacts(stage, i);
@@ -489,11 +490,12 @@ struct ImpactProgram {
     key[place] = key_of(state, of.pair);
     for (int k = 0; k < solved.count; ++k)
       if (solved.is_first_of_wall(k)) add_impact_of_wall(state, solved, solved.wall[k]);
-    if (of.time > 0.5 * stage.terms.step) raise(&progress->late, 1u);
+    if (of.time > 0.5 * stage.terms.step) raise(&progress->late_impact, 1u);
     if (std::max(heavy_i ? 0.0 : stage.budget_used[i], heavy_j ? 0.0 : stage.budget_used[j]) >= impacts_end)
       raise(&progress->hit_bound, 1u);
   }
-  [[gnu::noinline]] SCREE_HD bool solve(const State& state, const Foreseen& of, SolvedImpact& solved) const {
+  [[gnu::noinline]] SCREE_HD bool solve(const State& state, const PredictedMeeting& of,
+                                        SolvedImpact& solved) const {
     const auto [i, j] = pairs[of.pair];
     return solve_impact(stage, i, j, {.time = of.time, .part = of.part}, loads_of(of.pair),
                         OtherWalls{*this, state, of.pair}, solved);
@@ -515,18 +517,18 @@ struct ImpactProgram {
       const bool free_i = program.stage.is_free(i);
       if (free_i == program.stage.is_free(j)) return;
       const std::int32_t body = free_i ? i : j;
-      const Foreseen* of = from(body, 0);
+      const PredictedMeeting* of = from(body, 0);
       for (; of != nullptr; of = from(body, program.numbers_of(of->pair).bits + 1)) {
         const auto [first, second] = program.pairs[of->pair];
         if (of->pair != pair) then(first == body ? second : first, of->part);
       }
     }
     /// The first of a body's from a pair on; null if there is none.
-    SCREE_HD const Foreseen* from(std::int32_t body, std::uint64_t least) const {
-      const Foreseen* next = nullptr;
+    SCREE_HD const PredictedMeeting* from(std::int32_t body, std::uint64_t least) const {
+      const PredictedMeeting* next = nullptr;
       std::uint64_t of_next = ~std::uint64_t{0};
       for (std::uint32_t e = program.walls_of[body]; e != 0;) {
-        const Foreseen& of = program.meeting(state, e - 1);
+        const PredictedMeeting& of = program.meeting(state, e - 1);
         const std::uint64_t numbers = program.numbers_of(of.pair).bits;
         if (numbers >= least && numbers < of_next) {
           next = &of;
@@ -542,7 +544,7 @@ struct ImpactProgram {
   SCREE_HD void add_impact_of_wall(const State& state, const SolvedImpact& solved, std::int32_t wall) const {
     const std::int32_t body = stage.is_free(solved.i) ? solved.i : solved.j;
     for (std::uint32_t e = walls_of[body]; e != 0;) {
-      const Foreseen& of = meeting(state, e - 1);
+      const PredictedMeeting& of = meeting(state, e - 1);
       e = of.next_of_wall;
       const auto [i, j] = pairs[of.pair];
       if (i != wall && j != wall) continue;

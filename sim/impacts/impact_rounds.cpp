@@ -2,7 +2,7 @@
 
 #include "core/parallel.hpp"
 #include "core/space_atomic.hpp"
-#include "core/space_rounds.hpp"
+#include "core/space_phases.hpp"
 #include "core/space_tiles.hpp"
 
 #include <algorithm>
@@ -54,7 +54,7 @@ struct StartProgress {
   }
 };
 
-struct MarkCrowd {
+struct MarkLoaded {
   FlightStage stage;
   ConstView<Pair> pairs;
   ConstView<LoadedParts> loaded;
@@ -62,7 +62,7 @@ struct MarkCrowd {
     if (loaded[k].bits == 0) return;
     const auto [i, j] = pairs[k];
     if (!stage.is_free(i) || !stage.is_free(j)) return;
-    for (const std::int32_t body : {i, j}) raise(&stage.in_crowd[body], 1u);
+    for (const std::int32_t body : {i, j}) raise(&stage.bore_load[body], 1u);
   }
 };
 
@@ -171,28 +171,28 @@ template <class Space>
 Ledger ImpactRounds<Space>::resolve(const Problem& problem, const ResponseParameters& parameters,
                                     BodyView bodies) {
   log_.resize(bodies.count());
-  const bool has_crowds =
+  const bool marks_loads =
       problem.terms.bounces && parameters.restitution && !problem.one_by_one && problem.loaded.size() > 0;
-  log_.in_crowd.resize(has_crowds ? bodies.count() : 0);
+  log_.bore_load.resize(marks_loads ? bodies.count() : 0);
   const FlightStage stage(problem.terms, parameters, bodies, log_);
   impacts_.resize(0);
   struck_.resize(0);
   rounds_ = 0;
   if (!any_may_meet(problem.terms, parameters, bodies)) {
-    log_.in_crowd.resize(0);
+    log_.bore_load.resize(0);
     return {};
   }
-  if (has_crowds) {
-    parallel::fill("impact.crowd", log_.in_crowd, 0u);
-    parallel::for_each<Space>("impact.crowd", problem.pairs.size(),
-                              MarkCrowd{stage, problem.pairs, problem.loaded});
+  if (marks_loads) {
+    parallel::fill("impact.loaded", log_.bore_load, 0u);
+    parallel::for_each<Space>("impact.loaded", problem.pairs.size(),
+                              MarkLoaded{stage, problem.pairs, problem.loaded});
   }
   if (problem.pairs_made == 0 || problem.pairs_made != adjacency_of_) adjacency_.clear();
   parallel::for_each<Space>("impact.near", bodies.count(), ResetBodies{program(stage, problem)});
   list_near(stage, problem);
   RoundsState state;
   for (;;) {
-    state = parallel::run_rounds<Space>("impact.rounds", program(stage, problem), state);
+    state = parallel::run_in_phases<Space>("impact.rounds", program(stage, problem), state);
     if (state.halt == RoundsState::Halt::end) break;
     make_room(stage, problem, state);
   }
@@ -221,7 +221,7 @@ ImpactProgram ImpactRounds<Space>::program(const FlightStage& stage, const Probl
   for (auto& of_bodies : first_) of_bodies.resize(n);
   for (auto* of_bodies : {&struck_in_, &waits_in_, &impact_group_of_, &walls_of_}) of_bodies->resize(n);
   grow(near_, near_.size(), least_room);
-  grow(suspects_, 0, least_room);
+  grow(to_search_, 0, least_room);
   for (auto& list : meetings_) grow(list, list.size(), least_room);
   grow(impact_groups_, 0, meetings_[0].size());
   grow(resolved_, resolved_.size(), least_room);
@@ -240,7 +240,7 @@ ImpactProgram ImpactRounds<Space>::program(const FlightStage& stage, const Probl
           .impact_group_of = impact_group_of_.view(),
           .walls_of = walls_of_.view(),
           .near = near_.view(),
-          .suspects = suspects_.view(),
+          .to_search = to_search_.view(),
           .meetings = {meetings_[0].view(), meetings_[1].view()},
           .impact_groups = impact_groups_.view(),
           .resolved = resolved_.view(),
@@ -263,7 +263,7 @@ void ImpactRounds<Space>::make_room(const FlightStage& stage, const Problem& pro
   const std::int64_t meetings = signed_count(state.counts.meetings);
   if (state.halt == RoundsState::Halt::lists) {
     // The first half is done again.
-    grow(suspects_, 0, signed_count(state.counts.suspects));
+    grow(to_search_, 0, signed_count(state.counts.to_search));
     for (auto& list : meetings_) grow(list, list.size(), std::max(meetings, meetings_[0].size()));
     progress_.counts[state.round % 2] = {};
     const std::int64_t near = signed_count(progress_.near);

@@ -5,6 +5,7 @@
 #include "core/array.hpp"
 #include "sim/impacts/adjacency.hpp"
 #include "sim/impacts/impact_program.hpp"
+#include "sim/observe/observation.hpp"
 
 #include <cmath>
 #include <cstdint>
@@ -68,12 +69,12 @@ class ImpactRounds {
   /// The bodies that have had one, as they were before it, in any order.
   ConstView<StruckBody> struck() const { return struck_.view(); }
   /// Whether one of them had it after the midpoint.
-  bool any_is_late() const { return progress_.late != 0; }
+  bool any_late_impact() const { return progress_.late_impact != 0; }
   /// Whether a body, or the rounds, have had their bound.
   bool hit_bound() const { return progress_.hit_bound != 0; }
   std::int64_t rounds() const { return rounds_; }
 
-  /// The bodies after resolve(), for flight_of_contact() and shift_late().
+  /// The bodies after resolve(), for flight_of_contact() and shift_after_late_impact().
   FlightStage stage(const FlightTerms& terms, const ResponseParameters& parameters, const BodyView& bodies) {
     return {terms, parameters, bodies, log_};
   }
@@ -95,8 +96,8 @@ class ImpactRounds {
   // As in detail::ImpactProgram:
   Array<std::uint64_t, Space> first_[2];
   Array<std::uint32_t, Space> struck_in_, waits_in_, impact_group_of_, walls_of_;
-  Array<std::int64_t, Space> near_, suspects_;
-  Array<detail::Foreseen, Space> meetings_[2];
+  Array<std::int64_t, Space> near_, to_search_;
+  Array<detail::PredictedMeeting, Space> meetings_[2];
   Array<detail::ImpactGroup, Space> impact_groups_;
   Array<detail::Resolved, Space> resolved_;
   Array<std::uint64_t, Space> key_;

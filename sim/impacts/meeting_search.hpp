@@ -113,7 +113,7 @@ class MeetingSearch {
     return look;
   }
 
-  /// What is no contact yet may lead to one.
+  /// What is no contact yet may delay to one.
   void see_hidden(const Manifold& m, const BodyInstant& i, const BodyInstant& j, Look& look) const {
     look.near = true;
     if (m.points[0].gap >= look.gap) return;

@@ -29,7 +29,7 @@ struct ContactRow {
   Vec3 arm_i;  ///< from the centre of i to the common point (m)
   Vec3 arm_j;
   double gap;           ///< at the midpoint (m)
-  double bend;          ///< acceleration of the gap by the turning of the normal (m/s^2)
+  double curvature;     ///< acceleration of the gap by the turning of the normal (m/s^2)
   double target;        ///< normal velocity to reach if the contact pushes (m/s)
   Vec3 impulse;         ///< accumulated, world frame (N s)
   double normal_mass;   ///< 1 / (n.W n), W: the Delassus matrix of the point (kg)
@@ -83,7 +83,7 @@ SCREE_HD inline ContactRow row_at(const Vec3& arm_i, const Vec3& arm_j, double g
   row.arm_i = arm_i;
   row.arm_j = arm_j;
   row.gap = gap;
-  row.bend = row.target = 0;
+  row.curvature = row.target = 0;
   row.impulse.setZero();
   return row;
 }

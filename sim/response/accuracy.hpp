@@ -103,7 +103,7 @@ struct Earliest {
 /// to free - k free (docs/decisions/0015).
 template <class Real, class Contacts>
 struct SlipEnd {
-  BookStage<Real> stage;
+  AccountStage<Real> stage;
   std::int64_t first_place;
   Contacts contacts;
   ConstView<LoadedParts> loads;  ///< of candidates in the last substep

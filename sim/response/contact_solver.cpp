@@ -1,7 +1,7 @@
 #include "sim/response/contact_solver.hpp"
 
 #include "core/parallel.hpp"
-#include "core/space_rounds.hpp"
+#include "core/space_phases.hpp"
 #include "core/space_tiles.hpp"
 #include "core/tolerances.hpp"
 #include "sim/contacts/ball_tiles.hpp"
@@ -37,7 +37,7 @@ void ContactSolver<Space, Real>::take_candidates(ConstView<Pair> candidates, Con
     loads->resize((candidates.size() + 3) / 4);
     parallel::fill("contacts.loads", *loads, 0u);
   }
-  const BookStage<Real> stage{slots_.places(), bodies, {}, {}, {}, 0, loads_.view()};
+  const AccountStage<Real> stage{slots_.places(), bodies, {}, {}, {}, 0, loads_.view()};
   parallel::for_each<Space>("contacts.loads", slots_.ball_places(),
                             MarkBallLoads<Real>{stage, slots_.ball_memory()});
   parallel::for_each<Space>("contacts.loads", slots_.places_of_others().size(),
@@ -171,12 +171,12 @@ void ContactSolver<Space, Real>::load_bodies(const ConstBodyView& bodies, ConstV
   const std::int64_t walls = slots_.solver_bodies().first_wall_point();
   parallel::for_each<Space>("contacts.bodies", all - walls, ClearNotFree<Real>{walls, solver_.view()});
   parallel::for_each<Space>("contacts.bodies", 1,
-                            ClearNotFree<Real>{slots_.solver_bodies().nobody(), solver_.view()});
+                            ClearNotFree<Real>{slots_.solver_bodies().padding_body(), solver_.view()});
 }
 
 template <class Space, class Real>
 void ContactSolver<Space, Real>::find(ConstView<double> margin, double scale, const FlightStage& flight,
-                                      bool any_is_late, LibccdContacts* libccd) {
+                                      bool any_late_impact, LibccdContacts* libccd) {
   step_ = flight.terms.step;
   const ConstBodyView bodies = read_only(flight.bodies);
   const ResponseParameters& parameters = flight.parameters;
@@ -191,7 +191,7 @@ void ContactSolver<Space, Real>::find(ConstView<double> margin, double scale, co
                               .scale = scale,
                               .noise = tolerance::parting_speed * step_ * parameters.gravity.norm(),
                               .struck = {flight},
-                              .any_is_late = any_is_late,
+                              .any_late_impact = any_late_impact,
                               .libccd = libccd};
   finder_.find(stage, slots_, loads(), solver_.view(), store_);
   counts_.contacts = counts_.points = store_.ball_colors().contacts();
@@ -208,9 +208,9 @@ void ContactSolver<Space, Real>::find(ConstView<double> margin, double scale, co
 /// What visits to several contacts at once find where there are fewer.
 template <class Space, class Real>
 void ContactSolver<Space, Real>::pad() {
-  const std::int32_t nobody = slots_.solver_bodies().nobody();
-  const PadBalls<Real> balls{store_.balls(), rolling_of_balls(), rolls(), nobody};
-  const PadPoints<Real> points{store_.points(), rolling_of_points(), rolls(), nobody};
+  const std::int32_t padding_body = slots_.solver_bodies().padding_body();
+  const PadBalls<Real> balls{store_.balls(), rolling_of_balls(), rolls(), padding_body};
+  const PadPoints<Real> points{store_.points(), rolling_of_points(), rolls(), padding_body};
   parallel::for_each<Space>("contacts.pad", balls.contacts.slot.size() / simd::width, balls);
   parallel::for_each<Space>("contacts.pad", points.contacts.slot.size() / simd::width, points);
 }
@@ -258,10 +258,10 @@ JoinHubs<Record> ContactSolver<Space, Real>::join_hubs(Array<Record, Space>& bod
 
 template <class Space, class Real>
 template <bool only_balls>
-SweepState ContactSolver<Space, Real>::run_impulse_rounds(const SweepPlan& plan) {
-  return parallel::run_rounds<Space>(
+SweepState ContactSolver<Space, Real>::run_impulse_phases(const SweepPlan& plan) {
+  return parallel::run_in_phases<Space>(
       "sweeps",
-      ImpulseRounds<Real, only_balls>{
+      ImpulsePhases<Real, only_balls>{
           .ball_colors = ColorPhases(store_.ball_colors(), visit_width<Space, Real>),
           .point_colors = ColorPhases(store_.point_colors(), visit_width<Space, Real>),
           .balls = store_.balls(),
@@ -293,7 +293,7 @@ void ContactSolver<Space, Real>::find_impulses(const ConstBodyView& bodies,
     plan.least = sweep_count_.sweeps(plan.least, shares_loads(counts_.contacts, counts_.points), share);
     if (parameters.iterations > 0) plan.least = std::min(plan.least, plan.most);
     plan.most = std::max(plan.most, plan.least);
-    if (sweep_count_.is_calm()) plan.first_with_momentum = plan.least;
+    if (sweep_count_.needs_least_sweeps()) plan.first_with_momentum = plan.least;
   }
   const bool islands = parameters.accurate || (plan.direct && fits_on_host());
   const bool converged =
@@ -311,7 +311,7 @@ bool ContactSolver<Space, Real>::fits_on_host() const {
 template <class Space, class Real>
 bool ContactSolver<Space, Real>::sweep(const SweepPlan& plan, Counters& counters) {
   const SweepState done =
-      store_.point_colors().colors() == 0 ? run_impulse_rounds<true>(plan) : run_impulse_rounds<false>(plan);
+      store_.point_colors().colors() == 0 ? run_impulse_phases<true>(plan) : run_impulse_phases<false>(plan);
   counters.sweeps += done.sweeps;
   return done.converged;
 }
@@ -414,7 +414,7 @@ double ContactSolver<Space, Real>::residual() {
 }
 
 template <class Space, class Real>
-double ContactSolver<Space, Real>::find_slip_end(const BookStage<Real>& stage) {
+double ContactSolver<Space, Real>::find_slip_end(const AccountStage<Real>& stage) {
   const SlipEnd<Real, BallContacts<Real>> of_balls{stage, 0, store_.balls(), loads()};
   const SlipEnd<Real, PointContacts<Real>> of_points{stage, slots_.ball_places(), store_.points(), loads()};
   const Earliest end = Earliest{1.0} + sum_over_contacts<Earliest>("response.slip", of_balls, of_points);
@@ -433,9 +433,9 @@ ReloadBody<Real> ContactSolver<Space, Real>::reload(const ConstBodyView& bodies,
 /// Scales down impulses that would gain energy, to where they gain none: of each island where contacts are
 /// few, of a heap all alike, since it is one. Returns how many were scaled.
 template <class Space, class Real>
-int ContactSolver<Space, Real>::keep_from_gaining(const BookStage<Real>& stage) {
+int ContactSolver<Space, Real>::keep_from_gaining(const AccountStage<Real>& stage) {
   if (has_heap() || !fits_on_host()) {
-    const Moved moved = books_.moved();
+    const Moved moved = totals_.moved();
     if (!moved.gains(response_gain<Real>)) return 0;
     copy(last_, solver_);
     // Rounded down, so that the scale does not hang on the order in which the sums were added up.
@@ -448,7 +448,7 @@ int ContactSolver<Space, Real>::keep_from_gaining(const BookStage<Real>& stage) 
   Inspection<Real> seen = inspect(stage.bodies);
   ContactsOnHost<Real> contacts(seen, guides_);
   before_.resize(free_.size());
-  parallel::for_each<Space>("books.before", before_.size(), reload(stage.bodies, free_, before_));
+  parallel::for_each<Space>("accounts.before", before_.size(), reload(stage.bodies, free_, before_));
   const int scaled = contacts.keep_from_gaining(to_vector(before_));
   if (scaled == 0) return 0;
   copy(last_, solver_);
@@ -459,10 +459,10 @@ int ContactSolver<Space, Real>::keep_from_gaining(const BookStage<Real>& stage) 
 
 /// Whether the impulses of no island gain energy: what each contact moves is booked once more.
 template <class Space, class Real>
-bool ContactSolver<Space, Real>::no_island_gains(BookStage<Real> stage) {
+bool ContactSolver<Space, Real>::no_island_gains(AccountStage<Real> stage) {
   stage.again = true;
-  return sum_by_island<Moved>(MovedBy{rolls(), book_balls(stage), book_rolling_balls(stage)},
-                              MovedBy{rolls(), book_points(stage), book_rolling_points(stage)})
+  return sum_by_island<Moved>(MovedBy{rolls(), account_balls(stage), account_rolling_balls(stage)},
+                              MovedBy{rolls(), account_points(stage), account_rolling_points(stage)})
       .all([](const Moved& moved) { return !moved.gains(response_gain<Real>); });
 }
 
@@ -480,125 +480,126 @@ void ContactSolver<Space, Real>::scale_impulses(double by) {
 }
 
 template <class Space, class Real>
-BookStage<Real> ContactSolver<Space, Real>::book_stage(const ConstBodyView& bodies,
-                                                       const ResponseParameters& parameters) {
+AccountStage<Real> ContactSolver<Space, Real>::account_stage(const ConstBodyView& bodies,
+                                                             const ResponseParameters& parameters) {
   return {slots_.places(), bodies, free_.view(), solver_.view(), parameters, step_, next_loads_.view()};
 }
 
 template <class Space, class Real>
-BookBalls<Real> ContactSolver<Space, Real>::book_balls(const BookStage<Real>& stage) {
+AccountBalls<Real> ContactSolver<Space, Real>::account_balls(const AccountStage<Real>& stage) {
   return {stage, store_.balls(), slots_.ball_memory()};
 }
 template <class Space, class Real>
-BookPoints<Real> ContactSolver<Space, Real>::book_points(const BookStage<Real>& stage) {
+AccountPoints<Real> ContactSolver<Space, Real>::account_points(const AccountStage<Real>& stage) {
   return {stage, slots_.ball_places(), store_.points(), slots_.point_memory()};
 }
 template <class Space, class Real>
-BookRolling<Real, BallContacts<Real>> ContactSolver<Space, Real>::book_rolling_balls(
-    const BookStage<Real>& stage) {
+AccountRolling<Real, BallContacts<Real>> ContactSolver<Space, Real>::account_rolling_balls(
+    const AccountStage<Real>& stage) {
   return {stage, 0, store_.balls(), rolling_of_balls(), slots_.couples()};
 }
 template <class Space, class Real>
-BookRolling<Real, PointContacts<Real>> ContactSolver<Space, Real>::book_rolling_points(
-    const BookStage<Real>& stage) {
+AccountRolling<Real, PointContacts<Real>> ContactSolver<Space, Real>::account_rolling_points(
+    const AccountStage<Real>& stage) {
   return {stage, slots_.ball_places(), store_.points(), rolling_of_points(), slots_.couples()};
 }
 
 template <class Space, class Real>
-Books ContactSolver<Space, Real>::book_ball_blocks(const BookStage<Real>& stage) requires(
+ContactTotals ContactSolver<Space, Real>::account_ball_blocks(const AccountStage<Real>& stage) requires(
     visit_width<Space, Real> > 1) {
   before_.resize(free_.size());
-  parallel::for_each<Host>("books.before", before_.size(), reload(stage.bodies, free_, before_));
-  const BookBallBlocks book{.book = {.contacts = store_.balls(),
-                                     .before = before_.data(),
-                                     .free = free_.data(),
-                                     .solver = solver_.data(),
-                                     .step = stage.step,
-                                     .rounding = response_gain<Real>,
-                                     .again = stage.again},
-                            .stage = stage,
-                            .memory = slots_.ball_memory()};
-  return parallel::sum<Books, Host>("books.balls", book.runs(), book);
+  parallel::for_each<Host>("accounts.before", before_.size(), reload(stage.bodies, free_, before_));
+  const AccountBallBlocks account{.account = {.contacts = store_.balls(),
+                                              .before = before_.data(),
+                                              .free = free_.data(),
+                                              .solver = solver_.data(),
+                                              .step = stage.step,
+                                              .rounding = response_gain<Real>,
+                                              .again = stage.again},
+                                  .stage = stage,
+                                  .memory = slots_.ball_memory()};
+  return parallel::sum<ContactTotals, Host>("accounts.balls", account.runs(), account);
 }
 
 template <class Space, class Real>
-void ContactSolver<Space, Real>::book(const BookStage<Real>& stage) {
+void ContactSolver<Space, Real>::account(const AccountStage<Real>& stage) {
   // Both kinds are waited for once, and one that is not there costs nothing.
-  books_totals_.resize(4);
+  kind_totals_.resize(4);
   std::size_t kinds = 0;
-  const auto add_up = [&](const char* label, const auto& book) {
-    const std::int64_t contacts = book.contacts.slot.size();
+  const auto add_up = [&](const char* label, const auto& account) {
+    const std::int64_t contacts = account.contacts.slot.size();
     if (contacts == 0) return;
-    parallel::sum_into<Books, Space>(label, contacts, on_contacts(book.contacts, book), books_scratch_,
-                                     books_totals_.data() + kinds++);
+    parallel::sum_into<ContactTotals, Space>(label, contacts, on_contacts(account.contacts, account),
+                                             totals_scratch_, kind_totals_.data() + kinds++);
   };
   if constexpr (visit_width<Space, Real> == 1) {
-    add_up("books.balls", book_balls(stage));
+    add_up("accounts.balls", account_balls(stage));
   } else if (store_.ball_colors().contacts() > 0) {
-    books_totals_.view()[kinds++] = book_ball_blocks(stage);
+    kind_totals_.view()[kinds++] = account_ball_blocks(stage);
   }
-  add_up("books.points", book_points(stage));
+  add_up("accounts.points", account_points(stage));
   if (rolls()) {
-    add_up("books.rolling", book_rolling_balls(stage));
-    add_up("books.rolling", book_rolling_points(stage));
+    add_up("accounts.rolling", account_rolling_balls(stage));
+    add_up("accounts.rolling", account_rolling_points(stage));
   }
-  Books of_kind[4];
-  copy_bytes<Host, Space>(of_kind, books_totals_.data(), kinds * sizeof(Books));
-  books_ = of_kind[0] + of_kind[1] + of_kind[2] + of_kind[3];
+  ContactTotals of_kind[4];
+  copy_bytes<Host, Space>(of_kind, kind_totals_.data(), kinds * sizeof(ContactTotals));
+  totals_ = of_kind[0] + of_kind[1] + of_kind[2] + of_kind[3];
 }
 
 template <class Space, class Real>
-Ledger ContactSolver<Space, Real>::solve(const FlightStage& flight, bool any_is_late, double share,
+Ledger ContactSolver<Space, Real>::solve(const FlightStage& flight, bool any_late_impact, double share,
                                          Counters& counters) {
   const ResponseParameters& parameters = flight.parameters;
   const ConstBodyView bodies = read_only(flight.bodies);
   Ledger ledger;
-  books_ = {};
+  totals_ = {};
   slip_end_ = 1;
-  parallel::fill("books.loads", next_loads_, 0u);
+  parallel::fill("accounts.loads", next_loads_, 0u);
   if (counts_.contacts > 0) {
     find_impulses(bodies, parameters, share, counters);
     if (parameters.accurate) counters.residual = std::max(counters.residual, residual());
-    BookStage<Real> stage = book_stage(bodies, parameters);
-    book(stage);
-    if (books_.gaining > 0) {
+    AccountStage<Real> stage = account_stage(bodies, parameters);
+    account(stage);
+    if (totals_.gaining > 0) {
       if (const int scaled = keep_from_gaining(stage); scaled > 0) {
         counters.scaled += scaled;
-        parallel::fill("books.loads", next_loads_, 0u);
-        stage = book_stage(bodies, parameters);
+        parallel::fill("accounts.loads", next_loads_, 0u);
+        stage = account_stage(bodies, parameters);
         stage.again = true;
-        book(stage);
+        account(stage);
       }
     }
-    ledger.restitution = books_.restitution;
-    ledger.friction = books_.friction;
-    ledger.work = books_.work;
-    sweep_count_.judge(books_.gap_power, books_.kick_power, books_.restitution + books_.friction);
+    ledger.restitution = totals_.restitution;
+    ledger.friction = totals_.friction;
+    ledger.work = totals_.work;
+    sweep_count_.judge(totals_.gap_power, totals_.kick_power, totals_.restitution + totals_.friction);
     if (parameters.accurate && parameters.friction && !has_heap()) slip_end_ = find_slip_end(stage);
   }
   if (parameters.torque.size() > 0) {
     ledger.work += parallel::sum_by_tiles<double, Space>(
-        "books.torque", bodies.count(), WorkOfTorque<Real>{bodies, solver_.view(), parameters.torque, step_});
+        "accounts.torque", bodies.count(),
+        WorkOfTorque<Real>{bodies, solver_.view(), parameters.torque, step_});
   }
   parallel::for_each<Space>(
       "contacts.velocities", bodies.count(),
       StoreVelocities<Real>{free_.view(), solver_.view(), parameters, step_, flight.bodies});
-  if (any_is_late && counts_.contacts > 0) ledger = ledger + shift_late_bodies(flight);
+  if (any_late_impact && counts_.contacts > 0) ledger = ledger + shift_after_late_impacts(flight);
   return ledger;
 }
 
 template <class Space, class Real>
-Ledger ContactSolver<Space, Real>::shift_late_bodies(const FlightStage& flight) {
+Ledger ContactSolver<Space, Real>::shift_after_late_impacts(const FlightStage& flight) {
   const LateMoments<Real> moments{flight, free_.view(), solver_.view()};
   Array<Ledger, Space> totals(3);
   const LateBallMoments<Real> of_balls{moments, store_.balls(), slots_.places()};
   const LatePointMoments<Real> of_points{moments, store_.points(), slots_.places_of_others()};
-  parallel::sum_into<Ledger, Space>("late.moments", of_balls.contacts.slot.size(),
+  parallel::sum_into<Ledger, Space>("late impacts.moments", of_balls.contacts.slot.size(),
                                     on_contacts(of_balls.contacts, of_balls), ledger_scratch_, totals.data());
-  parallel::sum_into<Ledger, Space>("late.moments", of_points.contacts.slot.size(),
+  parallel::sum_into<Ledger, Space>("late impacts.moments", of_points.contacts.slot.size(),
                                     on_contacts(of_points.contacts, of_points), ledger_scratch_,
                                     totals.data() + 1);
-  parallel::sum_into<Ledger, Space>("late.shift", flight.bodies.count(),
+  parallel::sum_into<Ledger, Space>("late impacts.shift", flight.bodies.count(),
                                     ShiftLate<Real>{flight, free_.view(), solver_.view()}, ledger_scratch_,
                                     totals.data() + 2);
   Ledger parts[3];
@@ -608,7 +609,7 @@ Ledger ContactSolver<Space, Real>::shift_late_bodies(const FlightStage& flight) 
 
 template <class Space, class Real>
 void ContactSolver<Space, Real>::take_velocities(const ConstBodyView& bodies) {
-  parallel::for_each<Space>("late.reload", solver_.size(), reload(bodies, solver_, last_));
+  parallel::for_each<Space>("gaps.reload", solver_.size(), reload(bodies, solver_, last_));
   solver_.swap(last_);
   fly_on_with_changes();
 }
@@ -616,8 +617,8 @@ void ContactSolver<Space, Real>::take_velocities(const ConstBodyView& bodies) {
 /// Gaps at the end of the substep, since velocities are no longer those of `last_`.
 template <class Space, class Real>
 void ContactSolver<Space, Real>::fly_on_with_changes() {
-  for_balls("late.fly", FlyBalls<Real>{store_.balls(), last_.view(), solver_.view(), step_});
-  for_points("late.fly", FlyPoints<Real>{store_.points(), last_.view(), solver_.view(), step_});
+  for_balls("gaps.predict", PredictGapsOfBalls<Real>{store_.balls(), last_.view(), solver_.view(), step_});
+  for_points("gaps.predict", PredictGapsOfPoints<Real>{store_.points(), last_.view(), solver_.view(), step_});
 }
 
 template <class Space, class Real>
@@ -634,25 +635,27 @@ void ContactSolver<Space, Real>::recall_memory() {
 }
 
 template <class Space, class Real>
-void ContactSolver<Space, Real>::fly_late(const FlightStage& flight) {
+void ContactSolver<Space, Real>::predict_late_gaps(const FlightStage& flight) {
   const ConstBodyView bodies = read_only(flight.bodies);
-  for_balls("late.fly", FlyLateBalls<Real>{store_.balls(), slots_.places(), solver_.view(), bodies, flight});
-  for_points("late.fly", FlyLatePoints<Real>{store_.points(), slots_.places_of_others(), bodies, flight});
+  for_balls("gaps.predict",
+            PredictLateGapsOfBalls<Real>{store_.balls(), slots_.places(), solver_.view(), bodies, flight});
+  for_points("gaps.predict",
+             PredictLateGapsOfPoints<Real>{store_.points(), slots_.places_of_others(), bodies, flight});
 }
 
 template <class Space, class Real>
-Ledger ContactSolver<Space, Real>::correct(const FlightStage& flight, bool any_is_late) {
+Ledger ContactSolver<Space, Real>::correct(const FlightStage& flight, bool any_late_impact) {
   loads_.swap(next_loads_);
-  overlap_ = tolerance::correction_cap * books_.deepest;
+  overlap_ = tolerance::correction_cap * totals_.deepest;
   if (counts_.contacts == 0) return {};
-  if (any_is_late) fly_late(flight);
-  if (overlap_ == 0 && !any_is_late) return {};
+  if (any_late_impact) predict_late_gaps(flight);
+  if (overlap_ == 0 && !any_late_impact) return {};
   parallel::for_each<Space>("correction.start", displacement_.size(),
                             ResetDisplacement<Real>{solver_.view(), displacement_.view(), turn_.view()});
   const double quality = flight.parameters.quality;
-  const PartingPlan plan = plan_parting(quality);
-  const double left =
-      store_.point_colors().colors() == 0 ? run_parting_rounds<true>(plan) : run_parting_rounds<false>(plan);
+  const CorrectionPlan plan = plan_correction(quality);
+  const double left = store_.point_colors().colors() == 0 ? run_correction_phases<true>(plan)
+                                                          : run_correction_phases<false>(plan);
   sweep_count_.judge_overlap(quality * left);
   const BodyView& bodies = flight.bodies;
   Array<Ledger, Space> total(1);
@@ -667,12 +670,12 @@ Ledger ContactSolver<Space, Real>::correct(const FlightStage& flight, bool any_i
 
 /// Of a heap the deepest contact is one of many, which wait for it only as long as it is too deep to be left.
 template <class Space, class Real>
-PartingPlan ContactSolver<Space, Real>::plan_parting(double quality) const {
+CorrectionPlan ContactSolver<Space, Real>::plan_correction(double quality) const {
   using namespace tolerance;
   constexpr int most = 100, most_of_heap = 60;
   if (!has_heap()) return {1, most, most, corrected_overlap, corrected_overlap, corrected_overlap};
   const bool shares = shares_loads(counts_.contacts, counts_.points);
-  return {.least = shares || sweep_count_.is_calm() ? 1 : 2,
+  return {.least = shares || sweep_count_.needs_least_sweeps() ? 1 : 2,
           .usual = shares ? 24 : 12,
           .most = most_of_heap,
           .deepest = heap_overlap / quality,
@@ -682,10 +685,10 @@ PartingPlan ContactSolver<Space, Real>::plan_parting(double quality) const {
 
 template <class Space, class Real>
 template <bool only_balls>
-double ContactSolver<Space, Real>::run_parting_rounds(const PartingPlan& plan) {
-  const PartingState done = parallel::run_rounds<Space>(
+double ContactSolver<Space, Real>::run_correction_phases(const CorrectionPlan& plan) {
+  const CorrectionState done = parallel::run_in_phases<Space>(
       "correction",
-      PartingRounds<Real, only_balls>{
+      CorrectionPhases<Real, only_balls>{
           .ball_colors = ColorPhases(store_.ball_colors(), visit_width<Space, Real>),
           .point_colors = ColorPhases(store_.point_colors(), visit_width<Space, Real>),
           .balls = store_.balls(),
@@ -702,7 +705,7 @@ double ContactSolver<Space, Real>::run_parting_rounds(const PartingPlan& plan) {
           .deepest = static_cast<float>(plan.deepest / tolerance::correction_cap),
           .mean = static_cast<float>(plan.mean / tolerance::correction_cap),
           .too_deep = static_cast<float>(plan.too_deep / tolerance::correction_cap)},
-      PartingState{});
+      CorrectionState{});
   return tolerance::correction_cap * done.mean;
 }
 

@@ -1,4 +1,4 @@
-// Contacts and their response with everything in one space: slots, contacts, sweeps, books, correction.
+// Contacts and their response with everything in one space: slots, contacts, sweeps, totals, correction.
 #pragma once
 
 #include "core/archive.hpp"
@@ -12,6 +12,7 @@
 #include "sim/contacts/sweeps.hpp"
 #include "sim/contacts/visit_kernels.hpp"
 #include "sim/laws/response_parameters.hpp"
+#include "sim/observe/observation.hpp"
 #include "sim/response/accuracy.hpp"
 #include "sim/response/bodies.hpp"
 #include "sim/response/contact_inspection.hpp"
@@ -34,7 +35,7 @@ namespace scree::solver {
 
 /// How often overlaps are swept: until the deepest and their mean are no more than this (of the smaller
 /// smallest_size), but no more than `usual` times, unless the deepest is more than `too_deep` then.
-struct PartingPlan {
+struct CorrectionPlan {
   int least, usual, most;
   double deepest, mean, too_deep;
 };
@@ -61,27 +62,27 @@ class ContactSolver {
 
   /// Contacts that may close by the next midpoint: gaps of at most the sum of the two margins (m). Impulses
   /// start from what they were, `scale` times.
-  /// `flight`: the bodies after the impacts of the first half; `any_is_late`: one came after the midpoint.
-  /// `libccd`: to be asked as well, or instead; null: not at all.
-  void find(ConstView<double> margin, double scale, const FlightStage& flight, bool any_is_late,
+  /// `flight`: the bodies after the impacts of the first half; `any_late_impact`: one came after the
+  /// midpoint. `libccd`: to be asked as well, or instead; null: not at all.
+  void find(ConstView<double> margin, double scale, const FlightStage& flight, bool any_late_impact,
             LibccdContacts* libccd);
 
   /// Impulses with e = 0, by sweeps; the bodies get their velocities, and those that were struck late their
   /// places. `share`: of the step that the substep is. Returns what was moved.
-  Ledger solve(const FlightStage& flight, bool any_is_late, double share, Counters& counters);
+  Ledger solve(const FlightStage& flight, bool any_late_impact, double share, Counters& counters);
 
   /// Impacts after the response have changed velocities.
   void take_velocities(const ConstBodyView& bodies);
 
   /// Parts what would overlap, velocities stay. Returns what that moved.
-  Ledger correct(const FlightStage& flight, bool any_is_late);
+  Ledger correct(const FlightStage& flight, bool any_late_impact);
   /// Deepest overlap that the last correct() has found (of the smaller smallest_size).
   double overlap() const { return overlap_; }
   /// Whether the contacts of the last find() are a heap.
   bool has_heap() const { return is_heap(counts_.points); }
 
   /// Of the last solve().
-  const Books& books() const { return books_; }
+  const ContactTotals& totals() const { return totals_; }
   /// When the first contact that slid came to stick, as a share of the last substep; 1 if none did. For the
   /// accurate mode, and not for heaps, in which something always does.
   double slip_end() const { return slip_end_; }
@@ -129,12 +130,12 @@ class ContactSolver {
   Residual<Real, PointContacts<Real>, TurnPoints> residual_of_points();
   bool are_solved(double tolerance);
   double residual();
-  double find_slip_end(const BookStage<Real>& stage);
-  int keep_from_gaining(const BookStage<Real>& stage);
-  bool no_island_gains(BookStage<Real> stage);
+  double find_slip_end(const AccountStage<Real>& stage);
+  int keep_from_gaining(const AccountStage<Real>& stage);
+  bool no_island_gains(AccountStage<Real> stage);
   void scale_impulses(double by);
   template <bool only_balls>
-  SweepState run_impulse_rounds(const SweepPlan& plan);
+  SweepState run_impulse_phases(const SweepPlan& plan);
   void start_rolling(const FindStage<Real>& stage);
   bool rolls() const { return ball_rolling_.size() + point_rolling_.size() > 0; }
   RollingFields<Real> rolling_of_balls() {
@@ -143,21 +144,21 @@ class ContactSolver {
   RollingFields<Real> rolling_of_points() {
     return {decltype(RollingFields<Real>::fields)(point_rolling_.data())};
   }
-  PartingPlan plan_parting(double quality) const;
+  CorrectionPlan plan_correction(double quality) const;
   template <bool only_balls>
-  double run_parting_rounds(const PartingPlan& plan);
-  BookStage<Real> book_stage(const ConstBodyView& bodies, const ResponseParameters& parameters);
-  void book(const BookStage<Real>& stage);
-  BookBalls<Real> book_balls(const BookStage<Real>& stage);
-  BookPoints<Real> book_points(const BookStage<Real>& stage);
-  BookRolling<Real, BallContacts<Real>> book_rolling_balls(const BookStage<Real>& stage);
-  BookRolling<Real, PointContacts<Real>> book_rolling_points(const BookStage<Real>& stage);
-  Books book_ball_blocks(const BookStage<Real>& stage) requires(visit_width<Space, Real> > 1);
+  double run_correction_phases(const CorrectionPlan& plan);
+  AccountStage<Real> account_stage(const ConstBodyView& bodies, const ResponseParameters& parameters);
+  void account(const AccountStage<Real>& stage);
+  AccountBalls<Real> account_balls(const AccountStage<Real>& stage);
+  AccountPoints<Real> account_points(const AccountStage<Real>& stage);
+  AccountRolling<Real, BallContacts<Real>> account_rolling_balls(const AccountStage<Real>& stage);
+  AccountRolling<Real, PointContacts<Real>> account_rolling_points(const AccountStage<Real>& stage);
+  ContactTotals account_ball_blocks(const AccountStage<Real>& stage) requires(visit_width<Space, Real> > 1);
   ReloadBody<Real> reload(const ConstBodyView& bodies, const Array<BodyRecord<Real>, Space>& from,
                           Array<BodyRecord<Real>, Space>& to);
   void fly_on_with_changes();
-  Ledger shift_late_bodies(const FlightStage& flight);
-  void fly_late(const FlightStage& flight);
+  Ledger shift_after_late_impacts(const FlightStage& flight);
+  void predict_late_gaps(const FlightStage& flight);
 
   Slots<Space, Real> slots_;
   double step_ = 0;
@@ -174,13 +175,13 @@ class ContactSolver {
   ContactFinder<Space, Real> finder_;
 
   ContactCounts counts_;
-  Books books_;
+  ContactTotals totals_;
   double overlap_ = 0;
   double slip_end_ = 1;
   SweepCount sweep_count_, kept_sweep_count_;
   Array<std::uint32_t, Space> loads_, next_loads_;
 
-  Array<Books, Space> books_scratch_, books_totals_;
+  Array<ContactTotals, Space> totals_scratch_, kind_totals_;
   WallSums<Space> wall_sums_;
   Array<Ledger, Space> ledger_scratch_;
 };

@@ -62,12 +62,12 @@ struct WallContacts {
 
   SCREE_HD bool is_on_j(const Slot& slot) const { return !mid[slot.j].is_free(); }
   /// Where the centre of a body is when a contact is seen.
-  SCREE_HD Vec3 centre(std::int32_t body, const Slot& slot, bool late) const {
-    if (!late) return mid[body].position;
-    const double lead = fmax(flight.clock[slot.i], flight.clock[slot.j]) - 0.5 * flight.terms.step;
+  SCREE_HD Vec3 centre(std::int32_t body, const Slot& slot, bool is_late) const {
+    if (!is_late) return mid[body].position;
+    const double delay = fmax(flight.clock[slot.i], flight.clock[slot.j]) - 0.5 * flight.terms.step;
     const Vec3 kick = mid[body].is_free() ? Vec3(flight.terms.step * flight.parameters.acceleration_of(body))
                                           : Vec3(Vec3::Zero());
-    return mid[body].position + lead * (vec3(mid[body].velocity) + kick);
+    return mid[body].position + delay * (vec3(mid[body].velocity) + kick);
   }
 };
 
@@ -85,11 +85,11 @@ struct PutBallOnWall {
     const Slot& slot = among.places[place];
     const bool on_j = among.is_on_j(slot);
     const std::int32_t wall = on_j ? slot.j : slot.i, ball = on_j ? slot.i : slot.j;
-    const bool late = (contacts.flags[c] & flag_late) != 0;
+    const bool is_late = (contacts.flags[c] & flag_late_impact) != 0;
     const double arm = static_cast<double>(f.at(on_j ? C::arm_i : C::arm_j, c));
-    const Vec3 point = among.centre(ball, slot, late) + arm * vec3(f.vector(C::normal, c));
+    const Vec3 point = among.centre(ball, slot, is_late) + arm * vec3(f.vector(C::normal, c));
     const Vec3 impulse = (on_j ? 1.0 : -1.0) * vec3(f.vector(C::impulse, c));
-    const Vec3 lever = among.flight.bodies.period.nearest(point - among.centre(wall, slot, late));
+    const Vec3 lever = among.flight.bodies.period.nearest(point - among.centre(wall, slot, is_late));
     among.impulses[entry] = {impulse, lever.cross(impulse)};
   }
 };
@@ -119,7 +119,7 @@ struct PutPointsOnWall {
 /// What a slot remembers is what was loaded, when candidates are made anew.
 template <class Real>
 struct MarkBallLoads {
-  BookStage<Real> stage;
+  AccountStage<Real> stage;
   ConstView<BallMemory<Real>> memory;
   SCREE_HD void operator()(std::int64_t place) const {
     const Slot& slot = stage.places[place];
@@ -128,7 +128,7 @@ struct MarkBallLoads {
 };
 template <class Real>
 struct MarkPointLoads {
-  BookStage<Real> stage;
+  AccountStage<Real> stage;
   std::int64_t first_place;
   ConstView<PointMemory<Real>> memory;
   SCREE_HD void operator()(std::int64_t place) const {

@@ -2,6 +2,7 @@
 // and islands that would gain energy are scaled down.
 #pragma once
 
+#include "sim/laws/contact_row.hpp"
 #include "sim/laws/response_parameters.hpp"
 #include "sim/response/contact_inspection.hpp"
 #include "sim/response/direct.hpp"

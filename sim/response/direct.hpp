@@ -2,6 +2,7 @@
 #pragma once
 
 #include "core/tolerances.hpp"
+#include "sim/laws/contact_row.hpp"
 #include "sim/laws/response_parameters.hpp"
 #include "sim/observe/observation.hpp"
 #include "sim/response/islands.hpp"

@@ -4,6 +4,7 @@
 #include "sim/contacts/contact_flight.hpp"
 #include "sim/contacts/layout.hpp"
 #include "sim/contacts/sweeps.hpp"
+#include "sim/observe/observation.hpp"
 #include "sim/response/bodies.hpp"
 
 #include <cstdint>
@@ -12,7 +13,7 @@ namespace scree::solver {
 
 /// Impacts after the response have changed the velocities, and so the gaps at the end.
 template <class Real>
-struct FlyBalls {
+struct PredictGapsOfBalls {
   BallContacts<Real> contacts;
   ConstView<BodyRecord<Real>> before, after;
   double step;
@@ -21,12 +22,12 @@ struct FlyBalls {
     if (contacts.flags[c] != 0) return;
     const auto change = [&](std::int32_t k) { return after[k].velocity - before[k].velocity; };
     const V3<Real> u = change(contacts.ends[c].j) - change(contacts.ends[c].i);
-    contacts.gaps.at(C::flown, c) +=
+    contacts.gaps.at(C::predicted_gap, c) +=
         static_cast<Real>(0.5 * step) * dot(contacts.fields.vector(C::normal, c), u);
   }
 };
 template <class Real>
-struct FlyPoints {
+struct PredictGapsOfPoints {
   PointContacts<Real> contacts;
   ConstView<BodyRecord<Real>> before, after;
   double step;
@@ -36,7 +37,7 @@ struct FlyPoints {
     const Moving<Real> i = change(contacts.ends[c].i);
     const Moving<Real> j = change(contacts.ends[c].j);
     for (int k = 0; k < contacts.points[c]; ++k) {
-      contacts.gaps.at(C::at_point(k, C::flown), c) +=
+      contacts.gaps.at(C::at_point(k, C::predicted_gap), c) +=
           static_cast<Real>(0.5 * step) * dot(contacts.fields.vector(C::normal, c),
                                               velocity_at(point_at<Scalar<Real>>(contacts, c, k), i, j));
     }
@@ -61,7 +62,7 @@ struct ReloadBody {
   SCREE_HD void operator()(std::int64_t k) const {
     const std::int64_t part = k - first_part;
     solver[k] = before[k];
-    if (k == first_part - 1 || part >= hub_of.size()) return;  // nobody, or a point of a wall
+    if (k == first_part - 1 || part >= hub_of.size()) return;  // padding_body, or a point of a wall
     const std::int64_t body = part < 0 ? k : hubs[hub_of[part]].body;
     solver[k].velocity = v3<Real>(bodies.velocity[body]);
     solver[k].spin = v3<Real>(bodies.spin[body]);
@@ -70,7 +71,7 @@ struct ReloadBody {
 
 /// Gaps at the end of contacts that were seen after the midpoint, from where their bodies are then.
 template <class Real>
-struct FlyLateBalls {
+struct PredictLateGapsOfBalls {
   BallContacts<Real> contacts;
   ConstView<Slot> places;
   ConstView<BodyRecord<Real>> solver;
@@ -78,13 +79,14 @@ struct FlyLateBalls {
   FlightStage flight;
   SCREE_HD void operator()(std::int64_t c) const {
     using C = BallContacts<Real>;
-    if ((contacts.flags[c] & flag_late) == 0) return;
+    if ((contacts.flags[c] & flag_late_impact) == 0) return;
     const Slot& slot = places[contacts.slot[c]];
     const double left = flight.terms.step - fmax(flight.clock[slot.i], flight.clock[slot.j]);
     const Vec3 turned = turning_of(slot.j, slot.end_j) - turning_of(slot.i, slot.end_i);
     const Vec3 apart =
         bodies.period.nearest(bodies.position[slot.j] - bodies.position[slot.i]) + left * turned;
-    contacts.gaps.at(C::flown, c) += static_cast<Real>(vec3(contacts.fields.vector(C::normal, c)).dot(apart));
+    contacts.gaps.at(C::predicted_gap, c) +=
+        static_cast<Real>(vec3(contacts.fields.vector(C::normal, c)).dot(apart));
   }
   /// Velocity of the point of a wall beside that of the wall.
   SCREE_HD Vec3 turning_of(std::int32_t body, std::int32_t end) const {
@@ -93,14 +95,14 @@ struct FlyLateBalls {
   }
 };
 template <class Real>
-struct FlyLatePoints {
+struct PredictLateGapsOfPoints {
   PointContacts<Real> contacts;
   ConstView<Slot> places;  ///< of the contacts
   ConstBodyView bodies;
   FlightStage flight;
   SCREE_HD void operator()(std::int64_t c) const {
     using C = PointContacts<Real>;
-    if ((contacts.flags[c] & flag_late) == 0) return;
+    if ((contacts.flags[c] & flag_late_impact) == 0) return;
     const Slot& slot = places[contacts.slot[c]];
     const Vec3 n = vec3(contacts.fields.vector(C::normal, c));
     const Vec3 apart = bodies.period.nearest(bodies.position[slot.j] - bodies.position[slot.i]);
@@ -109,7 +111,8 @@ struct FlyLatePoints {
       const auto at = point_at<Scalar<Real>>(contacts, c, k);
       const Vec3 turned =
           bodies.spin[slot.j].cross(vec3(at.arm_j)) - bodies.spin[slot.i].cross(vec3(at.arm_i));
-      contacts.gaps.at(C::at_point(k, C::flown), c) += static_cast<Real>(n.dot(apart + left * turned));
+      contacts.gaps.at(C::at_point(k, C::predicted_gap), c) +=
+          static_cast<Real>(n.dot(apart + left * turned));
     }
   }
 };
@@ -121,21 +124,21 @@ SCREE_HD inline Vec3 impulse_on(const BodyRecord<Real>& free, const BodyRecord<R
   return vec3(after.velocity - free.velocity) / inverse_mass;
 }
 
-/// Of contacts seen after the midpoint: moment_of_lead().
+/// Of contacts seen after the midpoint: moment_of_delay().
 template <class Real>
 struct LateMoments {
   FlightStage flight;
   ConstView<BodyRecord<Real>> free, after;
 
-  SCREE_HD Vec3 of_end(std::int32_t body, const Vec3& impulse, double lead) const {
+  SCREE_HD Vec3 of_end(std::int32_t body, const Vec3& impulse, double delay) const {
     if (!flight.is_free(body)) return Vec3::Zero();
     const Vec3 total = impulse_on(free[body], after[body], flight.bodies.inverse_mass[body]);
-    return moment_of_lead(flight.bodies, body, total, lead, impulse);
+    return moment_of_delay(flight.bodies, body, total, delay, impulse);
   }
   SCREE_HD Ledger of(const Slot& slot, const Vec3& impulse) const {
-    const double lead = fmax(flight.clock[slot.i], flight.clock[slot.j]) - 0.5 * flight.terms.step;
+    const double delay = fmax(flight.clock[slot.i], flight.clock[slot.j]) - 0.5 * flight.terms.step;
     Ledger ledger;
-    ledger.angular_correction = of_end(slot.i, -impulse, lead) + of_end(slot.j, impulse, lead);
+    ledger.angular_correction = of_end(slot.i, -impulse, delay) + of_end(slot.j, impulse, delay);
     return ledger;
   }
 };
@@ -145,7 +148,7 @@ struct LateBallMoments {
   BallContacts<Real> contacts;
   ConstView<Slot> places;
   SCREE_HD Ledger operator()(std::int64_t c) const {
-    if ((contacts.flags[c] & flag_late) == 0) return {};
+    if ((contacts.flags[c] & flag_late_impact) == 0) return {};
     return moments.of(places[contacts.slot[c]], vec3(contacts.fields.vector(BallContacts<Real>::impulse, c)));
   }
 };
@@ -156,7 +159,7 @@ struct LatePointMoments {
   ConstView<Slot> places;
   SCREE_HD Ledger operator()(std::int64_t c) const {
     using C = PointContacts<Real>;
-    if ((contacts.flags[c] & flag_late) == 0) return {};
+    if ((contacts.flags[c] & flag_late_impact) == 0) return {};
     Vec3 impulse = Vec3::Zero();
     for (int k = 0; k < contacts.points[c]; ++k)
       impulse += vec3(contacts.point_fields.vector(C::at_point(k, C::impulse), c));
@@ -164,7 +167,7 @@ struct LatePointMoments {
   }
 };
 
-/// shift_late() of a body.
+/// shift_after_late_impact() of a body.
 template <class Real>
 struct ShiftLate {
   FlightStage flight;
@@ -172,7 +175,8 @@ struct ShiftLate {
   SCREE_HD Ledger operator()(std::int64_t k) const {
     const auto body = static_cast<std::int32_t>(k);
     if (!flight.is_free(body)) return {};
-    return shift_late(flight, body, impulse_on(free[k], after[k], flight.bodies.inverse_mass[k]));
+    return shift_after_late_impact(flight, body,
+                                   impulse_on(free[k], after[k], flight.bodies.inverse_mass[k]));
   }
 };
 

@@ -29,7 +29,7 @@ struct JoinHubs {
   ConstView<std::int32_t> hub_of;  ///< of each part
   ConstView<double> share;         ///< of its hub's mass
   std::int64_t first_part;         ///< among the records
-  Record* bodies;                  ///< nobody's if there is nothing to join
+  Record* bodies;                  ///< padding_body's if there is nothing to join
   PartsSum* sums;                  ///< of each part, room
 
   SCREE_HD int phases() const { return hubs.size() > 0 && bodies != nullptr ? 3 : 0; }

@@ -18,18 +18,18 @@ struct PadBalls {
   BallContacts<Real> contacts;
   RollingFields<Real> rolling;
   bool rolls;
-  std::int32_t nobody;  ///< a body of the solver that is not free
+  std::int32_t padding_body;  ///< a body of the solver that is not free
 
   SCREE_HD void operator()(std::int64_t block) const {
     using C = BallContacts<Real>;
     const std::int64_t begin = block * simd::width;
     for (std::int64_t c = begin; c < begin + simd::width; ++c) {
       if (contacts.slot[c] != Slot::empty) continue;
-      contacts.ends[c] = {nobody, nobody};
+      contacts.ends[c] = {padding_body, padding_body};
       contacts.flags[c] = 0;
       for (int field = 0; field < C::count; ++field) contacts.fields.at(field, c) = 0;
       contacts.fields.at(C::normal_mass, c) = 1;
-      contacts.gaps.at(C::flown, c) = contacts.gaps.at(C::cap, c) = 1;
+      contacts.gaps.at(C::predicted_gap, c) = contacts.gaps.at(C::cap, c) = 1;
       contacts.gaps.at(C::pushed, c) = 0;
       contacts.fields.at(C::target, c) = static_cast<Real>(no_target);
       for (int field = 0; rolls && field < RollingFields<Real>::count; ++field)
@@ -44,7 +44,7 @@ struct PadPoints {
   PointContacts<Real> contacts;
   RollingFields<Real> rolling;
   bool rolls;
-  std::int32_t nobody;
+  std::int32_t padding_body;
 
   SCREE_HD void operator()(std::int64_t block) const {
     using C = PointContacts<Real>;
@@ -55,7 +55,7 @@ struct PadPoints {
         points = contacts.points[c] > points ? contacts.points[c] : points;
         continue;
       }
-      contacts.ends[c] = {nobody, nobody};
+      contacts.ends[c] = {padding_body, padding_body};
       contacts.flags[c] = 0;
       contacts.points[c] = 0;
       for (int field = 0; field < C::count; ++field) contacts.fields.at(field, c) = 0;
@@ -75,7 +75,7 @@ struct PadPoints {
     for (int field = first; field < first + C::point_count; ++field) f.at(field, c) = 0;
     f.at(C::at_point(k, C::normal_mass), c) = 1;
     f.at(C::at_point(k, C::target), c) = static_cast<Real>(no_target);
-    contacts.gaps.at(C::at_point(k, C::flown), c) = 1;
+    contacts.gaps.at(C::at_point(k, C::predicted_gap), c) = 1;
     contacts.gaps.at(C::at_point(k, C::pushed), c) = 0;
   }
 };

@@ -42,19 +42,19 @@ struct StartRolling {
 
 /// What the couple of a contact has moved, which its place remembers: account_couple().
 template <class Real, class Contacts>
-struct BookRolling {
-  BookStage<Real> stage;
+struct AccountRolling {
+  AccountStage<Real> stage;
   std::int64_t first_place;
   Contacts contacts;
   RollingFields<Real> rolling;
   View<V3<Real>> couples;  ///< of all places
 
-  SCREE_HD Books operator()(std::int64_t c) const {
+  SCREE_HD ContactTotals operator()(std::int64_t c) const {
     const std::int64_t place = first_place + contacts.slot[c];
     const V3<Real> found = rolling.fields.vector(RollingFields<Real>::couple, c);
     couples[place] = found;
-    Books books;
-    if (is_zero(found)) return books;
+    ContactTotals totals;
+    if (is_zero(found)) return totals;
     const Slot slot = stage.places[place];
     const Ends ends = contacts.ends[c];
     const Vec3 couple = vec3(found);
@@ -62,23 +62,23 @@ struct BookRolling {
     const Vec3 spin_j = vec3(stage.solver[ends.j].spin);
     const Vec3 before = stage.bodies.spin[slot.j] - stage.bodies.spin[slot.i];
     const Vec3 free = vec3(stage.free[ends.j].spin) - vec3(stage.free[ends.i].spin);
-    books.friction = -0.5 * couple.dot(before + spin_j - spin_i);
-    books.kick_power = couple.dot(spin_j - spin_i - free);
-    stage.judge_gain(books);
-    if (!stage.is_free(ends.i)) books.work += couple.dot(spin_i);
-    if (!stage.is_free(ends.j)) books.work -= couple.dot(spin_j);
-    return books;
+    totals.friction = -0.5 * couple.dot(before + spin_j - spin_i);
+    totals.kick_power = couple.dot(spin_j - spin_i - free);
+    stage.judge_gain(totals);
+    if (!stage.is_free(ends.i)) totals.work += couple.dot(spin_i);
+    if (!stage.is_free(ends.j)) totals.work -= couple.dot(spin_j);
+    return totals;
   }
 };
 
-/// What the impulses of a contact and its couple move: `Book` is BookBalls or BookPoints.
+/// What the impulses of a contact and its couple move: `Book` is AccountBalls or AccountPoints.
 template <class Book, class Rolling>
 struct MovedBy {
   bool rolls;
-  Book book;
+  Book account;
   Rolling rolling;
   SCREE_HD Moved operator()(std::int64_t c) const {
-    return rolls ? book(c).moved() + rolling(c).moved() : book(c).moved();
+    return rolls ? account(c).moved() + rolling(c).moved() : account(c).moved();
   }
 };
 

@@ -13,10 +13,10 @@ struct Degree {
   double more, less;  // of the power: over the first the next degree follows, under the second the last
 };
 using namespace tolerance;
-constexpr Degree degrees[] = {{stirring_power, 0},        {done_power, calm_power},
-                              {undone_power, calm_power}, {undone_power, done_power},
-                              {undone_power, done_power}, {undone_power, done_power},
-                              {HUGE_VAL, done_power}};
+constexpr Degree degrees[] = {
+    {stirring_power, 0},          {done_power, least_sweeps_power}, {residual_power, least_sweeps_power},
+    {residual_power, done_power}, {residual_power, done_power},     {residual_power, done_power},
+    {HUGE_VAL, done_power}};
 /// Bodies that share several points, of which a sweep of degree 2 is 12 sweeps, do not stay at rest with
 /// less.
 constexpr int least_shared = 3, most_shared = 5;
@@ -34,48 +34,48 @@ int SweepCount::sweeps(int usual, bool shared, double share) {
 }
 
 /// Over many substeps at once: the slow modes are oscillations, and a number of sweeps that goes up and down
-/// with them pumps them. But where a substep leaves as much undone as its impulses do, as when a heap has
+/// with them pumps them. But where a substep leaves as much residual as its impulses do, as when a heap has
 /// just fallen on its ground, all sweeps follow at once: what sinks in meanwhile takes seconds to come out
 /// again. And what flows has no slow modes, so that a few substeps tell that the usual number will do.
-void SweepCount::judge(double undone, double kicked, double dissipated) {
+void SweepCount::judge(double residual, double kicked, double dissipated) {
   constexpr int judged_together = 32, judged_in_flow = 8;
-  const auto of = [](double loss) { return undone_of_dissipated * std::max(loss, 0.0); };
-  if (std::abs(undone) > all_undone * kicked + much_undone * of(dissipated)) {
+  const auto of = [](double loss) { return residual_of_dissipated * std::max(loss, 0.0); };
+  if (std::abs(residual) > all_residual * kicked + much_residual * of(dissipated)) {
     degree_ = most_degree;
-    looseness_ = 0;
-    undone_ = kicked_ = dissipated_ = overlap_ = judged_ = 0;
+    tolerance_exponent_ = 0;
+    residual_ = kicked_ = dissipated_ = overlap_ = judged_ = 0;
     return;
   }
-  undone_ += std::abs(undone);
+  residual_ += std::abs(residual);
   kicked_ += kicked;
   dissipated_ += dissipated;
   ++judged_;
   const bool flows = dissipated_ > flowing_power * kicked_;
-  const bool is_done = undone_ < of(dissipated_);
+  const bool is_done = residual_ < of(dissipated_);
   if (judged_ < (flows && is_done ? judged_in_flow : judged_together)) return;
   moves_ = dissipated_ > moving_power * kicked_;
   flows_ = flows;
-  looseness_ = flows ? next_looseness() : 0;
+  tolerance_exponent_ = flows ? next_tolerance_exponent() : 0;
   if (flows && is_done) degree_ = std::min(degree_, usual_degree);
-  const double most_undone = degrees[degree_].more * kicked_ + of(dissipated_);
-  if (undone_ > most_undone) {
-    degree_ = std::min(degree_ + (undone_ > much_undone * most_undone ? 2 : 1), most_degree);
-  } else if (undone_ < degrees[degree_].less * kicked_ || (moves_ && degree_ > usual_degree && is_done)) {
+  const double most_residual = degrees[degree_].more * kicked_ + of(dissipated_);
+  if (residual_ > most_residual) {
+    degree_ = std::min(degree_ + (residual_ > much_residual * most_residual ? 2 : 1), most_degree);
+  } else if (residual_ < degrees[degree_].less * kicked_ || (moves_ && degree_ > usual_degree && is_done)) {
     --degree_;
   }
-  undone_ = kicked_ = dissipated_ = overlap_ = judged_ = 0;
+  residual_ = kicked_ = dissipated_ = overlap_ = judged_ = 0;
 }
 
-int SweepCount::next_looseness() const {
+int SweepCount::next_tolerance_exponent() const {
   constexpr int loosest = 3;
   static_assert(heap_change_in_flow <= heap_change * (1 << loosest));
   if (overlap_ > 2 * much_overlap_in_flow) return 0;
-  if (overlap_ > much_overlap_in_flow) return std::max(looseness_ - 1, 0);
-  return overlap_ < little_overlap_in_flow ? std::min(looseness_ + 1, loosest) : looseness_;
+  if (overlap_ > much_overlap_in_flow) return std::max(tolerance_exponent_ - 1, 0);
+  return overlap_ < little_overlap_in_flow ? std::min(tolerance_exponent_ + 1, loosest) : tolerance_exponent_;
 }
 
 double SweepCount::change() const {
-  return std::min(std::ldexp(heap_change, looseness_), heap_change_in_flow);
+  return std::min(std::ldexp(heap_change, tolerance_exponent_), heap_change_in_flow);
 }
 
 }  // namespace scree::solver

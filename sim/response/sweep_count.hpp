@@ -1,4 +1,4 @@
-// The adaptive number of sweeps of a heap. It follows what the sweeps of the last substeps left undone.
+// The adaptive number of sweeps of a heap. It follows what the sweeps of the last substeps left residual.
 #pragma once
 
 #include "core/archive.hpp"
@@ -8,10 +8,10 @@
 namespace scree::solver {
 
 /// A sweep changes little in the slow modes of a heap of many layers, so the change of the impulses does not
-/// show whether these modes have converged. The undone power does: it is the power of the normal impulses on
-/// the relative velocities that they leave, and it is compared with the power of all impulses on all that
-/// they change (docs/decisions/0024, 0029). Where bodies slide on one another some power is always undone: a
-/// few hundredths of what is dissipated. In a slow mode it is a third and more (0046).
+/// show whether these modes have converged. The residual power does: it is the power of the normal impulses
+/// on the relative velocities that they leave, and it is compared with the power of all impulses on all that
+/// they change (docs/decisions/0024, 0029). Where bodies slide on one another some power is always residual:
+/// a few hundredths of what is dissipated. In a slow mode it is a third and more (0046).
 class SweepCount {
  public:
   /// The least number of sweeps of the next substep. `usual` is the number of plan_sweeps(), `shared` tells
@@ -19,7 +19,7 @@ class SweepCount {
   int sweeps(int usual, bool shared, double share);
 
   /// Is called after each substep, with the powers (W) and what was dissipated (W).
-  void judge(double undone, double kicked, double dissipated);
+  void judge(double residual, double kicked, double dissipated);
 
   /// Is called after the position correction of each substep. `mean`: mean overlap of the contacts, as a
   /// share of the smaller body's size.
@@ -31,30 +31,30 @@ class SweepCount {
   /// size. It is larger while the heap flows and its contacts hardly overlap.
   double change() const;
   /// Whether the slow modes have converged, so that the least number of sweeps will do.
-  bool is_calm() const { return degree_ == 0; }
+  bool needs_least_sweeps() const { return degree_ == 0; }
 
   void archive(Archive& archive) {
     archive("degree", degree_);
-    archive("undone", undone_);
+    archive("residual", residual_);
     archive("kicked", kicked_);
     archive("dissipated", dissipated_);
     archive("moves", moves_);
     archive("flows", flows_);
     archive("judged", judged_);
-    archive("looseness", looseness_);
+    archive("tolerance_exponent", tolerance_exponent_);
     archive("overlap", overlap_);
   }
 
  private:
-  int next_looseness() const;
+  int next_tolerance_exponent() const;
 
   int degree_ = 2;      // 0, 1, 2... are 2, 3, 6, 12... sweeps of balls
   bool moves_ = false;  // bodies slide on one another somewhere (tolerance::moving_power)
   bool flows_ = false;  // and nearly everywhere (tolerance::flowing_power)
-  double undone_ = 0, kicked_ = 0, dissipated_ = 0;
-  int judged_ = 0;      // substeps since it was last changed
-  double overlap_ = 0;  // the largest mean overlap in these
-  int looseness_ = 0;   // change() is 2^looseness times that at rest
+  double residual_ = 0, kicked_ = 0, dissipated_ = 0;
+  int judged_ = 0;              // substeps since it was last changed
+  double overlap_ = 0;          // the largest mean overlap in these
+  int tolerance_exponent_ = 0;  // change() is 2^tolerance_exponent times that at rest
 };
 
 }  // namespace scree::solver

@@ -1,8 +1,8 @@
 // The rounds of a substep: sweeps over all contacts, colour by colour, until their impulses have converged,
-// and until nothing overlaps (core/space_rounds.hpp).
+// and until nothing overlaps (core/space_phases.hpp).
 #pragma once
 
-#include "core/space_rounds.hpp"
+#include "core/space_phases.hpp"
 #include "sim/contacts/contact_store.hpp"
 #include "sim/contacts/layout.hpp"
 #include "sim/contacts/rolling_visits.hpp"
@@ -133,7 +133,7 @@ struct HoldToGuides {
 /// rolls, then the parts of hubs agree, and bodies in guides are held to them.
 /// only_balls: there are no other contacts, whose laws ask for many registers.
 template <class Real, bool only_balls>
-struct ImpulseRounds {
+struct ImpulsePhases {
   using State = SweepState;
   using Sum = SweepChange;
   /// Memory is waited for: many contacts must be on their way.
@@ -266,7 +266,7 @@ struct ImpulseRounds {
   }
 };
 
-struct PartingState {
+struct CorrectionState {
   std::int32_t sweeps = 0;
   bool corrected = false;
   double mean = 0;  ///< of the overlaps that the last sweep has seen (of the cap)
@@ -275,8 +275,8 @@ struct PartingState {
 /// Parts what overlaps, as the position correction of Host: displacements and turns of bodies that start
 /// where they are.
 template <class Real, bool only_balls>
-struct PartingRounds {
-  using State = PartingState;
+struct CorrectionPhases {
+  using State = CorrectionState;
   using Sum = Overlaps;
   static constexpr int threads = only_balls ? 512 : 256;
   static constexpr int blocks_at_once = only_balls ? 2 : 1;
@@ -289,7 +289,7 @@ struct PartingRounds {
   JoinHubs<CentreRecord<Real>> shifted_hubs, turned_hubs;
   HoldToGuides<CentreRecord<Real>> guides;
   Real share;
-  int least, usual, most;         ///< PartingPlan
+  int least, usual, most;         ///< CorrectionPlan
   float deepest, mean, too_deep;  ///< likewise (of the cap)
 
   SCREE_HD int phases(const State& state) const {
@@ -326,11 +326,11 @@ struct PartingRounds {
   template <class Items>
   SCREE_HD Sum work(int phase, const Items& items) const {
     if (phase < ball_colors.count)
-      return items.part(ball_colors, phase, PartBalls<Real>{balls, displacement, share});
+      return items.part(ball_colors, phase, CorrectBalls<Real>{balls, displacement, share});
     phase -= ball_colors.count;
     if constexpr (!only_balls) {
       if (phase < point_colors.count)
-        return items.part(point_colors, phase, PartPoints<Real>{points, displacement, turn, share});
+        return items.part(point_colors, phase, CorrectPoints<Real>{points, displacement, turn, share});
     }
     phase -= point_colors.count;
     items.each([&](std::int64_t item) {

@@ -32,7 +32,7 @@ void GuardedSteps::start(const Stepper& stepper, double least_scale) {
 
 void GuardedSteps::take(std::int64_t step, double time, double length, const Exchange& exchange,
                         Stepper& stepper) {
-  const Books before{baseline_, stepper.counters};
+  const StepStart before{baseline_, stepper.counters};
   try {
     take_once_or_twice(step, time, length, exchange, before, stepper);
   } catch (...) {
@@ -42,7 +42,7 @@ void GuardedSteps::take(std::int64_t step, double time, double length, const Exc
 }
 
 void GuardedSteps::take_once_or_twice(std::int64_t step, double time, double length, const Exchange& exchange,
-                                      const Books& before, Stepper& stepper) {
+                                      const StepStart& before, Stepper& stepper) {
   const int n = scene_.time.substeps.value_or(substeps_.next());
   try {
     return take_in(n, step, length, exchange, stepper);
@@ -120,7 +120,7 @@ void GuardedSteps::extend_baseline(const Energies& energies, const Exchange& exc
   baseline_.extend(energies, explained_energy(stepper.ledger, exchange));
 }
 
-void GuardedSteps::undo(const Books& before, Stepper& stepper) {
+void GuardedSteps::undo(const StepStart& before, Stepper& stepper) {
   stepper.undo_step();
   baseline_ = before.baseline;
   stepper.counters = before.counters;

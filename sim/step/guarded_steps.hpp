@@ -37,19 +37,19 @@ class GuardedSteps {
 
  private:
   /// What a step changes besides the state.
-  struct Books {
+  struct StepStart {
     EnergyBaseline baseline;
     Counters counters;
   };
 
   void take_once_or_twice(std::int64_t step, double time, double length, const Exchange& exchange,
-                          const Books& before, Stepper& stepper);
+                          const StepStart& before, Stepper& stepper);
   void take_in(int substeps, std::int64_t step, double length, const Exchange& exchange, Stepper& stepper);
   void judge(const Exchange& exchange, const Stepper& stepper);
   void choose_substeps(int taken, double deepest, const Stepper& stepper);
   [[noreturn]] void fail(const std::vector<std::int32_t>& bodies, const std::string& how) const;
   void extend_baseline(const Energies& energies, const Exchange& exchange, const Stepper& stepper);
-  void undo(const Books& before, Stepper& stepper);
+  void undo(const StepStart& before, Stepper& stepper);
 
   const Scene& scene_;
   Vec3 origin_;

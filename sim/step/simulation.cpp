@@ -172,7 +172,7 @@ struct Simulation::Parts {
       Presence::Change change;
       stepper->change_bodies(
           [&](Bodies<Host>& bodies) { change = presence.update(step, scene, field(), bodies); });
-      book(change);
+      account(change);
     }
     emit();
   }
@@ -180,7 +180,7 @@ struct Simulation::Parts {
   Removed take_out(const std::vector<BodyNumber>& bodies) {
     if (bodies.empty()) return {};
     const Presence::Change change = presence.take_leave_of(stepper->take_out(bodies), scene, field());
-    book(change);
+    account(change);
     return {static_cast<std::int64_t>(bodies.size()), -change.exchange.mass};
   }
 
@@ -191,13 +191,13 @@ struct Simulation::Parts {
           step, scene, [this](const Vec3& low, const Vec3& high) { return stepper->bodies_near(low, high); });
       if (come.count() == 0) continue;
       stepper->bring_in(come);
-      book(presence.welcome(come, scene, field()));
+      account(presence.welcome(come, scene, field()));
     }
   }
 
   PotentialField field() const { return {stepper->gravity(), reference}; }
 
-  void book(const Presence::Change& change) {
+  void account(const Presence::Change& change) {
     exchange = exchange + change.exchange;
     steps.change_bodies(change.first_potential, exchange, *stepper);
   }

@@ -258,7 +258,7 @@ class SpaceStepper final : public Stepper {
     place_prescribed<Space>(paths_, time, bodies_);
   }
   bool fly_and_respond(double h, double done, bool may_be_undone);
-  void fly_on(double h, double done, bool late);
+  void fly_on(double h, double done, bool any_late_impact);
   void give_candidates(ConstView<Pair> pairs);
   ConstView<std::int64_t> known(ConstView<Pair> pairs);
   ConstView<LoadedParts> loads_of(ConstView<Pair> pairs);
@@ -332,7 +332,7 @@ void SpaceStepper<Space, Real>::substep(double h, double done) {
   while (done < end) {
     double part = end - done;
     if (cuts_help) before_.save(*this);
-    bool late = fly_and_respond(part, done, cuts_help);
+    bool any_late_impact = fly_and_respond(part, done, cuts_help);
     double last = HUGE_VAL;
     while (cuts_help && contacts_.slip_end() < 1) {
       const double too_long = 1 - contacts_.slip_end();
@@ -340,9 +340,9 @@ void SpaceStepper<Space, Real>::substep(double h, double done) {
       part = cuts_help ? contacts_.slip_end() * part : end - done;
       last = too_long;
       before_.restore(*this);
-      late = fly_and_respond(part, done, cuts_help);
+      any_late_impact = fly_and_respond(part, done, cuts_help);
     }
-    fly_on(part, done, late);
+    fly_on(part, done, any_late_impact);
     done = part < end - done ? done + part : end;
   }
   counters.cuts += cuts;
@@ -358,7 +358,7 @@ bool SpaceStepper<Space, Real>::fly_and_respond(double h, double done, bool may_
   forces_.start_substep(bodies_);
   fly(grid_.time(step_) + done + 0.5 * h, 0.5 * h);
   const bool struck = resolve_impacts(h, 0, h, reach_from(h, done));
-  const bool late = impacts_.any_is_late();
+  const bool any_late_impact = impacts_.any_late_impact();
   give_candidates(struck ? kept_pairs_.covering(bodies_, contact_margin_, reach_from(h, done), parameters_)
                          : kept_pairs_.pairs());
   counters.pcs_made = kept_pairs_.times_made();
@@ -368,19 +368,19 @@ bool SpaceStepper<Space, Real>::fly_and_respond(double h, double done, bool may_
   {
     const timing::Region region("narrowphase");
     libccd_.start_search();
-    contacts_.find(std::as_const(contact_margin_).view(), scale, flight, late,
+    contacts_.find(std::as_const(contact_margin_).view(), scale, flight, any_late_impact,
                    libccd_.is_needed() ? &libccd_ : nullptr);
     counters.narrowphase.tested += contacts_.slots().candidates().size();
     counters.narrowphase += libccd_.take_stats();
   }
   const timing::Region region("response");
-  ledger = ledger + contacts_.solve(flight, late, h / grid_.length(step_ + 1), counters);
-  return late;
+  ledger = ledger + contacts_.solve(flight, any_late_impact, h / grid_.length(step_ + 1), counters);
+  return any_late_impact;
 }
 
 /// And its second: impacts on the way, since the response has changed it, and free flight to the end.
 template <class Space, class Real>
-void SpaceStepper<Space, Real>::fly_on(double h, double done, bool late) {
+void SpaceStepper<Space, Real>::fly_on(double h, double done, bool any_late_impact) {
   const FlightStage flight = impacts_.stage(terms(h, 0), parameters_, views());
   contacts_.add_wall_impulses(flight);
   if (resolve_impacts(h, 0.5 * h, 0.5 * h, reach_from(h, done)))
@@ -390,7 +390,7 @@ void SpaceStepper<Space, Real>::fly_on(double h, double done, bool late) {
   gravity_.count(h, parameters_);
   {
     const timing::Region region("correction");
-    ledger = ledger + contacts_.correct(flight, late);
+    ledger = ledger + contacts_.correct(flight, any_late_impact);
   }
   last_substep_ = h;
 }
@@ -648,11 +648,11 @@ std::vector<ContactForce> SpaceStepper<Space, Real>::contact_forces() const {
 
 template <class Space, class Real>
 void SpaceStepper<Space, Real>::measure_contacts(std::int64_t free_bodies, Observation& out) const {
-  const solver::Books& books = contacts_.books();
+  const solver::ContactTotals& totals = contacts_.totals();
   const auto mean = [](double sum, std::int64_t of) { return of > 0 ? sum / static_cast<double>(of) : 0.0; };
-  out.contacts = books.loaded;
-  out.gap_mean = mean(books.gaps, books.loaded);
-  out.coordination_mean = mean(static_cast<double>(books.ends), free_bodies);
+  out.contacts = totals.loaded;
+  out.gap_mean = mean(totals.gaps, totals.loaded);
+  out.coordination_mean = mean(static_cast<double>(totals.ends), free_bodies);
 }
 
 /// Whether a scene has what is known on Host alone: general shapes, and contacts by libccd.

@@ -125,7 +125,7 @@ SCREE_LAW typename A::V largest_across(const Symmetric<A>& w, const V3<A>& n) {
 template <class A>
 struct BallContact {
   Balls<A> law;
-  typename A::V gap, bend;  ///< the acceleration of the gap by the turning of the normal (m/s^2)
+  typename A::V gap, curvature;  ///< the acceleration of the gap by the turning of the normal (m/s^2)
 };
 
 /// A ball at the midpoint.
@@ -154,13 +154,13 @@ SCREE_LAW BallContact<A> contact_of(const V3<A>& offset, const typename A::V& fr
   const V3<A> before = j.velocity - i.velocity;
   const V3<A> w = before + kick;
   const V3<A> across = w - dot(w, normal) * normal;
-  const V bend = dot(across, across) / reach;
-  const V closing = (gap > 0 ? -gap / step : zero) - 0.5 * step * bend;
+  const V curvature = dot(across, across) / reach;
+  const V closing = (gap > 0 ? -gap / step : zero) - 0.5 * step * curvature;
   const V parting = noise - dot(before, normal);
   const V target = parting < closing ? parting : closing;
   const V masses = i.inverse_mass + j.inverse_mass;
   const V turning = i.inverse_inertia * (arm_i * arm_i) + j.inverse_inertia * (arm_j * arm_j);
-  return {{normal, arm_i, arm_j, friction, target, 1.0 / masses, 1.0 / (masses + turning)}, gap, bend};
+  return {{normal, arm_i, arm_j, friction, target, 1.0 / masses, 1.0 / (masses + turning)}, gap, curvature};
 }
 
 /// A vector cut to the disc of a radius, which may be 0: then it is 0, even where its square underflows.

@@ -1,4 +1,4 @@
-// Contacts of balls as the kernels find and book them, beside those found and booked one by one.
+// Contacts of balls as the kernels find and account them, beside those found and booked one by one.
 #include "sim/contacts/ball_tiles.hpp"
 
 #include "core/rng.hpp"
@@ -88,7 +88,7 @@ class Crowd {
             .scale = 0.5,
             .noise = 1e-6,
             .struck = {FlightStage(terms, scene_.parameters, view_of(bodies_), log_)},
-            .any_is_late = false};
+            .any_late_impact = false};
   }
 
   /// What is found, and what is left in the memory.
@@ -189,8 +189,8 @@ TEST(BallTiles, BookWhatIsBookedOneByOne) {
   Array<BodyRecord<double>, Host> before, after;
   copy(before, crowd.solver());
   copy(after, crowd.solver());
-  const std::int64_t nobody = crowd.bodies().count();
-  for (std::int64_t k = 0; k < nobody; ++k) {
+  const std::int64_t padding_body = crowd.bodies().count();
+  for (std::int64_t k = 0; k < padding_body; ++k) {
     before.view()[k].velocity = v3<double>(crowd.bodies().velocity[k]);
     before.view()[k].spin = v3<double>(crowd.bodies().spin[k]);
     if (after.view()[k].inverse_mass == 0) continue;
@@ -200,31 +200,31 @@ TEST(BallTiles, BookWhatIsBookedOneByOne) {
   const std::int64_t contacts = kernels.store.ball_colors().contacts();
   for (auto* found : {&kernels, &one_by_one}) {
     for (std::int64_t b = 0; b < kernels.store.ball_colors().places() / simd::width; ++b)
-      PadBalls<double>{found->store.balls(), {}, false, static_cast<std::int32_t>(nobody)}(b);
+      PadBalls<double>{found->store.balls(), {}, false, static_cast<std::int32_t>(padding_body)}(b);
   }
-  const BookStage<double> stage{std::as_const(crowd.places()).view(),
-                                crowd.bodies(),
-                                crowd.solver().view(),
-                                std::as_const(after).view(),
-                                crowd.parameters(),
-                                crowd.step(),
-                                {}};
-  Books expected;
-  const BookBalls<double> book{stage, one_by_one.store.balls(), one_by_one.memory.view()};
-  for (std::int64_t c = 0; c < contacts; ++c) expected = expected + book(c);
+  const AccountStage<double> stage{std::as_const(crowd.places()).view(),
+                                   crowd.bodies(),
+                                   crowd.solver().view(),
+                                   std::as_const(after).view(),
+                                   crowd.parameters(),
+                                   crowd.step(),
+                                   {}};
+  ContactTotals expected;
+  const AccountBalls<double> account{stage, one_by_one.store.balls(), one_by_one.memory.view()};
+  for (std::int64_t c = 0; c < contacts; ++c) expected = expected + account(c);
   std::vector<std::uint32_t> loads(Crowd::pairs / 4 + 1);
-  BookStage<double> with_loads = stage;
+  AccountStage<double> with_loads = stage;
   with_loads.loads = {loads.data(), std::ssize(loads)};
-  const BookBallBlocks blocks{.book = {.contacts = kernels.store.balls(),
-                                       .before = before.data(),
-                                       .free = crowd.solver().data(),
-                                       .solver = after.data(),
-                                       .step = crowd.step(),
-                                       .rounding = response_gain<double>,
-                                       .again = false},
-                              .stage = with_loads,
-                              .memory = kernels.memory.view()};
-  Books got;
+  const AccountBallBlocks blocks{.account = {.contacts = kernels.store.balls(),
+                                             .before = before.data(),
+                                             .free = crowd.solver().data(),
+                                             .solver = after.data(),
+                                             .step = crowd.step(),
+                                             .rounding = response_gain<double>,
+                                             .again = false},
+                                 .stage = with_loads,
+                                 .memory = kernels.memory.view()};
+  ContactTotals got;
   for (std::int64_t run = 0; run < blocks.runs(); ++run) got = got + blocks(run);
   EXPECT_NEAR(got.restitution, expected.restitution, 1e-10);
   EXPECT_NEAR(got.friction, expected.friction, 1e-10);
@@ -239,8 +239,8 @@ TEST(BallTiles, BookWhatIsBookedOneByOne) {
   EXPECT_GT(got.gaining, 0);
   EXPECT_GT(got.loaded, 50);
   for (std::int64_t c = 0; c < contacts; ++c) {
-    ASSERT_NEAR(kernels.store.balls().gaps.at(C::flown, c), one_by_one.store.balls().gaps.at(C::flown, c),
-                rounding);
+    ASSERT_NEAR(kernels.store.balls().gaps.at(C::predicted_gap, c),
+                one_by_one.store.balls().gaps.at(C::predicted_gap, c), rounding);
     const std::int32_t place = kernels.store.balls().slot[c];
     const bool loaded = kernels.memory.view()[place].is_loaded();
     ASSERT_EQ(loaded, one_by_one.memory.view()[place].is_loaded());

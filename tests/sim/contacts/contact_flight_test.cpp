@@ -62,8 +62,8 @@ struct ShiftBody {
       moved[k] = {};
       return;
     }
-    const Vec3 moment = moment_of_lead(stage.bodies, body, total[k], 1, led[k]);
-    moved[k] = shift_late(stage, body, total[k]);
+    const Vec3 moment = moment_of_delay(stage.bodies, body, total[k], 1, led[k]);
+    moved[k] = shift_after_late_impact(stage, body, total[k]);
     moved[k].angular_correction += moment;
   }
 };
@@ -116,7 +116,7 @@ struct AfterImpacts {
         const Vec3 impulse = vector_in(random, 0.3);
         for (const auto& [body, sign] : {std::pair(pairs[k].i, -1.0), std::pair(pairs[k].j, 1.0)}) {
           total[static_cast<std::size_t>(body)] += sign * impulse;
-          led[static_cast<std::size_t>(body)] += sign * seen[k].flight.lead * impulse;
+          led[static_cast<std::size_t>(body)] += sign * seen[k].flight.delay * impulse;
         }
       }
     }
@@ -147,7 +147,7 @@ TYPED_TEST(ContactFlights, AsAfterTheImpactsInTheOrderOfTheirTimes) {
   copy(list, pairs);
   ImpactRounds<TypeParam> rounds;
   rounds.resolve({std::as_const(list).view(), {}, world.terms(0)}, scene.parameters, view_of(world.bodies));
-  ASSERT_TRUE(rounds.any_is_late());
+  ASSERT_TRUE(rounds.any_late_impact());
   const AfterImpacts<TypeParam> got(rounds.stage(world.terms(0), scene.parameters, view_of(world.bodies)),
                                     scene, pairs, world.bodies);
 
@@ -155,11 +155,11 @@ TYPED_TEST(ContactFlights, AsAfterTheImpactsInTheOrderOfTheirTimes) {
   for (std::size_t k = 0; k < pairs.size(); ++k) {
     ASSERT_EQ(got.seen[k].points, expected.seen[k].points) << k;
     if (got.seen[k].points == 0) continue;
-    EXPECT_NEAR(got.seen[k].flight.lead, expected.seen[k].flight.lead, 1e-12 * scene.step);
+    EXPECT_NEAR(got.seen[k].flight.delay, expected.seen[k].flight.delay, 1e-12 * scene.step);
     EXPECT_EQ(got.seen[k].flight.flying, expected.seen[k].flight.flying) << pairs[k].i << " " << pairs[k].j;
     ++contacts;
     flying += got.seen[k].flight.flying ? 1 : 0;
-    late += got.seen[k].flight.lead > 0 ? 1 : 0;
+    late += got.seen[k].flight.delay > 0 ? 1 : 0;
   }
   EXPECT_GT(flying, 20);
   EXPECT_GT(late, 20);

@@ -27,7 +27,7 @@ using Rolling = RollingFields<double>;
 class Problem {
  public:
   static constexpr int balls_found = 29, points_found = 43;
-  static constexpr std::int32_t nobody = 2 * (balls_found + points_found);
+  static constexpr std::int32_t padding_body = 2 * (balls_found + points_found);
 
   explicit Problem(bool rough, bool rolls) {
     ColorRanges of_balls, of_points;
@@ -53,7 +53,7 @@ class Problem {
       const V3<double> a = vector(1);
       return a / std::sqrt(dot(a, a));
     };
-    for (std::int32_t k = 0; k < nobody; ++k) {
+    for (std::int32_t k = 0; k < padding_body; ++k) {
       const bool free = k % 5 != 0;
       BodyRecord<double> body;
       body.velocity = vector(2);
@@ -119,10 +119,10 @@ class Problem {
       put_rolling(point_rolling(), c, n);
     }
     for (std::int64_t block = 0; block < b.slot.size() / simd::width; ++block)
-      PadBalls<double>{b, ball_rolling(), true, nobody}(block);
+      PadBalls<double>{b, ball_rolling(), true, padding_body}(block);
     for (std::int64_t block = 0; block < p.slot.size() / simd::width; ++block)
-      PadPoints<double>{p, point_rolling(), true, nobody}(block);
-    for (std::int32_t k = 0; k <= nobody; ++k) {
+      PadPoints<double>{p, point_rolling(), true, padding_body}(block);
+    for (std::int32_t k = 0; k <= padding_body; ++k) {
       CentreRecord<double> centre, turn;
       centre.velocity = turn.velocity = {};
       centre.inverse_mass = bodies[static_cast<std::size_t>(k)].inverse_mass;
@@ -171,8 +171,8 @@ class Problem {
 
  private:
   template <class At>
-  static void put_gap(const At& at, double flown, double pushed) {
-    at(Balls::gap) = at(Balls::flown) = flown;
+  static void put_gap(const At& at, double predicted_gap, double pushed) {
+    at(Balls::gap) = at(Balls::predicted_gap) = predicted_gap;
     at(Balls::pushed) = pushed;
   }
   std::vector<std::pair<void*, std::size_t>> memory() {
@@ -220,8 +220,8 @@ std::vector<double> visit_all(Problem& problem, const Over& over) {
   }
   for (int k = 0; k < 2; ++k) {
     for (const Overlaps& overlaps :
-         {over(PartBalls<double>{balls, problem.centres.data(), share}, b),
-          over(PartPoints<double>{points, problem.centres.data(), problem.turns.data(), share}, p)})
+         {over(CorrectBalls<double>{balls, problem.centres.data(), share}, b),
+          over(CorrectPoints<double>{points, problem.centres.data(), problem.turns.data(), share}, p)})
       sums.insert(sums.end(), {overlaps.deepest, overlaps.sum, overlaps.count});
   }
   return sums;
@@ -281,8 +281,8 @@ TEST_P(VisitKernelsTest, BodiesGoOnByWhatTheLastSweepChanged) {
     for (Problem* p : {&each, &several})
       for (BodyRecord<double>& body : p->bodies) body.velocity.x += 1;
     const Accelerate<double> one{each.bodies.data(), each.last.data()};
-    for (std::int64_t k = 0; k <= Problem::nobody; ++k) one.visit(k, beta);
-    kernels().accelerate({several.bodies.data(), several.last.data()}, 0, Problem::nobody + 1, beta);
+    for (std::int64_t k = 0; k <= Problem::padding_body; ++k) one.visit(k, beta);
+    kernels().accelerate({several.bodies.data(), several.last.data()}, 0, Problem::padding_body + 1, beta);
     EXPECT_EQ(each.numbers(), several.numbers());
   }
 }

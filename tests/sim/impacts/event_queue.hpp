@@ -36,7 +36,7 @@ class EventQueue {
     for (const auto& [i, j] : pairs) {
       partners_[at(i)].push_back(j);
       partners_[at(j)].push_back(i);
-      foresee(stage, i, j);
+      predict(stage, i, j);
     }
     Ledger ledger;
     while (!events_.empty()) {
@@ -50,7 +50,7 @@ class EventQueue {
   }
 
   const std::vector<Impact>& impacts() const { return impacts_; }
-  bool any_is_late(const FlightTerms& terms) const {
+  bool any_late_impact(const FlightTerms& terms) const {
     for (std::size_t k = 0; k < struck_.size(); ++k)
       if (struck_[k] != 0 && log_.clock.view()[static_cast<std::int64_t>(k)] > 0.5 * terms.step) return true;
     return false;
@@ -73,16 +73,16 @@ class EventQueue {
   };
   static std::size_t at(std::int32_t body) { return static_cast<std::size_t>(body); }
 
-  void foresee(const FlightStage& stage, std::int32_t i, std::int32_t j) {
+  void predict(const FlightStage& stage, std::int32_t i, std::int32_t j) {
     const Meeting meeting = stage.next(i, j, LoadedParts{});
     if (meeting.time > stage.terms.step) return;
     events_.push_back({meeting, i, j, version_[at(i)], version_[at(j)]});
     std::push_heap(events_.begin(), events_.end(), std::greater<>());
   }
-  void foresee_all_of(const FlightStage& stage, std::int32_t body, std::int32_t but) {
+  void predict_all_of(const FlightStage& stage, std::int32_t body, std::int32_t but) {
     if (!stage.is_free(body)) return;
     for (const std::int32_t other : partners_[at(body)])
-      if (other != but) foresee(stage, std::min(body, other), std::max(body, other));
+      if (other != but) predict(stage, std::min(body, other), std::max(body, other));
   }
 
   Ledger resolve(const FlightStage& stage, const Event& event) {
@@ -106,9 +106,9 @@ class EventQueue {
       ++version_[at(body)];
       struck_[at(body)] = 1;
     }
-    foresee(stage, i, j);
-    foresee_all_of(stage, i, j);
-    foresee_all_of(stage, j, i);
+    predict(stage, i, j);
+    predict_all_of(stage, i, j);
+    predict_all_of(stage, j, i);
     return moved;
   }
 

@@ -28,7 +28,7 @@ inline Outcome in_time_order(const FlightScene& scene, const std::vector<Pair>& 
   outcome.moved = queue.resolve({pairs.data(), static_cast<std::int64_t>(pairs.size())}, world.terms(0),
                                 scene.parameters, view_of(world.bodies));
   outcome.impacts = queue.impacts();
-  outcome.late = queue.any_is_late(world.terms(0));
+  outcome.late = queue.any_late_impact(world.terms(0));
   copy_bodies(outcome.bodies, world.bodies);
   return outcome;
 }
@@ -53,7 +53,7 @@ Outcome in_rounds(const FlightScene& scene, std::vector<Pair> pairs, bool one_by
                                  scene.parameters, view_of(world.bodies));
   outcome.impacts = impacts_of(rounds);
   outcome.rounds = rounds.rounds();
-  outcome.late = rounds.any_is_late();
+  outcome.late = rounds.any_late_impact();
   copy_bodies(outcome.bodies, world.bodies);
   return outcome;
 }

@@ -190,7 +190,7 @@ TYPED_TEST(Rounds, SlowBodiesHaveNone) {
   EXPECT_FALSE(rounds.late);
 }
 
-/// Of each four the first strikes the second, which may then strike two more: there are more suspects in the
+/// Of each four the first strikes the second, which may then strike two more: there are more to_search in the
 /// second round than there is room for, while the first round's meetings are to be kept.
 TYPED_TEST(Rounds, RoomMayBeLackingInALaterRound) {
   constexpr std::int32_t lanes = 3000;
@@ -295,8 +295,8 @@ TYPED_TEST(Rounds, TwoThatBearLoadInACrowdAreLeftToItsContacts) {
     ASSERT_EQ(impacts.size(), one_by_one ? 2u : 1u) << "in the accurate mode all are impacts";
     EXPECT_TRUE(std::ranges::any_of(impacts, [](const Impact& impact) { return impact.i == 2; }));
     if constexpr (std::is_same_v<TypeParam, Host>) {
-      EXPECT_EQ(stage.are_in_crowd(0, 1), !one_by_one);
-      EXPECT_FALSE(stage.are_in_crowd(2, 3));
+      EXPECT_EQ(stage.both_bore_load(0, 1), !one_by_one);
+      EXPECT_FALSE(stage.both_bore_load(2, 3));
     }
     rounds.undo(view_of(world.bodies));
   }
@@ -322,7 +322,7 @@ TYPED_TEST(Rounds, UndoneAreAsIfTheyHadNotBeen) {
   BodyTable undone;
   copy_bodies(undone, world.bodies);
   EXPECT_EQ(hash_of(undone), hash_of(scene.bodies));
-  EXPECT_TRUE(rounds.impacts().size() == 0 && !rounds.any_is_late());
+  EXPECT_TRUE(rounds.impacts().size() == 0 && !rounds.any_late_impact());
   EXPECT_EQ(resolve(), first);
 }
 

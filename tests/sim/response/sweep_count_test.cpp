@@ -10,8 +10,8 @@ namespace {
 constexpr int balls = 6, boxes = 12;  // of plan_sweeps()
 
 /// As many substeps as are judged together, `times` times.
-void judge(SweepCount& count, int times, double undone, double dissipated = 0) {
-  for (int k = 0; k < 32 * times; ++k) count.judge(k % 2 == 0 ? undone : -undone, 1.0, dissipated);
+void judge(SweepCount& count, int times, double residual, double dissipated = 0) {
+  for (int k = 0; k < 32 * times; ++k) count.judge(k % 2 == 0 ? residual : -residual, 1.0, dissipated);
 }
 
 TEST(SweepCount, AHeapIsSweptAsUsualAtFirst) {
@@ -24,11 +24,11 @@ TEST(SweepCount, WhatIsLeftUndoneAsksForMore) {
   SweepCount of_balls, of_boxes;
   of_boxes.sweeps(boxes, true, 1.0);
   for (const int expected : {12, 24, 48, 96, 96}) {
-    judge(of_balls, 1, 2 * tolerance::undone_power);
+    judge(of_balls, 1, 2 * tolerance::residual_power);
     EXPECT_EQ(of_balls.sweeps(balls, false, 1.0), expected);
   }
   for (const int expected : {48, 96, 96}) {
-    judge(of_boxes, 1, 2 * tolerance::undone_power);
+    judge(of_boxes, 1, 2 * tolerance::residual_power);
     EXPECT_EQ(of_boxes.sweeps(boxes, true, 1.0), expected);
   }
 }
@@ -37,12 +37,12 @@ TEST(SweepCount, LittleAsksForFewer) {
   SweepCount of_balls, of_boxes;
   of_boxes.sweeps(boxes, true, 1.0);
   for (const int expected : {3, 2}) {
-    EXPECT_FALSE(of_balls.is_calm());
-    judge(of_balls, 1, 0.5 * tolerance::calm_power);
+    EXPECT_FALSE(of_balls.needs_least_sweeps());
+    judge(of_balls, 1, 0.5 * tolerance::least_sweeps_power);
     EXPECT_EQ(of_balls.sweeps(balls, false, 1.0), expected);
   }
-  EXPECT_TRUE(of_balls.is_calm());
-  judge(of_boxes, 3, 0.5 * tolerance::calm_power);
+  EXPECT_TRUE(of_balls.needs_least_sweeps());
+  judge(of_boxes, 3, 0.5 * tolerance::least_sweeps_power);
   EXPECT_EQ(of_boxes.sweeps(boxes, true, 1.0), 24);
 }
 
@@ -55,7 +55,7 @@ TEST(SweepCount, AHeapThatMovesIsSweptAsUsual) {
   EXPECT_EQ(of_boxes.sweeps(boxes, true, 1.0), boxes);
   // Whatever it was swept before; and a slow mode that dissipates as much is none of that.
   judge(of_balls, 1, 0.4);
-  EXPECT_EQ(of_balls.sweeps(balls, false, 1.0), 24) << "much is left undone";
+  EXPECT_EQ(of_balls.sweeps(balls, false, 1.0), 24) << "much is left residual";
   judge(of_balls, 2, 0.08, 0.9);
   EXPECT_EQ(of_balls.sweeps(balls, false, 1.0), balls);
   judge(of_balls, 1, 0.3, 0.9);
@@ -74,7 +74,7 @@ TEST(SweepCount, AHeapThatHasJustFallenIsSweptAtOnce) {
   EXPECT_EQ(of_balls.sweeps(balls, false, 1.0), 96);
   of_boxes.judge(-0.6, 1.0, 0.2);
   EXPECT_EQ(of_boxes.sweeps(boxes, true, 1.0), 96);
-  // Where all moves, that much is left undone however often it is swept.
+  // Where all moves, that much is left residual however often it is swept.
   SweepCount of_flow;
   of_flow.judge(1.0, 1.0, 2.0);
   EXPECT_EQ(of_flow.sweeps(balls, false, 1.0), balls);
@@ -98,7 +98,7 @@ TEST(SweepCount, EightSubstepsTellThatAllFlows) {
   }
   EXPECT_TRUE(of_flow.flows());
   EXPECT_EQ(of_flow.sweeps(balls, false, 1.0), balls);
-  EXPECT_EQ(of_more.sweeps(balls, false, 1.0), 96) << "more is left undone than flowing explains";
+  EXPECT_EQ(of_more.sweeps(balls, false, 1.0), 96) << "more is left residual than flowing explains";
   judge(of_flow, 1, 0.01, 0.5);
   EXPECT_FALSE(of_flow.flows());
 }

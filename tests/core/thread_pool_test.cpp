@@ -1,6 +1,6 @@
 // Work that is shared out: all of it once, phase after phase, with as many threads as are allowed and no
 // more, and what it throws.
-#include "core/crew.hpp"
+#include "core/thread_pool.hpp"
 
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
@@ -18,7 +18,7 @@
 namespace scree {
 namespace {
 
-using detail::Crew;
+using detail::ThreadPool;
 
 template <class F>
 void with_threads(int threads, const F& f) {
@@ -28,14 +28,14 @@ void with_threads(int threads, const F& f) {
   arena.execute(f);
 }
 
-TEST(Crew, DoesEveryItemOnce) {
+TEST(ThreadPool, DoesEveryItemOnce) {
   for (const int threads : {1, 2, 3, 8}) {
     with_threads(threads, [&] {
-      EXPECT_EQ(Crew::most_threads(), threads);
+      EXPECT_EQ(ThreadPool::most_threads(), threads);
       for (const std::int64_t n : {0, 1, 2, 3, 7, 100, 12345}) {
         for (int again = 0; again < 20; ++again) {
           std::vector<std::atomic<int>> visits(static_cast<std::size_t>(n));
-          Crew::get().share(n, [&](std::int64_t begin, std::int64_t end) {
+          ThreadPool::get().for_ranges(n, [&](std::int64_t begin, std::int64_t end) {
             ASSERT_LE(0, begin);
             ASSERT_LT(begin, end);
             ASSERT_LE(end, n);
@@ -49,7 +49,7 @@ TEST(Crew, DoesEveryItemOnce) {
 }
 
 // Each phase reads what the last one has written elsewhere.
-TEST(Crew, APhaseWaitsForTheLastOne) {
+TEST(ThreadPool, APhaseWaitsForTheLastOne) {
   constexpr int phases = 200;
   for (const int threads : {1, 2, 5}) {
     with_threads(threads, [&] {
@@ -57,7 +57,7 @@ TEST(Crew, APhaseWaitsForTheLastOne) {
       std::vector<std::int64_t> last(1, 1);
       std::vector<std::vector<std::int64_t>> sums;
       for (int p = 0; p < phases; ++p) sums.emplace_back(static_cast<std::size_t>(items(p)), -1);
-      Crew::get().share_phases(phases, items, [&](int p, std::int64_t begin, std::int64_t end) {
+      ThreadPool::get().for_ranges_in_phases(phases, items, [&](int p, std::int64_t begin, std::int64_t end) {
         const auto& before = p > 0 ? sums[static_cast<std::size_t>(p) - 1] : last;
         for (; begin < end; ++begin) {
           const std::size_t from = before.size() - 1 - static_cast<std::size_t>(begin) % before.size();
@@ -76,7 +76,7 @@ std::set<std::thread::id> threads_that_came() {
   std::mutex mutex;
   std::set<std::thread::id> seen;
   for (const auto end = Clock::now() + std::chrono::seconds(1); seen.size() < 2 && Clock::now() < end;) {
-    Crew::get().share(64, [&](std::int64_t, std::int64_t) {
+    ThreadPool::get().for_ranges(64, [&](std::int64_t, std::int64_t) {
       std::this_thread::sleep_for(std::chrono::microseconds(100));
       const std::lock_guard lock(mutex);
       seen.insert(std::this_thread::get_id());
@@ -85,28 +85,28 @@ std::set<std::thread::id> threads_that_came() {
   return seen;
 }
 
-TEST(Crew, AsManyThreadsAsAreAllowed) {
-  EXPECT_EQ(threads_that_came().size() > 1, Crew::most_threads() > 1);
+TEST(ThreadPool, AsManyThreadsAsAreAllowed) {
+  EXPECT_EQ(threads_that_came().size() > 1, ThreadPool::most_threads() > 1);
   with_threads(1, [] { EXPECT_EQ(threads_that_came().size(), 1u); });
 }
 
-TEST(Crew, HelpersThatHaveLeftComeAgain) {
+TEST(ThreadPool, HelpersThatHaveLeftComeAgain) {
   with_threads(2, [] {
     for (int again = 0; again < 3; ++again) {
       EXPECT_EQ(threads_that_came().size(), 2u);
-      if (again == 0) Crew::get().dismiss();
+      if (again == 0) ThreadPool::get().release_workers();
       std::this_thread::sleep_for(std::chrono::milliseconds(20));
     }
   });
 }
 
-TEST(Crew, WorkWithinWorkIsItsThreads) {
+TEST(ThreadPool, WorkWithinWorkIsItsThreads) {
   with_threads(3, [] {
     std::atomic<std::int64_t> sum{0};
-    Crew::get().share(100, [&](std::int64_t begin, std::int64_t end) {
+    ThreadPool::get().for_ranges(100, [&](std::int64_t begin, std::int64_t end) {
       for (; begin < end; ++begin) {
         const std::thread::id mine = std::this_thread::get_id();
-        Crew::get().share(10, [&](std::int64_t first, std::int64_t last) {
+        ThreadPool::get().for_ranges(10, [&](std::int64_t first, std::int64_t last) {
           EXPECT_EQ(std::this_thread::get_id(), mine);
           sum += last - first;
         });
@@ -116,11 +116,11 @@ TEST(Crew, WorkWithinWorkIsItsThreads) {
   });
 }
 
-TEST(Crew, TwoThreadsMayShareOutAtOnce) {
+TEST(ThreadPool, TwoThreadsMayShareOutAtOnce) {
   std::atomic<std::int64_t> sum{0};
   const auto share = [&] {
     for (int again = 0; again < 1000; ++again)
-      Crew::get().share(50, [&](std::int64_t begin, std::int64_t end) { sum += end - begin; });
+      ThreadPool::get().for_ranges(50, [&](std::int64_t begin, std::int64_t end) { sum += end - begin; });
   };
   std::thread other(share);
   share();
@@ -128,16 +128,16 @@ TEST(Crew, TwoThreadsMayShareOutAtOnce) {
   EXPECT_EQ(sum, 2 * 1000 * 50);
 }
 
-TEST(Crew, ThrowsWhatWorkHasThrownAndWorksOn) {
+TEST(ThreadPool, ThrowsWhatWorkHasThrownAndWorksOn) {
   for (const int threads : {1, 2, 4}) {
     with_threads(threads, [] {
       for (int again = 0; again < 20; ++again) {
         const auto fails = [](std::int64_t begin, std::int64_t end) {
           if (begin <= 77 && 77 < end) throw std::runtime_error("77");
         };
-        EXPECT_THROW(Crew::get().share(100, fails), std::runtime_error);
+        EXPECT_THROW(ThreadPool::get().for_ranges(100, fails), std::runtime_error);
         std::atomic<std::int64_t> sum{0};
-        Crew::get().share(100, [&](std::int64_t begin, std::int64_t end) { sum += end - begin; });
+        ThreadPool::get().for_ranges(100, [&](std::int64_t begin, std::int64_t end) { sum += end - begin; });
         EXPECT_EQ(sum, 100);
       }
     });

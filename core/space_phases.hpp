@@ -1,11 +1,12 @@
-// Rounds of phases: work of many phases that wait for one another, and of which nobody knows beforehand how
-// often it is done, without the host between. For parallel sources alone.
+// Programs of phases: loops whose phases wait for one another and whose number of passes only the results
+// tell, such as sweeps until the impulses converge. On a GPU the whole loop is one launch of a cooperative
+// kernel, without the host between. For parallel sources alone.
 #pragma once
 
 #include "core/array.hpp"
 #include "core/block_limit.hpp"
-#include "core/crew.hpp"
 #include "core/space_tiles.hpp"
+#include "core/thread_pool.hpp"
 #include "core/timing.hpp"
 
 #include <algorithm>
@@ -46,9 +47,9 @@ struct TileOfPhase {
   }
 };
 
-/// A program that says itself how it does its work on a run of items, program.over(state, phase, begin, end),
-/// and whose items() hang on the state alone. Runs of equal length are shared out, so that who has the same
-/// run of all phases works on like items.
+/// A program that does its work on a range of items in one call, program.over(state, phase, begin, end), and
+/// whose items() depend on the state alone. All phases are cut into ranges in the same way, so that one
+/// thread works on the same part of each.
 template <class Program>
 concept WorksOnRuns = requires(const Program& program, const typename Program::State& state) {
   { program.over(state, 0, std::int64_t{}, std::int64_t{}) } -> std::same_as<typename Program::Sum>;
@@ -59,8 +60,8 @@ requires WorksOnRuns<Program>
 typename Program::State run(Host, const char* label, const Program& program, typename Program::State state) {
   using Sum = typename Program::Sum;
   constexpr std::int64_t most_runs = 128;
-  constexpr std::int64_t fewest = 16;   // items that are worth sharing out, some 2 us
-  constexpr std::int64_t together = 4;  // of which a run has at least so many
+  constexpr std::int64_t fewest = 16;   // items that are worth more than one thread, some 2 us
+  constexpr std::int64_t together = 4;  // least items of a range
   const bool shared = program.most_items() >= fewest;
   const std::int64_t runs_at_most = shared ? std::min(program.most_items() / together, most_runs) : 1;
   const timing::Call<Host> call(label);
@@ -80,7 +81,7 @@ typename Program::State run(Host, const char* label, const Program& program, typ
       }
     };
     if (shared) {
-      scree::detail::Crew::get().share_phases(phases, runs_of, work);
+      scree::detail::ThreadPool::get().for_ranges_in_phases(phases, runs_of, work);
     } else {
       for (int phase = 0; phase < phases; ++phase) work(phase, 0, 1);
     }
@@ -111,9 +112,9 @@ typename Program::State run(Host, const char* label, const Program& program, typ
 
 #if SCREE_WITH_CUDA
 
-/// Where all blocks of a launch wait for one another. The word in memory, at first 0, counts those that have
-/// come in its lower bits; the last one of them flips its highest bit and clears the others. Other than in
-/// grid.sync() of cooperative groups, no block waits for what its addition returns.
+/// A barrier for all blocks of a launch. The lower bits of a word in memory, which is 0 at first, count the
+/// blocks that have arrived; the last of them flips the highest bit and clears the others. Unlike in
+/// grid.sync() of cooperative groups, no block waits for the result of its atomic addition.
 class GridBarrier {
  public:
   __device__ explicit GridBarrier(unsigned* word) : word_(*word) {}
@@ -136,8 +137,8 @@ class GridBarrier {
   unsigned before_ = 0;  // the highest bit, as the block's first thread knows it
 };
 
-/// The phases from one on that have so few items that one block does them sooner than all blocks would wait
-/// for one another. None where items() hang on what other blocks do meanwhile.
+/// How many phases from `first` on have so few items that one block does them sooner than all blocks would
+/// pass a barrier. 0 where items() depend on what other blocks do meanwhile.
 template <class Program>
 __device__ int phases_of_one_block(const Program& program, const typename Program::State& state, int first,
                                    int phases) {
@@ -149,9 +150,9 @@ __device__ int phases_of_one_block(const Program& program, const typename Progra
 }
 
 /// All blocks are on the GPU at once, and wait for each other between phases. The items of a phase are dealt
-/// to them warp by warp, so that few items keep all processors busy. Each block keeps the state itself and
-/// judges alike, from the sums of all blocks, of which there are two sets: one may still be read by blocks
-/// that are behind.
+/// to the blocks warp by warp, so that a phase of few items still uses all processors. Each block has its own
+/// copy of the state and computes the next one from the sums of all blocks. There are two sets of sums,
+/// because blocks that are behind may still read one of them.
 template <class Program>
 __global__ void __launch_bounds__(Program::threads, blocks_at_once<Program>())
     run_phases(const __grid_constant__ Program program, const typename Program::State start,
@@ -217,14 +218,14 @@ GpuRoom room_for() {
     cudaGetDevice(&device);
     cudaDeviceGetAttribute(&found.processors, cudaDevAttrMultiProcessorCount, device);
     cudaOccupancyMaxActiveBlocksPerMultiprocessor(&found.on_each, run_phases<Program>, Program::threads, 0);
-    scree::detail::require_launched("the rounds' first");
+    scree::detail::require_launched("the first program of phases");
     return GpuRoom{std::max(found.processors, 1), std::max(found.on_each, 1)};
   }();
   return room;
 }
 
-/// Fewer blocks wait for one another more quickly: one on each processor, as long as its threads have few
-/// items.
+/// A barrier of fewer blocks is quicker: there is one block on each processor, as long as its threads have
+/// few items each.
 template <class Program>
 unsigned blocks_for(std::int64_t items) {
   constexpr std::int64_t least = 64;  // items of a block
@@ -258,16 +259,16 @@ typename Program::State run(Device, const char* label, Program program, typename
 
 }  // namespace detail
 
-/// Runs rounds until none is left, and returns what was known at the end. A round is program.phases(state)
-/// phases, of which each is work on program.items(state, phase) items at once: program(state, phase, item),
-/// of type Program::Sum with an operator +, which may be empty. Then state = program.judge(state, sum over
-/// the round), and no phase is left where phases() is 0. More threads than program.most_items() would not
-/// help. Program::threads make a block, a power of 2: fewer and larger blocks wait for one another more
-/// quickly, if registers suffice. On Device all rounds are one launch, in which a phase costs some
-/// microseconds; the order of the additions depends on the GPU's size, and is the same from run to run.
+/// Runs a program and returns its last state. A pass over the program is program.phases(state) phases. Each
+/// phase calls program(state, phase, item) for program.items(state, phase) items at once; the results, of
+/// type Program::Sum with an operator + (Sum may be empty), are added up over the pass. After a pass, state =
+/// program.judge(state, sum). The program ends when phases() is 0. More threads than program.most_items() are
+/// not used. Program::threads, a power of 2, is the size of a block: the barrier of fewer and larger blocks
+/// is quicker, if registers suffice. On Device the whole program is one launch, in which a phase costs some
+/// microseconds. The order of the additions depends on the size of the GPU, and is the same from run to run.
 template <class Space, class Program>
-typename Program::State run_rounds(const char* label, const Program& program,
-                                   const typename Program::State& start) {
+typename Program::State run_in_phases(const char* label, const Program& program,
+                                      const typename Program::State& start) {
   return detail::run(Space{}, label, program, start);
 }
 

@@ -1,5 +1,5 @@
 // Rounds of phases, against the same loops on one thread.
-#include "core/space_rounds.hpp"
+#include "core/space_phases.hpp"
 #include "tests/core/spaces.hpp"
 
 #include <gtest/gtest.h>
@@ -67,7 +67,7 @@ TYPED_TEST(RoundsTest, PhasesWaitForOneAnother) {
     const Ring expected{{numbers.data(), n}, {other.data(), n}, never, 20};
     const Ring::State on_one_thread = run_on_one_thread(expected);
     const Ring::State state =
-        parallel::run_rounds<TypeParam>("test", Ring{even.view(), odd.view(), never, 20}, Ring::State{});
+        parallel::run_in_phases<TypeParam>("test", Ring{even.view(), odd.view(), never, 20}, Ring::State{});
     EXPECT_EQ(state.rounds, 20);
     EXPECT_EQ(state.sum, on_one_thread.sum) << n;
     EXPECT_EQ(to_vector(even), numbers) << n;
@@ -78,8 +78,8 @@ TYPED_TEST(RoundsTest, EndWhereTheSumSaysSo) {
   Array<std::int64_t, TypeParam> even(1000), odd(1000);
   parallel::fill("test", even, std::int64_t{1});
   const Ring ring{even.view(), odd.view(), 10, 20};
-  EXPECT_EQ(parallel::run_rounds<TypeParam>("test", ring, Ring::State{}).rounds, 1);
-  EXPECT_EQ(parallel::run_rounds<TypeParam>("test", ring, Ring::State{.sum = 11, .rounds = 3}).rounds, 3);
+  EXPECT_EQ(parallel::run_in_phases<TypeParam>("test", ring, Ring::State{}).rounds, 1);
+  EXPECT_EQ(parallel::run_in_phases<TypeParam>("test", ring, Ring::State{.sum = 11, .rounds = 3}).rounds, 3);
 }
 
 }  // namespace
