@@ -149,7 +149,7 @@ struct UpSearch : PlainSearch<Space> {
 };
 
 /// A query, and how it is cut into work items: into runs of cells of one row or, where these are too
-/// many for the objects there are, into all objects of the level. an oversize object is thus spread over as
+/// many for the objects there are, into all objects of the level. An oversize object is thus spread over as
 /// many threads as it needs.
 struct Query {
   static constexpr int parts = 3;  // of an item
