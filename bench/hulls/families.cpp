@@ -73,6 +73,81 @@ class Maker {
     points_.emplace_back(0.25, 0, -half_height);
   }
 
+  void near_equal() {
+    for (int k = whole(4, 8); k > 0; --k) points_.push_back(in_cube());
+    if (whole(0, 1) == 0) {
+      points_.clear();
+      lattice();
+      points_.resize(std::min<std::size_t>(points_.size(), 8));
+    }
+    const std::size_t few = points_.size();
+    for (int k = whole(0, most_ - 8); k > 0; --k)
+      points_.push_back(points_[static_cast<std::size_t>(whole(0, static_cast<int>(few) - 1))]);
+    move_each(power_of_ten(-16, -7));
+  }
+
+  void near_flat() {
+    const double thick = power_of_ten(-16, -4);
+    lattice();
+    if (whole(0, 1) == 0) std::for_each(points_.begin(), points_.end(), [&](Vec3& p) { p = in_cube(); });
+    for (Vec3& p : points_) p.z() = thick * random_.uniform(-1, 1);
+    turn();
+  }
+
+  void flat_faces() {
+    const Vec3 half(1, random_.uniform(0.01, 1), random_.uniform(0.01, 1));
+    for (int k = some(); k > 0; --k) {
+      Vec3 p = in_cube();
+      const int axis = whole(0, 2);
+      p[axis] = p[axis] < 0 ? -1 : 1;
+      if (const int other = whole(0, 2); whole(0, 1) == 0) p[other] = p[other] < 0 ? -1 : 1;
+      points_.push_back(half.cwiseProduct(p));
+    }
+    turn();
+    move_each(power_of_ten(-16, -7));
+  }
+
+  void aspect() {
+    const double a = power_of_ten(-6, 0), b = power_of_ten(-6, 0);
+    const Vec3 half(1, a, whole(0, 2) == 0 ? a : b);
+    lattice();
+    for (Vec3& p : points_) p = half.cwiseProduct(whole(0, 1) == 0 ? p : in_cube());
+    turn();
+  }
+
+  void clusters() {
+    std::vector<Vec3> centres;
+    for (int k = whole(2, 6); k > 0; --k) centres.push_back(in_cube());
+    for (int k = some(); k > 0; --k)
+      points_.push_back(centres[static_cast<std::size_t>(whole(0, static_cast<int>(centres.size()) - 1))]);
+    move_each(power_of_ten(-12, -1));
+  }
+
+  void far() {
+    constexpr HullFamily near[] = {HullFamily::ball, HullFamily::prism, HullFamily::whole};
+    fill(near[whole(0, 2)]);
+    const Vec3 away = power_of_ten(0, 6) * on_sphere();
+    for (Vec3& p : points_) p += away;
+  }
+
+  void magnitudes() {
+    for (int k = some(); k > 0; --k) {
+      Vec3 p = in_cube();
+      for (int c = 0; c < 3; ++c) p[c] *= whole(0, 1) == 0 ? 1 : power_of_ten(-12, 0);
+      points_.push_back(p);
+    }
+  }
+
+  void planes() {
+    for (int k = some(); k > 0; --k) {
+      Vec3 p = in_cube();
+      p[whole(0, 2)] = 0;
+      if (whole(0, 2) == 0) p[whole(0, 2)] = 0;
+      points_.push_back(p);
+    }
+    turn();
+  }
+
   void fill(HullFamily family) {
     switch (family) {
       case HullFamily::ball:
@@ -95,40 +170,15 @@ class Maker {
       case HullFamily::whole:
         lattice();
         break;
-      case HullFamily::near_equal: {
-        for (int k = whole(4, 8); k > 0; --k) points_.push_back(in_cube());
-        if (whole(0, 1) == 0) {
-          points_.clear();
-          lattice();
-          points_.resize(std::min<std::size_t>(points_.size(), 8));
-        }
-        const std::size_t few = points_.size();
-        for (int k = whole(0, most_ - 8); k > 0; --k)
-          points_.push_back(points_[static_cast<std::size_t>(whole(0, static_cast<int>(few) - 1))]);
-        move_each(power_of_ten(-16, -7));
+      case HullFamily::near_equal:
+        near_equal();
         break;
-      }
-      case HullFamily::near_flat: {
-        const double thick = power_of_ten(-16, -4);
-        lattice();
-        if (whole(0, 1) == 0) std::for_each(points_.begin(), points_.end(), [&](Vec3& p) { p = in_cube(); });
-        for (Vec3& p : points_) p.z() = thick * random_.uniform(-1, 1);
-        turn();
+      case HullFamily::near_flat:
+        near_flat();
         break;
-      }
-      case HullFamily::flat_faces: {
-        const Vec3 half(1, random_.uniform(0.01, 1), random_.uniform(0.01, 1));
-        for (int k = some(); k > 0; --k) {
-          Vec3 p = in_cube();
-          const int axis = whole(0, 2);
-          p[axis] = p[axis] < 0 ? -1 : 1;
-          if (const int other = whole(0, 2); whole(0, 1) == 0) p[other] = p[other] < 0 ? -1 : 1;
-          points_.push_back(half.cwiseProduct(p));
-        }
-        turn();
-        move_each(power_of_ten(-16, -7));
+      case HullFamily::flat_faces:
+        flat_faces();
         break;
-      }
       case HullFamily::prism:
         rings(power_of_ten(-2, 0.5));
         if (whole(0, 1) == 0) turn();
@@ -137,45 +187,20 @@ class Maker {
         rings(power_of_ten(-6, -2));
         turn();
         break;
-      case HullFamily::aspect: {
-        const double a = power_of_ten(-6, 0), b = power_of_ten(-6, 0);
-        const Vec3 half(1, a, whole(0, 2) == 0 ? a : b);
-        lattice();
-        for (Vec3& p : points_) p = half.cwiseProduct(whole(0, 1) == 0 ? p : in_cube());
-        turn();
+      case HullFamily::aspect:
+        aspect();
         break;
-      }
-      case HullFamily::clusters: {
-        std::vector<Vec3> centres;
-        for (int k = whole(2, 6); k > 0; --k) centres.push_back(in_cube());
-        for (int k = some(); k > 0; --k)
-          points_.push_back(
-              centres[static_cast<std::size_t>(whole(0, static_cast<int>(centres.size()) - 1))]);
-        move_each(power_of_ten(-12, -1));
+      case HullFamily::clusters:
+        clusters();
         break;
-      }
-      case HullFamily::far: {
-        constexpr HullFamily near[] = {HullFamily::ball, HullFamily::prism, HullFamily::whole};
-        fill(near[whole(0, 2)]);
-        const Vec3 away = power_of_ten(0, 6) * on_sphere();
-        for (Vec3& p : points_) p += away;
+      case HullFamily::far:
+        far();
         break;
-      }
       case HullFamily::magnitudes:
-        for (int k = some(); k > 0; --k) {
-          Vec3 p = in_cube();
-          for (int c = 0; c < 3; ++c) p[c] *= whole(0, 1) == 0 ? 1 : power_of_ten(-12, 0);
-          points_.push_back(p);
-        }
+        magnitudes();
         break;
       case HullFamily::planes:
-        for (int k = some(); k > 0; --k) {
-          Vec3 p = in_cube();
-          p[whole(0, 2)] = 0;
-          if (whole(0, 2) == 0) p[whole(0, 2)] = 0;
-          points_.push_back(p);
-        }
-        turn();
+        planes();
         break;
       case HullFamily::tolerance:
         lattice();

@@ -43,6 +43,13 @@ void put_edge_over_edge(double angle, Arrangement& to) {
   to.direction = Vec3::UnitZ();
 }
 
+void enlarge_one(Arrangement& pair, Random& random) {
+  pair.a.size *= 1000;
+  if (one_in(2, random)) pair.a.size.z() *= 1e-3;
+  if (one_in(3, random)) pair.a.orientation = Quat::Identity(), pair.direction = Vec3::UnitZ();
+  if (one_in(2, random)) std::swap(pair.a, pair.b);
+}
+
 Arrangement arrange(Family family, Random& random) {
   Arrangement pair{{Vec3::Zero(), random_turn(random), random_extents(random)},
                    {Vec3::Zero(), random_turn(random), random_extents(random)},
@@ -80,10 +87,7 @@ Arrangement arrange(Family family, Random& random) {
       direction = Vec3::UnitZ();
       break;
     case Family::size_ratio:
-      a.size *= 1000;
-      if (one_in(2, random)) a.size.z() *= 1e-3;
-      if (one_in(3, random)) a.orientation = Quat::Identity(), direction = Vec3::UnitZ();
-      if (one_in(2, random)) std::swap(a, b);
+      enlarge_one(pair, random);
       break;
     case Family::coincident:
       direction.setZero();

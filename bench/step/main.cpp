@@ -21,6 +21,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <numeric>
 #include <sstream>
 
 namespace {
@@ -104,6 +105,68 @@ Json steps_by_calls(Simulation& simulation, int most) {
           {"calls_ms", per_step(timing::calls(), steps)}};
 }
 
+/// Takes steps until a simulated time (s), or until so much wall time is gone (s).
+void settle(Simulation& simulation, double until, double within) {
+  const auto start = Clock::now();
+  while (!simulation.finished() && simulation.time() < until && seconds_since(start) < within)
+    simulation.step();
+}
+
+/// The wall time of each of at most so many steps (s), or of those that fit into so much wall time (s).
+std::vector<double> time_steps(Simulation& simulation, int most, double within) {
+  std::vector<double> times;
+  const auto start = Clock::now();
+  while (!simulation.finished() && static_cast<int>(times.size()) < most && seconds_since(start) < within) {
+    const auto begin = Clock::now();
+    simulation.step();
+    times.push_back(seconds_since(begin));
+  }
+  if (times.empty()) throw InputError("the scene ends before there is a step to time");
+  return times;
+}
+
+/// What the timed steps and the state after them tell; `before`: the counters before these steps.
+Json results(const Scene& scene, Simulation& simulation, const std::vector<double>& times,
+             const Counters& before) {
+  const auto n = static_cast<double>(times.size());
+  const Json stages = per_step(timing::entries(), n);
+  const MemoryUse memory = memory_use_of<SCREE_SPACES>(simulation.space_name());
+  const Observation& seen = simulation.observe();
+  const double typical = median(times);
+  return {{"scene", scene.name},
+          {"space", simulation.space_name()},
+          {"precision", scene.precision == Precision::mixed ? "mixed" : "double"},
+          {"commit", build_info().commit},
+          {"hardware", hardware_of(simulation.space_name())},
+          {"bodies", seen.bodies},
+          {"contacts", seen.contacts},
+          {"pairs", seen.pairs},
+          {"time", simulation.time()},
+          {"steps", n},
+          {"median_ms", 1e3 * typical},
+          {"mean_ms", 1e3 * std::accumulate(times.begin(), times.end(), 0.0) / n},
+          {"steps_per_s", 1 / typical},
+          {"body_steps_per_s", static_cast<double>(seen.bodies) / typical},
+          {"memory_bytes", memory.now},
+          {"memory_peak_bytes", memory.peak},
+          {"substeps", static_cast<double>(seen.counters.substeps - before.substeps) / n},
+          {"sweeps", static_cast<double>(seen.counters.sweeps - before.sweeps) / n},
+          {"unconverged", seen.counters.unconverged - before.unconverged},
+          {"unfinished_impacts", seen.counters.unfinished_impacts - before.unfinished_impacts},
+          {"impacts", static_cast<double>(seen.counters.impacts - before.impacts) / n},
+          {"pcs_made", seen.counters.pcs_made - before.pcs_made},
+          {"penetration_relative_mean", seen.penetration.relative_mean},
+          {"penetration_relative_max", seen.penetration.relative_max},
+          {"gap_mean", seen.gap_mean},
+          {"speed_median", median_speed(simulation)},
+          {"speed_rms", seen.speed_rms},
+          {"speed_max", seen.speed_max},
+          {"centre_z", seen.centre.z()},
+          {"unexplained", seen.unexplained},
+          {"state_hash", fmt::format("{:016x}", simulation.state_hash())},
+          {"stages_ms", stages}};
+}
+
 int run(int argc, char** argv) {
   std::vector<std::string> words;
   const bench::Options options = bench::parse(argc, argv,
@@ -116,70 +179,22 @@ int run(int argc, char** argv) {
                                                {"--calls", "no"}},
                                               &words);
   if (words.size() != 1) throw InputError("needs one scene; see --help");
+  const double within = std::stod(options.at("--within"));
   const Scene scene = scene_of(words.front(), options.at("--set"));
   const auto building = Clock::now();
   Simulation simulation(scene, {space_of(options.at("--space")), std::stoi(options.at("--threads"))});
   const double built = seconds_since(building);
   const auto settling = Clock::now();
-  const double within = std::stod(options.at("--within"));
-  while (!simulation.finished() && simulation.time() < std::stod(options.at("--settle")) &&
-         seconds_since(settling) < within)
-    simulation.step();
+  settle(simulation, std::stod(options.at("--settle")), within);
   const double settled = seconds_since(settling);
   const std::int64_t first = simulation.steps();
   const Counters before = simulation.observe(false).counters;
   timing::reset();
-  std::vector<double> times;
-  const auto timed = Clock::now();
-  while (!simulation.finished() && static_cast<int>(times.size()) < std::stoi(options.at("--steps")) &&
-         seconds_since(timed) < within) {
-    const auto start = Clock::now();
-    simulation.step();
-    times.push_back(seconds_since(start));
-  }
-  if (times.empty()) throw InputError("the scene ends before there is a step to time");
-  const auto n = static_cast<double>(simulation.steps() - first);
-  const Json stages = per_step(timing::entries(), n);
-  const MemoryUse memory = memory_use_of<SCREE_SPACES>(simulation.space_name());
-  const Observation& seen = simulation.observe();
-  double total = 0;
-  for (const double time : times) total += time;
-  const double typical = median(times);
-  Json json{{"scene", scene.name},
-            {"space", simulation.space_name()},
-            {"precision", scene.precision == Precision::mixed ? "mixed" : "double"},
-            {"commit", build_info().commit},
-            {"hardware", hardware_of(simulation.space_name())},
-            {"bodies", seen.bodies},
-            {"contacts", seen.contacts},
-            {"pairs", seen.pairs},
-            {"time", simulation.time()},
-            {"steps", n},
-            {"median_ms", 1e3 * typical},
-            {"mean_ms", 1e3 * total / n},
-            {"steps_per_s", 1 / typical},
-            {"body_steps_per_s", static_cast<double>(seen.bodies) / typical},
-            {"memory_bytes", memory.now},
-            {"memory_peak_bytes", memory.peak},
-            {"substeps", static_cast<double>(seen.counters.substeps - before.substeps) / n},
-            {"sweeps", static_cast<double>(seen.counters.sweeps - before.sweeps) / n},
-            {"unconverged", seen.counters.unconverged - before.unconverged},
-            {"unfinished_impacts", seen.counters.unfinished_impacts - before.unfinished_impacts},
-            {"impacts", static_cast<double>(seen.counters.impacts - before.impacts) / n},
-            {"pcs_made", seen.counters.pcs_made - before.pcs_made},
-            {"penetration_relative_mean", seen.penetration.relative_mean},
-            {"penetration_relative_max", seen.penetration.relative_max},
-            {"gap_mean", seen.gap_mean},
-            {"speed_median", median_speed(simulation)},
-            {"speed_rms", seen.speed_rms},
-            {"speed_max", seen.speed_max},
-            {"centre_z", seen.centre.z()},
-            {"unexplained", seen.unexplained},
-            {"built_s", built},
-            {"settled_s", settled},
-            {"settling_steps", first},
-            {"state_hash", fmt::format("{:016x}", simulation.state_hash())},
-            {"stages_ms", stages}};
+  const std::vector<double> times = time_steps(simulation, std::stoi(options.at("--steps")), within);
+  Json json = results(scene, simulation, times, before);
+  json["built_s"] = built;
+  json["settled_s"] = settled;
+  json["settling_steps"] = first;
   if (options.at("--calls") == "yes") json["by_calls"] = steps_by_calls(simulation, 10);
   fmt::print("{}\n", json.dump(1));
   return 0;

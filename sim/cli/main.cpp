@@ -11,6 +11,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
@@ -22,14 +23,12 @@
 #include <ranges>
 #include <tuple>
 #include <unistd.h>
+#include <vector>
 
 namespace {
 
 using namespace scree;
 using namespace scree::cli;
-
-/// One command's options, and what it does once they are known.
-using Command = std::function<int()>;
 
 void add_overrides(CLI::App& command, std::vector<Override>& overrides) {
   const auto take = [&overrides](const std::vector<std::string>& settings) {
@@ -260,59 +259,58 @@ int after_printing(int status) {
   throw RunError(fmt::format("cannot write to standard output: {}", std::strerror(errno)));
 }
 
-}  // namespace
+/// A command, and what it does once its options are known; the result is the exit status.
+struct Command {
+  const CLI::App* app;
+  std::function<int()> run;
+};
 
-int main(int argc, char** argv) {
-  open_standard_streams();
-  CLI::App app(
-      "scree simulates rigid particles, such as spheres and boxes, from a YAML scene to pictures and "
-      "numbers.",
-      "scree");
-  app.footer("Exit status: 0 done; 1 a check failed; 2 bad input; 3 the run failed; 130 interrupted.");
-  app.require_subcommand(1);
-  app.set_version_flag("--version", "scree " + build_info().version, "Print the version and exit");
-
-  RunArguments run_arguments;
-  PlanArguments plan_arguments;
-  VerifyArguments verify_arguments;
-  StudyArguments study_arguments;
-  ExportArguments export_arguments;
-  RenderArguments render_arguments;
-  CompareArguments compare_arguments;
-  bool schema = false, reference = false;
-  const CLI::App* run_command = add_run(app, run_arguments);
-  const CLI::App* plan_command = add_plan(app, plan_arguments, schema, reference);
-  const CLI::App* verify_command = add_verify(app, verify_arguments);
-  const CLI::App* study_command = add_study(app, study_arguments);
-  const CLI::App* export_command = add_export(app, export_arguments);
-  const CLI::App* render_command = add_render(app, render_arguments);
+/// The options of all commands.
+struct Arguments {
+  RunArguments run;
+  PlanArguments plan;
+  VerifyArguments verify;
+  StudyArguments study;
+  ExportArguments trajectory;
+  RenderArguments render;
+  CompareArguments compare;
+  NewArguments scene;
   std::filesystem::path reported;
-  const CLI::App* report_command = add_report(app, reported);
-  const CLI::App* compare_command = add_compare(app, compare_arguments);
-  const CLI::App* bench_command =
-      add_prefix(app, "bench", "Run a benchmark: scree bench NAME ...; lists them without");
-  NewArguments new_arguments;
-  const CLI::App* new_command = add_new(app, new_arguments);
-  app.add_subcommand("info", "Say what this program is and what it finds on this machine");
-  const CLI::App* complete_command =
-      add_prefix(app, "complete", "Tell a shell what may come next")->group("");
-  set_help(app);
+  bool schema = false, reference = false;
+};
 
+/// Adds the commands in the order in which the help shows them.
+std::vector<Command> add_commands(CLI::App& app, Arguments& all) {
+  std::vector<Command> commands;
+  const auto add = [&](const CLI::App* command, auto act) { commands.push_back({command, act}); };
+  const auto add_printing = [&](const CLI::App* command, auto act) {
+    commands.push_back({command, [act] { return after_printing(act()); }});
+  };
+  add(add_run(app, all.run), [&] { return run(all.run); });
+  add_printing(add_plan(app, all.plan, all.schema, all.reference), [&] {
+    return all.schema ? print_schema() : all.reference ? print_reference() : plan(all.plan);
+  });
+  add_printing(add_verify(app, all.verify), [&] { return verify(all.verify); });
+  add_printing(add_study(app, all.study), [&] { return study(all.study); });
+  add_printing(add_export(app, all.trajectory), [&] { return export_trajectory(all.trajectory); });
+  add_printing(add_render(app, all.render), [&] { return render_again(all.render); });
+  add_printing(add_report(app, all.reported), [&] { return report(all.reported); });
+  add_printing(add_compare(app, all.compare), [&] { return compare(all.compare); });
+  const CLI::App* to_bench =
+      add_prefix(app, "bench", "Run a benchmark: scree bench NAME ...; lists them without");
+  add(to_bench, [to_bench] { return bench(to_bench->remaining()); });
+  add_printing(add_new(app, all.scene), [&] { return write_new_scene(all.scene); });
+  add_printing(app.add_subcommand("info", "Say what this program is and what it finds on this machine"),
+               [] { return info(); });
+  const CLI::App* to_complete = add_prefix(app, "complete", "Tell a shell what may come next")->group("");
+  add(to_complete, [&app, to_complete] { return complete(app, to_complete->remaining()); });
+  return commands;
+}
+
+/// Says what an exception of a command means to the user, and returns the exit status.
+int status_of_failure(const CLI::App& app, const std::exception_ptr& failure) {
   try {
-    app.parse(argc, argv);
-    if (run_command->parsed()) return run(run_arguments);
-    if (verify_command->parsed()) return after_printing(verify(verify_arguments));
-    if (study_command->parsed()) return after_printing(study(study_arguments));
-    if (export_command->parsed()) return after_printing(export_trajectory(export_arguments));
-    if (render_command->parsed()) return after_printing(render_again(render_arguments));
-    if (report_command->parsed()) return after_printing(report(reported));
-    if (compare_command->parsed()) return after_printing(compare(compare_arguments));
-    if (bench_command->parsed()) return bench(bench_command->remaining());
-    if (new_command->parsed()) return after_printing(write_new_scene(new_arguments));
-    if (complete_command->parsed()) return complete(app, complete_command->remaining());
-    if (plan_command->parsed())
-      return after_printing(schema ? print_schema() : reference ? print_reference() : plan(plan_arguments));
-    return after_printing(info());
+    std::rethrow_exception(failure);
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() == 0) return app.exit(error);  // --help
     print_error(fmt::format("{}; see scree --help", error.what()));
@@ -326,5 +324,28 @@ int main(int argc, char** argv) {
   } catch (const std::exception& error) {
     print_error(error.what());
     return status_run_failed;
+  }
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  open_standard_streams();
+  CLI::App app(
+      "scree simulates rigid particles, such as spheres and boxes, from a YAML scene to pictures and "
+      "numbers.",
+      "scree");
+  app.footer("Exit status: 0 done; 1 a check failed; 2 bad input; 3 the run failed; 130 interrupted.");
+  app.require_subcommand(1);
+  app.set_version_flag("--version", "scree " + build_info().version, "Print the version and exit");
+  Arguments arguments;
+  const std::vector<Command> commands = add_commands(app, arguments);
+  set_help(app);
+  try {
+    app.parse(argc, argv);
+    // require_subcommand(1): exactly one was given.
+    return std::ranges::find_if(commands, [](const Command& c) { return c.app->parsed(); })->run();
+  } catch (const std::exception&) {
+    return status_of_failure(app, std::current_exception());
   }
 }

@@ -109,23 +109,6 @@ constexpr const char* out_of_memory =
     "out of memory; --resume goes on from the last checkpoint where there is more, `scree plan` says how "
     "much";
 
-/// Does a part of the run. If it fails the run has failed, but what there is by then is still written; the
-/// first error is the one that counts.
-void attempt(RunSummary& summary, Console& console, const std::function<void()>& part) {
-  const auto fail = [&](const char* why) {
-    if (summary.error != why) console.error(why);
-    summary.status = "failed";
-    if (summary.error.empty()) summary.error = why;
-  };
-  try {
-    part();
-  } catch (const RunError& error) {
-    fail(error.what());
-  } catch (const std::bad_alloc&) {
-    fail(out_of_memory);
-  }
-}
-
 /// The step that failed as the manifest has it, and a picture of the place.
 void say_failure(const StepFailure& failure, const Scene& scene, Simulation& simulation,
                  const RunFolder& folder, render::ContextChoice context, RunSummary& summary,
@@ -195,6 +178,112 @@ int helpers_of(const Simulation& simulation, const RunArguments& arguments) {
              : 1;
 }
 
+/// A run whose folder is open: its steps, and what is written when they end, in whichever way they do.
+class Run {
+ public:
+  Run(const RunArguments& arguments, const Scene& scene, const RunFolder& folder, Simulation& simulation,
+      Checkpoints& checkpoints, Console& console, Recorder& recorder)
+      : arguments_(arguments),
+        scene_(scene),
+        folder_(folder),
+        simulation_(simulation),
+        checkpoints_(checkpoints),
+        console_(console),
+        recorder_(recorder),
+        summary_{.space = simulation.space_name(),
+                 .model = plan_model(scene).features(),
+                 .steps_total = simulation.steps_total()} {}
+
+  /// Takes steps until `last_step`, at the time `end` (s). Returns the exit status.
+  int to_end(std::int64_t last_step, double end) {
+    attempt([&] { take_steps(last_step, end); });
+    if (summary_.status.empty()) summary_.status = simulation_.steps() < last_step ? "interrupted" : "done";
+    const bool is_complete = summary_.status == "done" && simulation_.finished();
+    if (!is_complete && simulation_.steps() > 0 && is_whole(summary_, simulation_, recorder_))
+      attempt([&] { checkpoints_.take_last(simulation_, recorder_); });
+    finish_files();
+    complete_summary();
+    say_summary(scene_, summary_, folder_, console_);
+    say_guards(summary_, console_);
+    console_.close();
+    summary_.warnings = console_.warnings();
+    write_file(folder_ / "manifest.json", manifest_of(scene_, summary_));
+    if (is_complete && summary_.status == "done") {
+      checkpoints_.drop();
+      recorder_.drop();
+    }
+    try_report(folder_);
+    return status_of(summary_);
+  }
+
+ private:
+  /// Does a part of the run. If it fails the run has failed, but the other parts are still done; the first
+  /// error is the one that counts.
+  void attempt(const std::function<void()>& part) {
+    const auto fail = [&](const char* why) {
+      if (summary_.error != why) console_.error(why);
+      summary_.status = "failed";
+      if (summary_.error.empty()) summary_.error = why;
+    };
+    try {
+      part();
+    } catch (const RunError& error) {
+      fail(error.what());
+    } catch (const std::bad_alloc&) {
+      fail(out_of_memory);
+    }
+  }
+
+  void take_steps(std::int64_t last_step, double end) {
+    try {
+      advance(simulation_, recorder_, checkpoints_, console_, arguments_, last_step, end);
+    } catch (const StepFailure& caught) {
+      failure_ = caught;
+      throw;
+    }
+  }
+
+  void finish_files() {
+    attempt([&] { recorder_.record_last(simulation_); });
+    attempt([&] { recorder_.finish(); });
+    if (summary_.status == "done")
+      attempt([&] { write_final_state(state_of(simulation_), scene_, folder_ / "final.csv"); });
+  }
+
+  void complete_summary() {
+    summary_.steps = simulation_.steps();
+    summary_.time = simulation_.time();
+    summary_.last = recorder_.newest();
+    summary_.guards = guards_of(summary_.last, about_guards(scene_, recorder_.worst_overlap()));
+    summary_.checks = recorder_.check_results();
+    attempt([&] { summary_.state_hash = simulation_.state_hash(); });
+    if (failure_) {
+      attempt([&] {
+        say_failure(*failure_, scene_, simulation_, folder_, arguments_.context, summary_, console_);
+      });
+    }
+    summary_.states = recorder_.states();
+    if (const Film* film = recorder_.film()) {
+      summary_.frames = film->frames();
+      summary_.movie = film->movie();
+      summary_.renderer = film->renderer();
+    }
+    summary_.trajectory_frames = recorder_.trajectory_frames();
+    summary_.wall = recorder_.wall();
+    summary_.resumed_at = checkpoints_.resumed_at();
+  }
+
+  const RunArguments& arguments_;
+  const Scene& scene_;
+  const RunFolder& folder_;
+  Simulation& simulation_;
+  Checkpoints& checkpoints_;
+  Console& console_;
+  Recorder& recorder_;
+  RunSummary summary_;
+  std::optional<StepFailure> failure_;
+};
+
 }  // namespace
 
 int run(const RunArguments& arguments) {
@@ -235,57 +324,7 @@ int run(const RunArguments& arguments) {
     console.say("no checkpoint: from the beginning");
   }
 
-  RunSummary summary{.space = simulation.space_name(),
-                     .model = plan_model(scene).features(),
-                     .steps_total = simulation.steps_total()};
-  std::optional<StepFailure> failure;
-  attempt(summary, console, [&] {
-    try {
-      advance(simulation, recorder, checkpoints, console, arguments, last_step, end);
-    } catch (const StepFailure& caught) {
-      failure = caught;
-      throw;
-    }
-  });
-  if (summary.status.empty()) summary.status = simulation.steps() < last_step ? "interrupted" : "done";
-  const bool is_complete = summary.status == "done" && simulation.finished();
-  if (!is_complete && simulation.steps() > 0 && is_whole(summary, simulation, recorder))
-    attempt(summary, console, [&] { checkpoints.take_last(simulation, recorder); });
-  attempt(summary, console, [&] { recorder.record_last(simulation); });
-  attempt(summary, console, [&] { recorder.finish(); });
-  if (summary.status == "done") {
-    attempt(summary, console, [&] { write_final_state(state_of(simulation), scene, folder / "final.csv"); });
-  }
-
-  summary.steps = simulation.steps();
-  summary.time = simulation.time();
-  summary.last = recorder.newest();
-  summary.guards = guards_of(summary.last, about_guards(scene, recorder.worst_overlap()));
-  summary.checks = recorder.check_results();
-  attempt(summary, console, [&] { summary.state_hash = simulation.state_hash(); });
-  if (failure)
-    attempt(summary, console,
-            [&] { say_failure(*failure, scene, simulation, folder, arguments.context, summary, console); });
-  summary.states = recorder.states();
-  if (const Film* film = recorder.film()) {
-    summary.frames = film->frames();
-    summary.movie = film->movie();
-    summary.renderer = film->renderer();
-  }
-  summary.trajectory_frames = recorder.trajectory_frames();
-  summary.wall = recorder.wall();
-  summary.resumed_at = checkpoints.resumed_at();
-  say_summary(scene, summary, folder, console);
-  say_guards(summary, console);
-  console.close();
-  summary.warnings = console.warnings();
-  write_file(folder / "manifest.json", manifest_of(scene, summary));
-  if (is_complete && summary.status == "done") {
-    checkpoints.drop();
-    recorder.drop();
-  }
-  try_report(folder);
-  return status_of(summary);
+  return Run(arguments, scene, folder, simulation, checkpoints, console, recorder).to_end(last_step, end);
 }
 
 }  // namespace scree::cli

@@ -37,10 +37,7 @@ std::string describe_expectation(const Check& check) {
   return words;
 }
 
-bool is_energy(const Measure& measure) {
-  const auto& table = measure_table();
-  return std::ranges::find(table, measure.kind, &MeasureInfo::kind)->unit == "J";
-}
+bool is_energy(const Measure& measure) { return measure.info->unit == "J"; }
 
 /// The larger of the tolerances given; none means equality to the bit.
 double allowance(const Check& check, double unit) {

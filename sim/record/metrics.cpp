@@ -22,12 +22,8 @@ std::vector<std::string> single_bodies(const Scene& scene) {
 }
 
 // What can be nothing but 0 in a scene has no column.
-bool is_of_emission(MeasureKind kind) {
-  return kind == MeasureKind::emission_requested || kind == MeasureKind::emission_emitted;
-}
-bool is_of_removal(MeasureKind kind) {
-  return kind == MeasureKind::region_removed || kind == MeasureKind::region_removed_mass;
-}
+bool is_of_emission(const MeasureInfo& info) { return info.name.starts_with("emission."); }
+bool is_of_removal(const MeasureInfo& info) { return info.name.starts_with("removed"); }
 
 /// The names of a measure's values: itself, or its components.
 void append_names(std::vector<std::string>& names, const std::string& measure, bool is_vector) {
@@ -40,12 +36,12 @@ void append_names(std::vector<std::string>& names, const std::string& measure, b
 std::vector<std::string> metric_names(const Scene& scene) {
   std::vector<std::string> names;
   for (const MeasureInfo& info : measure_table()) {
-    if (info.of == MeasureSubject::run && (!scene.emitters.empty() || !is_of_emission(info.kind)))
-      append_names(names, std::string(info.name), info.is_vector);
+    if (info.of == MeasureSubject::run && (!scene.emitters.empty() || !is_of_emission(info)))
+      append_names(names, std::string(info.name), info.is_vector());
   }
   for (const Region& region : scene.regions) {
     for (const MeasureInfo& info : measure_table()) {
-      if (info.of == MeasureSubject::region && (region.removes.value_or(false) || !is_of_removal(info.kind)))
+      if (info.of == MeasureSubject::region && (region.removes.value_or(false) || !is_of_removal(info)))
         names.push_back(fmt::format("region.{}.{}", region.name, info.name));
     }
   }

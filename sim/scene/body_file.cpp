@@ -76,22 +76,31 @@ void BodyFile::find_columns() {
     if (!has(column)) fail(column, rows_->head(), "the column is missing; x, y and z are needed");
 }
 
-/// What the bodies are, where no column says it: the scene does, or the sizes that there are leave one shape.
+/// Finds the shape of the bodies where no column has it: the scene says it, or only one shape has the sizes
+/// that the file has.
 void BodyFile::find_shape() {
+  if (use_.shape) {
+    check_shape_of_scene();
+  } else if (!has(BodyColumn::shape)) {
+    find_shape_by_sizes();
+  }
+}
+
+/// The shape that the scene gives, and its sizes, must not be in the file as well.
+void BodyFile::check_shape_of_scene() {
   constexpr std::array sizes = {BodyColumn::radius, BodyColumn::size_x, BodyColumn::size_y,
                                 BodyColumn::size_z, BodyColumn::hull};
-  if (use_.shape) {
-    if (has(BodyColumn::shape))
-      fail(BodyColumn::shape, mark_of(BodyColumn::shape),
-           "the scene says the shape beside `file` already; leave out one of the two");
-    for (const BodyColumn column : sizes)
-      if (use_.has_sizes && has(column))
-        fail(column, mark_of(column),
-             fmt::format("the scene says the size beside `file` already; write `shape: {}` there",
-                         word_of(*use_.shape)));
-    return;
-  }
-  if (has(BodyColumn::shape)) return;
+  if (has(BodyColumn::shape))
+    fail(BodyColumn::shape, mark_of(BodyColumn::shape),
+         "the scene says the shape beside `file` already; leave out one of the two");
+  for (const BodyColumn column : sizes)
+    if (use_.has_sizes && has(column))
+      fail(column, mark_of(column),
+           fmt::format("the scene says the size beside `file` already; write `shape: {}` there",
+                       word_of(*use_.shape)));
+}
+
+void BodyFile::find_shape_by_sizes() {
   const bool round = has(BodyColumn::radius), edges = has(BodyColumn::size_x) && has(BodyColumn::size_y),
              along = has(BodyColumn::size_z), hull = has(BodyColumn::hull);
   if (round && !edges && !along && !hull) use_.shape = Shape::sphere;

@@ -42,6 +42,8 @@ class BodyFile {
  private:
   void find_columns();
   void find_shape();
+  void check_shape_of_scene();
+  void find_shape_by_sizes();
   void count_rows();
   void note_ignored(const std::vector<bool>& is_used);
   bool has(BodyColumn column) const;

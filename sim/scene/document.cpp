@@ -26,6 +26,23 @@ SourceMark to_mark(const YAML::Mark& mark) {
   return {std::max(mark.line, 0) + 1, std::max(mark.column, 0) + 1};
 }
 
+/// Whether the second byte of a sequence of three or four is in the range that excludes overlong forms,
+/// surrogates and what lies beyond U+10FFFF.
+bool is_second_byte(unsigned lead, unsigned second) {
+  switch (lead) {
+    case 0xE0:
+      return second >= 0xA0;
+    case 0xED:
+      return second <= 0x9F;
+    case 0xF0:
+      return second >= 0x90;
+    case 0xF4:
+      return second <= 0x8F;
+    default:
+      return true;
+  }
+}
+
 /// Length of the UTF-8 sequence that starts at `at`, or 0 if there is none (RFC 3629, section 4).
 std::size_t utf8_length(std::string_view text, std::size_t at) {
   const auto byte = [&](std::size_t i) {
@@ -35,13 +52,9 @@ std::size_t utf8_length(std::string_view text, std::size_t at) {
   const unsigned lead = byte(0);
   if (lead < 0x80) return 1;
   if (lead >= 0xC2 && lead <= 0xDF && continues(1)) return 2;
-  // The second byte's range excludes overlong forms, surrogates and what lies beyond U+10FFFF.
-  if (lead >= 0xE0 && lead <= 0xEF && continues(1) && continues(2) && !(lead == 0xE0 && byte(1) < 0xA0) &&
-      !(lead == 0xED && byte(1) > 0x9F))
-    return 3;
-  if (lead >= 0xF0 && lead <= 0xF4 && continues(1) && continues(2) && continues(3) &&
-      !(lead == 0xF0 && byte(1) < 0x90) && !(lead == 0xF4 && byte(1) > 0x8F))
-    return 4;
+  if (!is_second_byte(lead, byte(1))) return 0;
+  if (lead >= 0xE0 && lead <= 0xEF && continues(1) && continues(2)) return 3;
+  if (lead >= 0xF0 && lead <= 0xF4 && continues(1) && continues(2) && continues(3)) return 4;
   return 0;
 }
 

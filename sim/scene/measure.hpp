@@ -1,4 +1,4 @@
-// The measures of the scene language: their grammar, and what each is worth.
+// The measures of the scene language: their table, their parser and their values.
 #pragma once
 
 #include "sim/observe/observation.hpp"
@@ -6,93 +6,53 @@
 
 #include <cstdint>
 #include <functional>
+#include <span>
 #include <string_view>
-#include <vector>
 
 namespace scree {
 
-enum class MeasureKind {
-  // Of one body; see BodyState.
-  position,
-  velocity,
-  spin,
-  acceleration,
-  force,
-  tilt,
-  // Of a mesh: sums over its triangles.
-  mesh_force,
-  mesh_torque,
-  // Of the whole run; see Observation.
-  energy_total,
-  energy_kinetic,
-  energy_linear,
-  energy_angular,
-  energy_potential,
-  energy_unexplained,
-  energy_work,
-  energy_integration,
-  energy_exchange,
-  dissipated_restitution,
-  dissipated_friction,
-  dissipated_correction,
-  momentum,
-  angular_momentum,
-  centre,
-  penetration_max,
-  penetration_mean,
-  penetration_p99,
-  penetration_relative_max,
-  penetration_relative_mean,
-  gap_mean,
-  contacts_count,
-  pairs_count,
-  bodies_count,
-  speed_max,
-  speed_rms,
-  speed_kurtosis,
-  impacts_count,
-  coordination_mean,
-  guards_redone,
-  guards_left,
-  guards_sweeps,
-  guards_impacts,
-  guards_newton,
-  guards_gjk,
-  emission_requested,
-  emission_emitted,
-  // Of a region; see RegionState.
-  region_count,
-  region_fraction,
-  region_flux,
-  region_removed,
-  region_removed_mass,
-};
-
 enum class Component { x, y, z, norm };
 
+/// What a measure is taken from.
+enum class MeasureSubject { body, mesh, run, region };
+
+/// The contact impulses on all triangles of a mesh over the last step / step.
+struct MeshLoad {
+  Vec3 force;   ///< N
+  Vec3 torque;  ///< about the place of the mesh (N m)
+};
+
+/// What the value of a measure is computed from: the run, and what the measure is of.
+struct Measured {
+  const Observation& run;
+  const BodyState* body;      ///< null unless the measure is of a body
+  const MeshLoad* mesh;       ///< null unless the measure is of a mesh
+  const RegionState* region;  ///< null unless the measure is of a region
+};
+
+/// A row of the table of measures, for the parser, for the reference, and for evaluate().
+struct MeasureInfo {
+  std::string_view name;  ///< without the name of the body or region, and without the component
+  MeasureSubject of;
+  std::string_view unit;
+  std::string_view help;
+  double (*number)(const Measured&);  ///< the value, if it is a number
+  Vec3 (*vector)(const Measured&);    ///< the value, if it is a vector; one of the two is null
+
+  bool is_vector() const { return vector != nullptr; }
+};
+std::span<const MeasureInfo> measure_table();
+
 struct Measure {
-  MeasureKind kind = MeasureKind::energy_total;
-  std::int32_t body = -1;                 ///< its number in the scene; -1 for other measures
-  std::int32_t triangles = 0;             ///< of a mesh: bodies from that one on
+  const MeasureInfo* info = nullptr;      ///< the row of the table
+  std::int32_t body = -1;                 ///< the number of the body, or of the first one of a mesh; else -1
+  std::int32_t triangles = 0;             ///< of a mesh: the number of its bodies
   Vec3 to_place = Vec3::Zero();           ///< of a mesh: from the first triangle's centre, at the start (m)
-  std::int32_t region = -1;               ///< likewise
+  std::int32_t region = -1;               ///< the number of the region; else -1
   Component component = Component::norm;  ///< of a vector
 };
 
-enum class MeasureSubject { body, mesh, run, region };
-
-/// What there is to measure, for the parser and for the reference.
-struct MeasureInfo {
-  MeasureKind kind;
-  std::string_view name;  ///< without the name of the body or region, and without the component
-  MeasureSubject of;
-  bool is_vector;
-  std::string_view unit;
-  std::string_view help;
-};
-const std::vector<MeasureInfo>& measure_table();
-
-/// Whether it is of overlaps, or of pairs: a narrow phase is needed to know it.
+/// Whether a narrow phase is needed to know the measure: it is of overlaps or of pairs.
 bool is_of_overlaps(const Measure& measure);
 
 /// True for the first words of measures that are of no body (energy, region ...): no body may be called so.

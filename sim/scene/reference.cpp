@@ -150,7 +150,7 @@ void append_measures(std::string& page, MeasureSubject of) {
   for (const MeasureInfo& info : measure_table())
     if (info.of == of)
       page += fmt::format("| `{}{}{}` | {} | {} |\n", prefix, info.name,
-                          info.is_vector ? ".{x,y,z,norm}" : "", info.unit, cell(info.help));
+                          info.is_vector() ? ".{x,y,z,norm}" : "", info.unit, cell(info.help));
 }
 
 }  // namespace

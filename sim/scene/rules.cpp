@@ -274,8 +274,9 @@ void check_render(const RenderSettings& render, const Node& node, Reader& reader
     reader.fail_at("range", node, "needs a color that is a number: speed, size, kinetic_energy or force");
 }
 
-void check_check(const CheckEntry& check, const Node& node, Reader& reader) {
-  exclude("at", "over", node, reader);
+namespace {
+
+void check_bounds(const CheckEntry& check, const Node& node, Reader& reader) {
   exclude("tolerance", "relative", node, reader);
   if (given({"expect", "below", "above"}, node) == 0)
     reader.fail(node.mark, "expects nothing; it needs expect, below or above");
@@ -289,12 +290,23 @@ void check_check(const CheckEntry& check, const Node& node, Reader& reader) {
     reader.fail_at("in_default_mode", node, "must be >= 0 in place of tolerance or relative");
   if (check.confidence && (*check.confidence <= 0 || *check.confidence >= 1))
     reader.fail_at("confidence", node, "must be between 0 and 1, neither of them");
+}
+
+void check_reduction(const CheckEntry& check, const Node& node, Reader& reader) {
+  exclude("at", "over", node, reader);
   if (check.over && check.reduce == Reduce::none) reader.fail_at("over", node, "needs reduce");
   if (!check.over && check.reduce != Reduce::none) reader.fail_at("reduce", node, "needs over");
   if (check.over && (*check.over)[0] > (*check.over)[1])
     reader.fail_at("over", node, "must be [start, end] with start <= end");
   if (node.find("level") && check.reduce != Reduce::crossings)
     reader.fail_at("level", node, "needs reduce: crossings");
+}
+
+}  // namespace
+
+void check_check(const CheckEntry& check, const Node& node, Reader& reader) {
+  check_bounds(check, node, reader);
+  check_reduction(check, node, reader);
 }
 
 template <class T>

@@ -165,65 +165,95 @@ double distance_to(const BodyTable& bodies, std::size_t b, const Vec3& point) {
   return 0;
 }
 
+namespace {
+
+/// Places bodies in a box one after the other, clear of all bodies that are there already.
+class Scatterer {
+ public:
+  /// `largest`: the largest radius of the bodies to be placed (m); `count`: how many there are.
+  Scatterer(BodyTable& bodies, const Scattering& how, std::int64_t count, double largest)
+      : bodies_(bodies),
+        how_(how),
+        middle_(0.5 * (how.from + how.to)),
+        grid_(how.from, how.to, count),
+        reach_(largest),
+        largest_(largest) {}
+
+  void add_obstacle(std::int32_t b) {
+    const auto o = static_cast<std::size_t>(b);
+    if (is_boundary(bodies_.shape[o])) {
+      if (!is_apart(bodies_, o, how_)) walls_.push_back(b);
+      return;
+    }
+    Vec3 away = bodies_.position[o].cwiseMax(how_.from).cwiseMin(how_.to) - bodies_.position[o];
+    for (int k = 0; k < 3; ++k)
+      if (how_.period.is_along(k)) away[k] = 0;
+    if (away.norm() <= reach_ + radius(b)) insert(b);
+  }
+
+  /// Tries random places until one is clear; false if none was.
+  bool place(std::int32_t b) {
+    Vec3& at = bodies_.position[static_cast<std::size_t>(b)];
+    // Places have streams of their own, so that what else is drawn for a body does not move it.
+    const auto id = static_cast<std::uint64_t>(bodies_.id[static_cast<std::size_t>(b)]);
+    Random random(how_.seed, id + ((how_.round + 1) << 32));
+    for (int tries = 0; tries < how_.tries; ++tries) {
+      for (int k = 0; k < 3; ++k) at[k] = random.uniform(how_.from[k], how_.to[k]);
+      if (is_clear(b)) {
+        insert(b);
+        return true;
+      }
+    }
+    return false;
+  }
+
+ private:
+  double radius(std::int32_t b) const { return radius_of(bodies_, static_cast<std::size_t>(b)); }
+
+  void insert(std::int32_t b) {
+    Vec3 at = bodies_.position[static_cast<std::size_t>(b)];
+    how_.period.bring_near(middle_, at);
+    largest_ = std::max(largest_, radius(b));
+    if (!grid_.insert(b, at.array() - radius(b), at.array() + radius(b))) walls_.push_back(b);
+  }
+
+  bool is_clear(std::int32_t b) {
+    const double r = radius(b);
+    const Vec3& at = bodies_.position[static_cast<std::size_t>(b)];
+    const auto clear_of = [&](std::int32_t other) {
+      Vec3 near = at;
+      how_.period.bring_near(bodies_.position[static_cast<std::size_t>(other)], near);
+      return distance_to(bodies_, static_cast<std::size_t>(other), near) >= r;
+    };
+    Vec3 place = at;
+    how_.period.bring_near(middle_, place);
+    return std::all_of(walls_.begin(), walls_.end(), clear_of) &&
+           all_images(how_.period, middle_, place, r + largest_, [&](const Vec3& shift) {
+             return grid_.all_of((place + shift).array() - r, (place + shift).array() + r, clear_of);
+           });
+  }
+
+  BodyTable& bodies_;
+  const Scattering& how_;
+  Vec3 middle_;
+  CellGrid grid_;
+  std::vector<std::int32_t> walls_;  // what is no ball of the grid: each is tested for every place
+  double reach_;                     // largest radius of the bodies to be placed (m)
+  double largest_;                   // largest radius of all bodies so far (m)
+};
+
+}  // namespace
+
 std::int64_t scatter(BodyTable& bodies, std::vector<std::int32_t>& those, const Scattering& how,
                      const std::vector<std::int32_t>& obstacles) {
   if (those.empty()) return 0;
   const auto radius = [&](std::int32_t b) { return radius_of(bodies, static_cast<std::size_t>(b)); };
   std::stable_sort(those.begin(), those.end(),
                    [&](std::int32_t a, std::int32_t b) { return radius(a) > radius(b); });
-
-  CellGrid grid(how.from, how.to, std::ssize(those));
-  std::vector<std::int32_t> walls;
-  const Period& period = how.period;
-  const Vec3 middle = 0.5 * (how.from + how.to);
-  double largest = radius(those.front());
-  const auto insert = [&](std::int32_t b) {
-    Vec3 at = bodies.position[static_cast<std::size_t>(b)];
-    period.bring_near(middle, at);
-    largest = std::max(largest, radius(b));
-    if (!grid.insert(b, at.array() - radius(b), at.array() + radius(b))) walls.push_back(b);
-  };
-  const double reach = radius(those.front());
-  for (const std::int32_t b : obstacles) {
-    const auto o = static_cast<std::size_t>(b);
-    if (is_boundary(bodies.shape[o])) {
-      if (!is_apart(bodies, o, how)) walls.push_back(b);
-      continue;
-    }
-    Vec3 away = bodies.position[o].cwiseMax(how.from).cwiseMin(how.to) - bodies.position[o];
-    for (int k = 0; k < 3; ++k)
-      if (period.is_along(k)) away[k] = 0;
-    if (away.norm() <= reach + radius(b)) insert(b);
-  }
-
-  for (std::int64_t fitted = 0; fitted < std::ssize(those); ++fitted) {
-    const std::int32_t b = those[static_cast<std::size_t>(fitted)];
-    const double r = radius(b);
-    Vec3& at = bodies.position[static_cast<std::size_t>(b)];
-    const auto clear = [&](std::int32_t other) {
-      Vec3 place = at;
-      period.bring_near(bodies.position[static_cast<std::size_t>(other)], place);
-      return distance_to(bodies, static_cast<std::size_t>(other), place) >= r;
-    };
-    const auto all_clear = [&](const Vec3& place) {
-      return std::all_of(walls.begin(), walls.end(), clear) &&
-             all_images(period, middle, place, r + largest, [&](const Vec3& shift) {
-               return grid.all_of((place + shift).array() - r, (place + shift).array() + r, clear);
-             });
-    };
-    // Places have streams of their own, so that what else is drawn for a body does not move it.
-    const auto id = static_cast<std::uint64_t>(bodies.id[static_cast<std::size_t>(b)]);
-    Random random(how.seed, id + ((how.round + 1) << 32));
-    bool placed = false;
-    for (int tries = 0; tries < how.tries && !placed; ++tries) {
-      for (int k = 0; k < 3; ++k) at[k] = random.uniform(how.from[k], how.to[k]);
-      Vec3 place = at;
-      period.bring_near(middle, place);
-      placed = all_clear(place);
-    }
-    if (!placed) return fitted;
-    insert(b);
-  }
+  Scatterer scatterer(bodies, how, std::ssize(those), radius(those.front()));
+  for (const std::int32_t b : obstacles) scatterer.add_obstacle(b);
+  for (std::int64_t fitted = 0; fitted < std::ssize(those); ++fitted)
+    if (!scatterer.place(those[static_cast<std::size_t>(fitted)])) return fitted;
   return std::ssize(those);
 }
 

@@ -134,10 +134,10 @@ TEST(Measure, EachNameHasItsValue) {
       {"floor.torque.y", -24},
       {"floor.torque.z", 8},
   };
-  std::set<MeasureKind> seen{MeasureKind::tilt};
+  std::set<const MeasureInfo*> seen{parse_measure("puck.tilt", names).info};
   for (const auto& [name, worth] : expected) {
     EXPECT_EQ(value(name), worth) << name;
-    seen.insert(parse_measure(name, names).kind);
+    seen.insert(parse_measure(name, names).info);
   }
   EXPECT_EQ(seen.size(), measure_table().size());
 }
