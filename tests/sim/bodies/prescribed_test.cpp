@@ -2,6 +2,7 @@
 #include "sim/bodies/prescribed.hpp"
 
 #include "sim/bodies/motion.hpp"
+#include "sim/pairs/fat_boxes.hpp"
 #include "sim/scene/motion_bounds.hpp"
 #include "tests/sim/step/simulations.hpp"
 

@@ -3,7 +3,7 @@
 
 #include "core/tolerances.hpp"
 #include "tests/core/spaces.hpp"
-#include "tests/sim/impacts/crowd.hpp"
+#include "tests/sim/bodies/random_bodies.hpp"
 
 #include <gtest/gtest.h>
 
