@@ -1,4 +1,5 @@
-// What scree throws. Bad input is the user's to mend; a run that failed has its last good state.
+// The exceptions that scree throws. Bad input can be corrected by the user; a run that failed still has its
+// last good state.
 #pragma once
 
 #include <cstdint>
@@ -8,26 +9,26 @@
 
 namespace scree {
 
-/// Bad input; nothing was changed. The text is complete: file:line:column, key, what is allowed. Exit status
-/// 2 of the program.
+/// Bad input; nothing was changed. The text is complete: file:line:column, key, and what is allowed. The
+/// program's exit status is 2.
 class InputError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
 
 /// The run cannot go on, or a file cannot be read or written. The text says what happened, where, and what to
-/// change. Exit status 3 of the program.
+/// change. The program's exit status is 3.
 class RunError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
 
-/// A step that the run cannot go on from; the state is as it was before it.
+/// A step from which the run cannot go on. The state is as it was before the step.
 class StepFailure : public RunError {
  public:
   StepFailure(const std::string& what, std::vector<std::int32_t> bodies);
-  /// That it is about, by their numbers in the scene, a few; the worst first. Empty if it is about none in
-  /// particular.
+  /// Returns the numbers in the scene of a few bodies that the failure is about, the worst first. Empty if it
+  /// is about no particular body.
   const std::vector<std::int32_t>& bodies() const { return bodies_; }
 
  private:

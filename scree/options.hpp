@@ -1,22 +1,23 @@
-// What may be said of a run besides its scene.
+// The options of a run that are not in its scene.
 #pragma once
 
 #include <string>
 
 namespace scree {
 
-/// A change to a scene before anything in it is checked: `--set key.path=value` of the program.
+/// A change to a scene before anything in it is checked, as by the program's `--set key.path=value`.
 struct Override {
-  std::string path;   ///< bodies[2].velocity[0]
-  std::string value;  ///< YAML
+  std::string path;   ///< key path, such as bodies[2].velocity[0]
+  std::string value;  ///< value in YAML
 };
 
 enum class SpaceChoice { automatic, host, cuda };
 
 struct SimulationOptions {
-  /// automatic: the GPU if the machine has one and the scene has bodies enough for it, else the processor.
+  /// Where to run. automatic: on the GPU if the machine has one and the scene has enough bodies for it, else
+  /// on the processor.
   SpaceChoice space = SpaceChoice::automatic;
-  int threads = 0;  ///< 0: all cores. Never changes the result.
+  int threads = 0;  ///< number of threads; 0: all cores. It never changes the result.
 };
 
 }  // namespace scree

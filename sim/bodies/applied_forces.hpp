@@ -1,4 +1,4 @@
-// Forces besides gravity: which act in a step, and what they did.
+// Forces besides gravity: which of them act in a step, and their work.
 #pragma once
 
 #include "core/bodies.hpp"
@@ -11,20 +11,22 @@
 
 namespace scree {
 
-/// On bodies in a space, and those that drive servos. Costs nothing in a scene without such forces.
+/// The applied forces on bodies in a space, and the forces that drive servos. They cost nothing in a scene
+/// that has none.
 template <class Space>
 class AppliedForces {
  public:
   AppliedForces(const Scene& scene, const TimeGrid& grid);
 
-  /// Points the parameters at the forces and torques that act in the step after the state `step`. They are
-  /// summed up anew only where others act than before, or after forget().
+  /// Sets the views of `parameters` to the accelerations and torques of the step after the state `step`. They
+  /// are summed up anew only if other forces act than before, or after forget().
   void act(std::int64_t step, const Bodies<Space>& bodies, ResponseParameters& parameters);
-  /// The bodies are others, or gravity is, which servos bear.
+  /// Must be called when the bodies have changed, or gravity has, which servos cancel.
   void forget() { summed_up_ = false; }
-  /// From here on work is counted.
+  /// Saves the positions from which on work() counts.
   void start_substep(const Bodies<Space>& bodies);
-  /// Work of the forces since then (J); that of the torques is the response's.
+  /// Returns the work of the forces since start_substep() (J). The response accounts for the work of the
+  /// torques.
   double work(const Bodies<Space>& bodies) const;
 
  private:
@@ -33,12 +35,12 @@ class AppliedForces {
 
   std::vector<AppliedForce> forces_;
   std::vector<Servo> servos_;
-  std::vector<TimeGrid::Steps> steps_;  // of each force
-  std::vector<bool> acting_;            // each force, in what is summed up
+  std::vector<TimeGrid::Steps> steps_;  // steps in which each force acts
+  std::vector<bool> acting_;            // whether each force is in the sums
   bool summed_up_ = false;
-  Array<Vec3, Space> acceleration_;  // of each body (m/s^2)
-  Array<Vec3, Space> torque_;        // on each body (N m)
-  Array<Vec3, Space> start_;         // of each body in the substep (m)
+  Array<Vec3, Space> acceleration_;  // acceleration of each body (m/s^2)
+  Array<Vec3, Space> torque_;        // torque on each body (N m)
+  Array<Vec3, Space> start_;         // position of each body at the start of the substep (m)
 };
 
 }  // namespace scree

@@ -21,7 +21,8 @@ struct FindPlace {
   }
 };
 
-/// Keys and places of the bodies, by their numbers: a stable sort leaves those of a cell in this order.
+/// Writes the key and the place of each body, in the order of numbers: so a stable sort leaves the bodies of
+/// one cell in this order.
 struct FindCell {
   ConstBodyView bodies;
   Vec3 origin;
@@ -40,7 +41,7 @@ struct FindCell {
   }
 
  private:
-  /// What is farther away is in the last cell.
+  /// Returns the index of a cell along one axis. A position beyond all cells is in the first or the last one.
   SCREE_HD static std::uint32_t coordinate(double x) {
     constexpr double half = 1 << (z_order_bits - 1);
     return static_cast<std::uint32_t>(fmin(fmax(x + half, 0.0), 2 * half - 1));
@@ -63,7 +64,7 @@ std::int64_t largest_element(Bodies<Space>& bodies) {
   return static_cast<std::int64_t>(largest);
 }
 
-/// Twice the geometric mean of the free bodies' bounding radii (m); any length where none is free.
+/// Returns twice the geometric mean of the free bodies' bounding radii (m); 1 m if no body is free.
 double typical_width(const BodyTable& bodies) {
   double sum = 0;
   double count = 0;
@@ -103,7 +104,7 @@ BodyOrder<Space>::BodyOrder(const BodyTable& bodies, const Vec3& origin)
 template <class Space>
 void BodyOrder<Space>::sort(Bodies<Space>& bodies) {
   const std::int64_t n = bodies.count();
-  // All memory is taken before anything moves, so that bodies are whole where there is none.
+  // All memory is allocated before anything moves, so that the bodies stay whole if there is not enough.
   Array<std::byte, Space> moved(n * largest_element<Space>(bodies));
   Array<std::uint64_t, Space> key(n);
   place_before_.resize(n);

@@ -50,7 +50,7 @@ struct PlaceWhere {
   }
 };
 
-/// None costs one pass that writes nothing.
+/// Returns the places for which `is` holds. If there are none, this costs one pass that writes nothing.
 template <class Space, class Is>
 Array<std::int32_t, Space> places_where(const Is& is, std::int64_t count) {
   Array<std::int32_t, Space> places;
@@ -59,7 +59,7 @@ Array<std::int32_t, Space> places_where(const Is& is, std::int64_t count) {
   return places;
 }
 
-/// In their order.
+/// Returns the numbers of the bodies at some places, in ascending order.
 template <class Space>
 std::vector<BodyNumber> numbers_at(const Array<std::int32_t, Space>& places, const Bodies<Space>& bodies) {
   Array<BodyNumber, Space> numbers;

@@ -12,10 +12,11 @@ namespace {
 
 constexpr std::int64_t never = std::numeric_limits<std::int64_t>::max();
 
-/// A body that has found no place is back at the next step: fewer tries than where it is now or never.
+/// Number of tries for a body at each step. They are fewer than the default of scatter(), since a body that
+/// has found no place is tried again at the next step.
 constexpr int tries_at_each_step = 200;
 
-/// Adds row `from_row` of another table.
+/// Appends row `from_row` of another table.
 void append(const BodyTable& from, std::size_t from_row, BodyTable& to) {
   for_each_field([from_row](const char*, auto& list, const auto& rows) { list.push_back(rows[from_row]); },
                  to, from);

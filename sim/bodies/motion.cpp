@@ -22,7 +22,7 @@ struct Translate {
   }
 };
 
-/// Returns the drift of the body's energy (J).
+/// Rotates a body, and returns the drift of its energy (J).
 struct Rotate {
   BodyView bodies;
   double dt;
@@ -42,7 +42,7 @@ struct Fly {
   }
 };
 
-/// Rotate of bodies side by side, on Host.
+/// Rotates bodies side by side in SIMD lanes, on Host.
 struct RotateBatch {
   Rotate rotate;
   View<double> drift;
@@ -71,7 +71,7 @@ struct RotateBatch {
   }
 
  private:
-  /// That stay as they are.
+  /// Tops that a turn leaves as they are, for unused lanes.
   static constexpr simd::Tops no_tops = [] {
     simd::Tops tops{};
     for (int l = 0; l < simd::width; ++l) {
@@ -96,7 +96,7 @@ struct RotateBatch {
     put(tops.spin, axes.renamed(rotate.bodies.spin[k]));
     put(tops.inverse_inertia, axes.ordered(inverse_inertia));
   }
-  /// Returns the drift.
+  /// Stores the result of a lane, and returns the drift of the body's energy (J).
   double store(const simd::Tops& tops, int l, std::int64_t k) const {
     const AxisOrder axes(rotate.bodies.inverse_inertia[k]);
     const auto take = [l, &axes](const simd::LaneVec& lanes) {
@@ -160,7 +160,7 @@ double advance(Bodies<Space>& bodies, double dt, const ResponseParameters& param
     return 0;
   }
   if constexpr (std::is_same_v<Space, Host>) {
-    constexpr std::int64_t few_batches = 16;  // worth waking threads for
+    constexpr std::int64_t few_batches = 16;  // fewer are not worth waking threads for
     if (parameters.gyroscopic) {
       Array<double, Host> drift(n);
       parallel::for_each<Host>("motion.translate", n, translate);

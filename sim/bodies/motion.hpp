@@ -11,21 +11,22 @@
 namespace scree {
 
 /// Moves every free body by its velocity and spin for the time dt (s), in place. Returns the drift of their
-/// rotational energy (J), which the ledger books as integration.
+/// rotational energy (J), which the ledger accounts as integration.
 template <class Space>
 double advance(Bodies<Space>& bodies, double dt, const ResponseParameters& parameters);
 
-/// Work of the forces that accelerate the bodies so (m/s^2) on their way from `start` to where they are (J).
+/// Returns the work (J) of the forces that give free bodies these accelerations (m/s^2), on the way from
+/// `start` to the present positions.
 template <class Space>
 double work_of_forces(const Bodies<Space>& bodies, const Array<Vec3, Space>& start,
                       ConstView<Vec3> acceleration);
 
-/// Sums over the free bodies: what every step asks for,
+/// Sums over the free bodies, computed in every step.
 struct Energies {
   double kinetic_linear = 0;
   double kinetic_angular = 0;
-  double potential = 0;  ///< about the reference point
-  /// Bodies with a number in their state that is not finite.
+  double potential = 0;  ///< potential energy relative to the reference point
+  /// Number of bodies with a number in their state that is not finite.
   std::int64_t not_finite = 0;
 
   double kinetic() const { return kinetic_linear + kinetic_angular; }
@@ -34,11 +35,11 @@ struct Energies {
             a.potential + b.potential, a.not_finite + b.not_finite};
   }
 };
-/// and what an observation does.
+/// Sums over the free bodies, computed for an observation.
 struct Totals : Energies {
   double mass = 0;
   Vec3 momentum = Vec3::Zero();
-  Vec3 angular_momentum = Vec3::Zero();  ///< about the origin
+  Vec3 angular_momentum = Vec3::Zero();  ///< angular momentum about the origin
   Vec3 first_moment = Vec3::Zero();      ///< sum of m (x - reference)
   double speed_squared = 0;
   double speed_fourth = 0;
@@ -56,15 +57,15 @@ struct Totals : Energies {
   }
 };
 
-/// Whether position, orientation, velocity and spin are finite.
+/// Returns whether position, orientation, velocity and spin are finite.
 SCREE_HD inline bool is_finite(const ConstBodyView& bodies, std::int64_t k) {
-  // Zero times what is not finite is not zero.
+  // Zero times a number that is not finite is NaN.
   const double zero = (0 * bodies.position[k]).sum() + (0 * bodies.orientation[k].coeffs()).sum() +
                       (0 * bodies.velocity[k]).sum() + (0 * bodies.spin[k]).sum();
   return zero == 0;
 }
 
-/// One body's share; nothing unless it is free. Potential energy is -m g.(x - reference).
+/// Returns one body's share of the sums; zero unless it is free. Potential energy is -m g.(x - reference).
 SCREE_HD inline Energies energies_of_body(const ConstBodyView& bodies, std::int64_t k, const Vec3& gravity,
                                           const Vec3& reference) {
   if (bodies.mobility[k] != Mobility::free) return {};

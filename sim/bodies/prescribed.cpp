@@ -17,7 +17,7 @@ struct Place {
   SCREE_HD void operator()(std::int64_t k) const { paths[k].place(time, keys, bodies); }
 };
 
-/// The vector by which one orientation turns to the other the short way (rad).
+/// Returns the rotation vector that turns one orientation to the other the short way (rad).
 Vec3 turn_between(const Quat& from, const Quat& to) {
   Quat turn = to * from.conjugate();
   if (turn.w() < 0) turn.coeffs() = -turn.coeffs();
@@ -25,9 +25,10 @@ Vec3 turn_between(const Quat& from, const Quat& to) {
   return sine > 0 ? Vec3(2 * std::atan2(sine, turn.w()) / sine * turn.vec()) : Vec3(2 * turn.vec());
 }
 
-/// Rate of each component where chords of these rates meet, so that cubics between are monotone: a harmonic
-/// mean, by the times that they take, or 0 where the component turns round (Fritsch and Butland 1984, "A
-/// method for constructing local monotone piecewise cubic interpolants").
+/// Returns the rate of each component at a key between two chords with the rates `before` and `after`, such
+/// that the cubics between keys are monotone: a harmonic mean, weighted by the times that the chords take, or
+/// 0 where the component turns round (Fritsch and Butland 1984, "A method for constructing local monotone
+/// piecewise cubic interpolants").
 Vec3 rate_between(const Vec3& before, double time_before, const Vec3& after, double time_after) {
   const double share = (time_before + 2 * time_after) / (3 * (time_before + time_after));
   Vec3 rate = Vec3::Zero();
@@ -37,7 +38,8 @@ Vec3 rate_between(const Vec3& before, double time_before, const Vec3& after, dou
   return rate;
 }
 
-/// A scene's keys with what lies between them. At the first and the last the body rests.
+/// Makes the keys of a path from a scene's keyframes, and the way between them. At the first and the last key
+/// the body is at rest. `own`: the body's orientation, for keyframes without one.
 std::vector<PathKey> path_keys(const std::vector<MotionKey>& keyframes, const Quat& own) {
   const std::size_t n = keyframes.size();
   std::vector<PathKey> keys;

@@ -1,4 +1,4 @@
-// Bodies that move as prescribed, whatever hits them.
+// Bodies that move as prescribed, whatever impulses act on them.
 #pragma once
 
 #include "core/array.hpp"
@@ -11,26 +11,26 @@
 
 namespace scree {
 
-/// A place of a body, and its way to the next one: a cubic (Hermite's) along each axis, and three turns, one
-/// after another, by the cumulative Bernstein polynomials (Kim, Kim and Shin 1995, "A general construction
-/// scheme for unit quaternion curves with simple high order derivatives").
+/// A key of a path: a pose of a body, and the way from it to the next key. The way is a cubic (Hermite's)
+/// along each axis, and three turns, one after another, by the cumulative Bernstein polynomials (Kim, Kim and
+/// Shin 1995, "A general construction scheme for unit quaternion curves with simple high order derivatives").
 struct PathKey {
-  double at;  ///< since the start of the path (s)
+  double at;  ///< time since the start of the path (s)
   Vec3 position;
   Vec3 velocity;  ///< m/s
   Quat orientation;
-  /// To the next key, in the order in which they are made (rad); 0 of the last key.
+  /// Turns to the next key, in the order in which they are made (rad); 0 in the last key.
   Vec3 turns[3] = {Vec3::Zero(), Vec3::Zero(), Vec3::Zero()};
 };
 
-/// Where a body is, and how it moves.
+/// The pose of a body, and its velocities.
 struct PathPoint {
   Vec3 position, velocity;
   Quat orientation;
   Vec3 spin;
 };
 
-/// Between two keys.
+/// Returns the point of a path at a time (s) between two keys.
 SCREE_HD inline PathPoint point_between(const PathKey& from, const PathKey& to, double time) {
   const double h = to.at - from.at;
   const double u = (time - from.at) / h;
@@ -54,7 +54,8 @@ SCREE_HD inline PathPoint point_between(const PathKey& from, const PathKey& to, 
   return point;
 }
 
-/// Keys in order of time; at rest at the first before it, and at the last after it.
+/// Returns the point at a time (s) of a path with `count` keys in the order of time. The body is at rest at
+/// the first key before that key's time, and at the last key after that key's time.
 SCREE_HD inline PathPoint point_at(const PathKey* keys, std::int32_t count, double time) {
   std::int32_t after = 0;
   for (std::int32_t end = count; after < end;) {
@@ -69,16 +70,16 @@ SCREE_HD inline PathPoint point_at(const PathKey* keys, std::int32_t count, doub
   return {rest.position, Vec3::Zero(), rest.orientation, Vec3::Zero()};
 }
 
-/// The way of one prescribed body: it turns with a pivot that moves along a line, and both may oscillate
-/// besides; or it goes from key to key.
+/// The path of one prescribed body. Either the body turns with a pivot that moves along a line, and both may
+/// oscillate besides; or it goes from key to key.
 struct PrescribedPath {
   BodyNumber body;
-  Vec3 pivot;                        ///< at the start (m)
-  Vec3 arm;                          ///< from the pivot to the body's centre, at the start (m)
-  Quat orientation;                  ///< at the start
-  Vec3 velocity;                     ///< of the pivot, but for what oscillates (m/s)
-  Vec3 spin;                         ///< likewise (rad/s)
-  double start;                      ///< s; the body appears then if it was not there before
+  Vec3 pivot;                        ///< position of the pivot at the start (m)
+  Vec3 arm;                          ///< vector from the pivot to the body's centre, at the start (m)
+  Quat orientation;                  ///< orientation of the body at the start
+  Vec3 velocity;                     ///< velocity of the pivot, without the oscillation (m/s)
+  Vec3 spin;                         ///< spin of the body, without the oscillation (rad/s)
+  double start;                      ///< start of the path (s); the body appears then if it was absent before
   Vec3 displacement = Vec3::Zero();  ///< amplitude of the pivot (m)
   Vec3 angle = Vec3::Zero();         ///< amplitude of the turn (rad)
   double omega = 0;                  ///< rad/s; 0: nothing oscillates
@@ -86,8 +87,8 @@ struct PrescribedPath {
   std::int32_t first_key = 0;
   std::int32_t key_count = 0;
 
-  /// Puts the body, if it is there, where it is at a time (s), with the velocity that it has there. The turn
-  /// is that of the start's pose, whole: nothing adds up over the steps, so the radius stays.
+  /// Sets the pose and the velocities that the body has at a time (s), unless it is absent. The pose at the
+  /// start is turned by the whole angle at once: no errors add up over the steps, so the radius stays.
   SCREE_HD void place(double time, ConstView<PathKey> keys, const BodyView& bodies) const {
     const std::int32_t k = bodies.place(body);
     if (bodies.mobility[k] != Mobility::prescribed) return;
@@ -120,19 +121,19 @@ struct PrescribedPath {
   }
 };
 
-/// The ways of all prescribed bodies, and the keys that they name.
+/// The paths of all prescribed bodies, and the keys to which they refer.
 struct PathTable {
   std::vector<PrescribedPath> paths;
   std::vector<PathKey> keys;
 };
 
-/// Of the scene's motions, in their order; all start at 0.
+/// Returns the paths of the scene's motions, in their order; all start at t = 0.
 PathTable prescribed_paths(const Scene& scene);
 
-/// ResponseParameters::prescribed_acceleration
+/// Finds ResponseParameters::prescribed_acceleration of a scene (m/s^2).
 double prescribed_acceleration(const Scene& scene);
 
-/// The table in a space.
+/// A PathTable in a space.
 template <class Space>
 struct PrescribedPaths {
   Array<PrescribedPath, Space> paths;
@@ -144,7 +145,7 @@ struct PrescribedPaths {
   }
 };
 
-/// Places every prescribed body for a time (s).
+/// Sets the pose and the velocities of every prescribed body at a time (s).
 template <class Space>
 void place_prescribed(const PrescribedPaths<Space>& paths, double time, Bodies<Space>& bodies);
 

@@ -21,7 +21,7 @@ void set_present(std::int32_t k, const BodyTable& start, const BodyView& views) 
   views.inverse_inertia[k] = start.inverse_inertia[from];
 }
 
-/// Of ranges by ascending body, the one that has it; null if none has.
+/// Returns the item of a list, ordered by ascending body, whose range holds the body; null if there is none.
 template <class T, class RangeOf>
 const T* find_range(const std::vector<T>& list, std::int32_t body, RangeOf range_of) {
   const auto after = std::upper_bound(list.begin(), list.end(), body, [&](std::int32_t id, const T& item) {
@@ -98,7 +98,7 @@ bool Presence::changes(std::int64_t step) const {
                      [step](const Window& window) { return window.changes_at(step); });
 }
 
-/// Adds what a body has, or takes it away.
+/// Adds mass, energy and momenta of a body to the change, or subtracts them (sign: 1 or -1), and counts it.
 void Presence::account(const ConstBodyView& bodies, std::int64_t k, double sign, const Scene& scene,
                        const PotentialField& field, Change& change) {
   const Totals body = totals_of_body(bodies, k, field.gravity, field.reference);
@@ -123,7 +123,7 @@ Presence::Change Presence::update(std::int64_t step, const Scene& scene, const P
     for (std::int32_t number = 0; number < window.bodies.count; ++number) {
       const std::int32_t k = views.place(BodyNumber{window.bodies.first + number});
       if (comes) set_present(k, scene.bodies, views);
-      if (views.mobility[k] == Mobility::absent) continue;  // it has left before its time
+      if (views.mobility[k] == Mobility::absent) continue;  // the body was removed earlier for another reason
       account(view_of(std::as_const(bodies)), k, comes ? 1 : -1, scene, field, change);
       if (!comes) set_absent(k, views);
     }

@@ -1,4 +1,4 @@
-// Bodies that come and go.
+// The presence of bodies: which of them are in the scene in which step, and what they bring and take.
 #pragma once
 
 #include "core/archive.hpp"
@@ -13,41 +13,43 @@
 
 namespace scree {
 
-/// What potential energies are of.
+/// The gravity and the reference point of potential energies.
 struct PotentialField {
   Vec3 gravity;    ///< m/s^2
-  Vec3 reference;  ///< where they are 0 (m)
+  Vec3 reference;  ///< where potential energies are 0 (m)
 };
 
-/// Who is there in the state of which step. A body that is not has Mobility::absent and no mass; until it
-/// appears the rest of its state waits as the scene gives it.
+/// The bodies that are present in the state of each step. A body that is not present has Mobility::absent and
+/// no mass; until it appears, the rest of its state is as the scene gives it.
 class Presence {
  public:
   Presence(const Scene& scene, const TimeGrid& grid);
 
   bool holds(std::int32_t body, std::int64_t step) const;
-  /// First step in whose state the body is there, if it is no emitter's.
+  /// Returns the first step in whose state the body is present; not for the bodies of emitters.
   std::int64_t first_step(std::int32_t body) const;
-  std::int64_t count() const { return count_; }  ///< bodies that are there
-  std::int64_t requested() const;                ///< of all emitters so far
+  std::int64_t count() const { return count_; }  ///< number of bodies that are present
+  std::int64_t requested() const;                ///< number of bodies that all emitters were to send so far
   std::int64_t emitted() const;
   void archive(Archive& archive);
 
-  /// To be called at t = 0, if some body is not there: takes out those that come later.
+  /// Makes the bodies that come later absent. Must be called at t = 0 if some body is not present then.
   void begin(Bodies<Host>& bodies) const;
 
-  /// Whether bodies come or go as a step is reached.
+  /// Returns whether the lifetime of a body begins or ends as a step is reached.
   bool changes(std::int64_t step) const;
   struct Change {
     Exchange exchange;
-    double first_potential = 0;  ///< of those that came, when they appear, less that of those that went (J)
+    /// Potential energy that bodies have when they appear: sum over those that came, less those that went
+    /// (J).
+    double first_potential = 0;
   };
-  /// The state of a step has been reached: takes out the bodies whose time is over, and brings in those whose
-  /// time has come.
+  /// Must be called when the state of a step has been reached: removes the bodies whose lifetime is over, and
+  /// brings in those whose lifetime begins. Returns the change of the accounts.
   Change update(std::int64_t step, const Scene& scene, const PotentialField& field, Bodies<Host>& bodies);
-  /// These were taken out for another reason, as they are.
+  /// Accounts for bodies that were removed for another reason, in the state that they had.
   Change take_leave_of(const BodyTable& gone, const Scene& scene, const PotentialField& field);
-  /// These, of an emission, were brought in.
+  /// Accounts for bodies of an emission that were brought in.
   Change welcome(const BodyTable& come, const Scene& scene, const PotentialField& field);
   std::vector<Emission>& emissions() { return emissions_; }
 
@@ -64,7 +66,7 @@ class Presence {
   Change account_all(const BodyTable& table, double sign, const Scene& scene, const PotentialField& field);
 
   std::vector<Window> windows_;      // by ascending body
-  std::vector<Emission> emissions_;  // likewise
+  std::vector<Emission> emissions_;  // by ascending body
   std::int64_t count_;
 };
 

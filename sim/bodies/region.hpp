@@ -1,4 +1,4 @@
-// What a region of the scene holds.
+// The sums over the bodies in a region of the scene.
 #pragma once
 
 #include "core/bodies.hpp"

@@ -1,5 +1,5 @@
-// What Host does for contacts of balls in double precision by the kernels: it finds those of a tile of slots,
-// makes those of a block, and totals those of some blocks.
+// Work on contacts of balls by the kernels, on Host in double precision: finds the contacts of a tile of
+// slots, makes the contacts of a block, and adds up the totals of some blocks.
 #pragma once
 
 #include "core/space_tiles.hpp"
@@ -13,10 +13,11 @@
 
 namespace scree::solver {
 
-/// Of each body, and before the first of padding_body.
+/// Sets the reach of each body. The element before that of body 0 belongs to empty slots, whose bodies are
+/// Slot::empty; it is near nothing.
 struct SetReach {
   FindStage<double> stage;
-  Reach* reach;  ///< of the first body
+  Reach* reach;  ///< element of body 0
   void operator()(std::int64_t k) const {
     const auto body = static_cast<std::int32_t>(k - 1);
     if (body < 0) {
@@ -31,8 +32,8 @@ struct SetReach {
   }
 };
 
-/// Whether the contact of a slot is one of two balls, which the kernels find and make; others are found and
-/// made one by one.
+/// Whether a slot is one of two balls with a finite reach that are whole bodies. The kernels find and make
+/// the contacts of such slots; others are found and made one by one.
 inline bool is_common(const Reach* reach, const Slot& slot) {
   return reach[slot.i].extent < HUGE_VAL && reach[slot.j].extent < HUGE_VAL && slot.end_i == slot.i &&
          slot.end_j == slot.j;
@@ -79,7 +80,7 @@ struct MakeBallBlock {
     BallBlock block;
     std::uint32_t loaded = 0, common = 0;
     for (int l = 0; l < simd::width; ++l) {
-      // The first of a block is a contact.
+      // The first place of a block always holds a contact; empty places of the block repeat its slot.
       const std::int32_t own = contacts.slot[first + l];
       const std::int32_t place = own == Slot::empty ? contacts.slot[first] : own;
       const Slot& slot = stage.places[place];
@@ -115,7 +116,7 @@ struct MakeBallBlock {
   }
 };
 
-/// Of a run of blocks: AccountBalls.
+/// Does the work of AccountBalls for a run of blocks.
 struct AccountBallBlocks {
   static constexpr std::int64_t together = 32;
 

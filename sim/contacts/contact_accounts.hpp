@@ -1,5 +1,5 @@
-// What the contacts of a substep have moved, once their impulses are found: for the ledger, for the
-// observation, and for the position correction that follows.
+// The energy that the contacts of a substep have moved, computed once their impulses are found: for the
+// ledger, for the observation, and for the position correction that follows.
 #pragma once
 
 #include "core/space_atomic.hpp"
@@ -15,18 +15,18 @@
 
 namespace scree::solver {
 
-/// Sums over contacts.
+/// Sums over contacts, and the deepest overlap.
 struct ContactTotals {
-  double restitution = 0;  ///< dissipated (J)
+  double restitution = 0;  ///< energy dissipated by normal impulses (J)
   double friction = 0;
-  double work = 0;           ///< of bodies that are not free (J)
+  double work = 0;           ///< work done by bodies that are not free (J)
   double gaps = 0;           ///< sum of |gap| of loaded points (m)
   std::int64_t loaded = 0;   ///< points that carry an impulse
   std::int64_t ends = 0;     ///< free bodies at loaded contacts
-  std::int64_t gaining = 0;  ///< contacts without which no set of them gains energy (Moved::gains)
-  double deepest = 0;        ///< overlap at the end, of the cap
-  double gap_power = 0;      ///< of normal impulses on what they leave undone: 0 when all are found (J)
-  double kick_power = 0;     ///< of impulses on what they have changed (J)
+  std::int64_t gaining = 0;  ///< contacts that gain energy (Moved::gains); with none, no set of them gains
+  double deepest = 0;        ///< deepest overlap at the end of the substep, relative to the cap
+  double gap_power = 0;      ///< power of normal impulses on residual velocities: 0 at the solution (J)
+  double kick_power = 0;     ///< power of impulses on the relative velocities that they have changed (J)
 
   SCREE_HD friend ContactTotals operator+(const ContactTotals& a, const ContactTotals& b) {
     return {a.restitution + b.restitution,
@@ -41,35 +41,35 @@ struct ContactTotals {
             a.kick_power + b.kick_power};
   }
 
-  /// What all impulses have moved.
+  /// Returns the energy that all impulses have moved, as a parabola in their common scale.
   SCREE_HD Moved moved() const {
     const double square = 0.5 * kick_power;
     return {-(restitution + friction) - square, square};
   }
 };
 
-/// A point of a contact: what acts on it, and the bodies that it acts on.
+/// A contact point: the impulse that acts there, and its lever arms on the two bodies.
 struct AccountedPoint {
   Vec3 impulse;  ///< on j (N s)
   Vec3 normal;
   Vec3 arm_i, arm_j;
-  double target;  ///< of the normal velocity (m/s)
+  double target;  ///< target of the normal velocity (m/s)
 };
 
-/// Velocity of j relative to i at a point: before the substep's forces, with these but without contacts, and
-/// with both (m/s).
+/// Velocities of j relative to i at a point: before the substep's forces, with these but without contacts,
+/// and with both (m/s).
 struct PointMotion {
   Vec3 before, free, after;
 };
 
-/// Share of what impulses move that is rounding where they gain it. That of a float is of the velocities,
-/// which may be thousands of times the changes.
+/// The gain of energy that counts as rounding, relative to Moved::square. In float it is larger: rounding is
+/// relative to the velocities, which may be thousands of times as large as their changes.
 template <class Real>
 inline constexpr double response_gain = tolerance::response_gain;
 template <>
 inline constexpr double response_gain<float> = tolerance::mixed_response_gain;
 
-/// What all contacts have in common.
+/// The data that the accounting of all contacts has in common.
 template <class Real>
 struct AccountStage {
   ConstView<Slot> places;
@@ -78,10 +78,11 @@ struct AccountStage {
   ConstView<BodyRecord<Real>> solver;
   ResponseParameters parameters;
   double step;
-  View<std::uint32_t> loads;  ///< bytes of candidates: a bit for each part that is loaded
-  bool again = false;         ///< the gaps at the end are set already
+  View<std::uint32_t> loads;  ///< one byte for each candidate, with a bit for each part that bears load
+  bool again = false;         ///< whether the gaps at the end have been set already
 
-  /// Manifold::part of a slot's surface: the corners of a box all touch the one wall.
+  /// Returns the Manifold::part of a slot's surface. For a box in a tube, the eight surfaces of the corners
+  /// are all parts of the one wall.
   SCREE_HD int part_of(const Slot& slot) const {
     const Shape a = bodies.shape[slot.i], b = bodies.shape[slot.j];
     const bool corners = (a == Shape::tube && b == Shape::box) || (a == Shape::box && b == Shape::tube);
@@ -101,7 +102,8 @@ struct AccountStage {
             velocity_of(solver, ends.j, arm_j) - velocity_of(solver, ends.i, arm_i)};
   }
 
-  /// Adds what a point's impulse has moved: account(), at the arms given.
+  /// Adds what the impulse of a point has moved to the totals, as account() of impulse_energy.hpp does, with
+  /// the lever arms of `at`.
   SCREE_HD void account(const AccountedPoint& at, const Slot& slot, const Ends& ends,
                         ContactTotals& totals) const {
     const Vec3& p = at.impulse;
@@ -118,7 +120,7 @@ struct AccountStage {
     totals.kick_power += changed;
   }
   SCREE_HD bool is_free(std::int32_t end) const { return solver[end].inverse_mass > 0; }
-  /// Of one contact, whose points are booked.
+  /// Sets `gaining` in the totals of one contact, all of whose points have been added.
   SCREE_HD static void judge_gain(ContactTotals& totals) {
     totals.gaining = totals.moved().gains(response_gain<Real>) ? 1 : 0;
   }
@@ -131,7 +133,7 @@ struct AccountStage {
     const BodyRecord<Real>& body = records[end];
     return vec3(body.velocity) + vec3(body.spin).cross(arm);
   }
-  /// What the substep's forces have added to the velocity of a body's point.
+  /// Returns what the substep's forces have added to the velocity of a point of a body (m/s).
   SCREE_HD Vec3 kick_of(std::int32_t body, std::int32_t end, const Vec3& arm) const {
     Vec3 kick = is_free(end) ? Vec3(step * parameters.acceleration_of(body)) : Vec3(Vec3::Zero());
     if (parameters.torque.size() > 0) kick += (vec3(free[end].spin) - bodies.spin[body]).cross(arm);
@@ -139,10 +141,12 @@ struct AccountStage {
   }
 };
 
-/// What flies past is nearer to the other's tangent plane than to the other: its gap does not count.
+/// Whether the bodies of a contact fly past each other. The gap of such a contact does not count, since a
+/// body that flies past is nearer to the other's tangent plane than to the other itself.
 SCREE_HD inline bool passes(std::uint8_t flags, bool loaded) { return (flags & flag_flying) != 0 && !loaded; }
 
-/// Of contacts of balls. Sets their gaps at the end, and remembers their impulses.
+/// Accounts for a contact of balls: returns its totals, sets its gap at the end, and stores its impulse in
+/// the memory of its slot.
 template <class Real>
 struct AccountBalls {
   static constexpr int blocks_at_once = 2;
@@ -186,7 +190,7 @@ struct AccountBalls {
   }
 };
 
-/// Of the others.
+/// Accounts for a contact of several points, as AccountBalls does for one of balls.
 template <class Real>
 struct AccountPoints {
   AccountStage<Real> stage;

@@ -12,7 +12,7 @@ namespace scree::solver {
 
 namespace {
 
-/// Free bodies of the solver that a contact acts on; -1 for others.
+/// The free bodies of the solver on which a contact acts; -1 stands for a body that is not free.
 struct FreeEnds {
   std::int32_t i, j;
 };
@@ -30,9 +30,10 @@ struct ColoredContacts {
     return {mobility[at.i] == Mobility::free ? at.end_i : -1,
             mobility[at.j] == Mobility::free ? at.end_j : -1};
   }
-  /// A contact's rank among its neighbours: as good as random, never the same twice (each step can be
-  /// undone), and a matter of the bodies' numbers alone. There are fewer than 2^30 bodies, since each takes
-  /// some 100 bytes, and at most 16 surfaces of a pair.
+  /// Returns the rank of a contact among its neighbours. It is as good as random. No two contacts have the
+  /// same rank, since each step of the mixing can be undone. It depends only on the numbers of the bodies and
+  /// on the surface. There are fewer than 2^30 bodies, since each takes some 100 bytes, and at most 16
+  /// surfaces of a pair.
   SCREE_HD std::uint64_t rank(std::int64_t d) const {
     const Slot& at = slot(d);
     const auto bits_of = [&](std::int32_t body) { return static_cast<std::uint64_t>(number[body]); };
@@ -53,7 +54,8 @@ struct Uncolored {
   }
 };
 
-/// What slots remember of contacts, if it is to be kept.
+/// Gives each contact the colour that its slot remembers, if colours are kept, and marks this colour as taken
+/// at the contact's free bodies.
 struct KeepColors {
   ColoredContacts contacts;
   bool keep;
@@ -74,9 +76,10 @@ struct KeepColors {
   }
 };
 
-/// Rounds of colouring: of the uncoloured contacts of each body the first in rank stands, and a contact that
-/// stands at both its bodies takes the lowest colour that both have left (Jones, Plassmann 1993, "A parallel
-/// graph coloring heuristic"). In each round the first in rank of all that are left finds its colour.
+/// Rounds of colouring. In the first phase of a round, the uncoloured contact of lowest rank claims each
+/// body. In the second phase, a contact that has claimed both its bodies takes the lowest colour that is free
+/// at both (Jones, Plassmann 1993, "A parallel graph coloring heuristic"). In each round at least the contact
+/// of lowest rank among all uncoloured ones gets its colour.
 struct ColorRounds {
   struct State {
     bool done;
@@ -119,7 +122,8 @@ struct ColorRounds {
   SCREE_HD State judge(const State&, const Sum& sum) const { return {sum.left == 0}; }
 
  private:
-  /// Nobody else stands here, so the next round may begin.
+  /// Marks a colour as taken at a body and clears the claim for the next round. Only the contact that has
+  /// claimed the body gets here, so no other thread writes to it.
   SCREE_HD void leave(std::int32_t end, std::uint32_t at) const {
     taken[end] |= std::uint64_t{1} << at;
     standing[end] = ~std::uint64_t{0};
@@ -165,7 +169,8 @@ template <class Space>
 void ContactColors<Space>::find(ConstView<std::int32_t> found, ConstView<Slot> slots,
                                 const ConstBodyView& bodies, std::int64_t ends,
                                 View<std::uint8_t> remembered) {
-  // Colours that are kept leave gaps, so that their number creeps up.
+  // Kept colours leave gaps, so that the number of colours creeps up. When it exceeds that of the last full
+  // colouring by more than this, all contacts are coloured anew.
   constexpr int most_more = 3;
   const std::int64_t n = found.size();
   const ColoredContacts contacts{found, slots, bodies.mobility, bodies.id};

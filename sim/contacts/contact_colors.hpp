@@ -1,4 +1,5 @@
-// Graph colouring of contacts: those of a colour share no free body, so that they are solved at once.
+// Graph colouring of contacts: contacts of one colour share no free body, so that they can be solved in
+// parallel.
 #pragma once
 
 #include "core/archive.hpp"
@@ -11,38 +12,44 @@
 
 namespace scree::solver {
 
-// A slot remembers the colour of its contact in the lower bits, and whether it was on a part of a hub.
+// A slot remembers the colour of its contact in the lower bits, and in this bit whether one of its ends was a
+// part of a hub.
 inline constexpr std::uint8_t on_part = 64;
-inline constexpr std::uint8_t no_color = 255;  ///< there was no contact
+inline constexpr std::uint8_t no_color = 255;  ///< the slot had no contact
 static_assert(most_colors <= on_part);
 
-/// What is left of that when candidates are made anew: the parts of hubs are dealt anew as well.
+/// Returns what is left of a remembered colour when the candidates are made anew. A colour on a part of a hub
+/// is forgotten, since the slots of hubs are then distributed over new parts.
 SCREE_HD inline std::uint8_t color_with_new_parts(std::uint8_t remembered, bool is_on_part) {
   return is_on_part || (remembered & on_part) != 0 ? no_color : remembered;
 }
 
-/// Where the contacts of a colour begin: among all that are sorted, and among the places.
+/// Where the contacts of a colour begin: their index among all contacts sorted by colour, and their place in
+/// the store.
 struct ColorStart {
   std::int64_t first, place;
 };
 
-/// For contacts of one kind.
+/// The colouring of the contacts of one kind (of balls, or of several points).
 template <class Space>
 class ContactColors {
  public:
-  /// Colours the contacts of the slots that are `found`, by their places among `slots`. `remembered`: what
-  /// the slots remember; a slot that had a contact mostly keeps its colour, and all remember that of now.
-  /// `ends`: how many bodies of the solver are free or parts of hubs. The result does not depend on the order
-  /// of threads.
+  /// Colours the contacts of the slots `found`, which are indices into `slots`. `remembered`: the colours
+  /// that the slots remember. A slot that had a contact before mostly keeps its colour; on return all slots
+  /// remember their present colours. `ends`: number of bodies of the solver before the points of walls, among
+  /// which are all free bodies and all parts of hubs. The result does not depend on the order of threads.
   void find(ConstView<std::int32_t> found, ConstView<Slot> slots, const ConstBodyView& bodies,
             std::int64_t ends, View<std::uint8_t> remembered);
-  /// Of the contacts: those that have any.
+  /// Returns the ranges of the colours; each colour in it has at least one contact.
   const ColorRanges& ranges() const { return ranges_; }
-  /// Whether the last find() has found the contacts of the one before, which are where they were.
+  /// Whether the last find() has found the same contacts as the find() before it, with the same colours, so
+  /// that they keep their places in the store.
   bool are_same() const { return are_same_; }
-  /// Writes the slot of each contact: colour by colour, and in the order of the slots.
+  /// Writes the slot of each contact to its place, colour by colour, and within a colour in the order of the
+  /// slots.
   void place(View<std::int32_t> slot) const;
-  /// The slots are others, or remember something else.
+  /// Forgets the contacts of the last find(), so that are_same() is false after the next one. This is
+  /// necessary when the slots, or what they remember, have changed.
   void forget() { knows_slots_ = false; }
 
   void archive(Archive& archive) {
@@ -51,15 +58,16 @@ class ContactColors {
   }
 
  private:
-  Array<std::uint32_t, Space> color_, slot_;  // of each contact; in the end colour by colour
+  Array<std::uint32_t, Space> color_, slot_;  // each contact's colour and slot; find() sorts them by colour
   ColorRanges ranges_;
-  Array<ColorStart, Space> start_;  // of each colour
-  // Room for find(): contacts without a colour, what bodies of the solver know, contacts of each colour.
+  Array<ColorStart, Space> start_;  // one element for each colour
+  // Temporary memory of find(): contacts without a colour, the number of contacts of each colour, and for
+  // each body of the solver the lowest rank that has claimed it and the colours that are taken there.
   Array<std::uint32_t, Space> uncolored_, counts_;
   Array<std::uint64_t, Space> standing_, taken_;
   bool knows_slots_ = false, are_same_ = false;
-  int colors_ = 0;           // of the last call
-  int colors_at_first_ = 0;  // that were needed when all were coloured at once
+  int colors_ = 0;           // number of colours after the last find()
+  int colors_at_first_ = 0;  // number of colours after the last find() that coloured all contacts at once
 };
 
 }  // namespace scree::solver

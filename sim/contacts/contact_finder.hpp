@@ -1,4 +1,4 @@
-// From slots to the contacts of a substep.
+// The class that makes the contacts of a substep from the slots.
 #pragma once
 
 #include "core/array.hpp"
@@ -16,16 +16,17 @@ namespace scree::solver {
 template <class Space, class Real>
 class ContactFinder {
  public:
-  /// Fills the store. Slots without a contact forget their impulses, and bodies of the solver that are points
-  /// of walls get their velocities. `loads`: of the candidates.
+  /// Finds the contacts and fills the store. Slots without a contact forget their impulses, and bodies of the
+  /// solver that are points of walls get their velocities. `loads`: the loaded parts of each candidate.
   void find(const FindStage<Real>& stage, Slots<Space, Real>& slots, ConstView<LoadedParts> loads,
             View<BodyRecord<Real>> solver, ContactStore<Space, Real>& store);
-  /// The slots are others, or remember something else.
+  /// Forgets the contacts of the last find(). This is necessary when the slots, or what they remember, have
+  /// changed.
   void forget_slots() {
     ball_colors_.forget();
     point_colors_.forget();
   }
-  /// What the next substep starts from.
+  /// Saves or loads what the next substep starts from.
   void archive(Archive& archive) {
     archive.part("ball_colors", ball_colors_);
     archive.part("point_colors", point_colors_);
@@ -42,8 +43,8 @@ class ContactFinder {
 
   FoundSlots<Space> found_;
   ContactColors<Space> ball_colors_, point_colors_;
-  Array<FoundManifold, Space> manifolds_;  // of slots
-  Array<Reach, Host> reach_;  // of padding_body, and of each body; where the kernels find contacts
+  Array<FoundManifold, Space> manifolds_;  // one for each slot that is not of balls
+  Array<Reach, Host> reach_;               // reach of empty slots, then of each body; for kernels only
   Array<std::int32_t, Space> approaching_;
   Array<std::uint64_t, Space> approaching_count_;
 };

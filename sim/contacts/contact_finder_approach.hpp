@@ -1,5 +1,5 @@
-// What ContactFinder does with contacts that bodies may fly past, in both its parts. Each part is a source of
-// its own, because nvcc takes minutes for the pair tests.
+// The treatment of contacts whose bodies may fly past each other, for both parts of ContactFinder (balls and
+// points). Each part is a source file of its own, because nvcc takes minutes for the pair tests.
 #pragma once
 
 #include "core/parallel.hpp"

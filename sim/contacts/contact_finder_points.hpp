@@ -1,5 +1,5 @@
-// The part of ContactFinder for slots that are not of balls, by precision: contact_finder_double.cpp and
-// contact_finder_float.cpp.
+// The part of ContactFinder for slots that are not of balls. It is instantiated for each precision in a file
+// of its own: contact_finder_double.cpp and contact_finder_float.cpp.
 #pragma once
 
 #include "sim/contacts/contact_finder_approach.hpp"

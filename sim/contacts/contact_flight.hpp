@@ -1,4 +1,4 @@
-// What the impacts of a flight mean for a contact and for a body in it, in either space.
+// The effect of the impacts of a flight on contacts and on bodies, in either space.
 #pragma once
 
 #include "core/tolerances.hpp"
@@ -12,12 +12,13 @@
 
 namespace scree {
 
-/// Bodies after their impacts. What the response will do comes after: their flight is straight, with all of
-/// the substep's kick.
+/// The flights of bodies after their impacts, without the changes by the response, which comes later: each
+/// flight is straight, and its velocity has all of the substep's kick.
 struct StruckFlights {
   FlightStage stage;
 
-  /// When a pair is to be seen, into the substep (s), if that is after the midpoint.
+  /// Returns the time of the last impact of the two bodies, into the substep (s). If it is after the
+  /// midpoint, the contact of the pair is found at this time.
   SCREE_HD double time_of(std::int32_t i, std::int32_t j) const {
     return std::max(stage.clock[i], stage.clock[j]);
   }
@@ -29,10 +30,11 @@ struct StruckFlights {
   }
 };
 
-/// Gives a contact at an edge the normal of a plane along a face that separates its bodies all the while, if
-/// there is one: where a flat surface goes on in other bodies, their edges are no features of it. A contact
-/// whose rows would not hold the flights apart is left as it is, and so is one of a face that the bodies
-/// approach no faster than that plane.
+/// Gives a contact at an edge the normal of a plane along a face that separates its bodies during their whole
+/// flight, if there is such a plane. The reason: where a flat surface continues across several bodies, their
+/// edges are no features of it. The contact stays as it is if its rows would not hold the bodies apart in
+/// their flight. A contact of several points also stays as it is if the bodies approach along its normal no
+/// faster than along that of the plane.
 [[gnu::noinline]] SCREE_HD inline void take_normal_of_face(const StruckFlights& struck, std::int32_t i,
                                                            std::int32_t j, int count, ContactPoint* points,
                                                            Vec3& normal) {
@@ -70,7 +72,7 @@ struct StruckFlights {
     return;
   normal = face.normal;
   for (int k = 0; k < count; ++k) points[k].gap += face.separation - least;
-  // A ball has its contact on the normal.
+  // The contact point of a ball lies on the normal through its centre.
   const auto place = [&](const BodyFlight& ball, const Vec3& centre, double side) {
     if (ball.is_ball()) points[0].position = centre + side * (ball.size.x() + 0.5 * face.separation) * normal;
   };
@@ -78,22 +80,24 @@ struct StruckFlights {
   place(pair.j, at_j.solid.position, -1.0);
 }
 
-/// How the response is to see a contact.
+/// How the response treats a contact.
 struct ContactFlight {
-  double delay;  ///< how long after the midpoint its geometry is of (s)
-  bool flying;   ///< known not to meet in this substep: its rows only guard what the flight leaves free
+  double delay;  ///< time after the midpoint at which the contact is found (s)
+  bool flying;   ///< the bodies are known not to meet in this substep; the rows only keep them from closing
+                 ///< faster than their flight does
 };
 
 namespace detail {
 
-/// Whether the rows of a contact would hold its bodies apart, though they touch nowhere yet; as it was seen
-/// at the time `seen` (s).
+/// Whether the rows of a contact, as found at the time `seen` (s), would hold its bodies apart although they
+/// do not touch anywhere yet.
 template <class Header>
 SCREE_HD bool would_push_apart(const StruckFlights& struck, const Header& m, const ContactPoint* points,
                                double size, double seen) {
   const FlightStage& stage = struck.stage;
   const double left = 1.5 * stage.terms.step - seen;
-  // A point nearer than its size to a body moves at most twice as fast as its surface may.
+  // A point that is nearer to a body than the body's size moves at most twice as fast as the body's surface
+  // may.
   const double fastest =
       2 * (stage.top_speed[m.i] + stage.top_speed[m.j]) + stage.terms.step * stage.parameters.gravity.norm();
   bool may_close = false;
@@ -110,7 +114,7 @@ SCREE_HD bool would_push_apart(const StruckFlights& struck, const Header& m, con
   for (int k = 0; k < m.count; ++k) {
     const double closing = closing_speed(m.normal, points[k].position, i, j);
     if (closing <= 0 || closing * left <= tolerance::likely_closing * points[k].gap) continue;
-    if (points[k].gap <= 0) return false;  // touches: no impact is to come
+    if (points[k].gap <= 0) return false;  // the bodies touch: no impact is to come
     pushes = true;
   }
   return pushes;
@@ -118,10 +122,11 @@ SCREE_HD bool would_push_apart(const StruckFlights& struck, const Header& m, con
 
 }  // namespace detail
 
-/// Of a Manifold. Two bodies that the rows would hold apart, though
-/// nothing else has touched them, may pass by each other: the normal of the midpoint says nothing of it. Or
-/// they meet later, in an impact that will bounce; in a crowd they bounce now. `size`: the smaller
-/// smallest_size of the two (m); `loaded`: whether the pair's part carried an impulse in the last substep.
+/// Decides how the response treats a contact (Header is Manifold). Two bodies that the rows would hold apart,
+/// although they do not touch anywhere yet, may pass by each other: the normal at the midpoint says nothing
+/// about this. Or they meet later in an impact in which they bounce; in a crowd they bounce in the response
+/// instead. `size`: the smaller smallest_size of the two bodies (m); `loaded`: whether the pair's part
+/// carried an impulse in the last substep.
 template <class Header>
 SCREE_HD ContactFlight flight_of_contact(const StruckFlights& struck, const Header& m,
                                          const ContactPoint* points, double size, bool loaded) {
@@ -140,18 +145,20 @@ SCREE_HD ContactFlight flight_of_contact(const StruckFlights& struck, const Head
   return contact;
 }
 
-/// Angular momentum (kg m^2/s) that an impulse on a free body adds by acting `delay` after the midpoint (s):
-/// beside it by as much as the body flies until then. `total`: all that the response gave to the body (N s).
-/// Of many impulses the sum may be given, each times its delay, with a delay of 1 s.
+/// Returns the angular momentum (kg m^2/s) that an impulse on a free body adds because it acts `delay` after
+/// the midpoint (s): its line of action is shifted by the distance that the body flies until then. `total`:
+/// the sum of all impulses of the response on the body (N s). For many impulses, the sum of each impulse
+/// times its delay may be passed, with a delay of 1 s.
 SCREE_HD inline Vec3 moment_of_delay(const BodyView& bodies, std::int32_t body, const Vec3& total,
                                      double delay, const Vec3& impulse) {
   const Vec3 before = bodies.velocity[body] - bodies.inverse_mass[body] * total;
   return -delay * before.cross(impulse);
 }
 
-/// After the response: a free body that was struck late has been where it was until then, so its midpoint
-/// moves to that from which its new flight leads on from its last impact. Returns what that moved; for others
-/// it does nothing. `total`: as above.
+/// Moves the midpoint of a free body with a late impact, after the response. Until that impact the body has
+/// been where it was without the response, so the midpoint becomes the point from which the new flight leads
+/// through the place of the impact. Returns the ledger of this shift; for other bodies nothing is done.
+/// `total`: the sum of all impulses of the response on the body (N s).
 SCREE_HD inline Ledger shift_after_late_impact(const FlightStage& stage, std::int32_t body,
                                                const Vec3& total) {
   if (!stage.has_late_impact(body)) return {};

@@ -1,4 +1,4 @@
-// The contacts of a substep, colour by colour.
+// The memory for the contacts of a substep, colour by colour.
 #pragma once
 
 #include "core/array.hpp"
@@ -10,14 +10,15 @@
 
 namespace scree::solver {
 
-/// Contacts need no more, since those of hubs are dealt to several parts (SolverBodies).
+/// The largest number of colours. Contacts need no more, since those of hubs are distributed over several
+/// parts (SolverBodies).
 inline constexpr int most_colors = 64;
 
-/// Where the contacts of each colour are: those of a colour share no free body. Each colour begins with a
-/// block (simd::width), and what is left of its last block is no contact.
+/// The places of the contacts of each colour; contacts of one colour share no free body. Each colour begins
+/// with a new block of simd::width places, and the places left over in its last block hold no contact.
 struct ColorRanges {
-  std::vector<std::int64_t> begin{0};  ///< first contact of each colour; one more than colours
-  std::vector<std::int64_t> count;     ///< contacts of each colour
+  std::vector<std::int64_t> begin{0};  ///< first place of each colour, then the end of the last
+  std::vector<std::int64_t> count;     ///< number of contacts of each colour
 
   void add(std::int64_t contacts) {
     const std::int64_t blocks = (contacts + simd::width - 1) / simd::width;
@@ -26,11 +27,11 @@ struct ColorRanges {
   }
   int colors() const { return static_cast<int>(count.size()); }
   std::int64_t contacts() const { return std::accumulate(count.begin(), count.end(), std::int64_t{0}); }
-  /// Contacts, and what is left of blocks.
+  /// Returns the number of places: contacts, and places left over in blocks.
   std::int64_t places() const { return begin.back(); }
 };
 
-/// Memory for them.
+/// The memory for the contacts of both kinds.
 template <class Space, class Real>
 class ContactStore {
  public:
@@ -105,7 +106,8 @@ class ContactStore {
   Array<Real, Space> ball_fields_, contact_fields_, point_fields_, ball_gaps_, point_gaps_;
 };
 
-/// f(c) for each contact c of a kind; nothing, or a sum of none, where a block has none.
+/// Calls f(c) for each contact c of a kind. For a place of a block that holds no contact, it returns a
+/// default value (an empty sum) instead.
 template <class F>
 struct OnContacts {
   static constexpr int blocks_at_once = [] {

@@ -1,4 +1,5 @@
-// From slots of balls to contacts: which of them have one, and what the sweeps need to know of it.
+// The search for contacts of balls: finds which of their slots have a contact, and computes what the sweeps
+// need to know of it.
 #pragma once
 
 #include "narrowphase/any_contacts.hpp"
@@ -8,8 +9,8 @@
 
 namespace scree::solver {
 
-/// The contact of a slot of balls, at its time. With `rare`, of any; without, of balls and planes at the
-/// midpoint.
+/// Finds the contact of a slot of balls, `delay` after the midpoint (s). With `rare` it handles all slots of
+/// balls; without, only those of balls and planes at the midpoint.
 template <bool rare, class Real>
 SCREE_HD inline bool meet(const FindStage<Real>& stage, const SlotBodies<Real>& at, double delay,
                           Manifold& out) {
@@ -34,7 +35,7 @@ SCREE_HD inline bool meet(const FindStage<Real>& stage, const SlotBodies<Real>& 
   if (shape == Shape::plane) {
     found = sphere_plane(of_ball, other, at.margin(), out);
   } else if constexpr (rare) {
-    constexpr int most_manifolds = 3;  // of a ball and a tube
+    constexpr int most_manifolds = 3;  // largest number for a ball and a tube
     Manifold all[most_manifolds];
     const PairShapes shapes = stage.shapes_of(ball_a ? at.slot.i : at.slot.j, ball_a ? at.slot.j : at.slot.i);
     const int count =
@@ -62,7 +63,8 @@ SCREE_HD inline Touch touch_of(const Manifold& m) {
   return {m.normal, m.points[0].position, m.points[0].gap};
 }
 
-/// What is rare must take no registers from the rest, and so it is called.
+/// Does the same as meet() for all slots of balls. This function is needed rarely and is not inlined, so that
+/// it takes no registers from the common code.
 template <class Real>
 [[gnu::noinline]] SCREE_HD bool meet_rarely(const FindStage<Real>& stage, const Slot& slot, double delay,
                                             Touch& out) {
@@ -77,7 +79,7 @@ SCREE_HD inline bool meet_balls(const FindStage<Real>& stage, std::int64_t place
                                 double delay, Touch& out) {
   const auto is_common = [](Shape shape) { return shape == Shape::sphere || shape == Shape::plane; };
   if (delay > 0 || !is_common(at.a.shape) || !is_common(at.b.shape)) {
-    Touch rare;  // in memory, as what is called asks for
+    Touch rare;  // in memory, since the called function takes its address
     const bool found = meet_rarely(stage, stage.places[place], delay, rare);
     if (found) out = rare;
     return found;
@@ -88,23 +90,24 @@ SCREE_HD inline bool meet_balls(const FindStage<Real>& stage, std::int64_t place
   return found;
 }
 
-/// Contacts of balls, all as if they met and stayed. Those that may fly past or bounce are listed.
+/// Finds and makes contacts of balls as if all their bodies met and stayed together. Contacts whose bodies
+/// may fly past each other or bounce are added to `approaching`.
 template <class Real>
 struct FindBalls {
   struct Record {
     Vec3 normal;
     double gap;
-    double arm_i, arm_j;  ///< along the normal
+    double arm_i, arm_j;  ///< lever arms along the normal (m)
     double delay;
   };
 
-  static constexpr int blocks_at_once = 2;  // spilled registers cost more than threads that wait
-  static constexpr int kinds = 0;           // all are alike
+  static constexpr int blocks_at_once = 2;  // more would spill registers: worse than waiting threads
+  static constexpr int kinds = 0;           // the work on all slots is alike
 
   FindStage<Real> stage;
   BallContacts<Real> contacts;
   View<BallMemory<Real>> memory;
-  View<BodyRecord<Real>> solver;  ///< gets the points of walls
+  View<BodyRecord<Real>> solver;  ///< receives the velocities of points of walls
   ApproachList approaching;
 
   bool is_end(std::int64_t place) const { return stage.places[place].i == Slot::empty; }
@@ -129,9 +132,9 @@ struct FindBalls {
     return true;
   }
 
-  /// Nothing is kept: make() reads the same bodies, and finds the contact again.
+  /// Keeps nothing: make() reads the same bodies and finds the contact again.
   SCREE_HD void keep(std::int64_t, const Record&) const {}
-  /// Contact `to`, of a slot that has one.
+  /// Makes contact `to` from a slot that has a contact.
   SCREE_HD void make(std::int64_t to, std::int64_t place) const {
     using C = BallContacts<Real>;
     Record record;
@@ -174,7 +177,8 @@ struct FindBalls {
   }
 
  private:
-  /// The ball has the contact on its normal.
+  /// Sets the velocity of the point of a wall in this contact, if there is one. The contact point lies on the
+  /// normal through the ball's centre.
   SCREE_HD void set_wall_points(SlotBodies<Real>& at, const Record& record) const {
     const Slot& slot = at.slot;
     if (stage.is_wall_point(at.a, slot.i, slot.end_i)) {
@@ -190,7 +194,8 @@ struct FindBalls {
   }
 };
 
-/// Of the contacts of balls.
+/// Decides for a contact of balls that approach whether they fly past each other or bounce, and sets its
+/// target.
 template <class Real>
 struct JudgeBalls {
   FindStage<Real> stage;

@@ -1,5 +1,5 @@
-// From the other slots to contacts of several points: which of them have one, and what the sweeps need to
-// know of it.
+// The search for contacts of several points: finds which of the slots that are not of balls have a contact,
+// and computes what the sweeps need to know of it.
 #pragma once
 
 #include "narrowphase/any_contacts.hpp"
@@ -9,7 +9,7 @@
 
 namespace scree::solver {
 
-/// True if the spheres around two bodies are too far apart for a contact.
+/// Whether the spheres around two bodies are too far apart for a contact.
 template <class Real>
 SCREE_HD inline bool are_far(const FindStage<Real>& stage, const SlotBodies<Real>& at) {
   if (is_boundary(at.a.shape) || is_boundary(at.b.shape)) return false;
@@ -18,7 +18,7 @@ SCREE_HD inline bool are_far(const FindStage<Real>& stage, const SlotBodies<Real
   return are_far_apart(stage.bodies.period.nearest(at.b.position - at.a.position), reach);
 }
 
-/// Body j of a slot, where it is nearest to body i.
+/// Returns body j of a slot, at its periodic image that is nearest to body i.
 template <class Real>
 SCREE_HD inline Solid solid_near(const FindStage<Real>& stage, const SlotBodies<Real>& at, double delay) {
   Solid b = stage.solid(at.slot.j, delay);
@@ -26,7 +26,8 @@ SCREE_HD inline Solid solid_near(const FindStage<Real>& stage, const SlotBodies<
   return b;
 }
 
-/// What is rare must take no registers from the rest, and so it is called.
+/// Finds the contact of a slot of any two shapes. This function is needed rarely and is not inlined, so that
+/// it takes no registers from the common code.
 template <class Real>
 [[gnu::noinline]] SCREE_HD bool meet_any(const FindStage<Real>& stage, const SlotBodies<Real>& at,
                                          double delay, Manifold& out) {
@@ -43,7 +44,7 @@ template <class Real>
   return on != nullptr;
 }
 
-/// The contact of a slot that is not of balls, as the narrow phase finds it.
+/// Finds the contact of a slot that is not of balls, with the normal of the narrow phase.
 template <class Real>
 SCREE_HD inline bool find_points(const FindStage<Real>& stage, const SlotBodies<Real>& at, double delay,
                                  Manifold& out) {
@@ -66,7 +67,7 @@ SCREE_HD inline bool find_points(const FindStage<Real>& stage, const SlotBodies<
   return found;
 }
 
-/// The contact of a slot that is not of balls.
+/// Finds the contact of a slot that is not of balls. A contact at an edge may take the normal of a face.
 template <class Real>
 SCREE_HD inline bool meet_points(const FindStage<Real>& stage, const SlotBodies<Real>& at, double delay,
                                  Manifold& out) {
@@ -75,8 +76,8 @@ SCREE_HD inline bool meet_points(const FindStage<Real>& stage, const SlotBodies<
   return true;
 }
 
-/// Contacts that are not of balls alone, all as if they met and stayed. Those that may fly past or bounce are
-/// listed.
+/// Finds and makes contacts that are not of balls alone, as if all their bodies met and stayed together.
+/// Contacts whose bodies may fly past each other or bounce are added to `approaching`.
 template <class Real>
 struct FindPoints {
   using Record = FoundManifold;
@@ -84,14 +85,15 @@ struct FindPoints {
   static constexpr int blocks_at_once = 1;
 
   FindStage<Real> stage;
-  std::int64_t first_place;  ///< of the slots that are not of balls
+  std::int64_t first_place;  ///< place of the first slot that is not of balls
   PointContacts<Real> contacts;
   View<PointMemory<Real>> memory;
-  ConstView<LoadedParts> loads;  ///< of candidates
+  ConstView<LoadedParts> loads;  ///< one element for each candidate
   ApproachList approaching;
-  View<Record> records;  ///< of slots: what is found
+  View<Record> records;  ///< the contact found at each slot
 
-  /// The work of these differs most.
+  /// The number of kinds of slots whose work differs most: those with a sphere, those of two boxes, and
+  /// others.
   static constexpr int kinds = 3;
   SCREE_HD int kind(std::int64_t k) const {
     const Slot slot = stage.places[first_place + k];
@@ -118,7 +120,7 @@ struct FindPoints {
   }
 
   SCREE_HD void keep(std::int64_t k, const Record& record) const { records[k] = record; }
-  /// Contact `to`, of a slot that has one.
+  /// Makes contact `to` from a slot that has a contact.
   SCREE_HD void make(std::int64_t to, std::int64_t k) const {
     using C = PointContacts<Real>;
     const Record& record = records[k];
@@ -183,7 +185,7 @@ struct FindPoints {
   }
 
  private:
-  /// Asks libccd about a slot that is one of those to be checked.
+  /// Compares the answer of libccd, if the pair of the slot is one of those to be checked.
   void crosscheck(const SlotBodies<Real>& at, double delay) const {
     const auto number = [&](std::int32_t k) { return static_cast<std::int32_t>(stage.bodies.id[k]); };
     const Slot& slot = at.slot;
@@ -195,7 +197,8 @@ struct FindPoints {
     const double elements[] = {m(0, 0), m(1, 1), m(2, 2), m(0, 1), m(0, 2), m(1, 2)};
     for (int e = 0; e < 6; ++e) contacts.fields.at(first + e, to) = static_cast<Real>(elements[e]);
   }
-  /// Before the kick.
+  /// Returns a body as the solver has it, at its velocities before the kick. A part of a hub has the inverse
+  /// mass and inertia of its share.
   SCREE_HD SolverBody solver_body(const MidBody<Real>& body, std::int32_t k, std::int32_t end) const {
     const ConstBodyView& bodies = stage.bodies;
     const double parts = k == end || !body.is_free()
@@ -206,13 +209,14 @@ struct FindPoints {
   }
 };
 
-/// Of these contacts.
+/// Decides for a contact of several points whether its bodies fly past each other or bounce, and sets the
+/// targets of its points.
 template <class Real>
 struct JudgePoints {
   FindStage<Real> stage;
   std::int64_t first_place;
   PointContacts<Real> contacts;
-  ConstView<FoundManifold> records;  ///< of slots: what FindPoints has found
+  ConstView<FoundManifold> records;  ///< contact that FindPoints has found at each slot
 
   SCREE_HD void operator()(std::int64_t c) const {
     using C = PointContacts<Real>;

@@ -1,4 +1,5 @@
-// What contacts are made from: slots and their bodies at the midpoint.
+// The data from which contacts are made (slots and their bodies at the midpoint), and what the search for
+// contacts of both kinds has in common.
 #pragma once
 
 #include "core/space_atomic.hpp"
@@ -20,7 +21,8 @@
 
 namespace scree::solver {
 
-/// A slot and its bodies, read at once: memory is asked for less often than by field.
+/// A slot and its two bodies. They are loaded as whole records, which takes fewer accesses to memory than
+/// field by field.
 template <class Real>
 struct SlotBodies {
   Slot slot;
@@ -29,21 +31,21 @@ struct SlotBodies {
   SCREE_HD double size() const { return fmin(a.size, b.size); }
 };
 
-/// What contacts are made from.
+/// The data from which contacts are made, and functions of them.
 template <class Real>
 struct FindStage {
   ConstView<Slot> places;
   ConstView<MidBody<Real>> mid;
   ConstBodyView bodies;                ///< at the midpoint, before the kick
-  ConstView<BodyRecord<Real>> solver;  ///< kicked
+  ConstView<BodyRecord<Real>> solver;  ///< the bodies of the solver, after the kick
   ContactLaws laws;
   ResponseParameters parameters;
   double step;                       ///< s
-  double scale;                      ///< of remembered impulses
-  double noise;                      ///< parting speeds that count as none (m/s)
+  double scale;                      ///< factor for remembered impulses
+  double noise;                      ///< largest parting speed that counts as none (m/s)
   StruckFlights struck;              ///< the bodies after their impacts
-  bool any_late_impact;              ///< one was struck after the midpoint
-  LibccdContacts* libccd = nullptr;  ///< on Host; null: it is not asked about anything
+  bool any_late_impact;              ///< whether any body was struck after the midpoint
+  LibccdContacts* libccd = nullptr;  ///< on Host alone; null if libccd is not used
 
   SCREE_HD SlotBodies<Real> load(const Slot& slot) const { return {slot, mid[slot.i], mid[slot.j]}; }
   SCREE_HD const PairLaw& law_of(const SlotBodies<Real>& at) const {
@@ -66,29 +68,32 @@ struct FindStage {
   SCREE_HD Vec3 kicked_velocity(const MidBody<Real>& body, std::int32_t k) const {
     return vec3(body.velocity) + kick_of(body, k);
   }
-  /// Of j relative to i, before the kick and with it.
+  /// Returns the velocity of j relative to i, before the kick. The next function returns it after the kick.
   SCREE_HD static Vec3 relative_velocity(const SlotBodies<Real>& at) {
     return vec3(at.b.velocity) - vec3(at.a.velocity);
   }
   SCREE_HD Vec3 kicked_relative_velocity(const SlotBodies<Real>& at) const {
     return kicked_velocity(at.b, at.slot.j) - kicked_velocity(at.a, at.slot.i);
   }
-  /// Whether a body that is not free is a point of a wall that turns, in the contact of a slot.
+  /// Whether an end of a slot is a point of a turning wall: a body that is not free and that has an end of
+  /// its own for this slot.
   SCREE_HD static bool is_wall_point(const MidBody<Real>& body, std::int32_t k, std::int32_t end) {
     return !body.is_free() && end != k;
   }
-  /// Of a wall at a point, when a pair is seen (m/s). Rare: what is called takes no registers from the rest.
+  /// Returns the velocity of a wall at a point, `delay` after the midpoint (m/s). This function is needed
+  /// rarely and is not inlined, so that it takes no registers from the common code.
   [[gnu::noinline]] SCREE_HD V3<Real> wall_velocity(std::int32_t wall, const Vec3& point,
                                                     double delay) const {
     const Vec3 centre = bodies.position[wall] + delay * bodies.velocity[wall];
     return v3<Real>(bodies.velocity[wall] + bodies.spin[wall].cross(bodies.period.nearest(point - centre)));
   }
-  /// Walls move as their points do.
+  /// Replaces the velocity of a turning wall by that of its point in this contact.
   SCREE_HD void take_wall_points(SlotBodies<Real>& at) const {
     if (is_wall_point(at.a, at.slot.i, at.slot.end_i)) at.a.velocity = solver[at.slot.end_i].velocity;
     if (is_wall_point(at.b, at.slot.j, at.slot.end_j)) at.b.velocity = solver[at.slot.end_j].velocity;
   }
-  /// After the midpoint, when a pair is to be seen (s); 0 for nearly all.
+  /// Returns the time after the midpoint at which the contact of a slot is found (s); it is 0 for nearly all
+  /// slots.
   SCREE_HD double delay_of(const Slot& slot) const {
     return any_late_impact ? late_delay_of(slot.i, slot.j) : 0.0;
   }
@@ -96,11 +101,11 @@ struct FindStage {
     if (delay > 0) return solid_after_midpoint(body, delay);
     return {bodies.position[body], bodies.orientation[body], bodies.size[body]};
   }
-  /// Where the centre is when a pair is seen.
+  /// Returns the centre of a body, `delay` after the midpoint (m).
   SCREE_HD Vec3 centre(const MidBody<Real>& body, std::int32_t k, double delay) const {
     return delay > 0 ? Vec3(body.position + delay * kicked_velocity(body, k)) : body.position;
   }
-  /// From there to a point of a contact (m).
+  /// Returns the lever arm from this centre to a contact point (m).
   SCREE_HD Vec3 arm(const MidBody<Real>& body, std::int32_t k, double delay, const Vec3& point) const {
     return bodies.period.nearest(point - centre(body, k, delay));
   }
@@ -109,29 +114,32 @@ struct FindStage {
     return project_on_cone(scale * vec3(impulse), normal, friction);
   }
 
-  /// Normal velocity that a point may have at the end, so that the next midpoint does not overlap: the gap
-  /// may close by then, and no more. Held, a contact that was parting before the kick would gain energy: it
-  /// may close as fast.
+  /// Returns the target of the normal velocity of a point (m/s): its gap may close by the next midpoint, and
+  /// no more, so that nothing overlaps there. `shell`: the gap that counts as closed (m). A contact that was
+  /// parting before the kick (`parting`, m/s) would gain energy if it were held; it may close as fast as it
+  /// was parting.
   SCREE_HD double target_of(double gap, double shell, double curvature, double parting, double delay) const {
     const double closing = gap > shell ? -(gap - shell) / (step - delay) : 0.0;
     return fmin(closing - 0.5 * step * curvature, noise - parting);
   }
-  /// A look at the normal velocity of a point tells of nearly all that they are not held apart
-  /// (flight_of_contact).
+  /// Whether the row of a point may hold its bodies apart, judged by the normal velocity of the point alone.
+  /// This excludes nearly all contacts; flight_of_contact() decides about the others.
   SCREE_HD bool may_be_held_apart(double gap, double closing, double delay) const {
     if (gap <= 0) return closing > 0;
     return delay > 0 || closing * step > tolerance::likely_closing * gap;
   }
-  /// Of what flies past: it is not held at all. `free` is the normal velocity without contacts, and `speed`
-  /// the sum of the two bodies' speeds there, whose rounding pushes padding_body (m/s).
+  /// Returns the target of a contact whose bodies fly past each other, so that it does not hold them at all.
+  /// `free`: the normal velocity without contacts; `speed`: the sum of the two bodies' speeds at the point,
+  /// whose rounding must not cause an impulse (m/s).
   SCREE_HD static double target_in_flight(double target, double free, double speed) {
     constexpr double rounding = tolerance::flight_roundings * std::numeric_limits<Real>::epsilon();
     return fmin(target, free - tolerance::flight_margin * fabs(free) - rounding * speed);
   }
 
-  /// Of two bodies in a crowd that approach: one that would be pushed anyway before it has closed its gap
-  /// bounces, as all contacts of the crowd at once (u+ = -e u-; Moreau 1999). `before` and `free` are the
-  /// normal velocities before the kick and with it (m/s).
+  /// Returns the target of a contact of two bodies in a crowd that approach. If their gap would close within
+  /// the substep, so that the contact would push anyway, they bounce together with all contacts of the crowd
+  /// (u+ = -e u-; Moreau 1999). `before` and `free`: the normal velocities before the kick and after it
+  /// (m/s).
   SCREE_HD double target_of_bounce(const Slot& slot, double target, double gap, double before, double free,
                                    double delay) const {
     const FlightStage& flight = struck.stage;
@@ -139,8 +147,10 @@ struct FindStage {
     return bounces ? -laws.between(slot.i, slot.j).restitution * before : target;
   }
 
-  /// What the gap at the end has beside what the velocities after the response open (m): it bends; and a
-  /// late contact is told from where its centres will be then, so that where they are now goes off.
+  /// Returns what the gap at the end of the substep has beyond the gap of the contact and the opening by the
+  /// velocities after the response (m). For a contact at the midpoint this is the effect of the curvature.
+  /// The gap of a contact found later is predicted from where the centres are at the end, so their present
+  /// distance along the normal is subtracted here.
   SCREE_HD double opened_by_then(const SlotBodies<Real>& at, const Vec3& n, double curvature,
                                  double delay) const {
     if (delay > 0)
@@ -148,8 +158,8 @@ struct FindStage {
     return 0.125 * step * step * curvature;
   }
 
-  /// Acceleration of the gap by the turning of the normal: of balls on one another, and of a ball along the
-  /// wall of a tube (m/s^2).
+  /// Returns the acceleration of the gap by the turning of the normal (m/s^2). It is not 0 for two balls, and
+  /// for a ball along the wall of a tube.
   SCREE_HD double curvature_of(const SlotBodies<Real>& at, const Vec3& n) const {
     const bool ball_a = at.a.shape == Shape::sphere;
     const bool ball_b = at.b.shape == Shape::sphere;
@@ -169,7 +179,8 @@ struct FindStage {
     if (k == end) return {static_cast<double>(body.inverse_mass), static_cast<double>(body.inverse_inertia)};
     return {static_cast<double>(solver[end].inverse_mass), static_cast<double>(solver[end].inverse_inertia)};
   }
-  // What is rare must not take registers from the rest.
+  // The following functions are needed rarely and are not inlined, so that they take no registers from the
+  // common code.
   [[gnu::noinline]] SCREE_HD double late_delay_of(std::int32_t i, std::int32_t j) const {
     return fmax(0.0, struck.time_of(i, j) - 0.5 * step);
   }
@@ -184,14 +195,16 @@ struct FindStage {
   }
 };
 
-/// Which of a pair's manifolds is that of a surface of a slot, among those that its test has found.
+/// Returns the manifold of a pair that belongs to the surface of a slot, from those that the pair's test has
+/// found; null if there is none. `corners`: the pair is a box in a tube, and each corner of the box has a
+/// surface of its own on the wall.
 SCREE_HD inline const Manifold* manifold_on(int surface, bool corners, const Manifold* found, int count) {
   constexpr int box_corners = 8;
   for (int m = 0; m < count; ++m) {
     int of = found[m].part;
     if (corners) {
       if (of == tube_wall) {
-        // The vertex of the box, a side of each axis.
+        // The feature names the vertex of the box, with one bit for its side along each axis.
         const std::uint32_t vertex = found[m].points[0].feature;
         of = static_cast<int>((vertex >> 1 & 1) | (vertex >> 3 & 1) << 1 | (vertex >> 5 & 1) << 2);
       } else {
@@ -203,13 +216,13 @@ SCREE_HD inline const Manifold* manifold_on(int surface, bool corners, const Man
   return nullptr;
 }
 
-/// What is found at a slot that is not of balls.
+/// The contact found at a slot that is not of balls.
 struct FoundManifold {
   Manifold manifold;
   double delay;
 };
 
-/// Contacts whose bodies approach, and which bore no load, in any order.
+/// The list of contacts whose bodies approach and bore no load, in any order.
 struct ApproachList {
   View<std::int32_t> contacts;
   std::uint64_t* count;
@@ -218,8 +231,8 @@ struct ApproachList {
   }
 };
 
-/// Finds the slots that have a contact, by FindBalls or FindPoints, which remembers for make() what it has
-/// found.
+/// Finds the slots that have a contact, by FindBalls or FindPoints. Their keep() may store what was found,
+/// for make().
 template <class Find>
 struct FindSlots {
   using Record = typename Find::Record;
@@ -238,7 +251,7 @@ struct FindSlots {
   }
 };
 
-/// Makes the contacts of these slots.
+/// Makes the contacts of the slots that have been found.
 template <class Find>
 struct MakeContacts {
   static constexpr int blocks_at_once = Find::blocks_at_once;
@@ -249,11 +262,11 @@ struct MakeContacts {
   }
 };
 
-/// Decides whether they fly past or bounce: work of another kind than that on the many which touch, and so it
-/// is done apart.
+/// Decides for each listed contact whether its bodies fly past each other or bounce. This work differs from
+/// that on the many contacts that touch, so it is done in a pass of its own.
 template <class Judge>
 struct JudgeApproach {
-  /// Of which each takes one in so many.
+  /// The number of threads, which is also the stride with which each of them goes through the list.
   template <class Space>
   static constexpr std::int64_t threads = std::is_same_v<Space, Host> ? 64 : 1 << 15;
 

@@ -1,4 +1,4 @@
-// Slots that have a contact, one after the other.
+// The list of the slots that have a contact.
 #pragma once
 
 #include "core/array.hpp"
@@ -7,23 +7,24 @@
 
 namespace scree::solver {
 
-/// Of slots in tiles of parallel::tile, by their places among those of one kind.
+/// Collects the places of the slots of one kind that have a contact, tile by tile (parallel::tile slots
+/// each).
 template <class Space>
 class FoundSlots {
  public:
-  /// Room for so many tiles. Each writes the places of the slots that it has found from its front on, in
-  /// their order, and how many they are.
+  /// Makes room for a number of tiles. Each tile then writes the places of the slots that it has found to the
+  /// front of its part of places(), in their order, and their number to counts().
   void start(std::int64_t tiles);
   std::int32_t* places() { return places_.data(); }
   std::int32_t* counts() { return counts_.data(); }
 
-  /// Brings them together. The host waits for their number.
+  /// Joins the places of all tiles in one list. The host waits for their number.
   void join();
   ConstView<std::int32_t> all() const { return all_.view(); }
 
  private:
   Array<std::int32_t, Space> places_, counts_, all_;
-  Array<std::int64_t, Space> number_;  // of the first of each tile
+  Array<std::int64_t, Space> number_;  // index in the list of the first slot of each tile
 };
 
 }  // namespace scree::solver

@@ -1,4 +1,4 @@
-// How bodies and contacts lie in memory while they stay in a space.
+// The layout of bodies and contacts in memory while they stay in a space.
 #pragma once
 
 #include "core/array.hpp"
@@ -11,7 +11,7 @@
 
 namespace scree::solver {
 
-/// The bodies of the solver that a contact acts on.
+/// The two bodies of the solver on which a contact acts.
 struct alignas(8) Ends {
   std::int32_t i, j;
 };
@@ -26,9 +26,9 @@ struct BodyRecord;
 template <class Real>
 struct CentreRecord;
 
-/// Arithmetic of one contact to a thread, in the precision of the solution. Beside what the laws ask for, an
-/// arithmetic knows how many contacts it works on, gets their numbers from memory and puts them there, and
-/// so with their bodies: those named by `ends` of these contacts. A body that is not free is never written.
+/// The arithmetic of one contact to a thread, in the precision of the solution. Beyond what the laws require,
+/// an arithmetic knows the number of contacts on which it works at once, loads and stores numbers of these
+/// contacts, and loads and stores their bodies, which `ends` names. A body that is not free is never written.
 template <class Number>
 struct Scalar {
   using Real = Number;
@@ -39,7 +39,7 @@ struct Scalar {
   SCREE_LAW static V get(const Real* from) { return *from; }
   SCREE_LAW static void set(Real* to, V value) { *to = value; }
   SCREE_LAW static bool any(bool condition) { return condition; }
-  /// The most of a number of each.
+  /// Returns the largest of the numbers of all contacts on which the arithmetic works.
   SCREE_LAW static std::int32_t most(const std::int32_t* of) { return *of; }
 
   template <End end>
@@ -79,23 +79,23 @@ SCREE_LAW auto is_zero(const simd::V3<A>& a) {
   return (a.x == 0) & (a.y == 0) & (a.z == 0);
 }
 
-/// Velocities of a body, or its displacement and turn: a record that is read and written as a whole.
+/// The velocities of a body. The record is read and written as a whole.
 template <class Real>
 struct alignas(8 * sizeof(Real)) BodyRecord : Moving<Real> {};
 
-/// The centres alone.
+/// The velocity of a body's centre, or in the position correction its displacement or its turn.
 template <class Real>
 struct alignas(4 * sizeof(Real)) CentreRecord : simd::Centre<Scalar<Real>> {};
 
-/// What the search for contacts asks of a body at the midpoint, side by side.
+/// The data of a body at the midpoint that the search for contacts reads, side by side.
 template <class Real>
 struct alignas(16) MidBody {
   Vec3 position;      ///< m
   double size;        ///< smallest_size (m)
   V3<Real> velocity;  ///< before the kick (m/s)
-  Real margin;        ///< how far its contacts reach (m)
+  Real margin;        ///< largest distance from its surface at which the body has contacts (m)
   Real inverse_mass;
-  Real inverse_inertia;  ///< of a ball
+  Real inverse_inertia;  ///< used for balls alone
   std::int32_t material;
   Shape shape;
   Mobility mobility;
@@ -107,20 +107,21 @@ struct alignas(16) MidBody {
 struct alignas(8) Slot {
   static constexpr std::int32_t empty = -1;
 
-  std::int32_t i = empty, j = empty;          ///< places of the bodies, that with the smaller number first
-  std::int32_t end_i = empty, end_j = empty;  ///< bodies of the solver: a hub has several, as a turning wall
+  std::int32_t i = empty, j = empty;          ///< places of the bodies; i has the smaller number
+  std::int32_t end_i = empty, end_j = empty;  ///< bodies of the solver; hubs and turning walls have several
   std::int32_t candidate = empty;             ///< number of the pair in the list of candidates
-  std::int32_t surface = 0;                   ///< which of the pair's manifolds
+  std::int32_t surface = 0;                   ///< number of the pair's manifold
 };
 
-/// `count` numbers of each place, in blocks of simd::width places that lie field by field: one instruction
-/// of Host works on a field of a block, and one access to the memory of a GPU brings it.
+/// Arrays of `count` fields, with one element for each place. They are stored in blocks of simd::width
+/// places, and field by field within a block: one instruction of Host works on a field of a block, and one
+/// access to memory of a GPU loads it.
 template <class Real, int count>
 class Fields {
  public:
   Fields() = default;
   SCREE_HD explicit Fields(Real* data) : data_(data) {}
-  /// Numbers of so many places, whole blocks of them.
+  /// Returns the number of elements for a number of places, which fill whole blocks.
   static std::int64_t size(std::int64_t places) { return places * count; }
 
   SCREE_LAW Real& at(int field, std::int64_t place) const {
@@ -128,7 +129,7 @@ class Fields {
     constexpr std::uint64_t width = simd::width;
     return data_[(k / width * count + static_cast<std::uint64_t>(field)) * width + k % width];
   }
-  /// Of as many places as the arithmetic works on.
+  /// Loads a field of as many consecutive places as the arithmetic works on.
   template <class A>
   SCREE_LAW typename A::V get(int field, std::int64_t place) const {
     return A::get(&at(field, place));
@@ -175,7 +176,7 @@ struct BallContacts {
     last = impulse + 3,  ///< the impulse before the last sweep
     count = last + 3
   };
-  /// What the sweeps do not ask for.
+  /// The fields that the sweeps for impulses do not read.
   enum GapField {
     gap,            ///< at the midpoint (m)
     predicted_gap,  ///< at the end of the substep, without correction (m)
@@ -185,7 +186,7 @@ struct BallContacts {
   };
 
   Ends* ends;
-  View<std::int32_t> slot;  ///< place of the slot of each, among those of its kind; Slot::empty: no contact
+  View<std::int32_t> slot;  ///< place of its slot among those of its kind; Slot::empty: no contact
   View<std::uint8_t> flags;
   Fields<Real, count> fields;
   Fields<Real, gap_count> gaps;
@@ -198,7 +199,7 @@ struct PointContacts {
     normal,
     friction = normal + 3,
     cap,
-    inertia_i,  ///< inverse, world frame: xx, yy, zz, xy, xz, yz
+    inertia_i,  ///< inverse inertia of i in the world frame: xx, yy, zz, xy, xz, yz
     inertia_j = inertia_i + 6,
     count = inertia_j + 6
   };
@@ -219,26 +220,26 @@ struct PointContacts {
   Ends* ends;
   View<std::int32_t> slot;
   View<std::uint8_t> flags;
-  std::int32_t* points;  ///< of each contact
+  std::int32_t* points;  ///< number of points of each contact
   Fields<Real, count> fields;
   Fields<Real, Manifold::max_points * point_count> point_fields;
   Fields<Real, Manifold::max_points * gap_count> gaps;
 
-  /// Of point k.
+  /// Returns the index of a field of point k.
   SCREE_LAW static int at_point(int k, PointField field) { return k * point_count + field; }
   SCREE_LAW static int at_point(int k, GapField field) { return k * gap_count + field; }
 };
 
-/// Of contacts.
+/// Bits of the flags of a contact.
 enum Flag : std::uint8_t {
-  flag_flying = 1,  ///< known not to meet in this substep: its rows only guard what the flight leaves free
-  flag_late_impact = 2  ///< its geometry is of a time after the midpoint
+  flag_flying = 1,      ///< bodies known not to meet in this substep (ContactFlight)
+  flag_late_impact = 2  ///< geometry found after the midpoint
 };
 
-/// What slots remember from substep to substep.
+/// The memory of a slot from substep to substep.
 template <class Real>
 struct BallMemory {
-  V3<Real> impulse;  ///< N s, world frame
+  V3<Real> impulse;  ///< impulse on j in the world frame (N s)
 
   SCREE_HD bool is_loaded() const { return !is_zero(impulse); }
 };

@@ -1,4 +1,5 @@
-// Visits to contacts that find their couples of rolling friction, beside those that find their impulses.
+// Visits to contacts that find the couples of rolling friction; they follow the visits that find the
+// impulses.
 #pragma once
 
 #include "sim/contacts/sweeps.hpp"
@@ -7,12 +8,12 @@
 
 namespace scree::solver {
 
-/// Of each contact; without fields if nothing rolls.
+/// The fields of rolling friction of each contact; they are empty if nothing rolls.
 template <class Real>
 struct RollingFields {
   enum Field {
-    reach,              ///< couple for each normal impulse, at most (m)
-    couple,             ///< on j, and reversed on i, across the normal (N m s)
+    reach,              ///< largest couple for a unit normal impulse (m)
+    couple,             ///< couple on j, reversed on i, perpendicular to the normal (N m s)
     last = couple + 3,  ///< the couple before the last sweep
     count = last + 3
   };
@@ -35,7 +36,7 @@ SCREE_LAW typename A::V normal_impulse_of(const PointContacts<Real>& contacts, s
   return dot(sum, contacts.fields.template vector<A>(C::normal, c));
 }
 
-/// How couples turn the bodies of contacts: of balls,
+/// The effect of a couple on the bodies of a contact of balls.
 struct TurnBalls {
   template <class A, class Real>
   SCREE_LAW static Two<A, typename A::V> of(const BallContacts<Real>&, std::int64_t,
@@ -47,7 +48,7 @@ struct TurnBalls {
     return simd::rolling_mass<A>(inverse_inertia);
   }
 };
-/// and of any.
+/// The effect of a couple on the bodies of a contact of any shapes.
 struct TurnPoints {
   template <class A, class Real>
   SCREE_LAW static Two<A, simd::Symmetric<A>> of(const PointContacts<Real>& contacts, std::int64_t c,
@@ -66,7 +67,7 @@ SCREE_LAW void turn_by(const Two<A, By>& by, const simd::V3<A>& couple, Two<A, s
   two.j.spin = two.j.spin + by.j * couple;
 }
 
-/// Gives the bodies of a contact the couple that is there. Turn is one of the above.
+/// Applies the couple that a contact has to its bodies. Turn is TurnBalls or TurnPoints.
 template <class Real, class Contacts, class Turn>
 struct PushRolling {
   Contacts contacts;
@@ -84,13 +85,13 @@ struct PushRolling {
   }
 };
 
-/// Visits a contact whose impulse has been found.
+/// Finds the couple of a contact whose impulse has been found.
 template <class Real, class Contacts, class Turn>
 struct Roll {
   Contacts contacts;
   RollingFields<Real> rolling;
   BodyRecord<Real>* bodies;
-  bool remembers;  ///< as of SweepBalls
+  bool remembers;  ///< whether the couple before the visit is stored as `last`; if not, beta is 0
 
   template <class A>
   SCREE_LAW ChangeOf<A> visit(std::int64_t c, Real beta) const {

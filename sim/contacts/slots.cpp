@@ -10,7 +10,8 @@ namespace scree::solver {
 
 namespace {
 
-/// Manifolds that a pair can have: a ball in a tube touches wall and caps, a box the wall with each corner.
+/// Largest numbers of manifolds of a pair with a tube: a ball touches the wall and two caps; a box touches
+/// two caps, and the wall with each of its eight corners.
 constexpr int tube_surfaces = 3;
 constexpr int box_tube_surfaces = 10;
 
@@ -45,7 +46,7 @@ struct ListSlots {
   }
 };
 
-static_assert(box_tube_surfaces <= 16);  // that ContactColors can tell apart
+static_assert(box_tube_surfaces <= 16);  // the rank in contact_colors.cpp has 4 bits for a surface
 
 struct LookUpPairs {
   ConstView<Pair> pairs;
@@ -54,7 +55,8 @@ struct LookUpPairs {
   SCREE_HD void operator()(std::int64_t k) const { index[k] = listed.find(pairs[k]); }
 };
 
-/// Slots of balls are first, each kind in the order of the candidates.
+/// Marks the slots that are not of balls. Places of balls come first, and each kind is in the order of the
+/// candidates.
 struct MarkOthers {
   ConstBodyView bodies;
   ConstView<Slot> slots;
@@ -62,15 +64,15 @@ struct MarkOthers {
   SCREE_HD void operator()(std::int64_t s) const { marks[s] = is_of_balls(bodies, slots[s]) ? 0 : 1; }
 };
 struct PlaceSlots {
-  ConstView<std::int64_t> others;  ///< before each slot
-  std::int64_t first_other;        ///< place
+  ConstView<std::int64_t> others;  ///< number of slots before each slot that are not of balls
+  std::int64_t first_other;        ///< first place of these slots
   View<std::int64_t> place;
   SCREE_HD void operator()(std::int64_t s) const {
     place[s] = others[s] == others[s + 1] ? s - others[s] : first_other + others[s];
   }
 };
 
-/// Slots whose places are known.
+/// Copies slots to their places.
 struct PutSlots {
   ConstView<Slot> slots;
   ConstView<std::int64_t> place;
@@ -78,13 +80,13 @@ struct PutSlots {
   SCREE_HD void operator()(std::int64_t s) const { places[place[s]] = slots[s]; }
 };
 
-/// What its slot remembered before.
+/// Gives each place what its slot remembered before the slots were built anew.
 template <class Real>
 struct Recall {
   ConstView<Slot> places;
   ConstView<Mobility> mobility;
-  ConstView<std::int64_t> before;     ///< Slots::look_up()
-  ConstView<std::int64_t> old_first;  ///< slot of each old candidate
+  ConstView<std::int64_t> before;     ///< index of each candidate among the old ones (Slots::look_up())
+  ConstView<std::int64_t> old_first;  ///< first slot of each old candidate
   ConstView<std::int64_t> old_place;
   std::int64_t ball_places, old_ball_places;
   ConstView<BallMemory<Real>> old_balls;
@@ -171,7 +173,7 @@ void Slots<Space, Real>::place_slots(const ConstBodyView& bodies) {
   put_slots((ball_tiles_ + parallel::tiles_of(other_slots)) * parallel::tile);
 }
 
-/// So many places, of which the slots know theirs.
+/// Makes room for a number of places, and copies the slots to theirs.
 template <class Space, class Real>
 void Slots<Space, Real>::put_slots(std::int64_t places) {
   places_.resize(places);
@@ -226,8 +228,9 @@ void Slots<Space, Real>::recall_memory() {
   copy(color_, kept_color_);
 }
 
-/// What follows from the candidates and the bodies is made again. If bodies have come or gone since, so may
-/// it be otherwise; but then the slots are built anew before anybody asks for it.
+/// Saves or loads the slots. What follows from the candidates and the bodies is computed again when they are
+/// loaded. If bodies have come or gone since the last build(), the result may differ from that before; but
+/// then the slots are built anew before it is used.
 template <class Space, class Real>
 void Slots<Space, Real>::archive(Archive& archive, const ConstBodyView& bodies) {
   archive("pairs", pairs_);

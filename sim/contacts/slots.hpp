@@ -1,4 +1,4 @@
-// Slots: where contacts may arise while the candidates stay, and what each remembers.
+// Slots: the places where contacts may arise while the candidates stay, and what each slot remembers.
 #pragma once
 
 #include "broadphase/broad_phase.hpp"
@@ -12,13 +12,13 @@
 
 namespace scree::solver {
 
-/// Candidates in their order, and which place each body had when they were listed, by its place of now; none
-/// where the places are the same.
+/// The candidates in their order. `place_before` is the place that each body had when they were listed, by
+/// its present place; it is empty if no body has changed its place.
 struct ListedPairs {
   ConstView<Pair> pairs;
   ConstView<std::int32_t> place_before;
 
-  /// The index of a pair; -1 if it is not there.
+  /// Returns the index of a pair; -1 if the pair is not listed.
   SCREE_HD std::int64_t find(const Pair& pair) const {
     const Pair wanted =
         ordered(place_before.size() > 0 ? Pair{place_before[pair.i], place_before[pair.j]} : pair);
@@ -44,29 +44,30 @@ struct ListedPairs {
 template <class Space, class Real>
 class Slots {
  public:
-  /// Slots for the candidates (in their order, each with a free body); those that were there before keep
-  /// what they remember. Places are given in tiles of parallel::tile: first those of balls, then the others,
-  /// each in the order of the candidates. The result does not depend on the order of threads.
-  /// `before`: look_up() of the candidates. `rolls`: couples are remembered, too.
+  /// Makes the slots of the candidates (in their order; each has a free body). Slots that were there before
+  /// keep what they remember. Places are assigned in tiles of parallel::tile: first those of balls, then the
+  /// others, each kind in the order of the candidates. The result does not depend on the order of threads.
+  /// `before`: the result of look_up() for the candidates. `rolls`: whether couples are remembered, too.
   void build(ConstView<Pair> candidates, ConstView<std::int64_t> before, const ConstBodyView& bodies,
              bool rolls);
-  /// The index of each pair among the present candidates; -1: it is none. `place_before`: where each body lay
-  /// at the last build(), by its place, if bodies have changed places since.
+  /// Finds the index of each pair among the present candidates; -1 if it is none. `place_before`: the place
+  /// of each body at the last build(), by its present place, if bodies have changed places since.
   void look_up(ConstView<Pair> pairs, ConstView<std::int32_t> place_before,
                Array<std::int64_t, Space>& index) const;
-  /// Others of the bodies are free now: colours are not to be kept.
+  /// Forgets all colours, as is necessary when other bodies than before are free.
   void forget_colors();
-  /// Keeps what the slots remember, for recall_memory(), which puts it back. No build() between.
+  /// Keeps a copy of what the slots remember. recall_memory() puts it back; no build() may come between the
+  /// two.
   void keep_memory();
   void recall_memory();
-  /// `bodies`: as they are saved.
+  /// Saves or loads the slots. `bodies`: the bodies as they are saved.
   void archive(Archive& archive, const ConstBodyView& bodies);
 
   ConstView<Slot> places() const { return places_.view(); }
-  /// Of those of balls.
+  /// Returns the number of tiles with slots of balls.
   std::int64_t ball_tiles() const { return ball_tiles_; }
   std::int64_t ball_places() const;
-  /// Of the others.
+  /// Returns the number of tiles with other slots.
   std::int64_t other_tiles() const;
   ConstView<Slot> places_of_balls() const { return {places_.data(), ball_places()}; }
   ConstView<Slot> places_of_others() const {
@@ -74,13 +75,13 @@ class Slots {
   }
   View<BallMemory<Real>> ball_memory() { return ball_memory_.view(); }
   View<PointMemory<Real>> point_memory() { return point_memory_.view(); }
-  /// Against rolling (N m s), of all places; empty if nothing rolls.
+  /// Returns the couples against rolling (N m s) of all places; empty if nothing rolls.
   View<V3<Real>> couples() { return couples_.view(); }
-  /// Of their last contacts (ContactColors).
+  /// Returns the colours of the last contacts of the slots of balls (see ContactColors).
   View<std::uint8_t> ball_colors() { return {color_.data(), ball_places()}; }
   View<std::uint8_t> other_colors() { return {color_.data() + ball_places(), color_.size() - ball_places()}; }
 
-  /// Which the ends of slots are.
+  /// Returns the bodies of the solver, which are the ends of the slots.
   const SolverBodies<Space>& solver_bodies() const { return solver_bodies_; }
   ConstView<Pair> candidates() const { return pairs_.view(); }
 
@@ -91,15 +92,15 @@ class Slots {
   void recall(ConstView<std::int64_t> before, const ConstBodyView& bodies, bool rolls);
 
   Array<Pair, Space> pairs_;                      // the candidates
-  Array<std::int64_t, Space> first_, old_first_;  // slot of each; one more than candidates
+  Array<std::int64_t, Space> first_, old_first_;  // first slot of each candidate, and the number of all slots
   Array<Slot, Space> slots_;                      // in the order of the candidates
   Array<Slot, Space> places_;                     // the same slots, tile by tile
-  Array<std::int64_t, Space> place_, old_place_;  // of each slot
+  Array<std::int64_t, Space> place_, old_place_;  // place of each slot
   std::int64_t ball_tiles_ = 0;
-  Array<BallMemory<Real>, Space> ball_memory_, old_ball_memory_;     // of each place
-  Array<PointMemory<Real>, Space> point_memory_, old_point_memory_;  // of each place after those of balls
-  Array<V3<Real>, Space> couples_, old_couples_;                     // of each place, if anything rolls
-  Array<std::uint8_t, Space> color_, old_color_;                     // of each place
+  Array<BallMemory<Real>, Space> ball_memory_, old_ball_memory_;     // for each place of balls
+  Array<PointMemory<Real>, Space> point_memory_, old_point_memory_;  // for each other place
+  Array<V3<Real>, Space> couples_, old_couples_;                     // for each place, if anything rolls
+  Array<std::uint8_t, Space> color_, old_color_;                     // for each place
   Array<BallMemory<Real>, Space> kept_ball_memory_;
   Array<PointMemory<Real>, Space> kept_point_memory_;
   Array<V3<Real>, Space> kept_couples_;

@@ -13,9 +13,9 @@ namespace scree::solver {
 
 namespace {
 
-/// Slots that a free body may have before it is a hub, and those of a part of one. Two bodies leave one of 64
-/// colours for what they share. Most bodies of a heap have fewer; each colour that only few need is a wait
-/// for all.
+/// The most slots that a free body may have without being a hub, and the number of slots of a part of a hub.
+/// Two bodies that are no hubs leave at least one of the 64 colours for a contact between them. Most bodies
+/// of a heap have fewer slots; each colour that only few contacts need makes all threads wait.
 constexpr std::int32_t most_slots = 32;
 constexpr std::int32_t slots_of_part = 12;
 static_assert(2 * most_slots <= most_colors);
@@ -56,7 +56,7 @@ struct PlaceHubs {
     hubs[h].first = static_cast<std::int32_t>(first_part + first[h]);
   }
 };
-/// The hub of each part: the last that does not begin after it.
+/// Finds the hub of each part: the last one whose first part is not after it.
 struct NameHubs {
   ConstView<std::int64_t> first;
   View<std::int32_t> hub_of;
@@ -70,7 +70,7 @@ struct NameHubs {
   }
 };
 
-/// Ends of slots on hubs: 2 s for i, 2 s + 1 for j.
+/// Marks the ends of slots that are on hubs; end 2 s is i of slot s, end 2 s + 1 is j.
 struct MarkHubEnds {
   ConstView<Slot> slots;
   ConstView<std::int64_t> number;
@@ -81,8 +81,8 @@ struct MarkHubEnds {
     on_hub[e] = number[body + 1] > number[body] ? 1 : 0;
   }
 };
-/// The ends on hubs, and the numbers of the other bodies, by which they are sorted first: the order of a
-/// hub's ends does not hang on where bodies lie.
+/// Lists the ends on hubs, with the numbers of the other bodies as keys of a first sorting: the order of a
+/// hub's ends does then not depend on where bodies lie in memory.
 struct ListHubEnds {
   ConstBodyView bodies;
   ConstView<Slot> slots;
@@ -96,8 +96,8 @@ struct ListHubEnds {
     ends[to[e]] = static_cast<std::uint64_t>(e);
   }
 };
-/// Then they are sorted by their hubs, and those on the heaviest bodies come first: the bits of a float that
-/// is not negative are in the order of such floats.
+/// Computes the keys of a second sorting: by hub, and within a hub the ends with the heaviest other bodies
+/// first. The bits of floats that are not negative have the same order as the floats.
 struct KeyOfHubEnd {
   ConstBodyView bodies;
   ConstView<Slot> slots;
@@ -112,8 +112,9 @@ struct KeyOfHubEnd {
     key[k] = static_cast<std::uint64_t>(number[body]) << 32 | std::bit_cast<std::uint32_t>(lightness);
   }
 };
-/// The ends of a hub, in their order, are dealt to its parts. Adds up what they weigh for each, but each at
-/// most as much as the hub: in integers, since sums of these do not hang on the order of threads.
+/// Distributes the ends of each hub over its parts, in their order, and adds up the masses of the other
+/// bodies for each part. Each mass counts at most as much as that of the hub. The sums are integers, which do
+/// not depend on the order of threads.
 struct DealHubEnds {
   ConstBodyView bodies;
   ConstView<std::uint64_t> key;
@@ -124,7 +125,7 @@ struct DealHubEnds {
   View<Slot> slots;
   View<std::int64_t> weight;
   SCREE_HD void operator()(std::int64_t p) const {
-    constexpr double unit = 0x1p40;  // of the hub's mass
+    constexpr double unit = 0x1p40;  // integer weight of the hub's mass
     const std::int64_t begin = first_of(hub_of[p]) + (first_part + p - hubs[hub_of[p]].first) * slots_of_part;
     const double least = bodies.inverse_mass[hubs[hub_of[p]].body];
     std::int64_t sum = 0;
@@ -154,7 +155,8 @@ struct DealHubEnds {
     return low;
   }
 };
-/// Half by weight, half alike: `before` has the weights of all parts before each.
+/// Computes the share of its hub that each part gets: one half in proportion to the weights, the other half
+/// equally. `before`: the sum of the weights of all parts before each part.
 struct ShareHub {
   ConstView<Hub> hubs;
   ConstView<std::int32_t> hub_of;

@@ -9,15 +9,16 @@
 
 namespace scree::solver {
 
-/// A free body with so many slots that they would make too many colours. It is solved as several parts that
-/// share its mass, and that move alike after each sweep (mass splitting: Tonge, Benevolenski, Voroshilov
-/// 2012, "Mass splitting for jitter-free parallel rigid body simulation", sec. 4). The heaviest of what it
-/// may touch are on the same part, and half of the mass is shared out by what they weigh, since a part that
-/// carries the hub must stop it: with equal shares of a ball with thousands of grains on it, what it lies on
-/// would slow a thousandth of it in a sweep.
+/// A free body whose many slots would need too many colours. It is solved as several parts that share its
+/// mass and get equal velocities after each sweep (mass splitting: Tonge, Benevolenski, Voroshilov 2012,
+/// "Mass splitting for jitter-free parallel rigid body simulation", sec. 4). The heaviest of the bodies that
+/// it may touch are on the same part. Half of the mass is shared in proportion to the weights of these
+/// bodies, since a part with a body that carries the hub must stop the hub: if a ball with thousands of
+/// grains on it had equal shares, the body on which it lies would slow down only a thousandth of it in a
+/// sweep.
 struct Hub {
   std::int32_t body;
-  std::int32_t first;  ///< of its parts among the bodies of the solver
+  std::int32_t first;  ///< number of its first part among the bodies of the solver
   std::int32_t parts;
 };
 
@@ -27,7 +28,7 @@ SCREE_HD inline bool is_on_part(ConstView<Mobility> mobility, const Slot& slot) 
          (mobility[slot.j] == Mobility::free && slot.end_j != slot.j);
 }
 
-/// Balls on balls, or on what is not free.
+/// Whether a slot is one of balls: each of its bodies is a sphere or not free.
 SCREE_HD inline bool is_of_balls(const ConstBodyView& bodies, const Slot& slot) {
   const auto is_ball = [&](std::int32_t body) {
     return bodies.mobility[body] != Mobility::free || bodies.shape[body] == Shape::sphere;
@@ -35,21 +36,22 @@ SCREE_HD inline bool is_of_balls(const ConstBodyView& bodies, const Slot& slot) 
   return is_ball(slot.i) && is_ball(slot.j);
 }
 
-/// First all bodies, then padding_body, a body that is not free, then the parts of the hubs, then what balls
-/// touch of walls that turn: a body for each slot, which is not free, and moves as the wall does there.
+/// The bodies of the solver, in this order: all bodies; padding_body, which is not free; the parts of the
+/// hubs; and the points of turning walls that balls may touch. The last are one body for each slot, which is
+/// not free and has the velocity of the wall at the contact.
 template <class Space>
 class SolverBodies {
  public:
-  /// Gives the slots their ends, which are the slots' bodies until then. The result does not depend on the
-  /// order of threads.
+  /// Numbers the ends of the slots, which are the bodies themselves before the call. The result does not
+  /// depend on the order of threads.
   void number(const ConstBodyView& bodies, View<Slot> slots);
 
   std::int64_t count() const { return count_; }
   std::int32_t padding_body() const { return static_cast<std::int32_t>(first_part() - 1); }
   ConstView<Hub> hubs() const { return hubs_.view(); }
-  /// Number of its hub, of each part of hubs.
+  /// Returns the number of the hub of each part.
   ConstView<std::int32_t> hub_of_parts() const { return hub_of_.view(); }
-  /// Share of its hub's mass, of each part.
+  /// Returns the share of its hub's mass of each part.
   ConstView<double> share_of_parts() const { return share_.view(); }
   std::int64_t first_part() const { return first_wall_point_ - hub_of_.size(); }
   std::int64_t first_wall_point() const { return first_wall_point_; }

@@ -1,6 +1,6 @@
-// Visits to contacts of a substep: those that find their impulses, and those that part what overlaps. Each is
-// written once, for an arithmetic A that works on one contact or on several side by side (Scalar, and Lanes
-// of the kernels).
+// Visits to the contacts of a substep: visits that find the impulses, and visits of the position correction,
+// which move overlapping bodies apart. Each visit is written once, for an arithmetic A that works on one
+// contact or on several side by side (Scalar, and Lanes in visit_kernels.cpp).
 #pragma once
 
 #include "core/space_unroll.hpp"
@@ -10,20 +10,20 @@
 
 namespace scree::solver {
 
-/// Of a contact.
+/// The largest number of points of a contact.
 inline constexpr int most_points = Manifold::max_points;
 
-/// What the sweeps of a substep know of one another.
+/// The state that one sweep of a substep leaves to the next.
 struct SweepState {
   double last_step = 0;
-  double beta = 0;  ///< by how much the next sweep goes on, rounded
+  double beta = 0;  ///< factor by which the next sweep extrapolates the last change, rounded
   std::int32_t sweeps = 0;
-  bool pushed = false;  ///< the bodies have what the contacts remember
+  bool pushed = false;  ///< whether the bodies have received the remembered impulses
   bool converged = false;
 };
 
-/// Change of the impulses by a sweep, and their size: as ImpulseChange. In double, since what is decided by
-/// these sums (ImpulsePhases::judge) must not hang on the order of their terms.
+/// The change of the impulses by a sweep, and their size, as in ImpulseChange. The sums are in double, since
+/// the decisions made with them (ImpulsePhases::judge) must not depend on the order of their terms.
 struct SweepChange {
   double step = 0, size = 0;
   SCREE_HD friend SweepChange operator+(const SweepChange& a, const SweepChange& b) {
@@ -31,7 +31,7 @@ struct SweepChange {
   }
 };
 
-/// The same by a visit.
+/// The change of the impulses by one visit, and their size.
 template <class A>
 struct ChangeOf {
   typename A::V step{}, size{};
@@ -105,7 +105,7 @@ SCREE_LAW Two<A, simd::Symmetric<A>> inertia_of(const PointContacts<Real>& conta
   return {at(C::inertia_i), at(C::inertia_j)};
 }
 
-/// Gives the bodies of a contact of balls what its impulse is.
+/// Applies the impulse of a contact of balls to its bodies.
 template <class Real>
 struct PushBalls {
   BallContacts<Real> contacts;
@@ -141,13 +141,13 @@ struct PushPoints {
   }
 };
 
-/// Solves a contact of balls. What the last sweep changed is gone on with by beta, which the bodies have done
-/// already.
+/// Solves a contact of balls. The impulse is first extrapolated by beta times its change in the last sweep;
+/// Accelerate has done the same to the velocities of the bodies.
 template <class Real>
 struct SweepBalls {
   BallContacts<Real> contacts;
   BodyRecord<Real>* bodies;
-  bool remembers;  ///< what the sweep changes; else beta is 0
+  bool remembers;  ///< whether the impulse before the visit is stored as C::last; if not, beta is 0
 
   template <class A>
   SCREE_LAW ChangeOf<A> visit(std::int64_t c, Real beta) const {
@@ -158,7 +158,8 @@ struct SweepBalls {
     const simd::V3<A> before = f.template vector<A>(C::impulse, c);
     const simd::V3<A> last = remembers ? f.template vector<A>(C::last, c) : before;
     const simd::V3<A> ahead = before + A::all(beta) * (before - last);
-    // Many contacts are open and stay so: they need no more. Several side by side seldom are.
+    // Many contacts are open and stay so; nothing more is done for them. Several contacts side by side are
+    // seldom all open.
     if constexpr (A::width == 1) {
       if (is_zero(before) && is_zero(last) &&
           dot(f.template vector<A>(C::normal, c), two.j.velocity - two.i.velocity) >=
@@ -176,8 +177,8 @@ struct SweepBalls {
   }
 };
 
-/// Solves the points of a contact, one after the other. On a GPU all their numbers are asked for before the
-/// first is waited for.
+/// Solves the points of a contact, one after the other. On a GPU the loads of all points are issued before
+/// the first of them is used.
 template <class Real>
 struct SweepPoints {
   PointContacts<Real> contacts;
@@ -238,13 +239,14 @@ struct SweepPoints {
   }
 };
 
-/// Velocities are linear in the impulses: what beta does to these it does to them.
+/// Extrapolates the velocities of the bodies by beta, as the visits do with the impulses: velocities are
+/// linear in the impulses.
 template <class Real>
 struct Accelerate {
   BodyRecord<Real>* bodies;
   BodyRecord<Real>* last;
 
-  /// Of body k.
+  /// Extrapolates body k.
   SCREE_LAW void visit(std::int64_t k, Real beta) const {
     const BodyRecord<Real> now = bodies[k];
     if (beta > 0) {
@@ -258,7 +260,7 @@ struct Accelerate {
   }
 };
 
-/// Overlaps as a sweep has found them, of the cap.
+/// The overlaps that a sweep of the position correction has found, relative to the cap.
 struct Overlaps {
   float deepest = 0;
   double sum = 0;
@@ -273,8 +275,8 @@ struct Overlaps {
   }
 };
 
-/// Parts the bodies of a contact of balls, and returns the gap that there was, of the cap; 0 or more where
-/// nothing overlapped.
+/// Moves the bodies of a contact of balls apart. visit() returns the gap before that, relative to the cap; it
+/// is 0 or more where nothing overlapped.
 template <class Real>
 struct CorrectBalls {
   BallContacts<Real> contacts;
@@ -301,8 +303,8 @@ struct CorrectBalls {
   }
 };
 
-/// Parts the bodies of a contact of several points. They all have its normal, so that along it the bodies
-/// part alike.
+/// Moves the bodies of a contact of several points apart. All points share one normal, so a displacement
+/// along it changes all their gaps by the same amount. visit() returns the least gap, relative to the cap.
 template <class Real>
 struct CorrectPoints {
   PointContacts<Real> contacts;

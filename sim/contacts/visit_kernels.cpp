@@ -1,4 +1,5 @@
-// Compiled once for each instruction set, as dynamics/lanes/kernels.cpp; SCREE_SIMD names it.
+// The kernels of VisitKernels. This file is compiled once for each instruction set, as
+// sim/laws/simd/kernels.cpp is; SCREE_SIMD names the instruction set.
 #include "sim/contacts/visit_kernels.hpp"
 
 #include "sim/laws/simd/kernels/vectors.hpp"
@@ -17,7 +18,8 @@ constexpr int width = simd::width;
 static_assert(sizeof(BodyRecord<double>) == sizeof(Vector));
 static_assert(sizeof(CentreRecord<double>) == sizeof(Vector) / 2);
 
-/// What visits ask of an arithmetic beside what the laws do (Scalar).
+/// The arithmetic of eight contacts side by side. It adds what the visits need beyond the laws, as Scalar
+/// does.
 struct Lanes : Vectors {
   using Real = double;
   static constexpr int width = simd::width;
@@ -82,7 +84,7 @@ struct Lanes : Vectors {
   SCREE_LAW static Half& half_of(CentreRecord<double>& body) { return reinterpret_cast<Half&>(body); }
 };
 
-// Each has a copy of the visit, which what it writes cannot change.
+// Each of these loops has its own copy of the visit, which stores to memory cannot change.
 template <class Visit>
 void push_over(const Visit& given, Blocks blocks) {
   const Visit visit = given;
@@ -124,7 +126,8 @@ Overlaps correct_over(const Visit& given, Blocks blocks) {
   return total;
 }
 
-/// Inverse mass and inertia stay: they are those of the last.
+/// Extrapolates whole records. The inverse mass and inertia in them do not change, since they are equal in
+/// `last`.
 void accelerate(const Accelerate<double>& visit, std::int64_t begin, std::int64_t end, double beta) {
   for (std::int64_t k = begin; k < end; ++k) {
     Vector& body = Lanes::whole(visit.bodies[k]);
@@ -141,7 +144,8 @@ using Three = simd::V3<Lanes>;
 
 using simd::SCREE_SIMD::bits_of;
 
-/// As Period::nearest(). What is added and taken away again leaves a whole number, as rint() does.
+/// Does the same as Period::nearest(). Adding and subtracting `whole` rounds to a whole number, as rint()
+/// does.
 SCREE_LAW Vector nearest(const Vector& offset, double length, double per_length) {
   constexpr double whole = 0x1.8p52;
   return offset - length * ((offset * per_length + whole) - whole);

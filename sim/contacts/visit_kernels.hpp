@@ -1,5 +1,5 @@
-// Visits to contacts as Host makes them in double precision: to those that lie side by side at once, with the
-// widest instructions that the processor has.
+// Visits to contacts on Host in double precision: a visit works on eight contacts that lie side by side, with
+// the widest vector instructions of the processor.
 #pragma once
 
 #include "core/space.hpp"
@@ -11,7 +11,7 @@
 
 namespace scree::solver {
 
-/// Contacts that one visit is made to.
+/// Number of contacts on which one visit works.
 template <class Space, class Real>
 inline constexpr int visit_width = 1;
 template <>
@@ -22,14 +22,15 @@ using RollPoints = Roll<double, PointContacts<double>, TurnPoints>;
 using PushRollingBalls = PushRolling<double, BallContacts<double>, TurnBalls>;
 using PushRollingPoints = PushRolling<double, PointContacts<double>, TurnPoints>;
 
-/// Blocks of contacts (simd::width) one after the other.
+/// A range of consecutive blocks of contacts (simd::width contacts each).
 struct Blocks {
-  std::int64_t first;  ///< contact
-  std::int64_t count;  ///< of blocks
+  std::int64_t first;  ///< place of the first contact
+  std::int64_t count;  ///< number of blocks
   SCREE_LAW std::int64_t place(std::int64_t block) const { return first + block * simd::width; }
 };
 
-/// Each makes its visit to the contacts of some blocks of one colour, and returns the sum over them.
+/// The kernels of one instruction set. Each function makes its visit to the contacts of some blocks of one
+/// colour, and returns the sum over them.
 struct VisitKernels {
   void (*push_balls)(const PushBalls<double>&, Blocks);
   void (*push_points)(const PushPoints<double>&, Blocks);
@@ -41,14 +42,14 @@ struct VisitKernels {
   SweepChange (*roll_points)(const RollPoints&, Blocks, double beta);
   Overlaps (*correct_balls)(const CorrectBalls<double>&, Blocks);
   Overlaps (*correct_points)(const CorrectPoints<double>&, Blocks);
-  /// A bit for each of `look` slots whose bodies come as close as they reach. `reach` knows -1, too, which
-  /// reaches padding_body.
+  /// Returns a bit for each of `look` slots: whether its two bodies are within their reaches. `reach` also
+  /// has an element -1, for empty slots, which is near nothing.
   std::uint64_t (*near)(const Reach* reach, const Slot* slots, const Period* period);
-  /// Sets the fields of the contacts of a block, which begins at a place. A bit for each that may be
-  /// held apart (FindStage::may_be_held_apart).
+  /// Sets the fields of the contacts of a block that begins at `place`. Returns a bit for each contact whose
+  /// bodies may be held apart (FindStage::may_be_held_apart).
   std::uint32_t (*prepare_balls)(const PrepareBalls&, const BallBlock&, std::int64_t place);
   BlockTotals (*account_balls)(const AccountBlocks&, Blocks);
-  /// Of the bodies from the first to the last.
+  /// Extrapolates the velocities of the bodies from `begin` to before `end`.
   void (*accelerate)(const Accelerate<double>&, std::int64_t begin, std::int64_t end, double beta);
 
   void operator()(const PushBalls<double>& visit, Blocks blocks) const { push_balls(visit, blocks); }
@@ -75,12 +76,13 @@ struct VisitKernels {
   }
 };
 
-/// Those of an instruction set that simd::supported_kernels() names; all give the same bits.
+/// Returns the kernels of an instruction set, which is one of the names in simd::supported_kernels(). The
+/// results of all of them have the same bits.
 const VisitKernels& visit_kernels(const char* instruction_set);
-/// Of the widest that this processor has.
+/// Returns the kernels of the widest instruction set of this processor.
 const VisitKernels& visit_kernels();
 
-// One for each way in which visit_kernels.cpp is compiled; not all exist on every processor.
+// One table for each way in which visit_kernels.cpp is compiled; not all of them exist on every processor.
 namespace baseline {
 extern const VisitKernels visit_kernels;
 }

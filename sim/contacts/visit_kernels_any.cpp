@@ -1,4 +1,4 @@
-// For processors that scree knows nothing of.
+// The choice of kernels on processors for which scree has no kernels of their own: always the baseline.
 #include "sim/contacts/visit_kernels.hpp"
 
 namespace scree::solver {

@@ -1,4 +1,4 @@
-// For x86-64 processors.
+// The choice of kernels by instruction set on x86-64 processors.
 #include "sim/contacts/visit_kernels.hpp"
 
 #include <string_view>

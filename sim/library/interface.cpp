@@ -1,4 +1,5 @@
-// What users of the library ask of a Simulation, and the program does not: it has the parts that this joins.
+// The functions of Simulation that only users of the library need. The program does without them, since it
+// uses the parts that they join.
 #include "core/archive.hpp"
 #include "core/error.hpp"
 #include "sim/record/build_info.hpp"
@@ -44,7 +45,7 @@ std::vector<LoadedContact> Simulation::loaded_contacts() const {
   return contacts;
 }
 
-// The parts of both have the names that they have in the program's checkpoints.
+// The archive's parts have the same names here as in the program's checkpoints.
 
 void Simulation::save_checkpoint(const std::filesystem::path& file) {
   SavedState state;

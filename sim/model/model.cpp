@@ -31,7 +31,7 @@ bool any_free_body(const BodyTable& bodies, Predicate predicate) {
   return false;
 }
 
-/// Widths of the cells of each level (m), for the bodies as they start and without margins.
+/// Returns the width of the cells of each level (m), for the bodies as they start and without margins.
 std::vector<double> cell_widths(const Scene& scene) {
   Bodies<Host> bodies;
   copy_bodies(bodies, scene.bodies);
@@ -63,7 +63,8 @@ Feature plan_levels(const Scene& scene) {
                       widths.back(), why)};
 }
 
-/// Of pairs of materials of which some have round bodies, which turn.
+/// Decides on rolling friction, which is needed if a pair of materials has it and one of the two has round
+/// bodies that turn.
 Feature plan_rolling_friction(const Scene& scene, bool rotation) {
   const BodyTable& bodies = scene.bodies;
   const std::size_t materials = scene.materials.size();
@@ -86,7 +87,8 @@ Feature plan_rolling_friction(const Scene& scene, bool rotation) {
                             : "nothing of the materials that have it is round");
 }
 
-/// The largest that brings a body back from a bounce (m/s^2): gravity, or a servo's drive.
+/// Returns the largest acceleration that brings a body back from a bounce (m/s^2): gravity, or a servo's
+/// drive.
 double pressing_acceleration(const Scene& scene) {
   double largest = largest_gravity(scene);
   for (const Servo& servo : scene.servos) {
@@ -113,7 +115,8 @@ ModelPlan plan_model(const Scene& scene) {
   const bool any_unequal =
       any_free_body(bodies, [&](std::size_t k) { return !has_equal_moments(bodies.inverse_inertia[k]); });
   const double gravity = largest_gravity(scene);
-  // One by one: where a member of an aggregate throws, GCC 12 destroys those before it twice.
+  // The members are set one by one: if the value of a member of an aggregate throws, GCC 12 destroys the
+  // members before it twice.
   ModelPlan plan;
   plan.friction = choose("friction", scene.model.friction, any_law(&ContactLaw::friction),
                          "some pair has friction", "no pair has friction");

@@ -1,4 +1,4 @@
-// What a scene needs to have modelled, and what cannot matter in it.
+// The features of the model that a scene needs, and those that cannot matter in it.
 #pragma once
 
 #include "sim/laws/restitution.hpp"
@@ -9,7 +9,7 @@
 
 namespace scree {
 
-/// One feature of the model: computed or left out, and why.
+/// One feature of the model: whether it is computed or left out, and why.
 struct Feature {
   const char* name;
   bool on;
@@ -19,13 +19,13 @@ struct Feature {
 /// Leaving a feature out where its reason holds changes no result (docs/accuracy.md has what each saves).
 struct ModelPlan {
   Feature friction;          ///< tangential impulses
-  Feature rolling_friction;  ///< couples against what rolls
+  Feature rolling_friction;  ///< couples against rolling
   Feature restitution;       ///< impacts that bounce
   Feature rotation;          ///< orientations
   Feature gyroscopic;        ///< free rotation of bodies with unequal moments of inertia
   Feature continuous;        ///< impacts at their own time between bodies that would go deep in a substep
   Feature gravity;           ///< weight, and potential energy
-  Feature levels;            ///< of the hierarchical grid: more than one
+  Feature levels;            ///< more than one level of the hierarchical grid
   RestitutionThreshold restitution_threshold;
 
   std::vector<Feature> features() const {
@@ -35,7 +35,7 @@ struct ModelPlan {
 
 ModelPlan plan_model(const Scene& scene);
 
-/// That a step takes where the scene leaves their number open.
+/// Returns the largest number of substeps that a step takes if the scene leaves their number open.
 int most_substeps(const Scene& scene);
 
 }  // namespace scree

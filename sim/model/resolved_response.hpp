@@ -1,4 +1,4 @@
-// What a scene says about the response, resolved.
+// The parameters of the response and the contact laws of a scene, with defaults filled in.
 #pragma once
 
 #include "sim/laws/contact_laws.hpp"
@@ -11,7 +11,7 @@ namespace scree {
 
 ResponseParameters response_parameters_of(const Scene& scene);
 
-/// Materials x materials.
+/// Returns the laws of all pairs of materials (materials x materials).
 std::vector<PairLaw> pair_laws_of(const Scene& scene);
 
 }  // namespace scree

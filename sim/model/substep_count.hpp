@@ -1,4 +1,4 @@
-// How many substeps the next step is taken in, where the scene leaves it open.
+// The number of substeps of the next step, if the scene leaves it open.
 #pragma once
 
 #include "core/archive.hpp"
@@ -8,7 +8,7 @@
 
 namespace scree {
 
-/// Overlaps of a state, of the smaller body's smallest_size: the mean over the pairs that overlap, and the
+/// Overlaps of a state (of the smaller body's smallest_size): the mean over the pairs that overlap, and the
 /// deepest.
 struct OverlapsLeft {
   double mean = 0, worst = 0;
@@ -18,8 +18,9 @@ struct OverlapsLeft {
   }
 };
 
-/// Most substeps that a step takes by itself. Overlaps fall with the square of their length, and so this
-/// grows with the square root of `quality` (ResponseParameters::quality), in powers of two.
+/// Returns the largest number of substeps that a step takes by itself. Overlaps fall with the square of the
+/// substep's length, and so this number grows with the square root of `quality`
+/// (ResponseParameters::quality), in powers of two.
 inline int most_substeps(double quality) {
   int most = tolerance::most_substeps;
   for (; quality >= 4; quality /= 4) most *= 2;
@@ -27,18 +28,18 @@ inline int most_substeps(double quality) {
   return most;
 }
 
-/// With few contacts it follows the deepest overlap that a substep left to the position correction. Of a
-/// heap that overlap is an extreme of many, most of which the correction parts. There it follows the overlaps
-/// that are left at the end of steps, and these are measured: at every eighth step, and only while a substep
-/// leaves deep ones to the correction (docs/decisions/0055).
+/// The choice of the number of substeps. With few contacts it follows the deepest overlap that a substep left
+/// to the position correction. In a heap that overlap is an extreme of many, most of which the correction
+/// removes. There the number follows the overlaps that are left at the end of steps. They are measured at
+/// every eighth step, and only while a substep leaves deep ones to the correction (docs/decisions/0055).
 class SubstepCount {
  public:
   explicit SubstepCount(double quality = 1) : quality_(quality) {}
 
   int next() const { return next_; }
 
-  /// After a step of `taken` substeps with few contacts, the deepest overlap of which, before position
-  /// correction, was `deepest` (of the smaller smallest_size).
+  /// Chooses the number after a step of `taken` substeps with few contacts, whose deepest overlap before
+  /// position correction was `deepest` (of the smaller smallest_size).
   void judge(int taken, double deepest) {
     if (deepest > tolerance::substep_overlap / quality_) {
       refine(taken);
@@ -48,7 +49,8 @@ class SubstepCount {
     }
   }
 
-  /// The same after a step with a heap. `measure()` gives the OverlapsLeft at the end of the step.
+  /// Chooses the number after a step with a heap. `measure()` returns the OverlapsLeft at the end of the
+  /// step.
   template <class Measure>
   void judge_heap(int taken, double deepest, const Measure& measure) {
     if (deepest > tolerance::heap_substep_overlap / quality_) return refine(taken);
@@ -85,14 +87,16 @@ class SubstepCount {
   }
 
  private:
-  // Larger: the number follows later, and single looks matter less.
+  // Steps between two measurements (looks), and looks that are judged together. Larger: the number follows
+  // later, and single looks matter less.
   static constexpr int steps_a_look = 8, looks_together = 4;
-  // Half as many substeps are tried from this share of what may be left, after this many looks at last.
+  // Half as many substeps are tried if the overlaps are under this share of the bounds, after `looks_to_try_`
+  // looks, which are at most this many.
   static constexpr double tried_from = 0.75;
   static constexpr int most_looks = 64;
 
   void refine(int taken) {
-    // What was tried and left too much is tried less often.
+    // If fewer substeps were tried and left too much overlap, they are tried less often from now on.
     if (is_tried_) looks_to_try_ = std::min(2 * looks_to_try_, most_looks);
     use(std::min(2 * taken, most_substeps(quality_)));
   }
@@ -106,12 +110,12 @@ class SubstepCount {
 
   double quality_;
   int next_ = 1;
-  int shallow_steps_ = 0;  // since it was last chosen
-  // Of a heap, likewise:
+  int shallow_steps_ = 0;  // steps since the number was last chosen that needed neither more nor fewer
+  // For a heap, since the number was last chosen:
   int steps_ = 0, looks_ = 0;
-  OverlapsLeft seen_;  // the mean of the looks that are judged together, as far as they were taken
-  int looks_to_try_ = looks_together;  // before fewer substeps are tried
-  bool is_tried_ = false;              // this number, and was not found good yet
+  OverlapsLeft seen_;  // mean of the looks that are judged together, as far as they were taken
+  int looks_to_try_ = looks_together;  // looks before fewer substeps are tried
+  bool is_tried_ = false;              // whether the present number is a try of fewer substeps
 };
 
 }  // namespace scree

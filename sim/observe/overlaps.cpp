@@ -16,7 +16,7 @@ struct Depths {
   double sum = 0, relative_sum = 0;
   double max = 0, relative_max = 0;
   std::int64_t count = 0;
-  std::int64_t deepest = -1;  ///< the first pair of relative_max
+  std::int64_t deepest = -1;  ///< index of the first pair with relative_max
   SCREE_HD friend Depths operator+(const Depths& a, const Depths& b) {
     const Depths& deeper = b.relative_max > a.relative_max ? b : a;
     return {a.sum + b.sum,      a.relative_sum + b.relative_sum,
@@ -25,8 +25,8 @@ struct Depths {
   }
 };
 
-/// Of a pair. Its depth is kept, if there is room, as the bits of a number that is not negative, which are
-/// ordered as it is.
+/// Measures one pair. Its depth is kept, if there is room, as bits: the bits of numbers that are not negative
+/// have the same order as the numbers.
 struct MeasurePair {
   ConstBodyView bodies;
   ConstView<ShapeData> shapes;
@@ -95,7 +95,8 @@ Penetration measure_overlaps(const ConstBodyView& bodies, ConstView<ShapeData> s
     out.p99 = Penetration::unknown().p99;
     return out;
   }
-  // The smallest depth that at least 99 % of the pairs do not exceed; pairs without come first.
+  // p99 is the smallest depth that at least 99 % of the overlapping pairs do not exceed. Pairs without
+  // overlap come first.
   Array<std::uint8_t, Space> nothing(candidates.size());
   parallel::sort_by_key("overlaps.sort", bits, nothing);
   const std::int64_t rank =

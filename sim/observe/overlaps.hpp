@@ -1,4 +1,4 @@
-// The penetration of bodies in a space.
+// The measurement of overlaps of bodies in a space.
 #pragma once
 
 #include "broadphase/broad_phase.hpp"
@@ -9,11 +9,11 @@
 
 namespace scree::solver {
 
-/// Whether Penetration::p99 is found, for which all depths are sorted; else it is not a number.
+/// Whether Penetration::p99 is found, for which all depths must be sorted; if not, it is NaN.
 enum class Quantiles { none, p99 };
 
-/// Over all overlapping pairs among the candidates: of each its deepest point, true geometry. `shapes`: of
-/// each body, by its place; empty if no body's shape is general.
+/// Measures the overlapping pairs among the candidates, each at its deepest point, by true geometry.
+/// `shapes`: shape data of each body, by its place; empty if no body's shape is general.
 template <class Space>
 Penetration measure_overlaps(const ConstBodyView& bodies, ConstView<ShapeData> shapes,
                              ConstView<Pair> candidates, Quantiles quantiles = Quantiles::p99);

@@ -12,7 +12,7 @@ namespace scree {
 
 namespace {
 
-/// No point of a body moves faster (m/s).
+/// Returns a bound on the speeds of all points of a body (m/s).
 SCREE_HD double surface_speed(const ConstBodyView& bodies, std::int64_t k) {
   const Shape shape = bodies.shape[k];
   const double turning =
@@ -40,7 +40,7 @@ struct SetMargin {
   }
 };
 
-/// How far a body's surface may have moved from where it was (m).
+/// Finds how far a body's surface may have moved from where it was (m).
 struct Travel {
   ConstBodyView bodies;
   ConstView<Vec3> position;
@@ -57,7 +57,7 @@ struct Travel {
   }
 };
 
-/// Whether a body may touch something outside its box.
+/// Finds whether a body may touch something outside its box.
 struct IsOut {
   Travel travel;
   ConstView<double> box_margin;
@@ -77,7 +77,7 @@ struct NoteOutside {
   }
 };
 
-/// Sets a margin first.
+/// Sets the contact margin of a body before it is checked.
 struct NoteOutsideWithMargin {
   SetMargin margins;
   NoteOutside note;
@@ -98,16 +98,17 @@ struct AddTravel {
   SCREE_HD void operator()(std::int64_t k) const { margin[k] += travel(k); }
 };
 
-/// At least the margin wanted and the skin, and how far a body's surface travels in so long (s): fast bodies
-/// are few, and for them alone the boxes of all would have to be put anew. So would they for a slow one among
-/// others, which pass their speed on to it.
+/// Raises the margin of a box to at least the wanted one plus the skin, and to the distance that the body's
+/// surface travels within `life` (s), at its own speed or the typical one, whichever is larger. Fast bodies
+/// are few, but without that room they alone would force new boxes around all bodies. So would a slow body
+/// among fast ones, which pass their speed on to it.
 struct RaiseMargin {
   ConstBodyView bodies;
   ConstView<double> wanted;
   View<double> margin;
   double life;
-  double typical;  ///< speed of bodies, in their smallest_size (1/s)
-  double most;     ///< but for what is wanted (m)
+  double typical;  ///< typical speed of bodies, in their smallest_size (1/s)
+  double most;     ///< largest margin, unless the wanted one is larger (m)
   SCREE_HD void operator()(std::int64_t k) const {
     if (bodies.mobility[k] == Mobility::fixed || is_surface(bodies.shape[k])) return;
     const double size = smallest_size(bodies.shape[k], bodies.size[k]);
@@ -118,9 +119,9 @@ struct RaiseMargin {
   }
 };
 
-/// How fast bodies leave where they are, in their own smallest_size (1/s).
+/// Rates at which bodies leave their positions: speeds in their own smallest_size (1/s).
 struct Leaving {
-  double rates = 0;  ///< their sum
+  double rates = 0;  ///< sum of the rates (1/s)
   std::int64_t count = 0;
   SCREE_HD friend Leaving operator+(const Leaving& a, const Leaving& b) {
     return {a.rates + b.rates, a.count + b.count};

@@ -1,4 +1,4 @@
-// How far the contacts of bodies reach, and boxes with room for their motion.
+// Contact margins of bodies, and boxes with room for the bodies' motion.
 #pragma once
 
 #include "core/archive.hpp"
@@ -11,36 +11,36 @@
 
 namespace scree {
 
-/// How far contacts of each body must reach so that nothing it can meet within dt is missed (m):
-/// its travel, and a slack as a share of its smallest_size.
+/// Sets for each body the contact margin, within which contacts must be searched so that nothing that the
+/// body can meet within dt (s) is missed (m): its travel, plus a slack as a share of its smallest_size.
 template <class Space>
 void contact_margins(const Bodies<Space>& bodies, double dt, double slack,
                      const ResponseParameters& parameters, Array<double, Space>& margin);
 
-/// The largest of them, and at least 0 (m).
+/// Returns the largest margin, and at least 0 (m).
 template <class Space>
 double largest_margin(const Array<double, Space>& margin);
 
-/// Boxes around the bodies, fat enough that pairs found with them last while nobody moves far.
+/// Boxes around the bodies, fat enough that the pairs found with them stay valid while no body moves far.
 template <class Space>
 class FatBoxes {
  public:
-  /// Around the bodies where they are, with room for their travel within dt (s), as far as their period lets
-  /// them look, and for contacts that reach as far as given (m).
+  /// Puts the boxes around the bodies where they are, with room for their travel within dt (s), as far as
+  /// their period lets them look, and for contacts within the given margins (m).
   void put_around(const Bodies<Space>& bodies, double dt, const ResponseParameters& parameters,
                   const Array<double, Space>& contact_margin);
-  /// Whether all bodies that may be in contact, wherever they are now, and with contacts that reach as far as
-  /// given (m), are among the pairs that were found with the boxes: all are in their boxes, or those outside
-  /// are few and have no NewPairs.
+  /// Returns whether the pairs found with the boxes still include all pairs of bodies that may be in contact
+  /// within the given margins (m), wherever the bodies are now: all bodies are in their boxes, or those
+  /// outside are few and have no NewPairs.
   bool pairs_last(const Bodies<Space>& bodies, const Array<double, Space>& contact_margin);
-  /// The same with contact_margins() within dt (s), which are set.
+  /// Returns the same for contact_margins() within dt (s), which it sets.
   bool pairs_last(const Bodies<Space>& bodies, double dt, const ResponseParameters& parameters,
                   Array<double, Space>& contact_margin);
-  /// How many bodies were outside their boxes when that was last asked.
+  /// Returns how many bodies were outside their boxes when pairs_last() was last called.
   std::int64_t outside() const { return new_pairs_.outside(); }
-  /// Raises the margins (m) by what each body has moved since the boxes were put around it.
+  /// Raises the margins (m) by the distance that each body has moved since the boxes were put around it.
   void add_travel(const Bodies<Space>& bodies, Array<double, Space>& contact_margin) const;
-  const Array<double, Space>& margin() const { return margin_; }  ///< (m)
+  const Array<double, Space>& margin() const { return margin_; }  ///< margins of the boxes (m)
   void archive(Archive& archive) {
     archive("margin", margin_);
     archive("position", position_);

@@ -6,7 +6,7 @@ namespace scree {
 
 namespace {
 
-/// Of each body with those outside. They are few, so that nothing has to be sorted for it.
+/// Searches for a new pair of one body with the bodies outside. These are few, so no sorting is needed.
 struct FindNewPair {
   NearPairs now, then;
   ConstView<BodyOutside> list;

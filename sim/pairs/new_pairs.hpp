@@ -1,4 +1,5 @@
-// Whether bodies that have left their boxes may touch others that they were not near when these were made.
+// The search for bodies that have left their boxes and may touch others that they were not near when the
+// boxes were made.
 #pragma once
 
 #include "core/array.hpp"
@@ -17,7 +18,7 @@ struct BodyOutside {
   std::int32_t body;
 };
 
-/// Those bodies, in any order, as far as there is room, and their number.
+/// A list of bodies that have left their boxes, in any order, as far as there is room, and their number.
 struct BodiesOutside {
   View<BodyOutside> list;
   std::uint64_t* count;
@@ -32,20 +33,21 @@ struct BodiesOutside {
 template <class Space>
 class NewPairs {
  public:
-  /// To look at so many bodies costs as much as to make all pairs anew, or less.
+  /// Largest number of bodies for which the search costs no more than making all pairs anew.
   static constexpr std::int64_t most_outside = std::is_same_v<Space, Host> ? 64 : 512;
 
-  /// An empty list, for all bodies to be added to that are outside now.
+  /// Returns an empty list, to which all bodies that are outside now must be added.
   BodiesOutside start();
-  /// Whether two bodies, of which one is outside, may be in contact as they are now, but were not near each
-  /// other `then`, when all pairs that were are known. True if more than most_outside are outside.
+  /// Returns whether two bodies, of which one is outside, may be in contact as they are now, but were not
+  /// near each other `then`, when all near pairs were found. Returns true if more than most_outside are
+  /// outside.
   bool exist(const NearPairs& now, const NearPairs& then);
-  /// How many bodies were outside when that was last asked.
+  /// Returns how many bodies were outside when exist() was last called.
   std::int64_t outside() const { return outside_; }
 
  private:
   Array<BodyOutside, Space> list_;
-  Array<std::uint64_t, Space> found_;  // how many are outside, and whether one has a new pair
+  Array<std::uint64_t, Space> found_;  // number of bodies outside, and whether one has a new pair
   std::int64_t outside_ = 0;
 };
 

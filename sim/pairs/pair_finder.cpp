@@ -98,14 +98,14 @@ class PairFinderIn final : public PairFinder<BodySpace> {
   Vec3 origin_;
   Array<Aabb, BodySpace> body_bounds_;
   PeriodicImages<BodySpace> images_;
-  // On their way to the space and back, where it is another.
+  // Copies on the way to the other space and back, if the PCS is found there.
   Array<Aabb, Space> bounds_;
   Array<Mobility, Space> mobility_;
   Array<Pair, BodySpace> pairs_;
 };
 
-/// Throws RunError where bodies look so far for contacts that two may meet through two images: only the
-/// nearest would be seen.
+/// Throws RunError if contact margins are so large that two bodies may meet through two images: only the
+/// nearest image would be found.
 template <class Space>
 void require_one_image(const Period& period, const Array<double, Space>& contact_margin) {
   if (!period.exists) return;

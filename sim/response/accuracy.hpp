@@ -1,5 +1,5 @@
-// What the accurate mode asks of contacts: how far their impulses are from solved, and when what slides comes
-// to stick.
+// Work on contacts for the accurate mode: the residual of their impulses, and the time at which a sliding
+// contact comes to stick.
 #pragma once
 
 #include "core/tolerances.hpp"
@@ -24,7 +24,7 @@ SCREE_HD inline int points_of(const PointContacts<Real>& contacts, std::int64_t 
   return contacts.points[c];
 }
 
-/// Point k of a contact: its arms, target, masses and impulse; the gap is not among them.
+/// Returns point k of a contact as a row, with its arms, target, masses and impulse, but without its gap.
 template <class Real>
 SCREE_HD inline ContactRow row_of(const BallContacts<Real>& contacts, std::int64_t c, int) {
   using C = BallContacts<Real>;
@@ -51,11 +51,11 @@ SCREE_HD inline ContactRow row_of(const PointContacts<Real>& contacts, std::int6
   return row;
 }
 
-/// What the natural map changes in the impulses of a contact as they are, and in its couple (natural_map()).
+/// The natural residual of a contact: the change of its present impulses and its couple by natural_map().
 template <class Real, class Contacts, class Turn>
 struct Residual {
   Contacts contacts;
-  bool rolls;  ///< else there are no couples
+  bool rolls;  ///< whether contacts have couples
   RollingFields<Real> rolling;
   ConstView<BodyRecord<Real>> solver;
 
@@ -91,22 +91,22 @@ struct Residual {
   }
 };
 
-/// The earliest of some times.
+/// The earliest of several times; its operator + takes the minimum.
 struct Earliest {
   double time = HUGE_VAL;
   SCREE_HD friend Earliest operator+(const Earliest& a, const Earliest& b) { return {fmin(a.time, b.time)}; }
 };
 
-/// When a contact that carried a load in the last substep and slides comes to stick, as a share of this
-/// substep; 1 if it does not. Had it slid all the while, friction would be k times the one that holds it at
-/// the end (k < 0 where that is upward, on a slope), and the sliding speed of its points would go from before
-/// to free - k free (docs/decisions/0015).
+/// Finds when a sliding contact that carried a load in the last substep comes to stick, as a share of this
+/// substep; 1 if it does not. If it slid during the whole substep, friction would be k times the friction
+/// that holds it at the end (k < 0 where that one points up a slope), and the sliding speed of its points
+/// would change from `before` to `free - k free` (docs/decisions/0015).
 template <class Real, class Contacts>
 struct SlipEnd {
   AccountStage<Real> stage;
   std::int64_t first_place;
   Contacts contacts;
-  ConstView<LoadedParts> loads;  ///< of candidates in the last substep
+  ConstView<LoadedParts> loads;  ///< loaded parts of each candidate in the last substep
 
   SCREE_HD Earliest operator()(std::int64_t c) const {
     const Slot& slot = stage.places[first_place + contacts.slot[c]];

@@ -1,5 +1,5 @@
-// Work on each body within a substep: what the contacts and the sweeps want to know of it, and what they have
-// made of it.
+// Work on each body within a substep: loading it for contacts and sweeps, and storing the velocities and
+// displacements that they have found.
 #pragma once
 
 #include "core/bodies.hpp"
@@ -23,7 +23,7 @@ inline ConstBodyView read_only(const BodyView& bodies) {
   return views;
 }
 
-/// A body at the midpoint, and its velocities after the kick.
+/// Loads a body at the midpoint, and its velocities after the kick.
 template <class Real>
 struct LoadBody {
   ConstBodyView bodies;
@@ -59,7 +59,7 @@ struct LoadBody {
   }
 };
 
-/// The parts of a hub share its mass, and start as it does.
+/// Loads a part of a hub: it gets its share of the hub's mass, and the hub's velocities.
 template <class Real>
 struct LoadPart {
   ConstView<Hub> hubs;
@@ -77,7 +77,8 @@ struct LoadPart {
   }
 };
 
-/// Nobody, and points of walls, are not free; those of contacts get their velocities when these are found.
+/// Clears bodies of the solver that are not free: the padding body and points of walls. The search for
+/// contacts sets the velocities of the wall points in contact.
 template <class Real>
 struct ClearNotFree {
   std::int64_t first;
@@ -85,17 +86,17 @@ struct ClearNotFree {
   SCREE_HD void operator()(std::int64_t k) const { solver[first + k] = {}; }
 };
 
-/// What the contacts have made of the velocities.
+/// Stores the velocities that the contacts have changed, with the kick.
 template <class Real>
 struct StoreVelocities {
-  ConstView<BodyRecord<Real>> free;  ///< without contacts
+  ConstView<BodyRecord<Real>> free;  ///< bodies of the solver without contacts
   ConstView<BodyRecord<Real>> solver;
   ResponseParameters parameters;
   double step;
   BodyView bodies;
   SCREE_HD void operator()(std::int64_t k) const {
     if (bodies.mobility[k] != Mobility::free) return;
-    // As changes, so that what no contact touches is not rounded.
+    // Changes are added, so that velocities of bodies without contact are not rounded.
     const BodyRecord<Real>& before = free[k];
     const BodyRecord<Real>& after = solver[k];
     bodies.velocity[k] += step * parameters.acceleration_of(k) + vec3(after.velocity - before.velocity);
@@ -107,8 +108,8 @@ struct StoreVelocities {
   }
 };
 
-/// Work of the torques: by the mean of the spins before and after, as that of impulses. Before the velocities
-/// are stored.
+/// Computes the work of the torque on a body (J) from the mean of its spins before and after, as the work of
+/// impulses is computed. It must run before the velocities are stored.
 template <class Real>
 struct WorkOfTorque {
   ConstBodyView bodies;
@@ -121,7 +122,7 @@ struct WorkOfTorque {
   }
 };
 
-/// Nobody is displaced yet.
+/// Sets the displacement and the turn of a body to zero.
 template <class Real>
 struct ResetDisplacement {
   ConstView<BodyRecord<Real>> solver;
@@ -136,7 +137,7 @@ struct ResetDisplacement {
   }
 };
 
-/// Moves a body and says what that changed, at velocities that stay.
+/// Moves a body at constant velocities, and returns what that adds to the ledger.
 template <class Real>
 struct Displace {
   ConstView<CentreRecord<Real>> displacement;

@@ -13,14 +13,14 @@ ContactProblem problem_of(Inspection<Real>& seen, const BodyTable& bodies) {
   };
   problem.bodies.resize(bodies.position.size());
   for (std::size_t k = 0; k < bodies.position.size(); ++k) {
-    // Rounding leaves the two halves of the inertia different in their last bits.
+    // Rounding makes the two triangles of the inertia differ in their last bits, so one is used for both.
     const Mat3 inertia = world_inverse_inertia(bodies.orientation[k], bodies.inverse_inertia[k]);
     problem.bodies[index_of(bodies.id[k])] = {bodies.inverse_mass[k],
                                               Mat3(inertia.selfadjointView<Eigen::Lower>()),
                                               vec3(seen.free[static_cast<std::int64_t>(k)].velocity),
                                               vec3(seen.free[static_cast<std::int64_t>(k)].spin)};
   }
-  // Then the points of walls that turn.
+  // The points of walls that turn follow after the bodies.
   const auto first = static_cast<std::int32_t>(seen.first_wall_point - std::ssize(bodies.position));
   for (std::int64_t k = seen.first_wall_point; k < seen.free.size(); ++k)
     problem.bodies.push_back({0, Mat3::Zero(), vec3(seen.free[k].velocity), Vec3::Zero()});
@@ -42,7 +42,7 @@ std::vector<ContactForce> forces_of(Inspection<Real>& seen, const BodyTable& bod
   for_each_contact(seen, [&](const SeenContact& c) {
     const Vec3 impulse = c.impulse();
     if (impulse.isZero(0)) return;
-    // From the body that moves freely: the centre of a plane is nowhere near.
+    // The point is found from a free body, since the centre of a plane may be far away.
     const auto i = static_cast<std::size_t>(c.slot.i), j = static_cast<std::size_t>(c.slot.j);
     const bool from_j = bodies.mobility[j] == Mobility::free;
     Vec3 arm = Vec3::Zero();

@@ -1,4 +1,4 @@
-// The contacts of a substep as they are shown: on Host, body by body.
+// The contacts of a substep on Host in double precision, for inspection and for the direct solver.
 #pragma once
 
 #include "core/bodies.hpp"
@@ -15,7 +15,7 @@
 
 namespace scree::solver {
 
-/// What is brought from Device.
+/// Copies on Host of the arrays that an Inspection needs from Device.
 template <class Real>
 struct BroughtContacts {
   std::vector<Slot> places;
@@ -25,19 +25,19 @@ struct BroughtContacts {
   Array<Real, Host> ball_rolling, point_rolling;
 };
 
-/// Contacts on Host, where they are or where they have been brought.
+/// A view of the contacts on Host: of the solver's own arrays, or of copies of those on Device.
 template <class Real>
 struct Inspection {
   ConstView<Slot> places;
-  ConstView<BodyNumber> number;      ///< of each body, by place
-  ConstView<BodyRecord<Real>> free;  ///< bodies of the solver as they would be without contacts
+  ConstView<BodyNumber> number;      ///< number of each body, by place
+  ConstView<BodyRecord<Real>> free;  ///< bodies of the solver with their velocities without contacts
   ContactStore<Host, Real>* contacts = nullptr;
   RollingFields<Real> ball_rolling, point_rolling;
   bool rolls = false;
-  std::int64_t first_wall_point = 0;  ///< among the bodies of the solver
-  double step = 0;                    ///< length of the substep (s)
-  std::int64_t first_place = 0;       ///< of the slots that are not of balls
-  std::shared_ptr<BroughtContacts<Real>> brought;
+  std::int64_t first_wall_point = 0;               ///< index of the first wall point in `free`
+  double step = 0;                                 ///< length of the substep (s)
+  std::int64_t first_place = 0;                    ///< place of the first slot that is not of balls
+  std::shared_ptr<BroughtContacts<Real>> brought;  ///< null where the contacts are on Host
 };
 
 struct SeenPoint {
@@ -48,16 +48,16 @@ struct SeenPoint {
 
 struct SeenContact {
   Slot slot;
-  std::int32_t i, j;   ///< bodies, or points of walls that turn
-  std::int64_t place;  ///< among those of its kind
+  std::int32_t i, j;   ///< indices of bodies of the solver: bodies, or points of walls that turn
+  std::int64_t place;  ///< place of the contact among those of its kind
   Vec3 normal;
   double friction;
-  double rolling_reach;  ///< couple against rolling for each normal impulse, at most (m)
-  Vec3 couple;           ///< on j (N m s)
+  double rolling_reach;  ///< largest couple against rolling, per normal impulse (m)
+  Vec3 couple;           ///< couple on j (N m s)
   bool balls;
-  std::int32_t count;  ///< of its points
+  std::int32_t count;  ///< number of its points
   SeenPoint points[Manifold::max_points];
-  Mat3 inertia_i, inertia_j;  ///< inverse, world frame, unless it is of balls
+  Mat3 inertia_i, inertia_j;  ///< inverse inertias, world frame; zero for balls
 
   Vec3 impulse() const {
     Vec3 sum = Vec3::Zero();
@@ -66,7 +66,7 @@ struct SeenContact {
   }
 };
 
-/// visit(contact) for all of them, in the order of their places, those of balls first.
+/// Calls visit(contact) for each contact in the order of their places, first for those of balls.
 template <class Real, class Visit>
 void for_each_contact(Inspection<Real>& seen, Visit visit) {
   using B = BallContacts<Real>;
@@ -135,11 +135,11 @@ void for_each_contact(Inspection<Real>& seen, Visit visit) {
   }
 }
 
-/// `bodies` lie as they do in the space.
+/// Returns the contact problem of the substep. `bodies` are in the same order as the solver's.
 template <class Real>
 ContactProblem problem_of(Inspection<Real>& seen, const BodyTable& bodies);
 
-/// Of those that carried a force.
+/// Returns the forces of the contacts that carried one.
 template <class Real>
 std::vector<ContactForce> forces_of(Inspection<Real>& seen, const BodyTable& bodies);
 

@@ -19,7 +19,7 @@ namespace scree::solver {
 
 namespace {
 
-/// Places and bodies that are worth their way from Device to Host and back.
+/// Largest numbers of slots and of bodies for which it pays to copy them from Device to Host and back.
 constexpr std::int64_t few_places = 1 << 16;
 constexpr std::int64_t few_bodies = 1 << 14;
 
@@ -44,7 +44,7 @@ void ContactSolver<Space, Real>::take_candidates(ConstView<Pair> candidates, Con
                             MarkPointLoads<Real>{stage, slots_.ball_places(), slots_.point_memory()});
 }
 
-/// Those of the last substep were of other slots.
+/// Drops the contacts of the last substep, which belong to other slots than the new ones.
 template <class Space, class Real>
 void ContactSolver<Space, Real>::forget_contacts() {
   store_.take_balls({});
@@ -111,7 +111,7 @@ Inspection<Real> ContactSolver<Space, Real>::inspect(const ConstBodyView& bodies
   return seen;
 }
 
-/// f(c) for the contacts of balls, or for the others.
+/// Calls f(c) for each contact of balls; for_points() does so for each of the others.
 template <class Space, class Real>
 template <class F>
 void ContactSolver<Space, Real>::for_balls(const char* label, const F& f) {
@@ -125,7 +125,7 @@ void ContactSolver<Space, Real>::for_points(const char* label, const F& f) {
   parallel::for_each<Space>(label, points.slot.size(), on_contacts(points, f));
 }
 
-/// Sum over all contacts of what `of_balls` and `of_points` make of them.
+/// Returns the sum over all contacts of the values that `of_balls` and `of_points` compute for them.
 template <class Space, class Real>
 template <class Sum, class OfBalls, class OfPoints>
 Sum ContactSolver<Space, Real>::sum_over_contacts(const char* label, const OfBalls& of_balls,
@@ -205,7 +205,7 @@ void ContactSolver<Space, Real>::find(ConstView<double> margin, double scale, co
                                                                 on_contacts(count.contacts, count));
 }
 
-/// What visits to several contacts at once find where there are fewer.
+/// Fills the places without contacts in blocks, since a visit works on a whole block at once.
 template <class Space, class Real>
 void ContactSolver<Space, Real>::pad() {
   const std::int32_t padding_body = slots_.solver_bodies().padding_body();
@@ -215,7 +215,7 @@ void ContactSolver<Space, Real>::pad() {
   parallel::for_each<Space>("contacts.pad", points.contacts.slot.size() / simd::width, points);
 }
 
-/// The parts of hubs, too.
+/// Lists the guides of all bodies of the solver: the parts of a hub in a guide have that guide, too.
 template <class Space, class Real>
 void ContactSolver<Space, Real>::list_guided(ConstView<Guide> guides) {
   guides_.resize(static_cast<std::size_t>(guides.size()));
@@ -307,7 +307,7 @@ bool ContactSolver<Space, Real>::fits_on_host() const {
          (slots_.places().size() <= few_places && slots_.solver_bodies().first_wall_point() <= few_bodies);
 }
 
-/// The bodies of the solver are without contacts.
+/// Sweeps over the contacts. At the start the bodies of the solver have their velocities without contacts.
 template <class Space, class Real>
 bool ContactSolver<Space, Real>::sweep(const SweepPlan& plan, Counters& counters) {
   const SweepState done =
@@ -316,7 +316,7 @@ bool ContactSolver<Space, Real>::sweep(const SweepPlan& plan, Counters& counters
   return done.converged;
 }
 
-/// Velocities become what the impulses give: the rounding of many sweeps is none.
+/// Computes the velocities anew from the impulses, so that the rounding errors of many sweeps do not remain.
 template <class Space, class Real>
 void ContactSolver<Space, Real>::set_velocities() {
   SweepPlan push{.least = 0, .most = 0, .block_sweeps = 1, .tolerance = 0, .direct = false};
@@ -331,8 +331,8 @@ LoadSpread ContactSolver<Space, Real>::spread_of_loads() {
                                        PointLoad<Real>{store_.points()});
 }
 
-/// Sweeps; islands on which they creep go to the direct solver on Host. In the accurate mode all do whose
-/// natural residual is beyond the tolerance.
+/// Sweeps over the contacts, then solves islands that converge slowly by the direct solver on Host. In the
+/// accurate mode it solves all islands whose natural residual is beyond the tolerance.
 template <class Space, class Real>
 bool ContactSolver<Space, Real>::solve_islands(const ConstBodyView& bodies, const SweepPlan& plan,
                                                bool accurate, Counters& counters) {
@@ -384,7 +384,7 @@ Residual<Real, PointContacts<Real>, TurnPoints> ContactSolver<Space, Real>::resi
   return {store_.points(), rolls(), rolling_of_points(), std::as_const(solver_).view()};
 }
 
-/// Sums of what `of_balls` and `of_points` make of their contacts.
+/// Returns the sums over each island of the values that `of_balls` and `of_points` compute for its contacts.
 template <class Space, class Real>
 template <class Sum, class OfBalls, class OfPoints>
 IslandSums<Space, Sum> ContactSolver<Space, Real>::sum_by_island(const OfBalls& of_balls,
@@ -398,14 +398,14 @@ IslandSums<Space, Sum> ContactSolver<Space, Real>::sum_by_island(const OfBalls& 
   return sums;
 }
 
-/// Whether the natural residual of each island is within the tolerance.
+/// Returns whether the natural residual of each island is within the tolerance.
 template <class Space, class Real>
 bool ContactSolver<Space, Real>::are_solved(double tolerance) {
   return sum_by_island<ImpulseChange>(residual_of_balls(), residual_of_points())
       .all([tolerance](const ImpulseChange& residual) { return residual.within(tolerance); });
 }
 
-/// What the natural map changes in all impulses, of their size.
+/// Returns the natural residual of all impulses, relative to their size.
 template <class Space, class Real>
 double ContactSolver<Space, Real>::residual() {
   const auto left =
@@ -421,7 +421,7 @@ double ContactSolver<Space, Real>::find_slip_end(const AccountStage<Real>& stage
   return end.time;
 }
 
-/// Bodies of the solver with the velocities that the bodies have.
+/// Makes the work that gives the bodies of the solver the velocities that `bodies` have.
 template <class Space, class Real>
 ReloadBody<Real> ContactSolver<Space, Real>::reload(const ConstBodyView& bodies,
                                                     const Array<BodyRecord<Real>, Space>& from,
@@ -430,15 +430,16 @@ ReloadBody<Real> ContactSolver<Space, Real>::reload(const ConstBodyView& bodies,
   return {bodies, all.hubs(), all.hub_of_parts(), all.first_part(), from.view(), to.view()};
 }
 
-/// Scales down impulses that would gain energy, to where they gain none: of each island where contacts are
-/// few, of a heap all alike, since it is one. Returns how many were scaled.
+/// Scales down impulses that would gain energy, until they gain none. Few contacts are scaled island by
+/// island; those of a heap (or too many for Host) by one factor, as one island. Returns the number of islands
+/// scaled.
 template <class Space, class Real>
 int ContactSolver<Space, Real>::keep_from_gaining(const AccountStage<Real>& stage) {
   if (has_heap() || !fits_on_host()) {
     const Moved moved = totals_.moved();
     if (!moved.gains(response_gain<Real>)) return 0;
     copy(last_, solver_);
-    // Rounded down, so that the scale does not hang on the order in which the sums were added up.
+    // The scale is rounded down, so that it does not depend on the order in which the sums were added up.
     constexpr double levels = 1 << 20;
     scale_impulses(std::floor(levels * moved.scale_without_gain()) / levels);
     fly_on_with_changes();
@@ -457,7 +458,8 @@ int ContactSolver<Space, Real>::keep_from_gaining(const AccountStage<Real>& stag
   return scaled;
 }
 
-/// Whether the impulses of no island gain energy: what each contact moves is booked once more.
+/// Returns whether the impulses of no island gain energy. For that the energy that each contact moves is
+/// accounted once more.
 template <class Space, class Real>
 bool ContactSolver<Space, Real>::no_island_gains(AccountStage<Real> stage) {
   stage.again = true;
@@ -523,7 +525,7 @@ ContactTotals ContactSolver<Space, Real>::account_ball_blocks(const AccountStage
 
 template <class Space, class Real>
 void ContactSolver<Space, Real>::account(const AccountStage<Real>& stage) {
-  // Both kinds are waited for once, and one that is not there costs nothing.
+  // The sums of all kinds are copied to Host at once, and a kind without contacts costs nothing.
   kind_totals_.resize(4);
   std::size_t kinds = 0;
   const auto add_up = [&](const char* label, const auto& account) {
@@ -614,7 +616,7 @@ void ContactSolver<Space, Real>::take_velocities(const ConstBodyView& bodies) {
   fly_on_with_changes();
 }
 
-/// Gaps at the end of the substep, since velocities are no longer those of `last_`.
+/// Corrects the gaps at the end of the substep, after the velocities have changed from those of `last_`.
 template <class Space, class Real>
 void ContactSolver<Space, Real>::fly_on_with_changes() {
   for_balls("gaps.predict", PredictGapsOfBalls<Real>{store_.balls(), last_.view(), solver_.view(), step_});
@@ -668,7 +670,8 @@ Ledger ContactSolver<Space, Real>::correct(const FlightStage& flight, bool any_l
   return ledger;
 }
 
-/// Of a heap the deepest contact is one of many, which wait for it only as long as it is too deep to be left.
+/// Returns the limits of the position correction. The deepest contact of a heap is one of many: sweeps over
+/// all of them go on for its sake only as long as it is too deep to be left.
 template <class Space, class Real>
 CorrectionPlan ContactSolver<Space, Real>::plan_correction(double quality) const {
   using namespace tolerance;

@@ -1,4 +1,5 @@
-// Contacts and their response with everything in one space: slots, contacts, sweeps, totals, correction.
+// The contact solver of a substep: slots, contacts, sweeps, sums over contacts and position correction, with
+// all data in one space.
 #pragma once
 
 #include "core/archive.hpp"
@@ -33,73 +34,75 @@
 
 namespace scree::solver {
 
-/// How often overlaps are swept: until the deepest and their mean are no more than this (of the smaller
-/// smallest_size), but no more than `usual` times, unless the deepest is more than `too_deep` then.
+/// Number of sweeps of the position correction. After `least` sweeps it ends when the deepest overlap is at
+/// most `deepest` and the mean at most `mean` (relative to the smaller smallest_size); after `usual` sweeps,
+/// when the deepest is at most `too_deep`; and in any case after `most`.
 struct CorrectionPlan {
   int least, usual, most;
   double deepest, mean, too_deep;
 };
 
-/// The bodies are the caller's: at the midpoint for find() and solve(), at the end of the substep for
-/// correct().
+/// Finds the contacts of a substep, their impulses and the position correction. The bodies belong to the
+/// caller: they must be at the midpoint for find() and solve(), and at the end of the substep for correct().
 template <class Space, class Real>
 class ContactSolver {
  public:
-  /// The candidates have been made anew; impulses are remembered, and couples if anything rolls.
-  /// `before`: Slots::look_up() of them. The bodies in guides stay where they are until the next call.
+  /// Takes new candidate pairs. The slots of pairs that were candidates before keep their impulses, and their
+  /// couples if anything rolls. `before` is the result of Slots::look_up() for the candidates. Bodies in
+  /// guides must keep their places until the next call.
   void take_candidates(ConstView<Pair> candidates, ConstView<std::int64_t> before,
                        const ConstBodyView& bodies, const ResponseParameters& parameters);
 
-  /// Others of the bodies are free now; new candidates follow.
+  /// Must be called when other bodies have become free or not free; new candidates follow.
   void change_bodies() { slots_.forget_colors(); }
-  /// What the next substep starts from, kept for a substep that is taken again in parts: after the candidates
-  /// are taken and before find().
+  /// Keeps the state from which the next substep starts, for a substep that is taken again in parts. It is
+  /// called after the candidates are taken and before find().
   void keep_memory();
-  /// Back to it.
+  /// Restores the state that keep_memory() has kept.
   void recall_memory();
-  /// What the next substep starts from; the contacts of the last are not among it.
+  /// Saves or loads the state from which the next substep starts. It does not include the last contacts.
   void archive(Archive& archive, const ConstBodyView& bodies, const ResponseParameters& parameters);
 
-  /// Contacts that may close by the next midpoint: gaps of at most the sum of the two margins (m). Impulses
-  /// start from what they were, `scale` times.
-  /// `flight`: the bodies after the impacts of the first half; `any_late_impact`: one came after the
-  /// midpoint. `libccd`: to be asked as well, or instead; null: not at all.
+  /// Finds the contacts that may close by the next midpoint: those whose gap is at most the sum of the two
+  /// bodies' margins (m). The impulses start from `scale` times those of the last substep.
+  /// `flight` has the bodies after the impacts of the first half; `any_late_impact` says that one came after
+  /// the midpoint. `libccd` finds contacts too, or instead; if null, it is not used.
   void find(ConstView<double> margin, double scale, const FlightStage& flight, bool any_late_impact,
             LibccdContacts* libccd);
 
-  /// Impulses with e = 0, by sweeps; the bodies get their velocities, and those that were struck late their
-  /// places. `share`: of the step that the substep is. Returns what was moved.
+  /// Finds the impulses with e = 0. Sets the velocities of the bodies, and the positions of those with a late
+  /// impact. `share` is the length of the substep in steps. Returns the energy and momentum that were moved.
   Ledger solve(const FlightStage& flight, bool any_late_impact, double share, Counters& counters);
 
-  /// Impacts after the response have changed velocities.
+  /// Takes the velocities that impacts after the response have changed, and predicts the gaps anew.
   void take_velocities(const ConstBodyView& bodies);
 
-  /// Parts what would overlap, velocities stay. Returns what that moved.
+  /// Moves bodies apart that would overlap; the velocities stay. Returns what that adds to the ledger.
   Ledger correct(const FlightStage& flight, bool any_late_impact);
-  /// Deepest overlap that the last correct() has found (of the smaller smallest_size).
+  /// Returns the deepest overlap before the last correct(), relative to the smaller smallest_size.
   double overlap() const { return overlap_; }
-  /// Whether the contacts of the last find() are a heap.
+  /// Returns whether the contacts of the last find() are a heap.
   bool has_heap() const { return is_heap(counts_.points); }
 
-  /// Of the last solve().
+  /// Returns the sums over all contacts of the last solve().
   const ContactTotals& totals() const { return totals_; }
-  /// When the first contact that slid came to stick, as a share of the last substep; 1 if none did. For the
-  /// accurate mode, and not for heaps, in which something always does.
+  /// Returns when the first sliding contact came to stick, as a share of the last substep; 1 if none did. It
+  /// is found in the accurate mode only, and not for heaps, in which some contact always comes to stick.
   double slip_end() const { return slip_end_; }
-  /// For each candidate a bit for each part that is loaded.
+  /// Returns for each candidate a byte, with a bit for each part that is loaded.
   ConstView<LoadedParts> loads() const {
     static_assert(sizeof(LoadedParts) == 1);
     return {reinterpret_cast<const LoadedParts*>(loads_.data()), slots_.candidates().size()};
   }
-  /// The same of pairs whose Slots::look_up() is given.
+  /// Finds the loaded parts of any pairs. `index` is the result of Slots::look_up() for them.
   void loads_of(ConstView<std::int64_t> index, Array<LoadedParts, Space>& loads) const;
   const Slots<Space, Real>& slots() const { return slots_; }
 
-  /// Of the last substep.
+  /// Returns the contacts of the last substep on Host.
   Inspection<Real> inspect(const ConstBodyView& bodies);
-  /// Adds up what the contacts of the last solve() gave to bodies that are not free.
+  /// Adds the impulses of the last solve() on bodies that are not free to the wall sums.
   void add_wall_impulses(const FlightStage& flight);
-  /// Of the step.
+  /// Returns the impulses on bodies that are not free, summed over the step.
   WallSums<Space>& wall_sums() { return wall_sums_; }
 
  private:
@@ -165,13 +168,13 @@ class ContactSolver {
 
   Array<MidBody<Real>, Space> mid_;
   Array<BodyRecord<Real>, Space> solver_, free_, last_, before_;
-  Array<Guide, Space> guided_;  // bodies of the solver that are in guides
-  std::vector<Guide> guides_;   // by place
+  Array<Guide, Space> guided_;  // guides of bodies of the solver, hub parts included
+  std::vector<Guide> guides_;   // guides with bodies by place
   Array<CentreRecord<Real>, Space> displacement_, turn_;
   Array<PartsSum, Space> parts_sums_;
 
   ContactStore<Space, Real> store_;
-  Array<Real, Space> ball_rolling_, point_rolling_;  // RollingFields; empty if nothing rolls
+  Array<Real, Space> ball_rolling_, point_rolling_;  // data of RollingFields; empty if nothing rolls
   ContactFinder<Space, Real> finder_;
 
   ContactCounts counts_;

@@ -1,5 +1,5 @@
-// What is asked of contacts beside what they have moved: how many points they have, how their loads are
-// spread, which candidates are loaded, and what they gave to bodies that are not free.
+// Sums over contacts other than their energy accounts: the number of points, the spread of their loads, the
+// candidates that are loaded, and the impulses on bodies that are not free.
 #pragma once
 
 #include "sim/contacts/contact_accounts.hpp"
@@ -19,7 +19,7 @@ struct CountPoints {
   SCREE_HD std::int64_t operator()(std::int64_t c) const { return contacts.points[c]; }
 };
 
-/// Of pairs whose indices among the candidates are given.
+/// Finds the loaded parts of a pair from its index among the candidates; a negative index has none.
 struct LoadsOfPairs {
   ConstView<std::int64_t> index;
   ConstView<LoadedParts> loads;
@@ -50,18 +50,18 @@ struct PointLoad {
   }
 };
 
-/// Contacts with bodies that are not free, and what they give to these.
+/// Data for the impulses of contacts on bodies that are not free.
 template <class Real>
 struct WallContacts {
   ConstView<std::int32_t> entry_of;  ///< WallSums::entry_of_place()
-  View<WallImpulse> impulses;        ///< of entries
-  std::int64_t first_place;          ///< of contacts of this kind
+  View<WallImpulse> impulses;        ///< impulse of each entry
+  std::int64_t first_place;          ///< place of the first slot of this kind of contacts
   ConstView<Slot> places;
   ConstView<MidBody<Real>> mid;
   FlightStage flight;
 
   SCREE_HD bool is_on_j(const Slot& slot) const { return !mid[slot.j].is_free(); }
-  /// Where the centre of a body is when a contact is seen.
+  /// Returns the centre of a body at the time for which the contact was found.
   SCREE_HD Vec3 centre(std::int32_t body, const Slot& slot, bool is_late) const {
     if (!is_late) return mid[body].position;
     const double delay = fmax(flight.clock[slot.i], flight.clock[slot.j]) - 0.5 * flight.terms.step;
@@ -116,7 +116,7 @@ struct PutPointsOnWall {
   }
 };
 
-/// What a slot remembers is what was loaded, when candidates are made anew.
+/// Marks the loaded parts of new candidates: those whose slots remember an impulse.
 template <class Real>
 struct MarkBallLoads {
   AccountStage<Real> stage;

@@ -34,8 +34,8 @@ ContactsOnHost<Real>::ContactsOnHost(Inspection<Real>& seen, const std::vector<G
     spin_.view()[index(k)] = body.spin;
   }
   struct Place {
-    std::int32_t i, j, surface, count;  // i, j: the bodies' numbers
-    std::int64_t nth;                   // in the order in which the contacts are seen
+    std::int32_t i, j, surface, count;  // i, j: numbers of the bodies
+    std::int64_t nth;                   // rank in the order of for_each_contact()
   };
   std::vector<Place> order;
   for_each_contact(seen, [&](const SeenContact& c) {
@@ -86,7 +86,7 @@ ContactsOnHost<Real>::ContactsOnHost(Inspection<Real>& seen, const std::vector<G
   islands_.find(std::as_const(contacts_).view(), std::as_const(bodies_).view());
 }
 
-/// To what the impulses give, so that the rounding of many sweeps is none.
+/// Computes the velocities anew from the impulses, so that the rounding errors of many sweeps do not remain.
 template <class Real>
 void ContactsOnHost<Real>::set_velocities() {
   for (std::int64_t k = 0; k < bodies_.size(); ++k) {

@@ -1,5 +1,5 @@
-// The contacts of a substep on Host, island by island: those on which sweeps creep are for the direct solver,
-// and islands that would gain energy are scaled down.
+// Work on the contacts of a substep on Host, island by island: islands on which sweeps converge slowly go to
+// the direct solver, and the impulses of islands that would gain energy are scaled down.
 #pragma once
 
 #include "sim/laws/contact_row.hpp"
@@ -15,17 +15,18 @@ namespace scree::solver {
 template <class Real>
 class ContactsOnHost {
  public:
-  /// As sweeps have left them; in the order of the bodies' numbers, so that what is found does not hang on
-  /// where bodies lie. `guides`: of bodies by place.
+  /// Copies the contacts as the sweeps have left them. They are sorted by the numbers of their bodies, so
+  /// that the result does not depend on the places of the bodies. `guides` name their bodies by place.
   ContactsOnHost(Inspection<Real>& seen, const std::vector<Guide>& guides);
 
-  /// Solves the islands whose natural residual is beyond the tolerance. Adds to `solved` and `failed`; true
-  /// if none is left to the sweeps, as those are with couples, which Newton's method does not know.
+  /// Solves the islands whose natural residual is beyond the tolerance. Adds the numbers of successes and
+  /// failures to `solved` and `failed`. Returns true if no island is left to the sweeps. An unsolved island
+  /// with couples always is, since Newton's method here does not include couples.
   bool solve(double tolerance, const DirectLimits& limits, std::int64_t& solved, std::int64_t& failed);
-  /// Scales down the impulses of each island that gains energy, to where it gains none. How many did.
-  /// `before`: of each body of the solver, the velocities before the substep's forces.
+  /// Scales down the impulses of each island that gains energy, until it gains none. Returns the number of
+  /// such islands. `before` holds for each body of the solver its velocities before the substep's forces.
   int keep_from_gaining(const std::vector<BodyRecord<Real>>& before);
-  /// Puts the impulses back among the contacts that were seen.
+  /// Writes the impulses and couples back to the contacts of the inspection.
   void put_back() const;
 
  private:
@@ -34,13 +35,13 @@ class ContactsOnHost {
   void set_velocities();
 
   Inspection<Real>& seen_;
-  std::vector<std::int32_t> index_;  // of each body of the solver in what follows
-  std::vector<std::int64_t> place_;  // of each contact
+  std::vector<std::int32_t> index_;  // index of each body of the solver in the arrays below
+  std::vector<std::int64_t> place_;  // place of each contact in its store
   Array<Contact, Host> contacts_;
   Array<ContactRow, Host> rows_;
-  std::vector<Vec3> couples_;  // of each contact
+  std::vector<Vec3> couples_;  // couple of each contact (N m s)
   Array<SolverBody, Host> bodies_;
-  Array<Vec3, Host> velocity_, spin_;  // without contacts
+  Array<Vec3, Host> velocity_, spin_;  // velocities without contacts
   Array<Guide, Host> guides_;
   Islands islands_;
 };

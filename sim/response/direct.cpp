@@ -12,43 +12,44 @@ namespace scree {
 
 namespace {
 
-/// Bounds of r, in units of the normal mass of the row. Stiffer: fewer passes to the solution, but more
-/// points that change their state within a pass, and more rounding in the impulses (r times that of the
+/// Bounds of r, in units of the normal mass of the row. A larger r needs fewer passes, but more points change
+/// their state within a pass, and the rounding errors of the impulses are larger (r times those of the
 /// velocities).
 constexpr double softest = 1e2;
 constexpr double stiffest = 1e8;
-constexpr double stiffening = 10;  // from pass to pass
+constexpr double stiffening = 10;  // factor of r from one pass to the next
 
-constexpr int most_newton_steps = 20;      // in a pass
-constexpr int most_shortenings = 12;       // of a step
-constexpr double kept_slope = 0.1;         // that may be left, turned, at the end of a step
-constexpr double least_decrement = 1e-12;  // relative
+constexpr int most_newton_steps = 20;      // Newton steps in a pass
+constexpr int most_shortenings = 12;       // shortenings of a Newton step
+constexpr double kept_slope = 0.1;         // share of the slope, reversed, that may be left after a step
+constexpr double least_decrement = 1e-12;  // relative Newton decrement at which the minimum is reached
 
 using Vector = Eigen::VectorXd;
 
-/// Factorization L D L^T, which tells what it will cost. Free of square roots, it gives the same motion for
-/// the same scene in other units.
+/// A factorization L D L^T whose cost is known beforehand. It has no square roots, so that the same scene in
+/// other units has the same motion.
 class Factorization : public Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>, Eigen::Lower> {
  public:
-  /// Products, after analyzePattern().
+  /// Returns the number of multiplications; call it after analyzePattern().
   double cost() const { return m_nonZerosPerCol.cast<double>().squaredNorm(); }
 };
 
-/// A row within a pass.
+/// The state of a contact row within a pass.
 struct PassRow {
   ContactRow* row;
   const Contact* contact;
   Eigen::Index i, j;  // first unknown of each body; negative if it is not free
   double closing;     // normal velocity at the start of the pass, less the target (m/s)
   Vec3 slide;         // tangential velocity at the start of the pass (m/s)
-  double slip;        // its length (m/s)
-  double lag;         // by how much the slip taken for constant exceeds that (m/s)
-  Vec3 impulse;       // multiplier
-  Vec3 projected;     // its successor, the nearest point of the cone to y
-  Mat3 derivative;    // of that by y
+  double slip;        // length of `slide` (m/s)
+  double lag;         // constant slip of the pass, less `slip` (m/s)
+  Vec3 impulse;       // multiplier of the row (N s)
+  Vec3 projected;     // next multiplier: the point of the cone nearest to y (see project())
+  Mat3 derivative;    // derivative of `projected` by y
 
-  /// Sets the last two for y = impulse - r (u - (target - mu (slip + lag)) n), where u has changed by so much
-  /// since the start. The terms are ordered so that r, large, multiplies no difference of large numbers.
+  /// Sets `projected` and `derivative` for y = impulse - r (u - (target - mu (slip + lag)) n), where u has
+  /// changed by `change` since the start of the pass. The terms are ordered so that the large r multiplies no
+  /// difference of large numbers.
   void project(const Vec3& change, double r) {
     const Vec3& n = contact->normal;
     const double mu = contact->friction;
@@ -121,12 +122,12 @@ class IslandSolver {
       for (const Guide& guide : problem_.guides) {
         if (guide.body != bodies[k]) continue;
         guides_.push_back({6 * k, guide});
-        inertia_.back().setIdentity();  // any will do: nothing turns it
+        inertia_.back().setIdentity();  // any value will do, since nothing turns the body
       }
     }
   }
 
-  /// The unknowns of a body in a guide are six as those of the others, of which five stay 0.
+  /// The unknowns of a body in a guide. There are six, as for other bodies; five of them stay 0.
   struct GuidedUnknowns {
     Eigen::Index first;
     Guide guide;
@@ -166,7 +167,8 @@ class IslandSolver {
     start_pass(1.0);
   }
 
-  /// From the velocities as they are. The slips are taken so much of the way to theirs.
+  /// Starts a pass from the present velocities. The constant slips move from those of the last pass towards
+  /// the present ones, by `share` of the difference.
   void start_pass(double share) {
     change_.setZero();
     for (PassRow& row : rows_) {
@@ -182,7 +184,8 @@ class IslandSolver {
     }
   }
 
-  /// The lower triangle has blocks at the bodies, and where two are in contact; it is compressed by columns.
+  /// Lays out the lower triangle, compressed by columns. It has a block for each body, and one for each two
+  /// bodies in contact.
   void lay_out_matrix() {
     const auto n = static_cast<std::size_t>(change_.size() / 6);
     below_.resize(n);
@@ -218,7 +221,7 @@ class IslandSolver {
     return u;
   }
 
-  /// Of the function to minimise; sets the rows' projections.
+  /// Returns the gradient of the function to minimise, and sets the projections of the rows.
   Vector gradient(const Vector& change) {
     Vector g(change.size());
     const auto bodies = problem_.islands.bodies(problem_.island);
@@ -257,7 +260,7 @@ class IslandSolver {
   }
 
   using Block = Eigen::Matrix<double, 6, 6>;
-  /// Adds to the block at body `column` of body `row`, of the lower triangle.
+  /// Adds to one block of the lower triangle. `row` and `column` are the first unknowns of its two bodies.
   void add(Eigen::Index row, Eigen::Index column, const Block& block) {
     Eigen::Index place = 0;
     if (row != column) {
@@ -274,7 +277,7 @@ class IslandSolver {
     }
   }
 
-  /// Of the rows as gradient() has set them.
+  /// Factorizes the Hessian, with the derivatives of the rows that gradient() has set.
   void factorize() {
     std::fill_n(matrix_.valuePtr(), matrix_.nonZeros(), 0.0);
     const auto bodies = problem_.islands.bodies(problem_.island);
@@ -301,8 +304,8 @@ class IslandSolver {
     ++factorizations_;
   }
 
-  /// Passes of the multipliers, each as stiff as the one before it allows. The problem holds the last one's
-  /// impulses; returns what is left of the residual.
+  /// Makes passes of the multipliers, each with the stiffness that the one before it allows. Leaves the
+  /// impulses of the last pass in the problem, and returns the residual that is left.
   ImpulseChange approach(ImpulseChange residual, double tolerance) {
     const double accuracy = residual.step > 0 ? std::sqrt(residual.size / residual.step) : stiffest;
     stiffness_ = std::clamp(accuracy, softest, stiffest);
@@ -317,8 +320,8 @@ class IslandSolver {
       const ImpulseChange last = residual;
       residual = natural_residual(problem_);
       if (residual.within(tolerance::direct_share * tolerance)) break;
-      const double share = residual.step * last.size / (last.step * residual.size);  // squared
-      // Slips that overshoot to and fro are taken half the way.
+      const double share = residual.step * last.size / (last.step * residual.size);  // reduction, squared
+      // The slips may oscillate about their solution, so they move half the way only.
       start_pass(share > 0.25 ? 0.5 : 1.0);
       if (share < 1) stiffness_ = std::min(stiffness_ * stiffening, stiffest);
     }
@@ -327,8 +330,9 @@ class IslandSolver {
 
   bool can_go_on() const { return factorizations_ * factor_.cost() <= limits_.products_in_all; }
 
-  /// Newton's method. The function is convex: a step is long enough where its slope has turned, and shortened
-  /// until little of it is left. False if it does not get there.
+  /// Minimises the function by Newton's method. Since it is convex, a step goes too far where the slope along
+  /// it has changed sign; it is then shortened until little of that slope is left. Returns false if the
+  /// minimum is not reached.
   bool minimise() {
     Vector g = gradient(change_);
     for (int step = 0; step < most_newton_steps && can_go_on(); ++step) {
@@ -353,7 +357,7 @@ class IslandSolver {
     return false;
   }
 
-  /// Of the impulses that gradient() has found, as ImpulseChange::size.
+  /// Returns the size of the impulses that gradient() has found, as ImpulseChange::size (J).
   double size() const {
     double sum = 0;
     for (const PassRow& row : rows_) sum += row.projected.squaredNorm() / row.row->normal_mass;
@@ -380,13 +384,13 @@ class IslandSolver {
   const IslandProblem& problem_;
   const DirectLimits& limits_;
   std::vector<PassRow> rows_;
-  std::vector<Mat3> inertia_;                     // of each body
-  std::vector<GuidedUnknowns> guides_;            // of bodies in guides
-  Vector change_;                                 // of the velocities, in a pass
-  std::vector<std::vector<Eigen::Index>> below_;  // first unknowns of the later bodies in contact with each
+  std::vector<Mat3> inertia_;                     // inertia of each body, world frame
+  std::vector<GuidedUnknowns> guides_;            // unknowns of bodies in guides
+  Vector change_;                                 // change of the velocities in a pass
+  std::vector<std::vector<Eigen::Index>> below_;  // first unknowns of later bodies in contact with each body
   Eigen::SparseMatrix<double> matrix_;
   Factorization factor_;
-  double stiffness_ = 0;  // r by the normal mass
+  double stiffness_ = 0;  // r divided by the normal mass
   int factorizations_ = 0;
 };
 
@@ -409,7 +413,7 @@ DirectOutcome solve_directly(const IslandProblem& problem, double tolerance, con
 
 namespace {
 
-/// So few solutions have failed that more are worth their time.
+/// Returns whether so few solutions have failed that further ones are worth their time.
 bool mostly_succeed(std::int64_t solved, std::int64_t failed) {
   constexpr std::int64_t failures_to_start = 2;
   constexpr std::int64_t solved_per_failure = 4;

@@ -1,4 +1,5 @@
-// The direct solver: the contact problem of one island by Newton's method, where sweeps creep.
+// The direct solver, which solves the contact problem of one island by Newton's method where sweeps converge
+// slowly.
 #pragma once
 
 #include "core/tolerances.hpp"
@@ -11,42 +12,45 @@
 
 namespace scree {
 
-/// What a solution may take.
+/// Limits of one direct solution, in passes of the multipliers and in multiplications.
 struct DirectLimits {
   int passes;
-  double products;         ///< of one factorization
-  double products_in_all;  ///< of all of them
+  double products;         ///< multiplications in one factorization
+  double products_in_all;  ///< multiplications in all factorizations
 };
-/// Beyond these, sweeps are cheaper.
+/// Limits of the first attempt: beyond these, sweeps are cheaper.
 inline constexpr DirectLimits quick_limits{.passes = 16, .products = 4e5, .products_in_all = 2e7};
-/// Where sweeps have not got there.
+/// Limits of a second attempt, where neither the first one nor the sweeps have converged.
 inline constexpr DirectLimits patient_limits{.passes = 40, .products = 1e7, .products_in_all = 1e8};
-/// Where a solution is worth its time.
+/// Limits in the accurate mode, in which a solution is worth its time.
 inline constexpr DirectLimits thorough_limits{.passes = 300, .products = 1e8, .products_in_all = 1e11};
 
-/// Sweeps after which what has not converged creeps. Warm-started contacts take one or two.
+/// Number of sweeps after which islands that have not converged count as converging slowly. Warm-started
+/// contacts take one or two sweeps.
 inline constexpr int few_sweeps = 10;
 
-/// Of at most so many sweeps those after which islands that creep go to the direct solver: few; where
-/// solutions often fail, as in stirred heaps, half of them or 200, in which nearly all converge for a
-/// twentieth of the time (docs/decisions/0011).
+/// Returns the number of sweeps, of at most `most`, after which islands that converge slowly go to the direct
+/// solver. It is few_sweeps. Where direct solutions often fail, as in stirred heaps, it is half of `most`,
+/// but no more than 200: within these nearly all islands converge, for a twentieth of the time
+/// (docs/decisions/0011).
 int sweeps_before_direct(int most, const Counters& counters);
 
-/// Large islands that creep are worth a long direct solution, if nearly all succeed in the scene: then warm
-/// starts keep what was found. Where everything tumbles they do not (docs/decisions/0017).
+/// Returns whether a long direct solution is worth its time for large islands on which sweeps converge
+/// slowly. It is if nearly all such solutions succeed in the scene: then warm starts keep their results.
+/// Where everything tumbles they do not succeed (docs/decisions/0017).
 bool pays_long_solution(const Counters& counters);
 
-/// Loads of contacts, as ImpulseChange::size (J).
+/// The least load of contacts and the sum of their loads, measured as ImpulseChange::size (J).
 struct LoadSpread {
-  double least = HUGE_VAL;  ///< but for those without
-  double all = 0;
+  double least = HUGE_VAL;  ///< least load, without contacts that carry none
+  double all = 0;           ///< sum of the loads
 
   SCREE_HD static LoadSpread of(double load) { return {load > 0 ? load : HUGE_VAL, load}; }
   SCREE_HD friend LoadSpread operator+(const LoadSpread& a, const LoadSpread& b) {
     return {fmin(a.least, b.least), a.all + b.all};
   }
-  /// Whether some carry so little beside others that to solve all together to the tolerance leaves them
-  /// unsolved: then each island is looked at by itself.
+  /// Returns whether some contacts carry so little beside others that they may be unsolved when all together
+  /// are solved to the tolerance. Then each island is judged by itself.
   SCREE_HD bool is_wide(double tolerance) const {
     constexpr double accuracy = tolerance::least_load_accuracy;
     return tolerance * tolerance * all > accuracy * accuracy * least;
@@ -56,26 +60,26 @@ struct LoadSpread {
 /// One island of the contact problem of a substep.
 struct IslandProblem {
   ConstView<Contact> contacts;
-  View<ContactRow> rows;     ///< with their arms, masses, targets, and impulses to start from
-  View<SolverBody> solver;   ///< velocities with these impulses
-  ConstView<Vec3> velocity;  ///< of each body without any impulse (m/s)
-  ConstView<Vec3> spin;
+  View<ContactRow> rows;     ///< arms, masses, targets and initial impulses are set
+  View<SolverBody> solver;   ///< bodies, whose velocities include these impulses
+  ConstView<Vec3> velocity;  ///< velocity of each body without any impulse (m/s)
+  ConstView<Vec3> spin;      ///< spin of each body without any impulse (rad/s)
   const Islands& islands;
   std::int64_t island;
-  ConstView<Guide> guides = {};  ///< bodies that move along one axis alone, and do not turn
+  ConstView<Guide> guides = {};  ///< guides of bodies that move along one axis and do not turn
 };
 
-/// What the natural map changes in the impulses of the island's rows, as they are.
+/// Returns the natural residual of the island: the change of its rows' present impulses by the natural map.
 ImpulseChange natural_residual(const IslandProblem& problem);
 
 enum class DirectOutcome {
   not_needed,
-  solved,     ///< to the tolerance, in the natural residual
-  too_large,  ///< nothing was tried: sweeps are cheaper
-  failed,     ///< what was found is kept if it is nearer to a solution than what was there
+  solved,     ///< the natural residual is within the tolerance
+  too_large,  ///< no solution was tried, since sweeps are cheaper
+  failed,     ///< not solved; the result is kept if its residual is less than the initial one
 };
 
-/// Solves an island: the impulses of its rows, and the velocities of its bodies with them.
+/// Solves an island: finds the impulses of its rows, and the velocities of its bodies with these impulses.
 ///
 /// Coulomb's law is the associated law of the friction cone K for the velocity u + mu |u_t| n (De Saxce and
 /// Feng 1998, "The bipotential method"), so that at given slips s = mu |u_t| the velocities v minimise a
@@ -83,9 +87,9 @@ enum class DirectOutcome {
 /// "A formulation of the linear discrete Coulomb friction problem via convex optimization"). With multipliers
 /// p of the rows (augmented Lagrangian) that function is
 ///   |v - v*|^2_M / 2 + sum |P_K(p - r (u - (target - s) n))|^2 / (2 r),
-/// v* the velocities without impulses. Newton's method takes it to its minimum, with a sparse Cholesky
-/// factorization over the bodies; then p <- P_K(...). The masses make it definite however redundant the
-/// points of a face are.
+/// where v* are the velocities without impulses. Newton's method finds its minimum, with a sparse Cholesky
+/// factorization over the bodies; then p <- P_K(...). The masses make its Hessian definite however redundant
+/// the points of a face are.
 DirectOutcome solve_directly(const IslandProblem& problem, double tolerance,
                              const DirectLimits& limits = quick_limits);
 

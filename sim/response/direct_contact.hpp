@@ -1,4 +1,4 @@
-// A contact as the direct solver sees it, and how many contacts make a heap.
+// A contact in the form that the direct solver uses, and the number of contact points that make a heap.
 #pragma once
 
 #include "core/array.hpp"
@@ -8,19 +8,19 @@
 
 namespace scree {
 
-/// Two bodies, and the rows of their points.
+/// A contact of two bodies, with the range of the rows of its points.
 struct Contact {
   std::int32_t i = 0;
   std::int32_t j = 0;
   std::int64_t first_row = 0;
-  std::int32_t count = 0;  ///< rows in use
-  bool balls = false;      ///< between balls and bodies that are not free: its row needs no coupling
+  std::int32_t count = 0;  ///< number of its rows
+  bool balls = false;      ///< contact of balls (see make_ball_row()): its row needs no coupling
   Vec3 normal = Vec3::Zero();
   double friction = 0;
-  double rolling_reach = 0;  ///< couple against rolling for each normal impulse, at most (m)
+  double rolling_reach = 0;  ///< largest couple against rolling, per normal impulse (m)
 };
 
-/// What the natural map changes in the impulses of a contact's rows, as they are.
+/// Returns the natural residual of a contact: the change of its rows' present impulses by the natural map.
 SCREE_HD inline ImpulseChange natural_residual(const Contact& contact, const ContactRow* rows,
                                                const SolverBody& i, const SolverBody& j) {
   ImpulseChange residual;
@@ -31,18 +31,18 @@ SCREE_HD inline ImpulseChange natural_residual(const Contact& contact, const Con
   return residual;
 }
 
-/// So many points that solving them to the end in every substep is not worth what it costs: what is left is
-/// for the next ones, which start from there.
+/// Returns whether there are so many points that solving them until convergence in every substep is not worth
+/// its cost. Then the residual is left to the next substeps, which start from the impulses found.
 SCREE_HD inline bool is_heap(std::int64_t points) {
   constexpr std::int64_t fewest = 2500;
   return points >= fewest;
 }
-/// Whether contacts have several points, among which the load moves slowly.
+/// Returns whether contacts have several points. Load moves slowly between the points of one contact.
 SCREE_HD inline bool shares_loads(std::int64_t contacts, std::int64_t points) { return points > contacts; }
 
 struct ContactCounts {
   std::int64_t contacts = 0;
-  std::int64_t points = 0;  ///< of theirs
+  std::int64_t points = 0;  ///< points of all contacts
   SCREE_HD friend ContactCounts operator+(const ContactCounts& a, const ContactCounts& b) {
     return {a.contacts + b.contacts, a.points + b.points};
   }

@@ -1,4 +1,4 @@
-// What impacts mean for contacts and bodies: only where a flight has had any.
+// Corrections to contacts and bodies after impacts; they are needed only where a flight has had impacts.
 #pragma once
 
 #include "sim/contacts/contact_flight.hpp"
@@ -11,7 +11,7 @@
 
 namespace scree::solver {
 
-/// Impacts after the response have changed the velocities, and so the gaps at the end.
+/// Corrects the gap of a contact at the end of the substep, for changes of the velocities after the response.
 template <class Real>
 struct PredictGapsOfBalls {
   BallContacts<Real> contacts;
@@ -50,7 +50,7 @@ struct PredictGapsOfPoints {
   }
 };
 
-/// Velocities as the bodies have them, for all bodies of the solver.
+/// Gives each body of the solver the velocities that its body has now.
 template <class Real>
 struct ReloadBody {
   ConstBodyView bodies;
@@ -69,7 +69,8 @@ struct ReloadBody {
   }
 };
 
-/// Gaps at the end of contacts that were seen after the midpoint, from where their bodies are then.
+/// Completes the gap at the end of the substep of a contact found after the midpoint (late impact), from the
+/// positions of its bodies at the end.
 template <class Real>
 struct PredictLateGapsOfBalls {
   BallContacts<Real> contacts;
@@ -88,7 +89,7 @@ struct PredictLateGapsOfBalls {
     contacts.gaps.at(C::predicted_gap, c) +=
         static_cast<Real>(vec3(contacts.fields.vector(C::normal, c)).dot(apart));
   }
-  /// Velocity of the point of a wall beside that of the wall.
+  /// Returns the velocity of a wall point relative to the centre of its wall.
   SCREE_HD Vec3 turning_of(std::int32_t body, std::int32_t end) const {
     const bool is_wall_point = bodies.mobility[body] != Mobility::free && end != body;
     return is_wall_point ? Vec3(vec3(solver[end].velocity) - bodies.velocity[body]) : Vec3(Vec3::Zero());
@@ -97,7 +98,7 @@ struct PredictLateGapsOfBalls {
 template <class Real>
 struct PredictLateGapsOfPoints {
   PointContacts<Real> contacts;
-  ConstView<Slot> places;  ///< of the contacts
+  ConstView<Slot> places;  ///< slots of this kind of contacts
   ConstBodyView bodies;
   FlightStage flight;
   SCREE_HD void operator()(std::int64_t c) const {
@@ -117,14 +118,14 @@ struct PredictLateGapsOfPoints {
   }
 };
 
-/// Total impulse that the contacts gave to a free body (N s).
+/// Returns the total impulse that the contacts gave to a free body (N s).
 template <class Real>
 SCREE_HD inline Vec3 impulse_on(const BodyRecord<Real>& free, const BodyRecord<Real>& after,
                                 double inverse_mass) {
   return vec3(after.velocity - free.velocity) / inverse_mass;
 }
 
-/// Of contacts seen after the midpoint: moment_of_delay().
+/// Sums moment_of_delay() over the two bodies of a contact found after the midpoint.
 template <class Real>
 struct LateMoments {
   FlightStage flight;
@@ -167,7 +168,7 @@ struct LatePointMoments {
   }
 };
 
-/// shift_after_late_impact() of a body.
+/// Calls shift_after_late_impact() for a body.
 template <class Real>
 struct ShiftLate {
   FlightStage flight;

@@ -1,4 +1,4 @@
-// The parts of hubs agree after each sweep.
+// The phases of a sweep in which the parts of each hub get equal velocities (mass splitting).
 #pragma once
 
 #include "core/array.hpp"
@@ -10,7 +10,7 @@
 
 namespace scree::solver {
 
-/// Sum of two vectors over parts of a hub, by their shares.
+/// Sums of velocities and spins over parts of a hub, weighted by the parts' shares of its mass.
 struct PartsSum {
   Vec3 velocity = Vec3::Zero();
   Vec3 spin = Vec3::Zero();
@@ -19,18 +19,19 @@ struct PartsSum {
   }
 };
 
-/// The parts of each hub, and the hub itself, get their mean, in three phases: sums over some of the parts,
-/// sums of these, and what everyone gets.
+/// Sets the parts of each hub, and the hub itself, to the weighted mean of the parts. This takes three
+/// phases: partial sums over up to `together` parts, the sum of these for each hub, and the copy of the
+/// result to all parts.
 template <class Record>
 struct JoinHubs {
-  static constexpr int together = 64;  // parts to a first sum: the root of many
+  static constexpr int together = 64;  // parts in a partial sum: about the square root of many parts
 
   ConstView<Hub> hubs;
-  ConstView<std::int32_t> hub_of;  ///< of each part
-  ConstView<double> share;         ///< of its hub's mass
-  std::int64_t first_part;         ///< among the records
-  Record* bodies;                  ///< padding_body's if there is nothing to join
-  PartsSum* sums;                  ///< of each part, room
+  ConstView<std::int32_t> hub_of;  ///< number of the hub of each part
+  ConstView<double> share;         ///< share of each part in its hub's mass
+  std::int64_t first_part;         ///< index of the first part among the records
+  Record* bodies;                  ///< null if there is nothing to join
+  PartsSum* sums;                  ///< memory for the partial sums, one for each part
 
   SCREE_HD int phases() const { return hubs.size() > 0 && bodies != nullptr ? 3 : 0; }
   SCREE_HD std::int64_t items(int phase) const { return phase == 1 ? hubs.size() : hub_of.size(); }

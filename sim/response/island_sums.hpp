@@ -1,4 +1,4 @@
-// Sums over the contacts of each island, without putting its contact problem together.
+// Sums over the contacts of each island, computed without building its contact problem.
 #pragma once
 
 #include "core/array.hpp"
@@ -14,18 +14,19 @@
 
 namespace scree::solver {
 
-/// What a contact adds, and the bodies by which it belongs to an island: -1 where one is not free.
+/// The term that a contact adds to the sum of its island, and the two bodies, which define the island. A body
+/// that is not free is given as -1.
 template <class Sum>
 struct IslandTerm {
   std::int32_t i = -1, j = -1;
   Sum sum{};
 };
 
-/// The term of contact c, whose sum is of(c). Each contact has at least one free body.
+/// Makes the term of contact c, whose value is of(c). Each contact has at least one free body.
 template <class Real, class Contacts, class Of>
 struct TermOfIsland {
   ConstView<Slot> places;
-  std::int64_t first_place;  ///< of contacts of this kind
+  std::int64_t first_place;  ///< place of the first slot of this kind of contacts
   Contacts contacts;
   ConstView<BodyRecord<Real>> solver;
   Of of;
@@ -47,12 +48,13 @@ struct StoreTerm {
   SCREE_HD void operator()(std::int64_t k) const { terms[k] = of(k); }
 };
 
-/// For few contacts: their terms are brought to Host, where the islands are found.
+/// The sums of all islands. The terms are copied to Host, where the islands are found, so the contacts should
+/// be few.
 template <class Space, class Sum>
 class IslandSums {
  public:
   explicit IslandSums(std::int64_t bodies) : bodies_(bodies) { islands_.start(bodies); }
-  /// `term`: TermOfIsland.
+  /// Adds the terms of all contacts of one kind. `term` is a TermOfIsland.
   template <class Of>
   void add(const Of& term) {
     using Term = IslandTerm<Sum>;
@@ -64,10 +66,10 @@ class IslandSums {
       if (at.i >= 0 || at.j >= 0) terms_.push_back(at);
     }
   }
-  /// Whether `of(sum)` holds for each island.
+  /// Returns whether `of(sum)` holds for each island.
   template <class Of>
   bool all(const Of& of) {
-    std::vector<Sum> sums(static_cast<std::size_t>(bodies_));  // those of an island at its root
+    std::vector<Sum> sums(static_cast<std::size_t>(bodies_));  // the sum of an island is at its root
     for (const IslandTerm<Sum>& at : terms_) {
       Sum& sum = sums[static_cast<std::size_t>(islands_.root(at.i >= 0 ? at.i : at.j))];
       sum = sum + at.sum;

@@ -30,14 +30,14 @@ void Islands::find(ConstView<Contact> contacts, ConstView<SolverBody> bodies) {
   start(bodies.size());
   place_.assign(n, -1);
   for (const Contact& c : contacts) {
-    // Whoever has a contact takes part.
+    // Only bodies with contacts are in islands.
     if (bodies[c.i].is_free()) place_[static_cast<std::size_t>(c.i)] = 0;
     if (bodies[c.j].is_free()) place_[static_cast<std::size_t>(c.j)] = 0;
     if (!bodies[c.i].is_free() || !bodies[c.j].is_free()) continue;
     unite(c.i, c.j);
   }
 
-  // Counted, scanned and filled.
+  // The lists are made by a count, a prefix sum and a pass that fills them.
   island_.resize(n);
   body_begin_.assign(1, 0);
   for (std::size_t k = 0; k < n; ++k) {

@@ -1,4 +1,4 @@
-// Islands: sets of free bodies that contacts connect. Each is a contact problem of its own.
+// Islands: sets of free bodies that contacts connect. Each island is a separate contact problem.
 #pragma once
 
 #include "sim/response/direct_contact.hpp"
@@ -8,13 +8,15 @@
 
 namespace scree {
 
-/// Ordered by their first free body, and so are the bodies and the contacts of each.
+/// The islands of a contact problem, ordered by their first free bodies. The bodies and contacts of each
+/// island are in ascending order.
 class Islands {
  public:
-  /// `bodies`: how many there are. Bodies that are not free connect nothing.
+  /// Finds the islands of these contacts. Bodies that are not free connect nothing.
   void find(ConstView<Contact> contacts, ConstView<SolverBody> bodies);
 
-  /// The same by hand: each body alone, then united with others. The roots are the islands' first bodies.
+  /// Functions to build islands step by step: start() puts each of `bodies` bodies into an island of its own,
+  /// unite() joins two islands, and root() returns the first body of an island.
   void start(std::int64_t bodies);
   void unite(std::int32_t i, std::int32_t j);
   std::int32_t root(std::int32_t body);
@@ -23,9 +25,9 @@ class Islands {
   ConstView<std::int32_t> contacts(std::int64_t island) const {
     return range(contacts_, contact_begin_, island);
   }
-  /// The free ones that have contacts.
+  /// Returns the free bodies of an island. Bodies without contacts are in none.
   ConstView<std::int32_t> bodies(std::int64_t island) const { return range(bodies_, body_begin_, island); }
-  /// Of a free body with contacts: its place among those of its island.
+  /// Returns the index of a free body with contacts among the bodies of its island.
   std::int32_t place(std::int32_t body) const { return place_[static_cast<std::size_t>(body)]; }
 
  private:
@@ -35,8 +37,8 @@ class Islands {
     return {list.data() + from[0], from[1] - from[0]};
   }
 
-  List parent_;  // of each body; its own at a root, which is the first body of its island
-  List island_;  // of each body
+  List parent_;  // parent of each body; a root, the first body of an island, is its own
+  List island_;  // island of each body
   List place_;
   List contact_begin_, contacts_;
   List body_begin_, bodies_;

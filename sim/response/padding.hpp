@@ -1,5 +1,5 @@
-// What fills up blocks of contacts, so that a visit to a whole block finds nothing to do where there is no
-// contact.
+// Padding of blocks of contacts: values for places without a contact, with which a visit to a whole block
+// changes nothing there.
 #pragma once
 
 #include "sim/contacts/layout.hpp"
@@ -9,10 +9,10 @@
 
 namespace scree::solver {
 
-/// A target that every velocity meets (m/s).
+/// A target normal velocity that every velocity exceeds (m/s).
 inline constexpr double no_target = -1e30;
 
-/// Of a block of contacts of balls.
+/// Pads a block of contacts of balls.
 template <class Real>
 struct PadBalls {
   BallContacts<Real> contacts;
@@ -38,7 +38,8 @@ struct PadBalls {
   }
 };
 
-/// The same of contacts of several points. Those of a block have as many as one of them has.
+/// Pads a block of contacts with several points. All contacts of a block are padded to the largest number of
+/// points that one of them has.
 template <class Real>
 struct PadPoints {
   PointContacts<Real> contacts;

@@ -1,4 +1,4 @@
-// Couples of rolling friction: what they start from, and what they have moved.
+// Couples of rolling friction: their initial values, and the accounts of their energy.
 #pragma once
 
 #include "sim/contacts/contact_accounts.hpp"
@@ -9,15 +9,15 @@
 
 namespace scree::solver {
 
-/// Starts from what the places remember, as far as the impulses that the contacts start from allow. Points of
-/// walls that turn get the spins of these.
+/// Sets the initial couple of a contact to the one that its slot remembers, cut to the disc that the initial
+/// normal impulse allows. Points of walls that turn get the spins of the walls.
 template <class Real, class Contacts>
 struct StartRolling {
   FindStage<Real> stage;
   std::int64_t first_place;
   Contacts contacts;
   RollingFields<Real> rolling;
-  ConstView<V3<Real>> couples;  ///< of all places
+  ConstView<V3<Real>> couples;  ///< couples of all slots, by place
   View<BodyRecord<Real>> solver;
 
   SCREE_HD void operator()(std::int64_t c) const {
@@ -40,14 +40,15 @@ struct StartRolling {
   }
 };
 
-/// What the couple of a contact has moved, which its place remembers: account_couple().
+/// Accounts for the energy that the couple of a contact has moved, as account_couple() does, and stores the
+/// couple in the contact's slot.
 template <class Real, class Contacts>
 struct AccountRolling {
   AccountStage<Real> stage;
   std::int64_t first_place;
   Contacts contacts;
   RollingFields<Real> rolling;
-  View<V3<Real>> couples;  ///< of all places
+  View<V3<Real>> couples;  ///< couples of all slots, by place
 
   SCREE_HD ContactTotals operator()(std::int64_t c) const {
     const std::int64_t place = first_place + contacts.slot[c];
@@ -71,7 +72,8 @@ struct AccountRolling {
   }
 };
 
-/// What the impulses of a contact and its couple move: `Book` is AccountBalls or AccountPoints.
+/// Sums the energy that the impulses of a contact and its couple move. `Book` is AccountBalls or
+/// AccountPoints.
 template <class Book, class Rolling>
 struct MovedBy {
   bool rolls;

@@ -1,4 +1,4 @@
-// All impulses of a substep scaled alike, and what the bodies have of them.
+// Scaling of all impulses of a substep by one factor, and of the velocity changes that they cause.
 #pragma once
 
 #include "sim/contacts/layout.hpp"
@@ -31,7 +31,7 @@ struct ScalePoints {
   }
 };
 
-/// Couples of rolling friction.
+/// Scales the couple of rolling friction of a contact.
 template <class Real>
 struct ScaleRolling {
   RollingFields<Real> rolling;
@@ -42,10 +42,10 @@ struct ScaleRolling {
   }
 };
 
-/// Velocities are linear in the impulses.
+/// Scales the velocity change of a body, which is linear in the impulses.
 template <class Real>
 struct ScaleVelocities {
-  ConstView<BodyRecord<Real>> free;  ///< without contacts
+  ConstView<BodyRecord<Real>> free;  ///< bodies of the solver without contacts
   View<BodyRecord<Real>> solver;
   Real by;
   SCREE_HD void operator()(std::int64_t k) const {

@@ -10,15 +10,15 @@ namespace scree::solver {
 namespace {
 
 struct Degree {
-  double more, less;  // of the power: over the first the next degree follows, under the second the last
+  double more, less;  // shares of the power, over or under which the degree goes up or down
 };
 using namespace tolerance;
 constexpr Degree degrees[] = {
     {stirring_power, 0},          {done_power, least_sweeps_power}, {residual_power, least_sweeps_power},
     {residual_power, done_power}, {residual_power, done_power},     {residual_power, done_power},
     {HUGE_VAL, done_power}};
-/// Bodies that share several points, of which a sweep of degree 2 is 12 sweeps, do not stay at rest with
-/// less.
+/// The range of degrees for bodies that share several points. For these degree 2 is 12 sweeps, and with fewer
+/// than those of degree 3 they do not stay at rest.
 constexpr int least_shared = 3, most_shared = 5;
 constexpr int usual_degree = 2, most_degree = 6;
 
@@ -28,15 +28,16 @@ int SweepCount::sweeps(int usual, bool shared, double share) {
   const int least = !shared ? 0 : moves_ ? usual_degree : least_shared;
   const int most = shared ? most_shared : most_degree;
   degree_ = std::clamp(degree_, least, most);
-  // Substeps share the sweeps of a step: each starts from the impulses of the last.
+  // The substeps of a step share its sweeps, since each starts from the impulses of the last.
   const int degree = std::max(0, std::min(degree_, most - std::ilogb(1 / share)));
   return std::max(usual / 3, (usual << degree) / 4);
 }
 
-/// Over many substeps at once: the slow modes are oscillations, and a number of sweeps that goes up and down
-/// with them pumps them. But where a substep leaves as much residual as its impulses do, as when a heap has
-/// just fallen on its ground, all sweeps follow at once: what sinks in meanwhile takes seconds to come out
-/// again. And what flows has no slow modes, so that a few substeps tell that the usual number will do.
+/// Judges the sums over many substeps: the slow modes are oscillations, and a number of sweeps that goes up
+/// and down with them would excite them. There are two exceptions. Where the residual of one substep is about
+/// as large as the power of its impulses, as when a heap has just fallen on its ground, the highest degree
+/// follows at once, since bodies that sink in meanwhile take seconds to come out again. And a heap that flows
+/// has no slow modes, so that a few substeps suffice to find that the usual number of sweeps is enough.
 void SweepCount::judge(double residual, double kicked, double dissipated) {
   constexpr int judged_together = 32, judged_in_flow = 8;
   const auto of = [](double loss) { return residual_of_dissipated * std::max(loss, 0.0); };

@@ -14,11 +14,12 @@ namespace scree::solver {
 /// a few hundredths of what is dissipated. In a slow mode it is a third and more (0046).
 class SweepCount {
  public:
-  /// The least number of sweeps of the next substep. `usual` is the number of plan_sweeps(), `shared` tells
+  /// The least number of sweeps of the next substep. `usual` is the number of plan_sweeps(), `shared` says
   /// that bodies share several contact points, and `share` is the length of the substep in steps.
   int sweeps(int usual, bool shared, double share);
 
-  /// Is called after each substep, with the powers (W) and what was dissipated (W).
+  /// Is called after each substep, with the residual power, the power of all impulses and the dissipated
+  /// power, each times the length of the substep (J).
   void judge(double residual, double kicked, double dissipated);
 
   /// Is called after the position correction of each substep. `mean`: mean overlap of the contacts, as a
@@ -48,13 +49,13 @@ class SweepCount {
  private:
   int next_tolerance_exponent() const;
 
-  int degree_ = 2;      // 0, 1, 2... are 2, 3, 6, 12... sweeps of balls
-  bool moves_ = false;  // bodies slide on one another somewhere (tolerance::moving_power)
-  bool flows_ = false;  // and nearly everywhere (tolerance::flowing_power)
+  int degree_ = 2;      // degrees 0, 1, 2, 3... are 2, 3, 6, 12... sweeps for balls
+  bool moves_ = false;  // whether bodies slide on one another in places (tolerance::moving_power)
+  bool flows_ = false;  // whether they slide nearly everywhere (tolerance::flowing_power)
   double residual_ = 0, kicked_ = 0, dissipated_ = 0;
-  int judged_ = 0;              // substeps since it was last changed
-  double overlap_ = 0;          // the largest mean overlap in these
-  int tolerance_exponent_ = 0;  // change() is 2^tolerance_exponent times that at rest
+  int judged_ = 0;              // substeps since the sums were last reset
+  double overlap_ = 0;          // largest mean overlap in these substeps
+  int tolerance_exponent_ = 0;  // change() is 2^tolerance_exponent_ times that at rest
 };
 
 }  // namespace scree::solver

@@ -1,5 +1,5 @@
-// The rounds of a substep: sweeps over all contacts, colour by colour, until their impulses have converged,
-// and until nothing overlaps (core/space_phases.hpp).
+// The two loops of a substep over all contacts, colour by colour, as programs of phases
+// (core/space_phases.hpp): sweeps until the impulses have converged, and the position correction.
 #pragma once
 
 #include "core/space_phases.hpp"
@@ -18,12 +18,12 @@
 
 namespace scree::solver {
 
-/// Visits to the contacts of one kind, the colours being phases.
+/// The phases of a sweep over the contacts of one kind: one for each colour.
 struct ColorPhases {
   int count = 0;
-  int width;                        ///< contacts of a visit
-  std::int32_t begin[most_colors];  ///< first contact of each colour
-  std::int32_t visits[most_colors];
+  int width;                         ///< contacts in one visit
+  std::int32_t begin[most_colors];   ///< first contact of each colour
+  std::int32_t visits[most_colors];  ///< number of visits for each colour
 
   ColorPhases(const ColorRanges& colors, int contacts_of_visit)
       : count(colors.colors()), width(contacts_of_visit) {
@@ -41,7 +41,7 @@ struct ColorPhases {
   }
 };
 
-/// Work on one item of a phase, by a thread of its own.
+/// One item of a phase, on which one thread works.
 template <class Number>
 struct OneItem {
   using Real = Number;
@@ -62,7 +62,7 @@ struct OneItem {
   }
 };
 
-/// Work on a run of items by Host.
+/// A range of items of a phase, on which one thread of Host works.
 template <class Number>
 struct RunOfItems {
   using Real = Number;
@@ -111,8 +111,8 @@ struct RunOfItems {
   static constexpr bool by_kernels = visit_width<Host, Real> != 1;
 };
 
-/// Bodies of the solver that move along one axis alone do so, once the contacts have taken them for free
-/// ones. The last phase of a round, if there are any.
+/// Holds bodies of the solver that move along one axis alone to that axis, since the visits to contacts treat
+/// them as free. This is the last phase of each pass, if there are such bodies.
 template <class Record>
 struct HoldToGuides {
   ConstView<Guide> guides;  ///< Guide::body is a body of the solver
@@ -128,15 +128,16 @@ struct HoldToGuides {
   }
 };
 
-/// Finds impulses. The first round gives the bodies what their contacts remember, each other one is a sweep:
-/// the bodies go on by beta (with momentum), then each colour, then the couples of each colour if anything
-/// rolls, then the parts of hubs agree, and bodies in guides are held to them.
-/// only_balls: there are no other contacts, whose laws ask for many registers.
+/// Finds the impulses. The first pass applies the warm-start impulses to the bodies. Each other pass is a
+/// sweep with these phases: the bodies repeat their last change times beta (momentum), the contacts of each
+/// colour are visited, then the couples of each colour if anything rolls, the parts of hubs get equal
+/// velocities, and bodies in guides are held to their axes. `only_balls` says that there are no contacts of
+/// other bodies, whose code needs many registers.
 template <class Real, bool only_balls>
 struct ImpulsePhases {
   using State = SweepState;
   using Sum = SweepChange;
-  /// Memory is waited for: many contacts must be on their way.
+  /// Threads mostly wait for memory, so many contacts must be loaded at the same time.
   static constexpr int threads = only_balls ? 512 : 256;
   static constexpr int blocks_at_once = only_balls && std::is_same_v<Real, float> ? 2 : 1;
 
@@ -152,7 +153,7 @@ struct ImpulsePhases {
   HoldToGuides<BodyRecord<Real>> guides;
   int least, most, block_sweeps;
   double tolerance;
-  int first_with_momentum;  ///< sweep, counted from 0; those before it are plain
+  int first_with_momentum;  ///< first sweep with momentum, counted from 0
 
   SCREE_HD bool goes_on(const State& state) const {
     return state.pushed && state.sweeps >= first_with_momentum;
@@ -185,7 +186,7 @@ struct ImpulsePhases {
   Sum over(const State& state, int phase, std::int64_t begin, std::int64_t end) const {
     return work(state, phase, RunOfItems<Real>{begin, end});
   }
-  /// After a sweep: have the impulses converged, and by how much does the next one go on (Sweeps).
+  /// Decides after a sweep whether the impulses have converged, and finds the beta of the next sweep.
   SCREE_HD State judge(State state, const Sum& change) const {
     if (!state.pushed) {
       state.pushed = true;
@@ -201,9 +202,10 @@ struct ImpulsePhases {
   }
 
  private:
-  /// Sums whose terms are added in another order, by another GPU or for other places of the bodies, differ in
-  /// their last digits; what is rounded from them does not, but for one in some 1e12. Ratios of small
-  /// integers, as symmetric heaps have them, are far from where the rounding leaps.
+  /// Rounds a ratio to a multiple of 1/1024. Sums whose terms are added in another order (on another GPU, or
+  /// with bodies at other places) differ in their last digits; ratios rounded from them do not, except one in
+  /// about 1e12. Ratios of small integers, which symmetric heaps have, are far from the steps of the
+  /// rounding.
   SCREE_HD static double rounded(double ratio) {
     constexpr double levels = 1024;
     constexpr double leap = 0.618;
@@ -269,11 +271,11 @@ struct ImpulsePhases {
 struct CorrectionState {
   std::int32_t sweeps = 0;
   bool corrected = false;
-  double mean = 0;  ///< of the overlaps that the last sweep has seen (of the cap)
+  double mean = 0;  ///< mean overlap that the last sweep has found, relative to the cap
 };
 
-/// Parts what overlaps, as the position correction of Host: displacements and turns of bodies that start
-/// where they are.
+/// Corrects positions: finds displacements and turns of the bodies that move overlapping bodies apart. They
+/// start from zero.
 template <class Real, bool only_balls>
 struct CorrectionPhases {
   using State = CorrectionState;
@@ -285,12 +287,12 @@ struct CorrectionPhases {
   BallContacts<Real> balls;
   PointContacts<Real> points;
   CentreRecord<Real>* displacement;
-  CentreRecord<Real>* turn;  ///< none if all contacts are of balls
+  CentreRecord<Real>* turn;  ///< not used if all contacts are of balls
   JoinHubs<CentreRecord<Real>> shifted_hubs, turned_hubs;
   HoldToGuides<CentreRecord<Real>> guides;
   Real share;
-  int least, usual, most;         ///< CorrectionPlan
-  float deepest, mean, too_deep;  ///< likewise (of the cap)
+  int least, usual, most;         ///< numbers of sweeps of the CorrectionPlan
+  float deepest, mean, too_deep;  ///< overlaps of the CorrectionPlan, relative to the cap
 
   SCREE_HD int phases(const State& state) const {
     if (state.corrected || state.sweeps >= most) return 0;

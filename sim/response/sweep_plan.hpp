@@ -1,4 +1,4 @@
-// How often the contacts of a substep are swept.
+// The plan of a substep's sweeps: their number, their tolerance and the solver that follows.
 #pragma once
 
 #include "core/tolerances.hpp"
@@ -10,23 +10,24 @@
 
 namespace scree {
 
-/// How often contacts are swept.
+/// The limits and the tolerance of the sweeps of a substep.
 struct SweepPlan {
-  int least, most;
-  int block_sweeps;  ///< over the points of a contact at each visit
-  double tolerance;  ///< change of the impulses in one sweep (of their size) at which they have converged
-  bool direct;       ///< islands on which sweeps creep are for the direct solver
-  int first_with_momentum = 0;  ///< sweep, counted from 0: a few plain ones are cheaper
+  int least, most;              ///< numbers of sweeps
+  int block_sweeps;             ///< block sweeps over the points of a contact in one visit
+  double tolerance;             ///< relative change of the impulses in one sweep at which they have converged
+  bool direct;                  ///< whether islands that converge slowly go to the direct solver
+  int first_with_momentum = 0;  ///< first sweep with momentum, from 0: earlier plain ones are cheaper
 };
 
-/// Few contacts are solved to the tolerance whatever it takes, since they cost nothing. Of a heap each visit
-/// sweeps a point once, since news travels one contact per sweep however well each is solved, and the least
-/// number of sweeps sees to the slow modes, of which one sweep's change tells nothing (docs/decisions/0005,
-/// 0014). `flows`: a heap's bodies move on one another; what that does to the contacts by the next substep is
-/// more than what further sweeps would change (0052). `heap_change`: at which those of a heap have converged.
+/// Returns the plan for a number of contacts and points. A small number is solved to the tolerance with many
+/// sweeps, since these cost little. In a heap each visit sweeps a point once, since a change travels only one
+/// contact per sweep however well each contact is solved. The least number of sweeps of a heap is for the
+/// slow modes, whose error one sweep's change does not show (docs/decisions/0005, 0014). `flows` says that
+/// the bodies of a heap move on one another; by the next substep that changes the contacts more than further
+/// sweeps would (0052). `heap_change` is the tolerance for a heap.
 inline SweepPlan plan_sweeps(const ResponseParameters& parameters, std::int64_t contacts,
                              std::int64_t all_points, bool flows, double heap_change) {
-  constexpr std::int64_t visits = 400000;  // of points in a substep
+  constexpr std::int64_t visits = 400000;  // point visits in a substep
   constexpr std::int64_t fewest = 60, most = 10000;
   constexpr int plain_in_flow = 2;
   const bool heap = is_heap(all_points);

@@ -9,7 +9,7 @@ namespace scree::solver {
 
 namespace {
 
-constexpr std::int64_t together = 32;  // neighbours of a group
+constexpr std::int64_t together = 32;  // largest number of entries in a group
 
 SCREE_HD bool is_wall(ConstView<Mobility> mobility, std::int32_t body) {
   return mobility[body] != Mobility::free;
@@ -46,7 +46,8 @@ struct NumberPlaces {
   }
 };
 
-/// Whether a group begins here: there, and then at each so many of the same body.
+/// Marks the entries with which groups begin: the first entry of each body, and then every `together`-th
+/// entry of that body.
 struct MarkGroups {
   ConstView<std::int32_t> body;
   View<std::uint8_t> marks;

@@ -1,4 +1,4 @@
-// What contacts give to bodies that are not free, added up over a step.
+// Impulses and moments of contacts on bodies that are not free, summed over a step.
 #pragma once
 
 #include "core/array.hpp"
@@ -10,9 +10,9 @@
 
 namespace scree::solver {
 
-/// On a body that is not free.
+/// Impulse and moment on a body that is not free.
 struct WallImpulse {
-  Vec3 impulse = Vec3::Zero();  ///< N s
+  Vec3 impulse = Vec3::Zero();  ///< total impulse (N s)
   Vec3 moment = Vec3::Zero();   ///< about the centre of the body (N m s)
 
   SCREE_HD friend WallImpulse operator+(const WallImpulse& a, const WallImpulse& b) {
@@ -20,39 +20,39 @@ struct WallImpulse {
   }
 };
 
-/// Slots with such a body, side by side in the order of these bodies. Their sums are trees whose shapes
-/// depend on the slots alone.
+/// The sums over all slots that have a body that is not free, listed here in the order of these bodies. Each
+/// sum is a tree whose shape depends on the slots alone, so that it does not depend on the order of threads.
 template <class Space>
 class WallSums {
  public:
-  /// Nothing has been given to any body yet.
+  /// Sets the totals of all bodies to zero.
   void start_step(std::int64_t bodies);
-  /// The slots are others.
+  /// Lists the slots anew, after new candidates.
   void take(ConstView<Slot> places, const ConstBodyView& bodies);
 
   bool is_empty() const { return impulses_.empty(); }
-  /// Of each place, the number of its slot here; -1 for most.
+  /// Returns for each place of a slot its index in this list; -1 if it is not in it.
   ConstView<std::int32_t> entry_of_place() const { return entry_of_.view(); }
-  /// Of each slot here, of a substep: none yet.
+  /// Sets the impulses of a substep to zero, and returns them: one for each slot in the list.
   View<WallImpulse> clear_impulses();
   /// Adds the impulses to the totals of their bodies.
   void add_up();
 
-  /// Of each body over the step, by place.
+  /// Returns the total of each body over the step, by place.
   const Array<WallImpulse, Space>& totals() const { return totals_; }
-  /// Back to what they were.
+  /// Sets the totals back to a copy made before.
   void restore_totals(const Array<WallImpulse, Space>& totals) { copy(totals_, totals); }
 
  private:
-  /// Neighbours that are added up at once, and the body of each such group.
+  /// A level of the tree: groups of neighbouring entries of the level below, and the sum of each group.
   struct Level {
-    Array<std::int64_t, Space> begin;  ///< of each group in the level below; one more than groups
-    Array<std::int32_t, Space> body;
+    Array<std::int64_t, Space> begin;  ///< first entry of each group in the level below; one more than groups
+    Array<std::int32_t, Space> body;   ///< body of each group
     Array<WallImpulse, Space> sums;
   };
 
   Array<std::int32_t, Space> entry_of_;
-  Array<std::int32_t, Space> body_;  // of each slot here
+  Array<std::int32_t, Space> body_;  // body of each slot in the list
   Array<WallImpulse, Space> impulses_, totals_;
   std::deque<Level> levels_;
   std::size_t used_levels_ = 0;

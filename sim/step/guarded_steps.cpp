@@ -47,7 +47,7 @@ void GuardedSteps::take_once_or_twice(std::int64_t step, double time, double len
   try {
     return take_in(n, step, length, exchange, stepper);
   } catch (const std::bad_alloc&) {
-    throw;  // smaller substeps need no less
+    throw;  // smaller substeps need as much memory
   } catch (const std::exception&) {
     undo(before, stepper);
   }
@@ -80,14 +80,14 @@ void GuardedSteps::take_in(int substeps, std::int64_t step, double length, const
 }
 
 void GuardedSteps::choose_substeps(int taken, double deepest, const Stepper& stepper) {
-  // A step that is taken again has more of them than are needed.
+  // A step that was taken again may have more substeps than a step takes by itself.
   taken = std::min(taken, most_substeps(scene_.response.quality));
   const bool accurate = scene_.response.mode == ResponseMode::accurate;
   if (accurate || !stepper.has_heap()) return substeps_.judge(taken, deepest);
   substeps_.judge_heap(taken, deepest, [&stepper] { return stepper.overlaps_left(); });
 }
 
-/// Throws StepFailure if the state is none to go on from.
+/// Throws StepFailure if the run cannot go on from the state.
 void GuardedSteps::judge(const Exchange& exchange, const Stepper& stepper) {
   const Energies energies = stepper.energies(origin_);
   extend_baseline(energies, exchange, stepper);

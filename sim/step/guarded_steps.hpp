@@ -1,4 +1,5 @@
-// Steps whose outcome is judged: what has failed is taken again, in smaller substeps, and only then given up.
+// Steps whose outcome is judged: a step that has failed is taken again in smaller substeps, and given up only
+// if it fails again.
 #pragma once
 
 #include "core/archive.hpp"
@@ -18,25 +19,27 @@ class StepFailure;
 
 class GuardedSteps {
  public:
-  /// `scene` must outlive this. Potential energies are about `origin`.
+  /// `scene` must outlive this object. Potential energies are relative to the point `origin`.
   GuardedSteps(const Scene& scene, const Vec3& origin)
       : scene_(scene), origin_(origin), substeps_(scene.response.quality) {}
   void start(const Stepper& stepper, double least_scale);
 
-  /// Takes the step that starts at `time` and is `length` long (s). `exchange`: what bodies brought and took
-  /// so far. Throws StepFailure if a body's state stops being finite, if energy comes or goes that the ledger
-  /// does not explain, if a body leaves the world and the scene says to stop, or if the stepper throws, but
-  /// for std::bad_alloc, which passes. Whatever is thrown, the state and the books are then as they were.
+  /// Takes the step that starts at `time` and is `length` long (s). `exchange`: what bodies have brought and
+  /// taken so far. Throws StepFailure if a body's state stops being finite, if energy comes or goes that the
+  /// ledger does not explain, if a body leaves the world and the scene says to stop, or if the stepper
+  /// throws; std::bad_alloc alone is passed on as it is. Whatever is thrown, the state and the energy
+  /// accounts are then as they were.
   void take(std::int64_t step, double time, double length, const Exchange& exchange, Stepper& stepper);
-  /// Bodies have come or gone between two steps, whose potential energy when they appeared was so much in sum
-  /// (J, likewise).
+  /// Must be called when bodies have come or gone between two steps. `first_potential`: the sum of the
+  /// potential energies that the bodies which came had when they appeared, less that of the bodies which went
+  /// (J); `exchange`: as for take().
   void change_bodies(double first_potential, const Exchange& exchange, const Stepper& stepper);
 
   const EnergyBaseline& baseline() const { return baseline_; }
   void archive(Archive& archive);
 
  private:
-  /// What a step changes besides the state.
+  /// The data that a step changes besides the state.
   struct StepStart {
     EnergyBaseline baseline;
     Counters counters;

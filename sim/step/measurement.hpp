@@ -1,4 +1,4 @@
-// From the state to the quantities of an Observation.
+// The quantities of an Observation, as computed from the state.
 #pragma once
 
 #include "core/archive.hpp"
@@ -12,18 +12,21 @@
 
 namespace scree {
 
-/// What the energies of a run are compared with: their values at t = 0, and the largest K + |U - U0| since
-/// (U0 is the potential energy that the bodies which are there had when they appeared), but at least what
-/// lifts every free body by its own size. A scene in which nothing moves would else be measured against the
-/// rounding of its potential energy.
+/// The values with which the energies of a run are compared: the energies at t = 0, and the scale, which is
+/// the largest K + |U - U0| since then (U0 is the potential energy that the bodies which are there had when
+/// they appeared). The scale is at least the energy that lifts every free body by its smallest_size: else a
+/// scene in which nothing moves would be measured against the rounding of its potential energy.
 class EnergyBaseline {
  public:
   void start(const Energies& energies, double least_scale);
-  /// A step was taken, or bodies have come or gone. `explained`: by ledger and exchange since t = 0 (J).
+  /// Must be called when a step was taken, or when bodies have come or gone. `explained`: the change since
+  /// the start that ledger and exchange explain (J).
   void extend(const Energies& energies, double explained);
-  /// Bodies came or went whose potential energy when they appeared was so much in sum (J).
+  /// Must be called when bodies came or went. `first_potential`: the sum of the potential energies of those
+  /// that came, when they appeared, less that of those that went (J).
   void exchange(double first_potential) { first_potential_ += first_potential; }
-  /// What came or went unexplained between the last two states, by the scale; NaN if it is no number.
+  /// Returns the energy that came or went unexplained between the last two states, divided by the scale; NaN
+  /// if an energy is not finite.
   double unexplained_change() const {
     return std::abs(unexplained_ - unexplained_before_) / (scale_ > 0 ? scale_ : 1);
   }
@@ -34,20 +37,21 @@ class EnergyBaseline {
  private:
   double first_total_ = 0;
   double first_potential_ = 0;
-  double unexplained_ = 0, unexplained_before_ = 0;  // since t = 0
+  double unexplained_ = 0, unexplained_before_ = 0;  // energy since t = 0 (J)
   double scale_ = 0;
 };
 
-/// What the total energy should have changed by since t = 0 (J).
+/// Returns the change of the total energy since t = 0 that ledger and exchange explain (J).
 double explained_energy(const Ledger& ledger, const Exchange& exchange);
 
-/// Energies, momenta, speeds, and what ledger and exchange (already in `out`) do not explain. `totals` and
-/// the exchange are about `reference`; the potential energy and the exchange reported are about the origin.
+/// Computes energies, momenta, speeds, and the energy that ledger and exchange (already in `out`) do not
+/// explain. `totals` and the exchange are relative to the point `reference`; the potential energy and the
+/// exchange reported are relative to the origin.
 void measure_totals(const Totals& totals, const EnergyBaseline& baseline, const Vec3& gravity,
                     const Vec3& reference, Observation& out);
 
-/// Of each region, from what it holds now and held one step before, and what it has taken out; `step` is its
-/// length (s), 0 at t = 0.
+/// Computes the state of each region from its contents now and one step before, and from the bodies that it
+/// has removed; `step` is the length of that step (s), 0 at t = 0.
 void measure_regions(const std::vector<Region>& regions, const std::vector<RegionContents>& now,
                      const std::vector<RegionContents>& before, const std::vector<Removed>& removed,
                      double step, std::vector<RegionState>& out);

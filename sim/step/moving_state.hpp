@@ -1,4 +1,4 @@
-// The fields of the bodies that a step changes, to go back to.
+// The fields of the bodies that a step changes, saved so that the step can be undone.
 #pragma once
 
 #include "core/bodies.hpp"

@@ -25,7 +25,7 @@ namespace scree {
 
 namespace {
 
-/// Middle of the free bodies: where float bounds are finest.
+/// Returns the middle of the free bodies, around which float bounds are finest.
 Vec3 middle_of(const BodyTable& bodies) {
   Vec3 sum = Vec3::Zero();
   double count = 0;
@@ -37,7 +37,7 @@ Vec3 middle_of(const BodyTable& bodies) {
   return count > 0 ? Vec3(sum / count) : sum;
 }
 
-/// Energy that lifts every free body of the scene by its own size (J).
+/// Returns the energy that lifts every free body of the scene by its smallest_size (J).
 double lifting_energy(const Scene& scene) {
   double energy = 0;
   const BodyTable& bodies = scene.bodies;
@@ -49,7 +49,7 @@ double lifting_energy(const Scene& scene) {
   return energy;
 }
 
-/// Of the prescribed bodies, each from when it is there.
+/// Makes the paths of the prescribed bodies, each of which starts when its body appears.
 PathTable paths_of(const Scene& scene, const TimeGrid& grid, const Presence& presence) {
   PathTable table = prescribed_paths(scene);
   for (std::size_t k = 0; k < table.paths.size(); ++k)
@@ -72,7 +72,8 @@ Body body_at(const BodyTable& bodies, std::size_t k) {
           .spin = plain(bodies.spin[k])};
 }
 
-/// Free bodies from which on Device takes the steps unless told otherwise (docs/decisions/0022).
+/// Number of free bodies from which on the steps are taken on Device, if the choice is automatic
+/// (docs/decisions/0022).
 constexpr std::int64_t few_for_device = 20000;
 
 std::unique_ptr<Stepper> make_stepper(const Scene& scene, const TimeGrid& grid, const Presence& presence,
@@ -91,23 +92,23 @@ struct Simulation::Parts {
   TimeGrid grid;
   Presence presence;
   tbb::global_control threads;
-  Vec3 origin;     // of the broad phase
-  Vec3 reference;  // of potential energies: only that of the world is one for gravity that turns
+  Vec3 origin;     // local origin of the broad phase (m)
+  Vec3 reference;  // where potential energies are 0 (m): the world's origin if gravity turns
   std::unique_ptr<Stepper> stepper;
 
   std::int64_t step = 0;
   GuardedSteps steps;
-  double last_step = 0;  // its length
+  double last_step = 0;  // length of the last step (s)
   std::vector<Quat> first_orientation;
-  Exchange exchange;                            // potential energy about `reference`
-  std::int64_t left = 0;                        // bodies that have left the world and were taken out
-  std::vector<Removed> removed;                 // by each region
-  std::vector<RegionContents> contents;         // of each region
-  std::vector<RegionContents> contents_before;  // and one step earlier
+  Exchange exchange;                            // with potential energies relative to `reference`
+  std::int64_t left = 0;                        // number of bodies that have left the world and were removed
+  std::vector<Removed> removed;                 // bodies that each region has removed
+  std::vector<RegionContents> contents;         // what each region holds
+  std::vector<RegionContents> contents_before;  // what each region held one step earlier
   Observation observation;
   bool observed = false;
   bool overlaps_observed = false;
-  bool loaded = false;  // and no step since: what the observation says of contacts is that of the state saved
+  bool loaded = false;  // until the next step the observation's contact values are saved or unknown ones
 
   Parts(const Scene& s, const SimulationOptions& options)
       : scene(s),
@@ -152,7 +153,8 @@ struct Simulation::Parts {
     observed = overlaps_observed = loaded = false;
   }
 
-  /// They are those of a step that was undone.
+  /// Marks the observation's contact values as unknown, since the contacts at hand are those of a step that
+  /// was undone.
   void forget_contacts() {
     constexpr double nan = std::numeric_limits<double>::quiet_NaN();
     observation.contacts = -1;
@@ -160,8 +162,8 @@ struct Simulation::Parts {
     loaded = true;
   }
 
-  /// Bodies that have left the world or come to where they end, those whose time has come or is over, and
-  /// those that an emitter sends.
+  /// Removes the bodies that have left the world or have entered a region that removes them, then brings in
+  /// or removes the bodies whose lifetime begins or ends, and then lets the emitters send theirs.
   void come_and_go() {
     if (scene.world && scene.world->leaving == Leaving::remove)
       left += take_out(stepper->bodies_beyond(*scene.world)).count;
@@ -184,7 +186,7 @@ struct Simulation::Parts {
     return {static_cast<std::int64_t>(bodies.size()), -change.exchange.mass};
   }
 
-  /// One emitter after another, each where those before it have left room.
+  /// Lets one emitter after another send its bodies, each where those before it have left room.
   void emit() {
     for (Emission& emission : presence.emissions()) {
       const BodyTable come = emission.emit(
@@ -293,8 +295,8 @@ BodyState Simulation::body(std::int32_t id) const {
                   .torque = Vec3::Zero()};
   if (p.step == 0 || !p.presence.holds(id, p.step - 1)) return state;
   state.acceleration = (body.velocity - body.velocity_before) / p.last_step;
-  // On a free body the contact impulse is what gravity and applied forces do not explain of the change of its
-  // momentum.
+  // The contact impulse on a free body is the change of its momentum that gravity and applied forces do not
+  // explain.
   state.force = body.mobility == Mobility::free
                     ? Vec3((state.acceleration - body.acceleration) / body.inverse_mass)
                     : Vec3(body.contact_impulse / p.last_step);

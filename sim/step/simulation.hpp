@@ -1,5 +1,5 @@
-// scree/simulation.hpp with all that the program's own parts see of it. Free of Thrust, so that every part of
-// the program can include it.
+// scree/simulation.hpp, together with the types that the program's own parts get from it. It is free of
+// Thrust, so that every part of the program can include it.
 #pragma once
 
 #include "core/archive.hpp"

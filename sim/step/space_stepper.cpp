@@ -33,7 +33,7 @@ namespace scree {
 
 namespace {
 
-/// Whether each number from 0 on stands there once.
+/// Returns whether the list holds each number from 0 on once.
 bool are_numbers(std::vector<BodyNumber> list) {
   std::ranges::sort(list);
   for (std::size_t k = 0; k < list.size(); ++k)
@@ -41,11 +41,11 @@ bool are_numbers(std::vector<BodyNumber> list) {
   return true;
 }
 
-/// Real: of impulses and of the velocities that they are found with.
+/// The stepper of one space. Real: type of the impulses and of the velocities with which they are found.
 template <class Space, class Real>
 class SpaceStepper final : public Stepper {
  public:
-  /// With options.on_device the PCS of bodies on Host is made there.
+  /// If options.on_device, the PCS is found on Device, even for bodies on Host.
   SpaceStepper(const Scene& scene, const TimeGrid& grid, const PathTable& paths,
                const StepperOptions& options)
       : grid_(grid),
@@ -76,7 +76,7 @@ class SpaceStepper final : public Stepper {
     start_gravity_ = parameters_.gravity;
     start_.save(bodies_);
     if (step % steps_in_order_ == 0) {
-      sort_bodies();  // where there is no memory for it, the bodies stay where they are, and are saved
+      sort_bodies();  // if memory runs out here, no body has moved, and the state is saved already
       start_.save(bodies_);
     }
     gravity_.start_step();
@@ -169,8 +169,9 @@ class SpaceStepper final : public Stepper {
   static constexpr bool is_device = !std::is_same_v<Space, Host>;
 
   BodyView views() { return view_of(bodies_); }
-  /// What was found for the places that the bodies had goes with them, but for what contacts remember. New
-  /// pairs have their boxes put around the bodies as fast as these are now, and not as they once were.
+  /// Sorts the bodies along a curve. All that was found for their old places is forgotten, except what
+  /// contacts remember. The boxes of the new pairs suit the bodies' present speeds, and not those of long
+  /// ago.
   void sort_bodies() {
     const timing::Region region("broadphase");
     order_.sort(bodies_);
@@ -199,7 +200,7 @@ class SpaceStepper final : public Stepper {
   ConstView<std::int32_t> place_before() const {
     return have_moved_ ? order_.place_before() : ConstView<std::int32_t>{};
   }
-  /// General shapes are known on Host alone.
+  /// Sets the shape data of each place. General shapes are known on Host alone.
   void find_shapes() {
     if constexpr (!is_device) {
       if (!geometry_) return;
@@ -213,14 +214,14 @@ class SpaceStepper final : public Stepper {
     copy_bytes<Host, Space>(&place, bodies_.place_of.data() + index_of(number), sizeof(place));
     return place;
   }
-  /// Of a field of the bodies, or another list by place.
+  /// Returns one value of a field of the bodies, or of another list by place.
   template <class List>
   auto value_at(const List& list, std::int32_t place) const {
     std::remove_cvref_t<decltype(list.data()[0])> value;
     copy_bytes<Host, Space>(&value, list.data() + place, sizeof(value));
     return value;
   }
-  /// A list by place, which may be empty, in the order of the bodies' numbers.
+  /// Returns a list by place, which may be empty, in the order of the bodies' numbers.
   template <class T>
   std::vector<T> by_number(const std::vector<T>& by_place) const {
     std::vector<T> ordered;
@@ -229,7 +230,7 @@ class SpaceStepper final : public Stepper {
       ordered.push_back(by_place[static_cast<std::size_t>(place)]);
     return ordered;
   }
-  /// Others of the bodies are there now, or somewhere else.
+  /// Must be called when bodies have come or gone, or have been moved other than by a step.
   void forget_pairs() {
     forces_.forget();
     kept_pairs_.forget();
@@ -245,7 +246,7 @@ class SpaceStepper final : public Stepper {
   }
   double reach_from(double h, double done) const { return grid_.length(step_ + 1) - done + h; }
 
-  /// To what it is at a time (s), the midpoint of the substep that begins.
+  /// Sets gravity for the substep that begins, to its value at the midpoint (a time in s).
   void turn_gravity(double midpoint) {
     if (!gravity_.turns()) return;
     ledger.work += gravity_.turn_to<Space>(midpoint, bodies_, parameters_);
@@ -266,7 +267,8 @@ class SpaceStepper final : public Stepper {
   void add_impulse_on_walls(const Impact& impact);
   void archive_wall_impulses(Archive& archive);
 
-  /// For the state as it is; which pairs the step keeps must not hang on who looks at it.
+  /// Finds the pairs for the present state. If the step's pairs no longer cover it, others are made apart,
+  /// because the pairs that the step keeps must not depend on observations.
   ConstView<Pair> pairs_now();
   const KeptPairs<Space>& pairs_seen() const { return sees_kept_ ? kept_pairs_ : seen_pairs_; }
   TimeGrid grid_;
@@ -284,26 +286,26 @@ class SpaceStepper final : public Stepper {
   AppliedForces<Space> forces_;
   TurningGravity gravity_;
   BodyOrder<Space> order_;
-  bool have_moved_ = false;  // to other places since the contacts last took candidates
+  bool have_moved_ = false;  // whether bodies changed places since the contacts last took candidates
   KeptPairs<Space> kept_pairs_;
   KeptPairs<Space> seen_pairs_;
   bool sees_kept_ = true;
-  std::int64_t pairs_taken_ = 0;  // how often they had been made when the contacts last took them
-  std::int64_t pairs_known_ = 0;  // the same of `known_`
+  std::int64_t pairs_taken_ = 0;  // kept_pairs_.times_made() when the contacts last took candidates
+  std::int64_t pairs_known_ = 0;  // kept_pairs_.times_made() when known_ was found
   Array<std::int64_t, Space> known_;
   Array<LoadedParts, Space> loads_;
   LibccdContacts libccd_;
   ImpactRounds<Space> impacts_;
-  mutable solver::ContactSolver<Space, Real> contacts_;  // shown on Host where they are
+  mutable solver::ContactSolver<Space, Real> contacts_;  // mutable: inspect() shows them in place on Host
 
-  double last_substep_ = 0;  // its length; scales the remembered impulses
+  double last_substep_ = 0;  // length of the last substep (s); scales the remembered impulses
   MovingState<Space> start_;
   Ledger start_ledger_;
   Vec3 start_gravity_ = Vec3::Zero();
-  // Bodies that are not free:
-  std::map<BodyNumber, solver::WallImpulse> struck_walls_;  // what impacts gave to them in the step
+  // For bodies that are not free:
+  std::map<BodyNumber, solver::WallImpulse> struck_walls_;  // impulses of impacts in the step
   std::vector<std::uint8_t> is_wall_;                       // by number
-  /// What the first half of a substep changes, beside what contacts remember.
+  /// The data that the first half of a substep changes, besides what contacts remember.
   struct Restart {
     MovingState<Space> state;
     Vec3 gravity;
@@ -315,17 +317,18 @@ class SpaceStepper final : public Stepper {
     void save(const SpaceStepper& now);
     void restore(SpaceStepper& now) const;
   };
-  Restart before_;  // of the last substep, in the accurate mode
+  Restart before_;  // state before the part of a substep that may be taken again, in the accurate mode
   Array<double, Space> contact_margin_;
-  std::vector<Impact> struck_;  // in the last substep
+  std::vector<Impact> struck_;  // impacts of the last substep
 };
 
-/// In the accurate mode in parts that end where contacts come to stick. What stops by a blow and not by
-/// friction does so no sooner in a shorter part: then cuts do not help, and there are none.
+/// Takes a substep; in the accurate mode in parts that end where a sliding contact comes to stick. A contact
+/// that a blow stops, and not friction, still sticks too early in a shorter part: then cuts do not help, and
+/// the rest of the substep is taken whole.
 template <class Space, class Real>
 void SpaceStepper<Space, Real>::substep(double h, double done) {
   constexpr int most_cuts = 16;
-  constexpr double helps = 0.25;  // of what the cut before it found too long
+  constexpr double helps = 0.25;  // a cut helps if less than this share of the excess before it is left
   const double end = done + h;
   int cuts = 0;
   bool cuts_help = parameters_.accurate;
@@ -348,9 +351,9 @@ void SpaceStepper<Space, Real>::substep(double h, double done) {
   counters.cuts += cuts;
 }
 
-/// Moreau's midpoint step. Its first half: free flight to the midpoint, impacts on the way, contacts there,
-/// impulses. Returns whether a body was struck after the midpoint. `done`: how much of the step went before
-/// (s); `may_be_undone`: before_ may be restored after it.
+/// Takes the first half of Moreau's midpoint step: free flight to the midpoint, impacts on the way, contacts
+/// there, impulses. Returns whether a body was struck after the midpoint. `done`: the time of the step that
+/// has passed before this substep (s); `may_be_undone`: before_ may be restored after it.
 template <class Space, class Real>
 bool SpaceStepper<Space, Real>::fly_and_respond(double h, double done, bool may_be_undone) {
   struck_.clear();
@@ -378,7 +381,8 @@ bool SpaceStepper<Space, Real>::fly_and_respond(double h, double done, bool may_
   return any_late_impact;
 }
 
-/// And its second: impacts on the way, since the response has changed it, and free flight to the end.
+/// Takes the second half of the midpoint step: impacts on the way, since the response has changed it, free
+/// flight to the end, and position correction.
 template <class Space, class Real>
 void SpaceStepper<Space, Real>::fly_on(double h, double done, bool any_late_impact) {
   const FlightStage flight = impacts_.stage(terms(h, 0), parameters_, views());
@@ -452,7 +456,7 @@ void SpaceStepper<Space, Real>::archive(Archive& archive) {
   forces_.act(step_, bodies_, parameters_);
 }
 
-/// Which of the pairs that were made anew are among the contacts' candidates (Slots::look_up).
+/// Finds which of the pairs that were made anew are among the contacts' candidates (Slots::look_up).
 template <class Space, class Real>
 ConstView<std::int64_t> SpaceStepper<Space, Real>::known(ConstView<Pair> pairs) {
   if (pairs_known_ != kept_pairs_.times_made()) contacts_.slots().look_up(pairs, place_before(), known_);
@@ -460,7 +464,7 @@ ConstView<std::int64_t> SpaceStepper<Space, Real>::known(ConstView<Pair> pairs) 
   return std::as_const(known_).view();
 }
 
-/// Lets the contacts know of candidates that were made anew.
+/// Passes candidates that were made anew on to the contacts.
 template <class Space, class Real>
 void SpaceStepper<Space, Real>::give_candidates(ConstView<Pair> pairs) {
   if (pairs_taken_ == kept_pairs_.times_made()) return;
@@ -470,7 +474,8 @@ void SpaceStepper<Space, Real>::give_candidates(ConstView<Pair> pairs) {
   pairs_taken_ = kept_pairs_.times_made();
 }
 
-/// Of the last substep. The contacts of this one must stay until its end, whatever candidates are made.
+/// Returns which parts of each pair bore load in the last substep. The contacts of this substep must stay
+/// until its end, even if new candidates are made.
 template <class Space, class Real>
 ConstView<LoadedParts> SpaceStepper<Space, Real>::loads_of(ConstView<Pair> pairs) {
   if (pairs_taken_ == kept_pairs_.times_made()) return contacts_.loads();
@@ -478,9 +483,10 @@ ConstView<LoadedParts> SpaceStepper<Space, Real>::loads_of(ConstView<Pair> pairs
   return std::as_const(loads_).view();
 }
 
-/// Impacts of the flight of a substep from `from` on; whether there were any. Margins are set for contacts
-/// within `foresight` (s) from now on, at least the flight's end, unless all are too slow in the second half.
-/// `reach`: to the end of the step (s).
+/// Resolves the impacts in the flight of a substep, from `from` (s) on, and returns whether there were any.
+/// Sets the margins for contacts within `foresight` (s) from now on, which is at least the time to the
+/// flight's end; they are not set if all bodies are too slow for impacts in the second half. `reach`: the
+/// time for which new fat boxes must have room (s), reach_from().
 template <class Space, class Real>
 bool SpaceStepper<Space, Real>::resolve_impacts(double h, double from, double foresight, double reach) {
   constexpr int most_attempts = 8;
@@ -504,7 +510,7 @@ bool SpaceStepper<Space, Real>::resolve_impacts(double h, double from, double fo
                                            .pairs_made = kept_pairs_.times_made()},
                                           parameters_, views());
     if (impacts_.impacts().size() == 0) return false;
-    // What was struck may have left the boxes: others that it can meet now are not among the pairs.
+    // A struck body may have left its box, and bodies that it can meet now may be missing from the pairs.
     if (cover() || attempt == most_attempts) {
       ledger = ledger + moved;
       break;
@@ -529,13 +535,13 @@ void SpaceStepper<Space, Real>::add_impulse_on_walls(const Impact& impact) {
     if (is_wall_[static_cast<std::size_t>(number)] == 0) continue;
     solver::WallImpulse& on = struck_walls_[BodyNumber{number}];
     on.impulse += sign * impact.impulse;
-    if (!geometry_) continue;  // the moment is asked for of meshes alone
+    if (!geometry_) continue;  // moments are needed for meshes alone
     const Vec3 centre = value_at(bodies_.position, place(BodyNumber{number}));
     on.moment += sign * bodies_.period.nearest(impact.point - centre).cross(impact.impulse);
   }
 }
 
-/// Of those that have any.
+/// Saves or loads the impulses on bodies that are not free, for those that have any.
 template <class Space, class Real>
 void SpaceStepper<Space, Real>::archive_wall_impulses(Archive& archive) {
   std::vector<BodyNumber> walls;
@@ -574,7 +580,7 @@ SteppedBody SpaceStepper<Space, Real>::body(BodyNumber number) const {
                    .contact_impulse = Vec3::Zero(),
                    .contact_moment = Vec3::Zero()};
   if (parameters_.acceleration.size() > 0) body.acceleration += value_at(parameters_.acceleration, k);
-  // A servo's drive bears its weight, whatever that is.
+  // Gravity has no effect on a body with a servo, whose drive bears its weight.
   if (!servo_axis_.contains(number))
     body.acceleration += gravity_.excess_of_mean(grid_.length(step_ + 1), parameters_);
   if (is_wall_[index_of(number)] == 0) return body;
@@ -590,7 +596,8 @@ SteppedBody SpaceStepper<Space, Real>::body(BodyNumber number) const {
   return body;
 }
 
-/// The volume of polyhedra is not told by their sizes.
+/// Returns the contents of a region. The volume of a polyhedron is that of its hull, which its size does not
+/// give.
 template <class Space, class Real>
 RegionContents SpaceStepper<Space, Real>::contents_of(const Region& region) const {
   RegionContents contents = scree::contents_of<Space>(region, bodies_);
@@ -655,7 +662,7 @@ void SpaceStepper<Space, Real>::measure_contacts(std::int64_t free_bodies, Obser
   out.coordination_mean = mean(static_cast<double>(totals.ends), free_bodies);
 }
 
-/// Whether a scene has what is known on Host alone: general shapes, and contacts by libccd.
+/// Returns whether a scene has features that are known on Host alone: general shapes, and contacts by libccd.
 bool needs_host(const Scene& scene) {
   return scene.geometry != nullptr || LibccdContacts(scene.narrowphase).is_needed();
 }

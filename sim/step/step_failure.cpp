@@ -19,7 +19,7 @@ bool is_in_range(const BodyTable& bodies, std::size_t k) {
          bodies.spin[k].allFinite();
 }
 
-/// The scene's name for a body; empty if it has none.
+/// Returns the scene's name for a body; empty if it has none.
 std::string given_name(std::int32_t body, const Scene& scene) {
   const auto named =
       std::ranges::find(scene.body_names, body, [](const auto& entry) { return entry.second; });

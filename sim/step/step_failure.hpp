@@ -1,4 +1,4 @@
-// What the message of a step that the run cannot go on from is about.
+// The bodies that the message of a failed step is about, and their names in words.
 #pragma once
 
 #include "core/bodies.hpp"
@@ -11,14 +11,14 @@
 
 namespace scree {
 
-/// Bodies with a number in their state that is not finite, or a place that is beyond what the broad phase can
-/// hold, in order.
+/// Returns, in order, the bodies with a number in their state that is not finite, or with a position beyond
+/// the range of the broad phase.
 std::vector<std::int32_t> bodies_out_of_range(const BodyTable& bodies);
 
-/// The free bodies, by descending kinetic energy of their centres.
+/// Returns the free bodies, by descending kinetic energy of their centres.
 std::vector<std::int32_t> by_kinetic_energy(const BodyTable& bodies);
 
-/// ball[3] (body 17), body 18 and 5 more.
+/// Returns a list of bodies in words, such as: ball[3] (body 17), body 18 and 5 more.
 std::string words_for(const std::vector<std::int32_t>& bodies, const Scene& scene);
 
 }  // namespace scree
