@@ -14,16 +14,18 @@ namespace scree {
 
 namespace {
 
-/// The cells of all levels, each a key of at most 61 bits: level, z, y and x, and a bit that puts the objects
-/// of the level before those of finer levels. What is no larger than a level's cells overlaps at most two of
-/// them on each axis, so no object has more than eight entries on a level.
+/// The cells of all levels. Each cell has a key of at most 61 bits: level, z, y and x, and a bit that puts
+/// the objects of that level before those of finer levels. An object no larger than a level's cells overlaps
+/// at most two of them on each axis, so no object has more than eight entries on a level.
 struct LevelCells {
-  /// Of a number; cells that differ above share a key, which costs tests.
+  /// Largest number of bits of a cell's number on an axis. Cells whose numbers differ only in higher bits
+  /// share a key, which costs tests.
   static constexpr int most_bits = 20;
 
   GridLevel levels[max_grid_levels];
   int count;
-  int bits;  ///< of a cell's number on an axis: two at least, so that three cells in a row are told apart
+  int bits;  ///< bits of a cell's number on an axis; at least two, so that three cells in a row have
+             ///< different numbers
 
   explicit LevelCells(const GridPlan& plan) : count(static_cast<int>(plan.levels.size())), bits(0) {
     std::ranges::copy(plan.levels, levels);
@@ -41,7 +43,7 @@ struct LevelCells {
 
   SCREE_HD int level_of(const Aabb& box) const { return level_of_extent(levels, extent_of(box)); }
 
-  /// The cells of a level that a box overlaps.
+  /// Returns the cells of a level that a box overlaps.
   SCREE_HD CellRange cells_of(int level, const Aabb& box) const {
     CellRange cells;
     for (int a = 0; a < 3; ++a) {
@@ -59,7 +61,7 @@ struct LevelCells {
   SCREE_HD static bool is_finer(std::uint64_t key) { return (key & 1) != 0; }
   SCREE_HD int level_of_key(std::uint64_t key) const { return static_cast<int>(key >> (1 + 3 * bits)); }
 
-  /// The axes, a bit for each, on which a box in the cell of a key begins in an earlier cell.
+  /// Returns the axes, one bit for each, on which a box in the cell of a key begins in an earlier cell.
   SCREE_HD std::int32_t begun_before(std::uint64_t key, const Aabb& box) const {
     const GridLevel& level = levels[level_of_key(key)];
     std::int32_t axes = 0;
@@ -116,9 +118,10 @@ struct WriteEntries {
   }
 };
 
-/// Overlapping boxes share up to eight cells of a level, and the larger of both lower corners is in one of
-/// them: where on each axis one of the two begins. So where a box has begun before is a bit in its tag, and
-/// as two fixed bodies are no pair, no more are two that have both begun before.
+/// Gathers the boxes of the entries. Overlapping boxes share up to eight cells of a level. One of these cells
+/// holds the larger of both lower corners: on each axis, one of the two boxes begins there. So the tag of an
+/// entry has a bit for each axis on which its box begins in an earlier cell. Two entries that share such a
+/// bit make no pair in this cell, just as two fixed bodies make none.
 struct GatherEntries {
   LevelCells cells;
   ConstView<Aabb> bounds;
@@ -133,7 +136,8 @@ struct GatherEntries {
   }
 };
 
-/// Each object of a level against what follows it in its cell: others of the level, then those of finer ones.
+/// Tests each object of a level against the objects that follow it in its cell: others of the level, then
+/// those of finer levels.
 struct CellSearch : RunSearch {
   static constexpr const char* label = "broadphase.traverse.cells";
 
@@ -145,7 +149,8 @@ struct CellSearch : RunSearch {
   }
 
  private:
-  /// In steps that double: the end is near, but for the cells of oversize objects.
+  /// Returns the end of the cell of entry k. It searches in steps that double, because the end is near except
+  /// for the cells of oversize objects.
   SCREE_HD std::int64_t end_of_cell(std::int64_t k) const {
     const std::uint64_t last = key[k] | 1;
     std::int64_t begin = k + 1;
@@ -158,7 +163,7 @@ struct CellSearch : RunSearch {
   }
 };
 
-/// Throws RunError if there are more entries than runs can number.
+/// Throws RunError if there are more entries than the runs can number.
 void require_numbers(std::int64_t entries) {
   constexpr std::int64_t most = std::numeric_limits<std::uint32_t>::max();
   if (entries <= most) return;
@@ -175,7 +180,7 @@ class AlternativeGrid final : public BroadPhase<Space> {
   ConstView<Pair> find(ConstView<Aabb> bounds, ConstView<Mobility> mobility) override {
     stats_ = {};
     const Census census = take_census<Space>(bounds);
-    // The levels are the same in both spaces, so that the order of the pairs is.
+    // The levels are the same in both spaces, so that the order of the pairs is the same too.
     const GridPlan plan =
         plan_grid(census, count_sizes<Space>(bounds, census), grid_costs<Host>, forced_levels_);
     stats_.levels = static_cast<int>(plan.levels.size());
@@ -192,7 +197,8 @@ class AlternativeGrid final : public BroadPhase<Space> {
   const BroadPhaseStats& stats() const override { return stats_; }
 
  private:
-  /// Level and cell of each entry, in the order of the bodies, which a stable sort keeps within a cell.
+  /// Writes level and cell of each entry, in the order of the bodies, which a stable sort keeps within a
+  /// cell.
   void write_entries(const LevelCells& cells, ConstView<Aabb> bounds) {
     entries_.resize(bounds.size());
     parallel::for_each<Space>("broadphase.initialize.count", bounds.size(),
@@ -208,11 +214,11 @@ class AlternativeGrid final : public BroadPhase<Space> {
 
   int forced_levels_;
   BroadPhaseStats stats_;
-  Array<std::uint32_t, Space> entries_;  ///< of each object
-  Array<std::int64_t, Space> first_;     ///< of them
+  Array<std::uint32_t, Space> entries_;  ///< number of entries of each object
+  Array<std::int64_t, Space> first_;     ///< index of the first entry of each object
   Array<std::uint64_t, Space> key_;      ///< cell of each entry
-  Array<std::int32_t, Space> body_;      ///< its object
-  Array<Boxed, Space> entry_;            ///< the objects themselves, by cell
+  Array<std::int32_t, Space> body_;      ///< object of each entry
+  Array<Boxed, Space> entry_;            ///< boxes of the entries, sorted by cell
   PairList<Space> pairs_;
 };
 

@@ -1,4 +1,4 @@
-// From the double state of a body to the float box that the broad phase sees.
+// The conversion of a body's state in double to the float box that the broad phase uses.
 #pragma once
 
 #include "broadphase/aabb.hpp"
@@ -11,7 +11,7 @@
 
 namespace scree {
 
-/// The next float under x; x finite or +infinity.
+/// Returns the next float below x, which is finite or +infinity.
 SCREE_HD inline float next_below(float x) {
   if (x == 0) return -std::numeric_limits<float>::denorm_min();
   const auto bits = std::bit_cast<std::uint32_t>(x);
@@ -19,18 +19,19 @@ SCREE_HD inline float next_below(float x) {
 }
 SCREE_HD inline float next_above(float x) { return -next_below(-x); }
 
-/// The largest float that is not over x, and the smallest that is not under it; NaN stays NaN. Without
-/// branches: whether the nearest float is over x cannot be foreseen.
+/// Returns the largest float that is not above x (round_down) or the smallest that is not below it
+/// (round_up); NaN stays NaN. There are no branches, because it cannot be predicted whether the nearest float
+/// is above x.
 SCREE_HD inline float round_down(double x) {
   const auto nearest = static_cast<float>(x);
   const auto bits = std::bit_cast<std::uint32_t>(nearest);
   const std::uint32_t over = static_cast<double>(nearest) > x ? 1 : 0;
-  const std::uint32_t sign = over << 31;  // under +0 comes what comes under -0
+  const std::uint32_t sign = over << 31;  // the float below +0 is the one below -0
   return std::bit_cast<float>(nearest > 0 ? bits - over : (bits | sign) + over);
 }
 SCREE_HD inline float round_up(double x) { return -round_down(-x); }
 
-/// What bounds a body.
+/// The data of a body from which its box is computed.
 struct BodyGeometry {
   Shape shape;
   Vec3 position;
@@ -38,7 +39,7 @@ struct BodyGeometry {
   Vec3 size;
 };
 
-/// Half the extents of a body's box, along the world's axes (m).
+/// Returns half the extents of a body's box, along the world's axes (m).
 SCREE_HD inline Vec3 half_extent_of(const BodyGeometry& body) {
   if (body.shape == Shape::sphere) return Vec3::Constant(body.size.x());
   const Mat3 axes = body.orientation.toRotationMatrix();
@@ -47,29 +48,30 @@ SCREE_HD inline Vec3 half_extent_of(const BodyGeometry& body) {
     case Shape::polyhedron:
       return axes.cwiseAbs() * body.size;
     case Shape::triangle:
-      // Two corners are opposite to each other in the rectangle around it, whose corners bound it.
+      // Two corners are opposite corners of the rectangle around the triangle, and the rectangle's corners
+      // bound it.
       return axes.col(0).cwiseAbs() * body.size.x() + axes.col(1).cwiseAbs() * body.size.z();
     case Shape::capsule:
       return (axes.col(2).cwiseAbs() * (body.size.z() - body.size.x())).array() + body.size.x();
     default:
       break;
   }
-  // A tube's or a cylinder's: a segment along its z axis plus a disc along the other two. The disc's extent
-  // by sqrt(1 - z^2) would cancel where the axes are aligned.
+  // The box of a tube or a cylinder is that of a segment along its z axis plus that of a disc along the other
+  // two axes. The formula sqrt(1 - z^2) for the disc's extent would cancel where the axes are aligned.
   Vec3 half_extent;
   for (int a = 0; a < 3; ++a)
     half_extent[a] = fabs(axes(a, 2)) * body.size.z() + hypot(axes(a, 0), axes(a, 1)) * body.size.x();
   return half_extent;
 }
 
-/// Box of a body, fat by `margin` on every side, relative to `origin` (m). It holds the box of
-/// exact arithmetic: the rounding of the double formula is added before the result is rounded outward to
-/// float. Planes are absent: Candidates lists them with the bodies near them.
+/// Returns the box of a body, enlarged by `margin` on every side, relative to `origin` (m). It encloses the
+/// box of exact arithmetic: the rounding of the double formula is added before the result is rounded outward
+/// to float. Planes are absent: Candidates lists them with the bodies near them.
 SCREE_HD inline Aabb bounds_of(const BodyGeometry& body, double margin, const Vec3& origin) {
   if (body.shape == Shape::plane) return absent_bounds();
   const Vec3 half_extent = half_extent_of(body);
-  // About ten roundings, each of 2^-53 of the size or of the distance, and twice that of the quaternion's
-  // norm.
+  // There are about ten roundings, each of 2^-53 of the size or of the distance, and twice the rounding of
+  // the quaternion's norm.
   constexpr double rounding = 0x1p-48;
   const double reach = bounding_radius(body.shape, body.size) + margin;
   Aabb box;
@@ -82,9 +84,9 @@ SCREE_HD inline Aabb bounds_of(const BodyGeometry& body, double margin, const Ve
   return box;
 }
 
-/// bounds[i] = bounds_of(body i, margin[i], origin) for every body, in a periodic space of its image in the
-/// cell; absent ones have absent bounds. Makes no check: find() refuses what is not finite and names the
-/// body.
+/// Sets bounds[i] = bounds_of(body i, margin[i], origin) for every body; in a periodic space it takes the
+/// body's image in the cell. Absent bodies have absent bounds. The function makes no check: find() refuses
+/// bounds that are not finite and names the body.
 template <class Space>
 void compute_bounds(const ConstBodyView& bodies, ConstView<double> margin, const Vec3& origin,
                     View<Aabb> bounds);

@@ -10,52 +10,53 @@ namespace scree {
 
 namespace {
 
-// Costs in box tests that are dealt to lanes: of what is done once for an object in a brick, for an entry of
-// it, for a run of candidates; and of a test against an object that is too wide for the stencil.
+// Costs, in units of one box test that is distributed over the lanes: the work done once for an object in a
+// brick, for an entry of it, and for a run of candidates; and a test against an object that is too wide for
+// the stencil.
 constexpr double object_cost = 10;
 constexpr double entry_cost = 12;
 constexpr double run_cost = 3;
 constexpr double wide_test_cost = 0.5;
-// Standard deviations that a brick in the densest place of the sample may be fuller than others there. Where
-// one is fuller all the same, the grid has to do.
+// Number of standard deviations by which a brick in the densest place of the sample may be fuller than others
+// there. If a brick is fuller still, the grid is used instead.
 constexpr double spare_deviations = 6;
-// A block searches 256 entries at a time: most bricks should need no more such rounds than the usual one.
+// A block searches 256 entries in one round. Most bricks should need no more rounds than the usual brick.
 constexpr double round_entries = 256;
 constexpr double usual_deviations = 1;
 constexpr double most_copies = 3;
-constexpr double fewest_objects = 32;  // of a brick, on average, unless the bricks are few
+constexpr double fewest_objects = 32;  // objects of a brick, on average, unless the bricks are few
 constexpr double few_bricks = 8;
 constexpr std::int32_t narrowest_bucket = 2;
 constexpr int most_rows = 8;
 constexpr double finest_stencil = 9;  // cells along a brick
 constexpr double finest_row = 64;
 constexpr double stencil_runs = 5;
-constexpr std::uint32_t stencil_fineness = 3;            // cells along x to one along y
-constexpr double stencil_cells_tested[3] = {2.2, 3, 3};  // along each axis, as wide as one along y
+constexpr std::uint32_t stencil_fineness = 3;            // number of cells along x per cell along y
+constexpr double stencil_cells_tested[3] = {2.2, 3, 3};  // along each axis, in widths of a cell along y
 constexpr double most_wide = 0.05;    // share of the objects that may be too wide for the stencil
-constexpr double cells_to_reach = 4;  // of a row, to the usual length of an object there
-// An object's length in numbers may be larger than that in metres says, by rounding.
+constexpr double cells_to_reach = 4;  // cells of a row per usual length of an object in it
+// By rounding, an object's length in lattice numbers may be larger than its length in metres implies.
 constexpr double reach_slack = 0x1p-10;
-constexpr double edge_slack = 1e-9;        // of products of edges, by rounding
+constexpr double edge_slack = 1e-9;        // tolerance of a product of edges, for rounding
 constexpr double shortest_length = 1e-30;  // m
 constexpr double most_points_per_m = 1e30;
 
-/// Objects of one octave of sizes.
+/// The objects of one octave of sizes.
 struct Octave {
-  double share;    ///< of all objects
-  double size;     ///< mean (m)
-  double largest;  ///< end of the highest class in use (m)
+  double share;    ///< share of all objects
+  double size;     ///< mean extent (m)
+  double largest;  ///< end of the highest size class in use (m)
 };
 
-/// What the plan uses of a sample.
+/// The properties of a sample that the plan uses.
 struct Summary {
   std::vector<Octave> octaves;
-  double present = 0;  ///< objects, of all
-  double largest = 0;  ///< (m)
-  double lo[3];        ///< (m)
+  double present = 0;  ///< estimated number of objects that are not absent
+  double largest = 0;  ///< largest extent (m)
+  double lo[3];        ///< lowest centre (m)
   double length[3];
-  double density;  ///< objects around the usual one (1/m^3)
-  double densest;  ///< at worst
+  double density;  ///< number density around the usual object (1/m^3)
+  double densest;  ///< number density in the densest place (1/m^3)
 
   Summary(const BrickSample& sample, std::int64_t objects) {
     double seen = 0;
@@ -73,12 +74,12 @@ struct Summary {
       }
       if (count == 0) continue;
       octave.size /= count;
-      // One that was seen alone may be alone: floors and oversize objects are.
+      // A size that was seen only once in the sample may exist only once: floors and oversize objects do.
       octave.share = count == 1 ? 1 / present : count / seen;
       octaves.push_back(octave);
     }
     double volume = 1;
-    double places = 1;  // on an axis without extent all centres are in the first one
+    double places = 1;  // on an axis without extent all centres are in the first place
     for (int a = 0; a < 3; ++a) {
       if (sample.hi[a] != sample.lo[a]) places *= BrickSample::width;
       lo[a] = from_ordered_bits(sample.lo[a]);
@@ -91,15 +92,15 @@ struct Summary {
       squares += static_cast<double>(n) * n;
       most = std::max(most, static_cast<double>(n));
     }
-    // What chance adds is taken off.
+    // The part that chance contributes is subtracted.
     density = present / volume * std::max(1.0, (squares - seen) * places / (seen * seen));
     densest = std::max(density, present / volume * (most - 3 * std::sqrt(most)) * places / seen);
   }
 
-  /// Of a brick of this width, along an axis (m).
+  /// Returns the edge of a brick of this width along an axis (m).
   double edge(int axis, double width) const { return std::min(length[axis], width); }
   double volume(double width) const { return edge(0, width) * edge(1, width) * edge(2, width); }
-  /// Width of bricks with this volume (m).
+  /// Returns the width of bricks with this volume (m).
   double width_of(double wanted) const {
     double sides[3] = {length[0], length[1], length[2]};
     std::ranges::sort(sides);
@@ -107,7 +108,7 @@ struct Summary {
     if (std::sqrt(wanted / sides[0]) <= sides[1]) return std::sqrt(wanted / sides[0]);
     return std::min(wanted / (sides[0] * sides[1]), sides[2]);
   }
-  /// Bricks in which an object of this size stands.
+  /// Returns the number of bricks that contain an object of this size.
   double copies(double size, double width) const {
     double product = 1;
     for (const double l : length) product *= l > width ? 1 + std::min(size, l) / width : 1;
@@ -117,29 +118,30 @@ struct Summary {
 
 struct Choice {
   BrickMethod method;
-  int rows;          ///< along y and z, of method rows; fewer where the brick is flat
+  int rows;          ///< rows along y and z, for method rows; fewer where the brick is flat
   double reach;      ///< longest object in the cells of a stencil (m)
-  double width = 0;  ///< of a brick (m)
-  double cost = 0;   ///< of an object
+  double width = 0;  ///< width of a brick (m)
+  double cost = 0;   ///< cost per object
 
   bool has_wide(const Octave& octave) const {
     return method == BrickMethod::stencil && octave.largest > reach;
   }
 };
 
-/// Of a brick, along y or z.
+/// Returns the number of rows of a brick along y or z.
 int rows_along(const Summary& all, const Choice& choice, int axis) {
   const double share = all.edge(axis, choice.width) / choice.width;
   return std::max(1, static_cast<int>(std::lround(choice.rows * share)));
 }
 
-/// What a brick around the usual object has to do; expected values.
+/// The expected work in a brick around the usual object.
 struct Load {
   double objects = 0;
   double wide = 0;  ///< objects among them that are too wide for the stencil
   double entries = 0;
-  double entry_squares = 0;  ///< sum over the objects: their variance, since objects are there by chance
-  double reach = 0;          ///< along x, of an entry (m)
+  double entry_squares =
+      0;             ///< sum over the objects: variance of the entries, since objects are there by chance
+  double reach = 0;  ///< mean length of an entry along x (m)
 
   Load(const Summary& all, const Choice& choice, double density) {
     const double rows[3] = {1, static_cast<double>(rows_along(all, choice, 1)),
@@ -164,7 +166,7 @@ struct Load {
 double usual_entries(BrickMethod method) { return round_entries * (method == BrickMethod::stencil ? 4 : 6); }
 
 bool fits(const Summary& all, const Choice& choice) {
-  if (choice.reach >= choice.width) return true;  // no narrower one does
+  if (choice.reach >= choice.width) return true;  // no narrower brick suits this reach
   const Load worst(all, choice, all.densest);
   const Load usual(all, choice, all.density);
   return worst.objects + spare_deviations * std::sqrt(worst.objects) <= brick_objects &&
@@ -174,11 +176,11 @@ bool fits(const Summary& all, const Choice& choice) {
 
 double cost_of(const Summary& all, const Choice& choice) {
   const Load load(all, choice, all.density);
-  double tests;  // of an entry
+  double tests;  // tests of an entry
   double runs = 1;
   if (choice.method == BrickMethod::stencil) {
     const double cell = std::max(choice.reach, choice.width / finest_stencil);
-    double share = 0.5;  // of the brick, in which the others are that are tested
+    double share = 0.5;  // share of the brick that holds the objects to be tested
     for (int a = 0; a < 3; ++a)
       share *= std::min(1.0, stencil_cells_tested[a] * cell / all.edge(a, choice.width));
     tests = (load.entries - load.wide) * share + load.wide * wide_test_cost;
@@ -191,7 +193,8 @@ double cost_of(const Summary& all, const Choice& choice) {
   return cost / (all.density * all.volume(choice.width));
 }
 
-/// The widest bricks that fit, and what that costs; nothing if most objects would stand in too many of them.
+/// Returns the widest bricks that fit, with their cost; nothing if none suit, or if objects would on average
+/// be copied into too many bricks.
 std::optional<Choice> widest(const Summary& all, Choice choice) {
   constexpr int halvings = 7;
   double narrow = std::log2(all.width_of(fewest_objects / all.density));
@@ -210,7 +213,7 @@ std::optional<Choice> widest(const Summary& all, Choice choice) {
   return choice;
 }
 
-/// The cheapest of all ways; nothing if none suits.
+/// Returns the cheapest of all choices; nothing if none suits.
 std::optional<Choice> cheapest(const Summary& all) {
   std::optional<Choice> best;
   const auto consider = [&](const Choice& choice) {
@@ -251,8 +254,8 @@ BrickCells row_cells(const Summary& all, const Choice& choice) {
   return cells;
 }
 
-/// So that what goes to a bucket from a tile, and to a brick from a bucket's chunk, lies together as well as
-/// it can. False if there are too many buckets.
+/// Chooses the width of the buckets so that the records which go from a tile to a bucket, and from a bucket's
+/// chunk to a brick, are as contiguous as possible. Returns false if there are too many buckets.
 bool choose_buckets(BrickPlan& plan) {
   std::int32_t fewest = 0;
   for (std::int32_t width = narrowest_bucket; width <= widest_bucket; ++width) {
@@ -268,7 +271,8 @@ bool choose_buckets(BrickPlan& plan) {
   return fewest > 0;
 }
 
-/// As few bricks along each axis as make them no larger, in volume, than one of this width (m).
+/// Returns the number of bricks along each axis: as few as make a brick no larger, in volume, than one of
+/// this width (m).
 std::array<double, 3> count_bricks(const Summary& all, double width) {
   std::array<double, 3> count;
   std::array<double, 3> edge;

@@ -1,5 +1,5 @@
-// How large bricks are, and how one is searched: chosen from a sample of the objects. No choice made here
-// changes the PCS.
+// The plan of the bricks: how large they are and how each is searched, chosen from a sample of the objects.
+// No choice made here changes the PCS.
 #pragma once
 
 #include "broadphase/brick_lattice.hpp"
@@ -11,30 +11,32 @@
 
 namespace scree {
 
-/// Of some of the objects. Sums of integers, so that no order of adding changes them.
+/// The properties of a sample of the objects. The sums are of integers, so that the order of adding does not
+/// change them.
 struct BrickSample {
-  static constexpr int most = 1 << 16;    ///< objects looked at
+  static constexpr int most = 1 << 16;    ///< largest number of objects looked at
   static constexpr int size_bins = 2048;  ///< size classes, eight to an octave
-  static constexpr int width = 8;         ///< cells along each axis of the counts of places
+  static constexpr int width = 8;         ///< cells along each axis in which centres are counted
 
-  std::uint32_t lo[3];    ///< the lowest centre on each axis, by ordered_bits
-  std::uint32_t hi[3];    ///< the highest
-  std::uint32_t largest;  ///< extent, as its bits
+  std::uint32_t lo[3];    ///< lowest centre on each axis, as ordered_bits
+  std::uint32_t hi[3];    ///< highest centre on each axis, as ordered_bits
+  std::uint32_t largest;  ///< largest extent, as the bits of the float
   std::uint32_t sizes[size_bins];
-  std::uint32_t places[width * width * width];  ///< of centres, from lo to hi
+  std::uint32_t places[width * width * width];  ///< number of centres in each cell, from lo to hi
 
   SCREE_HD static constexpr std::int64_t looked_at(std::int64_t count) { return count < most ? count : most; }
-  /// Which of `count` objects the sample looks at, for 0 <= k < looked_at(count): the middle of each of as
-  /// many stretches. Not the first, which often is a floor and like no other.
+  /// Returns which of `count` objects is sample k, for 0 <= k < looked_at(count). The objects are divided
+  /// into looked_at(count) stretches, and the middle of stretch k is taken: the first object often is a floor
+  /// and unlike all others.
   SCREE_HD static constexpr std::int64_t object(std::int64_t k, std::int64_t count) {
     return (2 * k + 1) * count / (2 * looked_at(count));
   }
 };
 
-/// Cells within a brick, by numbers of lower corners.
+/// The cells within a brick. The lower corner of an object decides its cell.
 struct BrickCells {
-  std::int32_t first[3];    ///< local number with which cells begin; what lies before is in the first cell
-  std::uint32_t factor[3];  ///< cells to 2^16 numbers
+  std::int32_t first[3];    ///< local number with which the cells begin; lower numbers are in the first cell
+  std::uint32_t factor[3];  ///< number of cells per 2^16 numbers
   std::int32_t count[3];
 
   SCREE_HD std::int32_t cell_of(std::int32_t local, int axis) const {
@@ -47,20 +49,23 @@ struct BrickCells {
   SCREE_HD std::int32_t total() const { return count[0] * count[1] * count[2]; }
 };
 
-/// What a brick does with its objects.
+/// How the pairs in a brick are found.
 enum class BrickMethod {
-  stencil,  ///< each in the cell of its lower corner, against half of the cells around it
-  rows,     ///< each in all rows along x that it overlaps, against those that begin in it
+  stencil,  ///< each object is in the cell of its lower corner, and is tested against half of the cells
+            ///< around it
+  rows,  ///< each object is in all rows along x that it overlaps, and is tested against objects that begin in
+         ///< them
 };
 
 struct BrickPlan {
   BrickLattice lattice;
   BrickMethod method;
   BrickCells cells;
-  /// Numbers. Of a stencil: what is wider is tested against all in its bricks.
+  /// Longest object of a stencil, in lattice numbers. With method stencil, wider objects are tested against
+  /// all objects in their bricks.
   std::int32_t reach[3];
-  // Bricks are filled in two steps: first buckets of bricks, which are cubes.
-  std::int32_t bucket_width;  ///< bricks along each of its edges
+  // Bricks are filled in two steps: objects first go to buckets, which are cubes of bricks.
+  std::int32_t bucket_width;  ///< number of bricks along each edge of a bucket
   std::int32_t buckets[3];
 
   SCREE_HD std::int32_t total_buckets() const { return buckets[0] * buckets[1] * buckets[2]; }
@@ -68,19 +73,21 @@ struct BrickPlan {
 
 inline constexpr std::int32_t widest_bucket = 8;
 inline constexpr std::int32_t most_buckets = 2048;
-/// So many that 32 bits number all entries; and along an axis, that they number all points.
+/// Largest numbers of bricks, in all and along an axis: 32 bits must number all entries, and all lattice
+/// points along an axis.
 inline constexpr std::int64_t most_bricks = 1 << 21;
 inline constexpr std::int64_t most_bricks_along = 1 << 14;
-/// What the memory of a block of threads holds: objects, entries (an object has one in each row, or one
-/// alone) and cells.
+/// Capacities of the shared memory of a block of threads: objects, entries (an object has one in each of its
+/// rows, or a single one) and cells.
 inline constexpr std::uint32_t brick_objects = 1280;
 constexpr std::uint32_t most_entries(BrickMethod method) {
   return method == BrickMethod::stencil ? brick_objects : 1792;
 }
 constexpr std::int32_t most_cells(BrickMethod method) { return method == BrickMethod::stencil ? 3200 : 1024; }
 
-/// Nothing where bricks do not suit: where there would be too many, where most objects would stand in
-/// several, or where objects are crowded in few places. `objects`: all, of which the sample shows some.
+/// Returns the plan; nothing if bricks do not suit: if there would be too many, if most objects would be in
+/// several, or if objects are crowded in few places. `objects` is the number of all objects, of which the
+/// sample contains some.
 std::optional<BrickPlan> plan_bricks(const BrickSample& sample, std::int64_t objects);
 
 }  // namespace scree

@@ -1,5 +1,5 @@
-// The broad phase by bricks: the fastest where objects are not too unlike in size and not too unevenly
-// spread.
+// The broad phase by bricks. It is the fastest one if objects do not differ too much in size and are not too
+// unevenly distributed.
 #pragma once
 
 #include "broadphase/broad_phase.hpp"
@@ -10,7 +10,7 @@
 
 namespace scree {
 
-/// On Host there is no such thing: its caches do as well for the grid.
+/// The version for Host, where bricks are not used: caches make the grid as fast there.
 template <class Space>
 class Bricks {
  public:
@@ -24,7 +24,7 @@ class Bricks<Device> {
  public:
   Bricks();
   ~Bricks();
-  /// The PCS, and its statistics; nothing if bricks do not suit the objects.
+  /// Returns the PCS and sets its statistics; returns nothing if bricks do not suit the objects.
   std::optional<ConstView<Pair>> find(ConstView<Aabb> bounds, ConstView<Mobility> mobility,
                                       BroadPhaseStats& stats);
 

@@ -1,4 +1,5 @@
-// The contract of the broad phase: closed float boxes in, the potentially colliding set (PCS) out.
+// The interface of the broad phase: its input is closed float boxes, its output the potentially colliding set
+// (PCS).
 #pragma once
 
 #include "broadphase/settings.hpp"
@@ -23,25 +24,25 @@ struct Pair {
 };
 
 struct BroadPhaseStats {
-  int levels = 0;               ///< grid levels in use; one of bricks, where they are
-  std::int64_t bricks = 0;      ///< that the space was cut into; 0 where the grid was searched as a whole
-  std::int64_t candidates = 0;  ///< box tests made
-  std::int64_t pairs = 0;       ///< pairs found
+  int levels = 0;               ///< grid levels in use; 1 if bricks are used
+  std::int64_t bricks = 0;      ///< number of bricks; 0 if the grid was searched as a whole
+  std::int64_t candidates = 0;  ///< number of box tests made
+  std::int64_t pairs = 0;       ///< number of pairs found
 };
 
-/// One way to make the PCS in a space.
+/// A method that finds the PCS in a space.
 template <class Space>
 class BroadPhase {
  public:
   virtual ~BroadPhase() = default;
 
-  /// All pairs of overlapping boxes in which at least one body is not fixed (`mobility`): each once, none
-  /// missing, in an order that depends on the input alone. The view is valid until the next call.
-  /// Throws RunError naming the body if a bound is NaN, infinite or inverted, or with the number of bytes
-  /// needed if the pairs do not fit in memory.
+  /// Returns all pairs of overlapping boxes in which at least one body is not fixed (`mobility`). Each pair
+  /// is there once and none is missing; their order depends on the input alone. The view is valid until the
+  /// next call. Throws RunError naming the body if a bound is NaN, infinite or inverted, or with the number
+  /// of bytes needed if the pairs do not fit in memory.
   virtual ConstView<Pair> find(ConstView<Aabb> bounds, ConstView<Mobility> mobility) = 0;
 
-  /// About the last call of find().
+  /// Returns the statistics of the last call of find().
   virtual const BroadPhaseStats& stats() const = 0;
 };
 

@@ -7,7 +7,7 @@ namespace scree {
 
 namespace {
 
-/// Body i against all that follow it. Absent boxes are empty and overlap nothing.
+/// Tests body i against all bodies that follow it. Absent boxes are empty and overlap nothing.
 struct AllSearch {
   static constexpr const char* label = "broadphase.brute_force";
   using Object = Boxed;

@@ -1,4 +1,5 @@
-// Every box against every other: the oracle of the other methods, and the fastest for very few bodies.
+// The broad phase by brute force, which tests every box against every other. It is the reference for the
+// other methods, and the fastest one for very few bodies.
 #pragma once
 
 #include "broadphase/broad_phase.hpp"

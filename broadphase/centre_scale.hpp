@@ -1,4 +1,5 @@
-// Where centres lie, in whole numbers and whatever the outliers; and their places on the Z-order curve.
+// A numbering of the centres with integers, which outliers do not spoil, and their places on the Z-order
+// curve.
 #pragma once
 
 #include "broadphase/census.hpp"
@@ -12,14 +13,15 @@
 
 namespace scree {
 
-/// Numbers coordinates with 21 bits: evenly up to a unit on either side of the origin, then with half the
-/// resolution in each octave. Dividing the box around all centres evenly, as hierarchies usually do, would
-/// leave one number to all others where a single one lies far away.
+/// A numbering of coordinates with 21 bits: even up to one unit on either side of the origin, then with half
+/// the resolution in each further octave. An even division of the box around all centres, which hierarchies
+/// usually use, would leave one number to all other centres if a single one lies far away.
 class CentreScale {
  public:
   static constexpr int bits = z_order_bits;
 
-  /// The unit is four times the geometric mean of the distances, so that all is even without outliers.
+  /// Sets the unit to four times the geometric mean of the distances, so that without outliers all numbers
+  /// are even.
   explicit CentreScale(const Census& census) {
     const auto mean_class = static_cast<std::int32_t>(census.distance_classes / std::max(census.present, 1));
     per_unit_ = 1 / (4.0 * class_end(mean_class));
@@ -29,7 +31,7 @@ class CentreScale {
     shift_ = std::max(0, static_cast<int>(std::bit_width(steps(farthest))) - (bits - 1));
   }
 
-  /// From 0 to before 2^bits, and never less for a larger coordinate (m).
+  /// Returns a number from 0 to below 2^bits, which is never smaller for a larger coordinate (m).
   SCREE_HD std::uint32_t number(double coordinate) const {
     constexpr std::uint32_t half = 1u << (bits - 1);
     const std::uint32_t distance = steps(fabs(coordinate)) >> shift_;
@@ -38,7 +40,8 @@ class CentreScale {
   }
 
  private:
-  /// The bits of a float are an even scale within its octave, and go on from one octave to the next.
+  /// Returns a distance in float steps. The bits of a float are an even scale within its octave, and continue
+  /// from one octave to the next.
   SCREE_HD std::uint32_t steps(double distance) const {
     const double from_one = fmin(1 + distance * per_unit_, static_cast<double>(FLT_MAX));
     return std::bit_cast<std::uint32_t>(static_cast<float>(from_one)) - std::bit_cast<std::uint32_t>(1.0f);
@@ -48,7 +51,7 @@ class CentreScale {
   int shift_;
 };
 
-/// Place of a box's centre on the Z-order curve.
+/// Returns the place of a box's centre on the Z-order curve.
 SCREE_HD inline std::uint64_t morton_code(const CentreScale& scale, const Aabb& box) {
   return z_order(scale.number(centre_of(box, 0)), scale.number(centre_of(box, 1)),
                  scale.number(centre_of(box, 2)));

@@ -1,5 +1,5 @@
 // The objects of the hierarchical grid, sorted by cell so that neighbours share cache lines, and the test of
-// one against others: in each space as suits its processor.
+// one object against others, in the form that suits the processor of each space.
 #pragma once
 
 #include "broadphase/pair_list.hpp"
@@ -11,10 +11,11 @@
 
 namespace scree {
 
-/// Views of them. Corners are apart, so that a warp's loads of 16 bytes share cache lines too.
+/// Views of the objects. Lower and upper corners are in separate arrays, so that a warp's loads of 16 bytes
+/// share cache lines too.
 template <class Space>
 struct GridObjects {
-  static constexpr int lanes = 1;  ///< objects that are tested at once
+  static constexpr int lanes = 1;  ///< number of objects that are tested at once
   using Probe = Boxed;             ///< an object that is tested against others
 
   Corner* lo;
@@ -28,7 +29,8 @@ struct GridObjects {
   SCREE_HD static Probe probe(const Boxed& object) { return object; }
 };
 
-/// In blocks of four, each coordinate of all four together, so that they are tested at once.
+/// Views of the objects in blocks of four, with each coordinate of all four together, so that four are tested
+/// at once.
 template <>
 struct GridObjects<Host> {
   static constexpr int lanes = 4;
@@ -39,7 +41,7 @@ struct GridObjects<Host> {
     float hi[3][lanes];
     std::int32_t tag[lanes];  ///< the body, and the sign bit if it is fixed
   };
-  /// The same object in all lanes.
+  /// An object that is repeated in all lanes.
   struct alignas(16) Probe {
     float lo[3][lanes];
     float hi[3][lanes];
@@ -66,7 +68,7 @@ struct GridObjects<Host> {
     scree::prefetch(block[number].lo);
     scree::prefetch(block[number].hi[1]);
   }
-  /// Bit l for the l-th object of a block.
+  /// Returns a mask in which bit l is set if the object may collide with the l-th object of a block.
   std::uint32_t may_collide(const Probe& a, std::uint32_t number) const {
     const Block& b = block[number];
     FourInts overlap = ~(four(a.tag) & four(b.tag));
@@ -88,7 +90,7 @@ struct GridObjects<Host> {
   }
 };
 
-/// Their owner.
+/// The owner of the objects' memory.
 template <class Space>
 class GridObjectArray {
  public:

@@ -11,31 +11,34 @@ namespace scree {
 
 namespace {
 
-// Half of the 3x3x3 cells: rows looked up, and cells of candidates.
+// The search of half of the 3x3x3 cells: the number of rows looked up, and the number of cells with
+// candidates.
 constexpr double own_rows = 5;
 constexpr double own_cells = 13.5;
-// Share of space that the cubes around objects fill where they are. It bounds the occupancy of cells from
-// below where the domain is mostly empty: one outlier must not make the model believe that all others are far
-// apart. An object counts with at most the cube of widest_neighbour cells: an oversize object says little
-// about the space in which small objects live.
+// fill_share is the share of space that the cubes around objects fill in the region where there are objects.
+// It bounds the occupancy of cells from below if the domain is mostly empty: one outlier must not make the
+// model believe that all others are far apart. An object counts with at most the cube of widest_neighbour
+// cells: an oversize object says little about the space in which small objects lie.
 constexpr double widest_neighbour = 8;
 constexpr double fill_share = 0.3;
-// A dense table has at most this many cells per object of its level, beside a floor that any level may have.
+// Largest number of cells per object of its level in a dense table, and a number of cells that any level may
+// have.
 constexpr double dense_cells_per_object = 4;
 constexpr double dense_cells_floor = 4096;
-// The cells of a sparse level may be so much wider than its objects that a dense table holds them: where the
-// objects are all in one place after all, that costs seven times the tests, of which there are few
-// (fill_share), and saves half of the rows.
+// Largest factor by which the cells of a sparse level may be wider than its objects, so that a dense table
+// holds them. If the objects are all in one place after all, this costs seven times the tests, of which there
+// are few (fill_share), and saves half of the rows.
 constexpr double widest_sparse = 1.9;
-// A hashed table has this many, rounded up to a power of two, and no table more than largest_table.
+// Number of cells per object in a hashed table, rounded up to a power of two, and the largest number of cells
+// of any table.
 constexpr double hashed_cells_per_object = 2;
 constexpr double largest_table = 0x1p28;
 
-/// A level in the making: consecutive bins of the histogram.
+/// A level that is being chosen: consecutive bins of the histogram.
 struct Group {
   double count = 0;
-  double volume = 0;  ///< of the cubes around its objects (m^3)
-  float cell = 0;     ///< largest extent (m)
+  double volume = 0;  ///< volume of the cubes around its objects (m^3)
+  float cell = 0;     ///< width of its cells: the largest extent (m)
 };
 
 class CostModel {
@@ -51,7 +54,8 @@ class CostModel {
     return product;
   }
 
-  /// Objects of a group per cell of its own width, where the group has objects.
+  /// Returns the number of objects of a group per cell of its own width, in the region where the group has
+  /// objects.
   double occupancy(const Group& group, const std::vector<Group>& all) const {
     const double cell_volume = std::pow(group.cell, 3.0);
     double filled = 0;
@@ -65,14 +69,15 @@ class CostModel {
     return g.count * (own_rows + std::min(own_cells * occupancy, g.count) * costs_.test);
   }
 
-  /// All objects of `from` search the cells of `to`.
+  /// Returns the cost if all objects of `from` search the cells of `to`, which are wider.
   double up(const Group& from, const Group& to, double occupancy_to) const {
     const double width = static_cast<double>(from.cell) / to.cell + 2;
     return from.count *
            (width * width + std::min(width * width * width * occupancy_to, to.count) * costs_.test);
   }
 
-  /// The same where the cells of `to` are the smaller ones; a very large object rather tests all of them.
+  /// Returns the cost if all objects of `from` search the cells of `to`, which are narrower. A very large
+  /// object tests all objects of `to` instead.
   double down(const Group& from, const Group& to, double occupancy_to) const {
     const double width = static_cast<double>(from.cell) / to.cell + 2;
     const double rows = width * width * (1 + width / brick_row);
@@ -104,16 +109,16 @@ double total_cost(const CostModel& model, const std::vector<Group>& groups) {
   return cost;
 }
 
-/// Cells narrower than this would tell apart what floats cannot, and run out of numbers: a 2^24th of the
-/// typical distance from the origin. The geometric mean, because an outlier must not widen the cells of all
-/// others.
+/// Returns the smallest useful width of cells: a 2^24th of the typical distance from the origin. Narrower
+/// cells would distinguish coordinates that floats cannot, and run out of numbers. The typical distance is
+/// the geometric mean, because an outlier must not widen the cells of all others.
 float narrowest_cell(const Census& census) {
   const auto mean = static_cast<std::int32_t>(census.distance_classes / census.present);
   const float distance = std::bit_cast<float>(static_cast<std::uint32_t>(mean) << 20);
   return std::max(distance * 0x1p-24f, FLT_MIN);
 }
 
-/// One group per octave of sizes. Bins that differ by less than the narrowest cell share a group.
+/// Returns one group per octave of sizes. Bins that differ by less than the narrowest cell share a group.
 std::vector<Group> octaves(const Census& census, const SizeHistogram& sizes) {
   const float narrowest = narrowest_cell(census);
   std::vector<Group> groups;
@@ -142,8 +147,8 @@ std::vector<Group> merged(const std::vector<Group>& groups, std::size_t k) {
   return fewer;
 }
 
-/// Starts with one level per octave and merges neighbours, each time those that gain most, as long as that
-/// gains anything, or down to the number asked for.
+/// Chooses the levels. It starts with one level per octave and merges neighbours, each time the two that gain
+/// most, as long as that gains anything, or until there are as many levels as are forced.
 std::vector<Group> choose(const CostModel& model, std::vector<Group> groups, int forced) {
   const int limit = forced > 0 ? std::min(forced, max_grid_levels) : max_grid_levels;
   double cost = total_cost(model, groups);
@@ -171,8 +176,8 @@ void set_cell(GridLevel& level, double cell) {
   level.inverse_cell = 1 / level.cell;
 }
 
-/// Sets the cells in use and the layout of a dense table, which it may prove too large for; returns its
-/// cells.
+/// Sets the cells in use and the layout of a dense table, and returns its number of cells, which may be too
+/// large.
 double lay_out_dense(GridLevel& level, const Census& census) {
   double columns[3];
   for (int a = 0; a < 3; ++a) {
@@ -194,7 +199,7 @@ void lay_out(GridLevel& level, const Census& census, double objects) {
   const double cells = lay_out_dense(level, census);
   level.hashed = cells > most;
   if (level.hashed && cells <= most * widest_sparse * widest_sparse * widest_sparse) {
-    // The bricks at the border are not full: their share depends on the width.
+    // Widths are tried, because the bricks at the border are not full, and their share depends on the width.
     for (double wider = std::cbrt(cells / most); level.hashed && wider <= widest_sparse; wider *= 1.02) {
       set_cell(level, wider * level.largest);
       level.hashed = lay_out_dense(level, census) > most;

@@ -1,5 +1,5 @@
-// The searches of the hierarchical grid, over objects sorted by cell. Together they test each pair that
-// can overlap from one side only.
+// The searches of the hierarchical grid, over objects sorted by cell. Together they test each pair that can
+// overlap from one side only.
 #pragma once
 
 #include "broadphase/aabb.hpp"
@@ -11,17 +11,17 @@
 
 namespace scree {
 
-/// The grid, built.
+/// The complete grid, as the searches use it.
 template <class Space>
 struct GridView {
   GridLevel levels[max_grid_levels];
   bool any_hashed;
   GridObjects<Space> objects;
-  const std::uint32_t* starts;  ///< of each cell among the objects, one past the last cell included
+  const std::uint32_t* starts;  ///< start of each cell among the objects, and the end of the last cell
 
-  /// The objects in the cells from x to `end` of a row: those that stand in one run with x (part 0), or the
-  /// rest of them (part 1), which are in the next brick of a hashed table. At most brick_row cells. Part 1 of
-  /// a dense table is empty.
+  /// Returns the objects in the cells from x to `end` of a row: those that lie in one run with x (part 0), or
+  /// the rest of them (part 1), which are in the next brick of a hashed table. In a hashed table these are at
+  /// most brick_row cells. Part 1 of a dense table is empty.
   SCREE_HD Run row(const GridLevel& level, std::int32_t x, std::int32_t end, std::int32_t y, std::int32_t z,
                    int part) const {
     if (level.hashed) {
@@ -40,7 +40,7 @@ struct GridView {
   }
 };
 
-/// Of a list of level pairs, the one that a search belongs to.
+/// Returns the level pair, from a list, to which a search belongs.
 template <class Space>
 SCREE_HD const LevelPair& pair_of_search(const GridView<Space>& grid, const LevelPair* pairs,
                                          std::int64_t search) {
@@ -48,7 +48,7 @@ SCREE_HD const LevelPair& pair_of_search(const GridView<Space>& grid, const Leve
   return *pairs;
 }
 
-/// What all searches of the grid have in common.
+/// The common part of all searches of the grid.
 template <class Space>
 struct GridSearch {
   using Candidate = Boxed;
@@ -63,7 +63,7 @@ struct GridSearch {
   void prefetch(std::uint32_t block) const { grid.objects.prefetch(block); }
 };
 
-/// A search whose objects are tested against all candidates alike.
+/// A search whose objects are tested against all candidates in the same way.
 template <class Space>
 struct PlainSearch : GridSearch<Space> {
   using Object = typename GridObjects<Space>::Probe;
@@ -75,9 +75,9 @@ struct PlainSearch : GridSearch<Space> {
   SCREE_HD Pair match(const Object& a, const Boxed& b) const { return pair_of(a.body(), b.body()); }
 };
 
-/// Each object against half of the 27 cells around it on its own level: what follows in its cell, the next
-/// cell of its row, and the four rows after it in the order of (z, y). The other half finds this object from
-/// there.
+/// The search of each object in half of the 27 cells around it on its own level: the objects after it in its
+/// cell, the next cell of its row, and the four rows after that row in the order of (z, y). Pairs with
+/// objects in the other half are found by the searches of those objects.
 template <class Space>
 struct OwnSearch : PlainSearch<Space> {
   static constexpr const char* label = "broadphase.traverse.own";
@@ -118,11 +118,11 @@ struct OwnSearch : PlainSearch<Space> {
   }
 };
 
-/// Each object of a level against one whose cells are wider: at most 3x3x3 of them.
+/// The search of each object of a level in a level with wider cells: in at most 3x3x3 of them.
 template <class Space>
 struct UpSearch : PlainSearch<Space> {
   static constexpr const char* label = "broadphase.traverse.up";
-  static constexpr int parts_of_row = 2;  // 9 rows, runs_at_once in each
+  static constexpr int parts_of_row = 2;  // 9 rows, runs_at_once in each part
   using Objects = GridObjects<Space>;
   using GridSearch<Space>::grid;
   struct Item {
@@ -148,32 +148,32 @@ struct UpSearch : PlainSearch<Space> {
   }
 };
 
-/// A query, and how it is cut into work items: into runs of cells of one row or, where these are too
-/// many for the objects there are, into all objects of the level. An oversize object is thus spread over as
-/// many threads as it needs.
+/// A search of an object among smaller ones, and its division into work items: into runs of cells of one row,
+/// or, if these are too many for the number of objects, into all objects of the level. So an oversize object
+/// is distributed over as many threads as it needs.
 struct Query {
-  static constexpr int parts = 3;  // of an item
+  static constexpr int parts = 3;  // parts of an item
   static constexpr int runs_per_item = parts * runs_at_once;
   static constexpr std::int64_t objects_per_item = 64;
   static constexpr std::int32_t longest_run = 4 * brick_row;  // cells of a dense level
-  // A run costs about as much as this many tests.
+  // Cost of a run, in tests.
   static constexpr double tests_per_run = 3;
 
-  std::int64_t object;  ///< in cell order
-  int to;               ///< level searched
+  std::int64_t object;  ///< index of the object, in cell order
+  int to;               ///< level that is searched
   CellRange range;
-  std::int32_t run_cells;  ///< at most, of a run
-  std::int32_t first_x;    ///< of the first run of a row, which begins there or after it
+  std::int32_t run_cells;  ///< largest number of cells in a run
+  std::int32_t first_x;    ///< x from which the runs of a row are counted; the range begins there or after it
   std::int32_t runs_per_row;
-  std::int32_t rows_y;    ///< rows per layer of cells
-  double layers_per_row;  ///< its inverse, since to divide is slower
+  std::int32_t rows_y;    ///< number of rows per layer of cells
+  double layers_per_row;  ///< inverse of rows_y, because division is slower
   std::int64_t runs;
-  bool all;  ///< test all objects of the level instead
+  bool all;  ///< whether all objects of the level are tested instead
 
-  /// Of a run.
+  /// Returns the cells of a run.
   SCREE_HD CellRange cells(std::int64_t run) const {
-    // Runs are fewer than the objects of the level, so 32 bits hold them. The product is half of a layer's
-    // share or more from any whole number, so that its rounding does not matter.
+    // There are fewer runs than objects of the level, so 32 bits hold their number. The product differs from
+    // any whole number by at least half of a row's share of a layer, so that its rounding does not matter.
     const auto number = static_cast<std::int32_t>(run);
     const std::int32_t row = runs_per_row == 1 ? number : number / runs_per_row;
     const auto layer = static_cast<std::int32_t>((row + 0.5) * layers_per_row);
@@ -206,7 +206,7 @@ SCREE_HD Query make_query(const GridView<Space>& grid, const LevelPair* descents
   query.rows_y = range.hi[1] - range.lo[1] + 1;
   query.layers_per_row = 1.0 / query.rows_y;
   const std::int32_t rows_z = range.hi[2] - range.lo[2] + 1;
-  // In floating point, since the product of three such numbers can pass 64 bits.
+  // The product is formed in floating point, since the product of three such numbers can exceed 64 bits.
   const double runs = static_cast<double>(query.runs_per_row) * static_cast<double>(query.rows_y) *
                       static_cast<double>(rows_z);
   query.all = runs * Query::tests_per_run > static_cast<double>(level.end - level.begin);
@@ -214,7 +214,7 @@ SCREE_HD Query make_query(const GridView<Space>& grid, const LevelPair* descents
   return query;
 }
 
-/// The queries of all descents, cut into items.
+/// The search of the queries of all descents, divided into items.
 template <class Space>
 struct WideSearch : GridSearch<Space> {
   static constexpr const char* label = "broadphase.traverse.wide";
@@ -224,7 +224,7 @@ struct WideSearch : GridSearch<Space> {
     typename Objects::Probe probe;
     Query query;
     std::int64_t part;
-    bool by_cell;  ///< candidates count only under their own cell
+    bool by_cell;  ///< whether candidates count only in their own cell
   };
   struct Item {
     Object object;
@@ -232,14 +232,14 @@ struct WideSearch : GridSearch<Space> {
   };
 
   const LevelPair* descents;
-  const std::int64_t* first_item;  ///< of each query, one past the last included
+  const std::int64_t* first_item;  ///< index of the first item of each query, and the end of the last one
   std::int64_t queries;
 
   SCREE_HD Item item(std::int64_t i) const {
     const std::int64_t q = query_of(i);
     return item_of(q, i - first_item[q]);
   }
-  /// The next one, found faster; not for the last one.
+  /// Returns the item after another one, faster than item() does. There is none after the last item.
   Item item_after(const Item& before) const {
     std::int64_t q = before.query;
     const std::int64_t next = first_item[q] + before.object.part + 1;
@@ -261,8 +261,8 @@ struct WideSearch : GridSearch<Space> {
     const CellRange cells = query.cells(number);
     return grid.row(level, cells.lo[0], cells.hi[0], cells.lo[1], cells.lo[2], 0);
   }
-  /// A wide search can visit a slot of a hashed table under several cells: what stands there counts only
-  /// under its own.
+  /// Returns whether an object meets a candidate. A wide search can visit a slot of a hashed table as several
+  /// cells: an object in the slot counts only in its own cell.
   SCREE_HD bool meets(const Object& a, int r, const Boxed& b) const {
     return may_collide(a.probe, b) & counts(a, r, b);
   }

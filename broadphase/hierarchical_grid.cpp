@@ -20,7 +20,7 @@ namespace {
 struct AssignCell {
   ConstView<Aabb> bounds;
   ConstView<GridLevel> levels;
-  std::uint32_t absent;  ///< key of what stands in no cell: after all cells
+  std::uint32_t absent;  ///< key of an absent object, which is in no cell; it comes after all cells
   View<std::uint32_t> key;
   View<std::int32_t> body;
   SCREE_HD void operator()(std::int64_t i) const {
@@ -47,7 +47,7 @@ struct GatherObject {
     if (k + ahead < body.size()) {
       const std::int32_t next = body[k + ahead];
       prefetch(&bounds[next]);
-      prefetch(&bounds[next].hi[2]);  // of 24 bytes, which may be in two cache lines
+      prefetch(&bounds[next].hi[2]);  // the box has 24 bytes, which may be in two cache lines
       prefetch(&mobility[next]);
     }
     const std::int32_t i = body[k];
@@ -55,7 +55,7 @@ struct GatherObject {
   }
 };
 
-/// The last object of each cell's run says where the next cell starts.
+/// Writes where the next cell starts, from the last object of each cell's run.
 struct EndRun {
   ConstView<std::uint32_t> key;
   std::int64_t count;
@@ -95,7 +95,7 @@ class HierarchicalGrid final : public BroadPhase<Space> {
   const BroadPhaseStats& stats() const override { return stats_; }
 
  private:
-  /// Level and cell of each object.
+  /// Finds the level and the cell of each object.
   void initialize(ConstView<Aabb> bounds) {
     const Census census = take_census<Space>(bounds);
     plan_ = plan_grid(census, count_sizes<Space>(bounds, census), grid_costs_for<Space>(forced_levels_),
@@ -110,10 +110,11 @@ class HierarchicalGrid final : public BroadPhase<Space> {
                               AssignCell{bounds, levels_.view(), plan_.cells, key_.view(), body_.view()});
   }
 
-  /// Cell order; the sort is stable, so objects of one cell stay in the order of their numbers.
+  /// Sorts the objects by cell. The sort is stable, so objects of one cell stay in the order of their
+  /// numbers.
   void sort() { parallel::sort_by_key("broadphase.sort", key_, body_, std::bit_width(plan_.cells)); }
 
-  /// Start and end of each cell's run, and the objects themselves in cell order.
+  /// Finds the start and end of each cell's run, and copies the objects themselves in cell order.
   void construct(ConstView<Aabb> bounds, ConstView<Mobility> mobility) {
     parallel::for_each<Space>("broadphase.construct.gather", objects_.size(),
                               GatherObject<Space>{bounds, mobility, body_.view(), objects_.objects()});
@@ -124,7 +125,7 @@ class HierarchicalGrid final : public BroadPhase<Space> {
     parallel::running_max("broadphase.construct.starts", starts_);
   }
 
-  /// Each object against its own level and the others.
+  /// Searches each object's own level and the other levels.
   ConstView<Pair> traverse() {
     GridView<Space> grid{{}, false, objects_.objects(), starts_.data()};
     std::ranges::copy(plan_.levels, grid.levels);
@@ -140,7 +141,7 @@ class HierarchicalGrid final : public BroadPhase<Space> {
     return {{{grid, searches, parts}}, ascents_.data()};
   }
 
-  /// The searches of large objects among small ones, cut into items of like cost.
+  /// Divides the searches of large objects among small ones into items of similar cost.
   WideSearch<Space> wide_search(const GridView<Space>& grid) {
     const std::int64_t queries = plan_.searches(plan_.descents);
     WideSearch<Space> search{{grid, 0, Query::parts}, nullptr, nullptr, queries};
@@ -161,8 +162,8 @@ class HierarchicalGrid final : public BroadPhase<Space> {
   GridPlan plan_;
   Array<GridLevel, Space> levels_;
   Array<std::uint32_t, Space> key_;  ///< cell of each object
-  Array<std::int32_t, Space> body_;  ///< its number
-  GridObjectArray<Space> objects_;   ///< in cell order
+  Array<std::int32_t, Space> body_;  ///< number of each object
+  GridObjectArray<Space> objects_;   ///< the objects in cell order
   Array<std::uint32_t, Space> starts_;
   Array<LevelPair, Space> ascents_, descents_;
   Array<std::uint32_t, Space> query_items_;

@@ -9,48 +9,51 @@ namespace scree {
 
 namespace {
 
-/// The box of one leaf, or of leaves that follow each other. Nodes have numbers: leaf k is ~k, and an
-/// internal node has that of its leaf next to the split of its parent (Karras 2012), which no other node
-/// shares.
+/// A node: the box of one leaf, or of consecutive leaves. Nodes have numbers: leaf k has ~k, and an internal
+/// node has the number of the one of its end leaves that is next to the split of its parent (Karras 2012),
+/// which no other node shares.
 struct alignas(32) Node {
   float lo[3];
-  std::int32_t down;  ///< the child with its first leaves; of a leaf: its body, or ~body if that is fixed
+  std::int32_t down;  ///< child with the first leaves; for a leaf: its body, or ~body if that is fixed
   float hi[3];
-  std::int32_t over;  ///< the node next after its leaves, or the number of leaves if there is none
+  std::int32_t over;  ///< node that follows after its leaves, or the number of leaves if there is none
 
   SCREE_HD Aabb box() const { return {{lo[0], lo[1], lo[2]}, {hi[0], hi[1], hi[2]}}; }
 };
 
-/// A binary tree over leaves with codes in order: a node splits where the highest bit changes in which the
-/// codes of its leaves differ. Equal codes are told apart by the numbers of their leaves, as if these
-/// followed as lower bits (Karras 2012), so no path is longer than 63 + 31 nodes, however many are equal.
+/// A binary tree over leaves with codes in order. A node splits where the highest bit changes in which the
+/// codes of its leaves differ. Equal codes are distinguished by the numbers of their leaves, as if these
+/// followed as lower bits (Karras 2012), so no path is longer than 63 + 31 nodes, however many codes are
+/// equal.
 struct Tree {
-  std::int32_t leaves;  ///< two or more
+  std::int32_t leaves;  ///< number of leaves, at least two
   const std::uint64_t* code;
   Node* nodes;
 
   SCREE_HD Node& at(std::int32_t number) const {
     return nodes[number < 0 ? std::int64_t{leaves} + ~number : number];
   }
-  /// The first leaf of a node that another goes over to: its number says it, since it is an upper part.
+  /// Returns the first leaf of a node that is the `over` of another node. Its number gives the leaf, since
+  /// the node is the upper part of its parent.
   SCREE_HD static std::int32_t first_of(std::int32_t over) { return over < 0 ? ~over : over; }
 
-  /// Whether the split after leaf a is further down than that after leaf b, both next to one node.
+  /// Returns whether the split after leaf a is deeper in the tree than the split after leaf b, if both are
+  /// next to one node.
   SCREE_HD bool deeper(std::int32_t a, std::int32_t b) const {
     const std::uint64_t difference_a = code[a] ^ code[a + 1];
     const std::uint64_t difference_b = code[b] ^ code[b + 1];
     if (difference_a != difference_b) return difference_a < difference_b;
     return (a ^ (a + 1)) < (b ^ (b + 1));
   }
-  /// Whether the leaves from first to last, which are a node, are the lower part of its parent.
+  /// Returns whether the node with the leaves from first to last is the lower part of its parent.
   SCREE_HD bool is_lower(std::int32_t first, std::int32_t last) const {
     return first == 0 || (last + 1 < leaves && deeper(last, first - 1));
   }
   SCREE_HD static std::int32_t number_of(std::int32_t first, std::int32_t last, bool lower) {
     return first == last ? ~first : lower ? last : first;
   }
-  /// The upper part of the node that splits after leaf `last`: what comes next where a node that ends there
-  /// is left out (Prokopenko and Lebrun-Grandie 2024).
+  /// Returns the upper part of the node that splits after leaf `last`. It is the next node to visit if a node
+  /// that ends with this leaf is skipped (Prokopenko and Lebrun-Grandie 2024).
   SCREE_HD std::int32_t over(std::int32_t last) const {
     const std::int32_t next = last + 1;
     return next < leaves && !is_lower(next, next) ? ~next : next;
@@ -69,9 +72,9 @@ struct CodeOfBox {
   }
 };
 
-/// From each leaf to the root: at a parent the thread that comes first ends, and the second, who finds both
-/// children done, makes the node (Apetrei 2014, "Fast and Simple Agglomerative LBVH Construction"). Which of
-/// them it is changes nothing in the tree.
+/// Builds the tree from each leaf to the root. At a parent, the thread that comes first ends; the second one,
+/// which finds both children done, makes the node (Apetrei 2014, "Fast and Simple Agglomerative LBVH
+/// Construction"). Which thread comes second changes nothing in the tree.
 struct Climb {
   static constexpr std::int32_t nobody = -1;
 
@@ -79,7 +82,7 @@ struct Climb {
   ConstView<Aabb> bounds;
   ConstView<Mobility> mobility;
   ConstView<std::int32_t> body;
-  View<std::int32_t> reached;  ///< of the parent by its split: the far end of the child that came first
+  View<std::int32_t> reached;  ///< for the parent with each split: the far end of the child that came first
 
   SCREE_HD void operator()(std::int64_t k) const {
     auto first = static_cast<std::int32_t>(k);
@@ -93,7 +96,7 @@ struct Climb {
       const std::int32_t far = exchange(&reached[split], lower ? first : last);
       if (far == nobody) return;
       (lower ? last : first) = far;
-      if (first == 0 && last + 1 == tree.leaves) return;  // the root, by which no search comes
+      if (first == 0 && last + 1 == tree.leaves) return;  // the root, which no search visits
       const std::int32_t sibling =
           lower ? Tree::number_of(split + 1, last, false) : Tree::number_of(first, split, true);
       extend(node, tree.at(sibling));
@@ -123,16 +126,16 @@ SCREE_HD bool holds(const Node& outer, const Node& inner) {
   return true;
 }
 
-/// Searches the leaves after leaf k, so that each pair is found once, and needs no stack. Calls
-/// found(first, end) for leaves that all overlap leaf k: at once for all of a node that it holds, so that
-/// oversize objects, and many bodies at one point, do not cost a test for each pair. Returns the number of
-/// tests.
+/// Searches the leaves after leaf k, so that each pair is found once; it needs no stack. Calls found(first,
+/// end) for leaves that all overlap leaf k. It is called once for all leaves of a node that leaf k encloses,
+/// so that oversize objects, and many bodies at one point, do not cost a test for each pair. Returns the
+/// number of tests.
 template <class Found>
 SCREE_HD std::uint32_t search(const Tree& tree, std::int64_t k, const Found& found) {
   const Node self = tree.at(~static_cast<std::int32_t>(k));
   const bool fixed = self.down < 0;
   std::uint32_t tests = 0;
-  auto first = static_cast<std::int32_t>(k) + 1;  // of the node's leaves
+  auto first = static_cast<std::int32_t>(k) + 1;  // first of the node's leaves
   for (std::int32_t number = self.over; number != tree.leaves;) {
     const Node node = tree.at(number);
     ++tests;
@@ -164,7 +167,7 @@ struct CountPairs {
 
 struct ListPairs {
   Tree tree;
-  const std::int64_t* place;  ///< of each leaf's first pair
+  const std::int64_t* place;  ///< index of each leaf's first pair
   View<Pair> pairs;
   SCREE_HD void operator()(std::int64_t k) const {
     if (place[k] == place[k + 1]) return;
@@ -200,7 +203,7 @@ class Lbvh final : public BroadPhase<Space> {
   const BroadPhaseStats& stats() const override { return stats_; }
 
  private:
-  /// The order of the curve; what is absent comes last.
+  /// Sorts the objects in the order of the curve; absent objects come last.
   void sort(ConstView<Aabb> bounds, const CentreScale& scale) {
     code_.resize(bounds.size());
     body_.resize(bounds.size());
@@ -219,7 +222,7 @@ class Lbvh final : public BroadPhase<Space> {
     return tree;
   }
 
-  /// Each leaf against those after it, counted and then listed.
+  /// Searches the leaves after each leaf. The pairs are first counted and then listed.
   ConstView<Pair> traverse(const Tree& tree) {
     count_.resize(tree.leaves);
     tests_.resize(tree.leaves);
@@ -234,11 +237,11 @@ class Lbvh final : public BroadPhase<Space> {
   }
 
   BroadPhaseStats stats_;
-  Array<std::uint64_t, Space> code_;  ///< of each object, in their order
+  Array<std::uint64_t, Space> code_;  ///< codes of the objects, sorted
   Array<std::int32_t, Space> body_;
-  Array<Node, Space> nodes_;  ///< internal ones, then leaves
+  Array<Node, Space> nodes_;  ///< internal nodes, then leaves
   Array<std::int32_t, Space> reached_;
-  Array<std::uint32_t, Space> count_, tests_;  ///< of each leaf
+  Array<std::uint32_t, Space> count_, tests_;  ///< number of pairs and of tests of each leaf
   Array<std::int64_t, Space> place_;
   PairList<Space> pairs_;
 };

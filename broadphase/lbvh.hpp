@@ -1,5 +1,5 @@
 // The linear bounding volume hierarchy: a binary tree of boxes over the objects in the order of a
-// space-filling curve. A comparator: what most public broad phases of GPUs are.
+// space-filling curve. It serves for comparison: most public broad phases for GPUs are of this kind.
 #pragma once
 
 #include "broadphase/broad_phase.hpp"

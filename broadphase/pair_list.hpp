@@ -1,4 +1,4 @@
-// How every broad phase makes its list of pairs.
+// The list of pairs, as every broad phase makes it.
 #pragma once
 
 #include "broadphase/aabb.hpp"
@@ -11,7 +11,7 @@
 
 namespace scree {
 
-/// Throws RunError, with both numbers, if so many pairs need more than `available` bytes.
+/// Throws RunError, with both numbers, if that many pairs need more than `available` bytes.
 inline void require_memory(std::int64_t pairs, std::size_t available) {
   const auto most = static_cast<std::int64_t>(available / sizeof(Pair));
   if (pairs <= most) return;
@@ -20,14 +20,14 @@ inline void require_memory(std::int64_t pairs, std::size_t available) {
                  std::to_string(available) + " bytes are free. Do bodies overlap, or is a margin too wide?");
 }
 
-/// A corner of a body's box, and what fills the 16 bytes up.
+/// A corner of a body's box, with a tag that fills it up to 16 bytes.
 struct alignas(16) Corner {
   float at[3];
-  std::int32_t tag;  ///< of the lower one: the body; of the upper one: bits that no two of a pair share, 1 if
-                     ///< it is fixed
+  std::int32_t tag;  ///< lower corner: the body; upper corner: bits of which the two bodies of a pair share
+                     ///< none, bit 0 if it is fixed
 };
 
-/// What a test needs of a body.
+/// The data of a body that a test needs.
 struct Boxed {
   Corner lo;
   Corner hi;
@@ -45,7 +45,7 @@ SCREE_HD inline bool may_collide(const Boxed& a, const Boxed& b) {
   return overlap(a.box(), b.box()) & ((a.hi.tag & b.hi.tag) == 0);
 }
 
-/// A search among objects in some order, each against one run of them, which item() finds.
+/// A search in which each of the sorted objects is tested against one run of them, which item() finds.
 struct RunSearch {
   using Object = Boxed;
   using Candidate = Boxed;
@@ -67,8 +67,8 @@ struct RunSearch {
 template <class Space>
 class PairList {
  public:
-  /// The pairs that the searches find (core/space_matches.hpp), in an order that depends on the input alone.
-  /// Throws RunError if there is no memory for so many, before any is asked for.
+  /// Returns the pairs that the searches find (core/space_matches.hpp), in an order that depends on the input
+  /// alone. Throws RunError if there is not enough memory for the pairs, before any is allocated.
   template <class... Search>
   ConstView<Pair> collect(BroadPhaseStats& stats, const Search&... searches) {
     const MatchTotals totals = finder_.find(
@@ -78,7 +78,8 @@ class PairList {
     return pairs_.view();
   }
 
-  /// For a method that finds pairs by itself: room for as many as it has counted. Throws as collect() does.
+  /// Returns room for the given number of pairs, for a method that counts and lists pairs by itself. Throws
+  /// as collect() does.
   View<Pair> room_for(std::int64_t pairs) {
     require_room(pairs);
     pairs_.resize(pairs);

@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::uint64_t no_pair = std::numeric_limits<std::uint64_t>::max();
 
-/// A box moved up by a period along some of the axes, rounded outward.
+/// Returns a box moved up by a period along some of the axes, rounded outward.
 SCREE_HD Aabb moved_up(const Aabb& box, unsigned axes, const Period& period) {
   Aabb moved = box;
   for (int a = 0; a < 3; ++a) {
@@ -24,7 +24,8 @@ SCREE_HD Aabb moved_up(const Aabb& box, unsigned axes, const Period& period) {
   return moved;
 }
 
-/// Of no box, where it is absent.
+/// Returns the upper end of a box along an axis. That of an absent box is -infinity, so that it counts for no
+/// maximum.
 struct UpperEnd {
   ConstView<Aabb> bounds;
   int axis;
@@ -65,7 +66,7 @@ struct PutBoxes {
   SCREE_HD void operator()(std::int64_t k) const {
     put(k, k, 0);
     std::int64_t next = of_bodies.size() + first[k];
-    // The part of the axes that comes next, until there is none left.
+    // This loop visits each nonempty subset of the axes.
     const unsigned all = reach[k];
     for (unsigned axes = all; axes != 0; axes = (axes - 1) & all) put(next++, k, axes);
   }
@@ -77,7 +78,7 @@ struct PutBoxes {
   }
 };
 
-/// Of two bodies as a number, or no_pair.
+/// Returns the two bodies of a pair of boxes as a number, or no_pair if the pair does not count.
 struct KeyOfPair {
   ConstView<Pair> found;
   ConstView<std::int32_t> owner;

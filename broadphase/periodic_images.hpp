@@ -1,5 +1,6 @@
-// Periods, for broad phases that know of none: boxes that reach through the upper end of the cell are there
-// once more below its lower end's next image, and pairs of boxes become pairs of bodies.
+// Images of boxes, for broad phases that do not know of periods: a box at the lower end of the cell is
+// repeated one period above, where it can meet boxes that reach through the upper end, and pairs of boxes
+// become pairs of bodies.
 #pragma once
 
 #include "broadphase/broad_phase.hpp"
@@ -13,27 +14,28 @@ namespace scree {
 template <class Space>
 class PeriodicImages {
  public:
-  /// Takes the boxes of bodies in the cell of a period, no two of which have extents that sum to more than
-  /// it. A body whose box, moved up by the period, still meets the highest end of a box gets an image there;
-  /// along several axes, one for each combination.
+  /// Takes the boxes of bodies in the cell of a period. No two of them may have extents that sum to more than
+  /// the period. A body gets an image, moved up by the period, if the image still reaches down to the highest
+  /// upper end of a box; along several axes it gets one image for each combination of them.
   void take(ConstView<Aabb> bounds, ConstView<Mobility> mobility, const Period& period);
 
-  /// Those of the bodies, then those of their images.
+  /// Returns the boxes of the bodies, followed by those of their images.
   const Array<Aabb, Space>& bounds() const { return bounds_; }
   const Array<Mobility, Space>& mobility() const { return mobility_; }
 
-  /// The pairs of bodies that pairs of these boxes are: i < j, each once, in the order in which they were
-  /// found. Two boxes and their images moved alike are one pair, and it is the one of which, along each axis,
-  /// one is not moved. Valid until the next call.
+  /// Returns the pairs of bodies that correspond to pairs of these boxes: i < j, each once, in the order in
+  /// which they were found. Two boxes and their images moved in the same way are one pair; the one that
+  /// counts is that in which, along each axis, at least one of the two boxes is not moved. The view is valid
+  /// until the next call.
   ConstView<Pair> pairs_of(ConstView<Pair> found);
 
  private:
   Array<Aabb, Space> bounds_;
   Array<Mobility, Space> mobility_;
   Array<std::int32_t, Space> owner_;
-  Array<std::uint8_t, Space> shift_;  // a bit for each axis along which it is moved up
-  Array<std::uint8_t, Space> reach_;  // of each body, along which it has images; likewise
-  Array<std::int32_t, Space> count_;  // of its images
+  Array<std::uint8_t, Space> shift_;  // one bit for each axis along which a box is moved up
+  Array<std::uint8_t, Space> reach_;  // one bit for each axis along which a body has images
+  Array<std::int32_t, Space> count_;  // number of images of each body
   Array<std::int64_t, Space> first_;
   Array<std::uint64_t, Space> keys_;
   Array<Pair, Space> pairs_;

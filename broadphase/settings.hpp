@@ -1,4 +1,4 @@
-// What a scene may say about the broad phase.
+// The settings of the broad phase that a scene may give.
 #pragma once
 
 namespace scree {

@@ -1,5 +1,5 @@
-// Keys to sort floats by, and a search in sorted keys, for either space: those of the standard library are
-// silently wrong on Device.
+// Keys by which floats are sorted, and a search in sorted keys, for either space: the functions of the
+// standard library are silently wrong on Device.
 #pragma once
 
 #include "core/space.hpp"
@@ -9,7 +9,7 @@
 
 namespace scree {
 
-/// Unsigned numbers in the order of the floats that they stand for; 0 and -0 are one.
+/// Returns an unsigned number; these numbers have the order of the floats. 0 and -0 have the same number.
 SCREE_HD inline std::uint32_t ordered_bits(float x) {
   const auto bits = std::bit_cast<std::uint32_t>(x + 0.0f);  // -0 becomes 0
   return bits >> 31 ? ~bits : bits | 0x80000000u;
@@ -18,7 +18,8 @@ SCREE_HD inline float from_ordered_bits(std::uint32_t bits) {
   return std::bit_cast<float>(bits >> 31 ? bits & 0x7fffffffu : ~bits);
 }
 
-/// The first of the keys from `begin` to before `end` that is not under `value`; `end` if all are.
+/// Returns the index of the first key from `begin` to before `end` that is not less than `value`; `end` if
+/// all are less.
 template <class Key>
 SCREE_HD std::int64_t first_not_under(const Key* keys, std::int64_t begin, std::int64_t end, Key value) {
   while (begin < end) {

@@ -11,7 +11,7 @@ namespace scree {
 
 namespace {
 
-/// Sums over the centres of their numbers, counted from the middle, and of the squares of these.
+/// Sums over the centres of their numbers, counted from the middle, and of the squares of these numbers.
 struct Moments {
   double first[3] = {0, 0, 0};
   double second[3] = {0, 0, 0};
@@ -41,8 +41,8 @@ struct MomentsOfBox {
   }
 };
 
-/// The axis along which the centres vary most (Ericson 2005, Real-Time Collision Detection, section 7.5.2),
-/// on a scale on which outliers count for little.
+/// Returns the axis along which the centres vary most (Ericson 2005, Real-Time Collision Detection, section
+/// 7.5.2), on a scale on which outliers count for little.
 template <class Space>
 int sweep_axis(ConstView<Aabb> bounds, const Census& census) {
   const auto sums = parallel::sum<Moments, Space>("broadphase.sweep_and_prune.axis", bounds.size(),
@@ -55,7 +55,8 @@ int sweep_axis(ConstView<Aabb> bounds, const Census& census) {
   return static_cast<int>(std::max_element(variance, variance + 3) - variance);
 }
 
-/// What is absent begins at infinity: after all others.
+/// Sets the key by which an object is sorted. An absent object begins at infinity, so that it comes after all
+/// others.
 struct KeyOfBegin {
   ConstView<Aabb> bounds;
   int axis;
@@ -77,7 +78,7 @@ struct GatherBoxed {
   }
 };
 
-/// Each object against those that begin with it or after it, and not after its end.
+/// Tests each object against the objects that begin with it or after it, and not after its end.
 struct SweepSearch : RunSearch {
   static constexpr const char* label = "broadphase.sweep_and_prune.search";
 
@@ -112,7 +113,7 @@ class SweepAndPrune final : public BroadPhase<Space> {
 
  private:
   BroadPhaseStats stats_;
-  Array<std::uint32_t, Space> key_;  ///< where each object begins
+  Array<std::uint32_t, Space> key_;  ///< begin of each object, as a key
   Array<std::int32_t, Space> body_;
   Array<Boxed, Space> sorted_;
   PairList<Space> pairs_;

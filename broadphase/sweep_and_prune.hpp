@@ -1,5 +1,6 @@
-// Sweep and prune along one axis: objects sorted by where they begin, each against those that begin before it
-// ends. A comparator: its work grows with the number of objects that a plane across the axis cuts.
+// Sweep and prune along one axis: objects are sorted by where they begin, and each is tested against the
+// objects that begin before it ends. It serves for comparison: its work grows with the number of objects that
+// a plane across the axis cuts.
 #pragma once
 
 #include "broadphase/broad_phase.hpp"

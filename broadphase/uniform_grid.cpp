@@ -11,13 +11,14 @@ namespace scree {
 
 namespace {
 
-/// Cells are numbered from the lowest centre, 2^21 at most on each axis, so that a cell is a 63-bit key in
-/// which the cells of a row follow each other. There is no table: rows are found among the sorted keys.
+/// The cells of the grid. They are numbered from the lowest centre, at most 2^21 on each axis, so that a cell
+/// has a 63-bit key, and the cells of a row have consecutive keys. There is no table: rows are found among
+/// the sorted keys.
 struct UniformCells {
   static constexpr int bits = 21;
   static constexpr std::int64_t last = (std::int64_t{1} << bits) - 1;
 
-  static constexpr std::uint64_t absent = std::uint64_t{1} << (3 * bits);  ///< key of what stands in no cell
+  static constexpr std::uint64_t absent = std::uint64_t{1} << (3 * bits);  ///< key of an absent object
 
   double origin[3];
   double width;
@@ -45,7 +46,7 @@ struct KeyOfBox {
   }
 };
 
-/// Each object against all 27 cells around it; a pair is reported by the body with the lower number.
+/// Tests each object against all 27 cells around it; a pair is reported by the body with the lower number.
 struct FullStencil {
   static constexpr const char* label = "broadphase.uniform_grid.search";
   using Object = Boxed;
@@ -106,8 +107,8 @@ class UniformGrid final : public BroadPhase<Space> {
       cells.origin[a] = census.lo[a];
       longest = std::max(longest, static_cast<double>(census.hi[a]) - cells.origin[a]);
     }
-    // Wider than the largest box by far more than the rounding of a cell's number, and never so narrow that
-    // the cells of the domain run out of numbers.
+    // The cells are wider than the largest box by far more than the rounding of a cell's number, and never so
+    // narrow that the cells of the domain run out of numbers.
     cells.width =
         std::max({1.001 * census.largest, longest / static_cast<double>(UniformCells::last), 1e-300});
     key_.resize(bounds.size());

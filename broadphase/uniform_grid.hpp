@@ -1,5 +1,6 @@
-// The uniform grid: one cell width, that of the largest box. A comparator, and an oracle for the hierarchical
-// grid at sizes that brute force cannot reach: its cells, their look-up and its traversal are its own.
+// The uniform grid, with one cell width, that of the largest box. It serves for comparison, and as a
+// reference for the hierarchical grid at numbers of bodies that brute force cannot handle: its cells, their
+// look-up and its traversal are independent of that grid.
 #pragma once
 
 #include "broadphase/broad_phase.hpp"

@@ -1,4 +1,4 @@
-// The contacts of one pair, of general shapes too. Those are known on Host alone.
+// The contacts of one pair of any shapes, general ones included. General shapes are known on Host alone.
 #pragma once
 
 #include "narrowphase/general_contacts.hpp"
@@ -6,8 +6,8 @@
 
 namespace scree {
 
-/// As find_pair_contacts(), of any two shapes. It is called and not copied to where it is used: a GPU that
-/// does all of it once in a while waits for its instructions.
+/// Finds the contacts of one pair as find_pair_contacts() does, but for any two shapes. It is never inlined:
+/// a GPU that runs all of this code only rarely would wait for its instructions.
 [[gnu::noinline]] SCREE_HD inline int find_any_contacts(const ShapedSolid& a, const ShapedSolid& b,
                                                         const PairShapes& shapes, const ContactReach& reach,
                                                         Manifold* out) {

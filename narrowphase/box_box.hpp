@@ -1,4 +1,4 @@
-// Two boxes: the axis that parts them best, then the contact along it.
+// The contact of two boxes: first the axis that separates them best is found, then the contact along it.
 #pragma once
 
 #include "narrowphase/box_edges.hpp"
@@ -15,7 +15,8 @@ SCREE_HD inline double smallest_gap(const Manifold& manifold) {
   return gap;
 }
 
-/// Whether the boxes overlap by less than the margin along two faces' normals, as at an edge or a corner.
+/// Returns whether the boxes overlap by less than the margin along the normals of two faces, as they do at an
+/// edge or a corner.
 SCREE_HD inline bool is_at_edge(const BoxPair& pair, const BoxAxes& axes, double margin) {
   if (axes.next_face >= -margin) return true;
   const double cosine = fabs(pair.turn(axes.face[0].index[0], axes.face[1].index[0]));
@@ -23,10 +24,10 @@ SCREE_HD inline bool is_at_edge(const BoxPair& pair, const BoxAxes& axes, double
          cosine < 1.0 - tolerance::face_cosine;
 }
 
-/// Adds to a contact at one point what lies within the margin over the face that parts the boxes better.
-/// Boxes that lie nearly flat on one another touch at one point, where two edges cross, and turn about it:
-/// within a substep they meet at the other end of these. All points share the normal, from which that of the
-/// face must not be far.
+/// Adds to a contact of one point the points within the margin that lie over the face that separates the
+/// boxes better. Boxes that lie nearly flat on one another touch at one point, where two edges cross, and
+/// rotate about it: within a substep they meet at the other end of these edges. All points share the normal
+/// of the contact, so the normal of the face must not be far from it.
 SCREE_HD inline void add_points_over_face(const BoxPair& pair, const BoxAxes& axes, double margin,
                                           Manifold& out) {
   const BoxAxis& face = axes.better_face();
@@ -46,15 +47,15 @@ SCREE_HD inline void add_points_over_face(const BoxPair& pair, const BoxAxes& ax
   }
 }
 
-/// As contact_along(), but for Manifold::at_edge.
+/// Finds the contact as contact_along() does, but does not set Manifold::at_edge.
 SCREE_HD inline bool feature_contact(const BoxPair& pair, const BoxAxes& axes, const BoxAxis& face,
                                      double margin, Manifold& out) {
   const auto with_points_over_face = [&](bool found) {
     if (found) add_points_over_face(pair, axes, margin, out);
     return found;
   };
-  // Nearly parallel edges are no choice beside a face, but they can show that no other edges are close
-  // either.
+  // Nearly parallel edges are never chosen in place of a face, but their axis counts in axes.separation: if
+  // that is clearly better than axes.edges, the edges of axes.edges are not close either.
   if (clearly_better(axes.edges.separation, face.separation, pair.smallest) &&
       !clearly_better(axes.separation, axes.edges.separation, pair.smallest) &&
       with_points_over_face(edge_contact(pair, axes.edges, out)))
@@ -73,14 +74,14 @@ SCREE_HD inline bool feature_contact(const BoxPair& pair, const BoxAxes& axes, c
 
 }  // namespace detail
 
-/// The contact of two boxes with a choice of reference face: the face, or the edges if they are clearly
-/// better. No state is kept from step to step: the preferences of clearly_better() hold the choice steady
-/// instead.
+/// Finds the contact of two boxes for a given choice of reference face: the contact of the face, or of the
+/// edges if they are clearly better. No state is kept from step to step: the preferences of clearly_better()
+/// hold the choice steady instead.
 ///
-/// A face must have a point as close as the axes say the boxes are; if the other box's lowest vertex is
-/// beside it, an edge or a vertex is closer, and takes its place. For boxes that are apart that is one point
-/// with the true distance and direction: the separation along an axis would be a lower bound only, and its
-/// normal would stop boxes that pass beside each other.
+/// A face must have a point as close as the axes say the boxes are. If the other box's lowest vertex is
+/// beside the face, an edge or a vertex is closer and takes the face's place. For boxes that are apart, such
+/// a contact is one point with the true distance and direction: the separation along an axis would only be a
+/// lower bound, and its normal would stop boxes that pass beside each other.
 SCREE_HD inline bool contact_along(const BoxPair& pair, const BoxAxes& axes, const BoxAxis& face,
                                    double margin, Manifold& out) {
   const bool found = detail::feature_contact(pair, axes, face, margin, out);

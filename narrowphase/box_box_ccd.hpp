@@ -1,5 +1,5 @@
-// Two boxes by way of libccd: it chooses the direction, a certificate judges it, and the contact points come
-// from the same clipping as without it. Host only.
+// The contact of two boxes by way of libccd: libccd chooses the direction, a certificate judges it, and the
+// contact points come from the same clipping as without libccd. This file is for Host only.
 #pragma once
 
 #include "narrowphase/box_box.hpp"
@@ -12,7 +12,7 @@ namespace scree {
 
 namespace detail {
 
-/// The answer of libccd, its direction in the world.
+/// Returns the answer of libccd, with its direction in world axes.
 inline ccd::Answer ask_ccd(const BoxPair& pair, ccd::Method method) {
   const double unit = fmin(pair.half[0].maxCoeff(), pair.half[1].maxCoeff());
   ccd::Answer answer = ccd::parting_direction(
@@ -22,8 +22,9 @@ inline ccd::Answer ask_ccd(const BoxPair& pair, ccd::Method method) {
   return answer;
 }
 
-/// The direction of libccd (world), certified: no direction has less overlap than the best of the 15 axes, so
-/// one that has no more than it is right. None if libccd has none or it fails.
+/// Returns the direction of libccd (world axes) if it passes the certificate, else none. No direction has
+/// less overlap than the best of the 15 axes, so a direction that has no more overlap than that axis is
+/// right. There is none either if libccd finds no direction.
 inline std::optional<Vec3> certified_direction(const BoxPair& pair, const BoxAxes& axes, ccd::Method method,
                                                NarrowPhaseStats& stats) {
   const ccd::Answer answer = ask_ccd(pair, method);
@@ -35,7 +36,8 @@ inline std::optional<Vec3> certified_direction(const BoxPair& pair, const BoxAxe
   return certified ? answer.direction : std::nullopt;
 }
 
-/// The face whose normal is nearest to a direction, the first body's if several are.
+/// Returns the face whose normal is nearest to a direction. If several are equally near, the first body's
+/// face is taken.
 inline BoxAxis face_along(const BoxPair& pair, const Vec3& direction) {
   BoxAxis best{};
   double best_cosine = -1.0;
@@ -52,8 +54,9 @@ inline BoxAxis face_along(const BoxPair& pair, const Vec3& direction) {
 
 }  // namespace detail
 
-/// As box_box(). Boxes that are apart stay with the 15 axes: libccd has no distance query. So do those whose
-/// answer by libccd the certificate refuses, which `stats` counts.
+/// Finds the contact as box_box() does, with the direction of libccd. Boxes that are apart stay with the 15
+/// axes, because libccd has no distance query. So do boxes for which the certificate refuses libccd's answer;
+/// `stats` counts these.
 inline bool box_box_ccd(const Solid& a, const Solid& b, double margin, ccd::Method method, Manifold& out,
                         NarrowPhaseStats& stats) {
   const BoxPair pair(a, b);
@@ -62,7 +65,8 @@ inline bool box_box_ccd(const Solid& a, const Solid& b, double margin, ccd::Meth
   BoxAxis face = preferred_face(pair, axes);
   if (axes.separation < 0.0) {
     if (const std::optional<Vec3> direction = detail::certified_direction(pair, axes, method, stats)) {
-      // Where a vertex touches, many directions are right, and the nearest face may not be among them.
+      // Where a vertex touches, many directions are right, and the face nearest to the given one may not be
+      // among them.
       const BoxAxis named = detail::face_along(pair, *direction);
       if (!clearly_better(face.separation, named.separation, pair.smallest)) face = named;
     }

@@ -1,4 +1,4 @@
-// The 15 axes against libccd, while a scene runs. Host only.
+// The comparison of the 15 axes with libccd while a scene runs. This file is for Host only.
 #pragma once
 
 #include "narrowphase/box_box_ccd.hpp"
@@ -6,8 +6,8 @@
 
 namespace scree {
 
-/// Asks libccd's MPR, which fails less often than its EPA, and counts in what its answer differs from that
-/// of the 15 axes.
+/// Compares the separation by the 15 axes with that along the direction of libccd's MPR, and counts the
+/// difference. MPR is used because it fails less often than libccd's EPA.
 inline void crosscheck(const Solid& a, const Solid& b, CrosscheckStats& stats) {
   const BoxPair pair(a, b);
   const double separation = separating_axes(pair, HUGE_VAL).separation;

@@ -1,5 +1,5 @@
-// The contact of two box edges: crossing ones, and the closest ones of boxes that face each other with edges
-// or vertices.
+// The contact of two box edges: edges that cross, and the closest edges of boxes that face each other with
+// edges or vertices.
 #pragma once
 
 #include "narrowphase/box_pair.hpp"
@@ -11,13 +11,13 @@ namespace detail {
 /// An edge of a box, relative to the first box's centre (world axes, m).
 struct BoxEdge {
   Vec3 centre;
-  Vec3 direction;  ///< unit
+  Vec3 direction;  ///< unit vector
   double half;
   int axis;
   BoxFeature feature;
 };
 
-/// The edge along `axis` on the sides given for the two axes that follow it.
+/// Returns the edge of a box that is parallel to `axis`, on the given sides of the two axes that follow it.
 SCREE_HD inline BoxEdge box_edge(const BoxPair& pair, int box, int axis, double side1, double side2) {
   const int k1 = (axis + 1) % 3, k2 = (axis + 2) % 3;
   BoxEdge edge;
@@ -31,19 +31,20 @@ SCREE_HD inline BoxEdge box_edge(const BoxPair& pair, int box, int axis, double 
   return edge;
 }
 
-/// Edge e of the 12 of a box.
+/// Returns edge e of the 12 edges of a box.
 SCREE_HD inline BoxEdge box_edge(const BoxPair& pair, int box, int e) {
   return box_edge(pair, box, e % 3, e / 3 & 1 ? 1.0 : -1.0, e / 3 & 2 ? 1.0 : -1.0);
 }
 
-/// Where two edges come closest: coordinates along them, measured from their centres.
+/// The place where two edges are closest: a coordinate along each edge, measured from its centre (m).
 struct Closest {
   double along[2];
 };
 
 SCREE_HD inline double clamp_to(double x, double limit) { return fmax(-limit, fmin(limit, x)); }
 
-/// Closest points of two segments: those of their lines, then each clamped and the other adjusted to it.
+/// Returns the closest points of two segments. It takes the closest points of their lines, clamps one to its
+/// segment, and adjusts and clamps the other to match.
 SCREE_HD inline Closest closest_points(const BoxEdge& a, const BoxEdge& b) {
   const Vec3 offset = b.centre - a.centre;
   const double cosine = a.direction.dot(b.direction);
@@ -59,20 +60,23 @@ SCREE_HD inline Vec3 point_on(const BoxEdge& edge, double along) {
   return edge.centre + along * edge.direction;
 }
 
-/// The edge, or its vertex if the point is its end.
+/// Returns the feature at a coordinate along an edge: the edge itself, or a vertex if the coordinate is at an
+/// end.
 SCREE_HD inline BoxFeature feature_at(const BoxEdge& edge, double along) {
   return fabs(along) < edge.half ? edge.feature : edge.feature | box_side(edge.axis, along);
 }
 
-/// The point midway between the centres' positions plus an arm each; the same if the bodies are swapped.
+/// Returns the point midway between two points, each given relative to the first box's centre. The sum is
+/// formed from each box's own position, so that it is the same if the bodies are swapped.
 SCREE_HD inline Vec3 midpoint(const BoxPair& pair, const Vec3& on_a, const Vec3& on_b) {
   return 0.5 * ((pair.position[0] + on_a) + (pair.position[1] + (on_b - pair.offset)));
 }
 
 }  // namespace detail
 
-/// The contact of the two edges that meet along `axis` (edges): false if the boxes are apart and the edges'
-/// lines come closest outside the edges, which then are not what is closest.
+/// Finds the contact of the two edges that meet along `axis`, which must be an axis of edges. Returns false
+/// if the boxes are apart and the lines of the edges are closest outside the edges: then these edges are not
+/// the closest features.
 SCREE_HD inline bool edge_contact(const BoxPair& pair, const BoxAxis& axis, Manifold& out) {
   const int i = axis.index[0], j = axis.index[1];
   const Vec3 normal = normal_of(pair, axis);
@@ -93,16 +97,17 @@ SCREE_HD inline bool edge_contact(const BoxPair& pair, const BoxAxis& axis, Mani
 
 namespace detail {
 
-/// Of the 12 edges of a box, those that may come within `margin` of the other one, a bit for each: all, but
-/// for those beyond the other's best face, if that separates the boxes.
+/// Returns which of the 12 edges of a box may come within `margin` of the other box, one bit for each edge.
+/// If the other box's best face separates the boxes, the edges farther than the margin from that face are
+/// left out.
 SCREE_HD inline std::uint32_t edges_within(const BoxPair& pair, const BoxAxes& axes, int box, double margin) {
   const BoxAxis& face = axes.face[1 - box];
   constexpr std::uint32_t all = (1u << 12) - 1;
   if (!(face.separation > 0.0)) return all;
-  const Vec3 normal = (box == 0 ? -1.0 : 1.0) * normal_of(pair, face);  // from the other box
+  const Vec3 normal = (box == 0 ? -1.0 : 1.0) * normal_of(pair, face);  // from the other box to this one
   const Vec3 slope = (pair.axes[box].transpose() * normal).cwiseProduct(pair.half[box]);
   const double lowest = -slope.cwiseAbs().sum();
-  // A margin is no bound of what rounds to it.
+  // The last term keeps the edges whose distance equals the margin but for rounding.
   const double most = lowest - face.separation + margin + tolerance::same_feature * pair.smallest;
   std::uint32_t within = 0;
   for (int e = 0; e < 12; ++e) {
@@ -116,12 +121,13 @@ SCREE_HD inline std::uint32_t edges_within(const BoxPair& pair, const BoxAxes& a
 
 }  // namespace detail
 
-/// The contact of boxes that are apart and have no face over the other: the closest points of their edges.
+/// Finds the contact of boxes that are apart and have no face over the other: the closest points of their
+/// edges.
 SCREE_HD inline bool closest_edges(const BoxPair& pair, const BoxAxes& axes, double margin, Manifold& out) {
   const BoxAxis& face = axes.better_face();
   const int box = face.box, other = 1 - box;
-  // If a face separates the boxes, its owner is wholly behind it and the other wholly before it, so the
-  // closest point of the owner is on one of the 4 edges of the face.
+  // If a face separates the boxes, its owner is wholly behind it and the other box wholly in front of it, so
+  // the closest point of the owner is on one of the 4 edges of the face.
   const double front = (box == 0 ? 1.0 : -1.0) * normal_of(pair, face).dot(pair.axes[box].col(face.index[0]));
   const BoxFeature candidates = face.separation > 0.0 ? box_side(face.index[0], front) : ~BoxFeature{0};
   const std::uint32_t own_within = detail::edges_within(pair, axes, box, margin);
@@ -151,7 +157,8 @@ SCREE_HD inline bool closest_edges(const BoxPair& pair, const BoxAxes& axes, dou
   if (gap > margin) return false;
   const Vec3 on_a = point_on(best_edge[0], best_at.along[0]);
   const Vec3 on_b = point_on(best_edge[1], best_at.along[1]);
-  // Boxes that all but touch leave no direction between the points; that of the best axis is then as good.
+  // Between boxes that almost touch, the closest points give no direction; the normal of the best axis is
+  // then as good.
   const Vec3 normal = gap > tolerance::same_feature * pair.smallest
                           ? Vec3((on_b - on_a) / gap)
                           : normal_of(pair, axes.edges.separation > face.separation ? axes.edges : face);

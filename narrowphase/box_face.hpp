@@ -1,4 +1,5 @@
-// The contact of a box's face with another box: the other's most opposed face, clipped to the first.
+// The contact of a box's face with another box: the other box's most opposed face is clipped to the first
+// one.
 #pragma once
 
 #include "narrowphase/box_pair.hpp"
@@ -9,19 +10,19 @@ namespace detail {
 
 /// A corner of the polygon that the two faces share, in the frame of the reference box.
 struct ClipPoint {
-  double at[2];      ///< along the edges of the reference face
-  double height;     ///< over it: the gap
+  double at[2];      ///< coordinates along the edges of the reference face (m)
+  double height;     ///< height over the reference face, which is the gap (m)
   BoxFeature own;    ///< feature of the reference box
   BoxFeature other;  ///< feature of the other box
 };
 
 struct ClipPolygon {
   int count = 0;
-  ClipPoint point[8];  // a side adds at most one to a quadrilateral's corners
+  ClipPoint point[8];  // clipping at a side adds at most one corner to those of a quadrilateral
 };
 
 /// Cuts a convex polygon to its part on the inner side of at[d] * side = limit (Sutherland, Hodgman 1974).
-/// `scratch`: of its points before.
+/// `scratch` holds the points of the polygon before the cut.
 SCREE_HD inline void clip(ClipPolygon& polygon, int d, double side, double limit, BoxFeature cut,
                           ClipPolygon& scratch) {
   double beyond[8];
@@ -49,13 +50,13 @@ SCREE_HD inline void clip(ClipPolygon& polygon, int d, double side, double limit
   }
 }
 
-/// Twice the area of the triangle a, b, c, positive if counterclockwise.
+/// Returns twice the area of the triangle a, b, c, positive if counterclockwise.
 SCREE_HD inline double area(const ClipPoint& a, const ClipPoint& b, const ClipPoint& c) {
   return (b.at[0] - a.at[0]) * (c.at[1] - a.at[1]) - (b.at[1] - a.at[1]) * (c.at[0] - a.at[0]);
 }
 
-/// Moves to place `slot` the first of the later points whose value exceeds all before it by more than the
-/// tolerance, so that noise does not choose among equals.
+/// Moves a point to place `slot`: the first of the later points whose value exceeds all values before it by
+/// more than the tolerance, so that noise does not choose among equals.
 template <class Value>
 SCREE_HD void select(ClipPolygon& polygon, int slot, double slack, Value value) {
   int best = slot;
@@ -72,7 +73,7 @@ SCREE_HD void select(ClipPolygon& polygon, int slot, double slack, Value value) 
   polygon.point[slot] = chosen;
 }
 
-/// Orders points by their features, so that the order does not hang on where the clipping began.
+/// Orders points by their features, so that the order does not depend on where the clipping began.
 SCREE_HD inline void sort_by_feature(ClipPolygon& polygon) {
   for (int k = 1; k < polygon.count; ++k) {
     const ClipPoint p = polygon.point[k];
@@ -111,15 +112,15 @@ SCREE_HD inline void reduce(ClipPolygon& polygon, double smallest) {
   sort_by_feature(polygon);
 }
 
-/// One face, as seen from the reference box.
+/// A face of the other box, in the frame of the reference box.
 struct IncidentFace {
-  Mat3 axes;    ///< of the other box, in the reference frame
-  Vec3 centre;  ///< of the face
+  Mat3 axes;    ///< axes of the other box
+  Vec3 centre;  ///< centre of the face
   int axis;
   double side;
 };
 
-/// The face of the other box that is most opposed to the reference face (axis k, side).
+/// Returns the face of the other box that is most opposed to the reference face (axis k, side).
 SCREE_HD inline IncidentFace incident_face(const BoxPair& pair, int box, int k, double side) {
   const int other = 1 - box;
   IncidentFace face;
@@ -130,7 +131,7 @@ SCREE_HD inline IncidentFace incident_face(const BoxPair& pair, int box, int k, 
   }
   face.axis = 0;
   for (int m = 1; m < 3; ++m) {
-    // A box on its edge opposes two faces equally: the first of them, whatever the noise.
+    // If a box on its edge opposes two faces equally, the first of them is taken, whatever the noise.
     if (fabs(face.axes(k, m)) > fabs(face.axes(k, face.axis)) + tolerance::same_feature) face.axis = m;
   }
   face.side = -side * sign_of(face.axes(k, face.axis));
@@ -140,7 +141,7 @@ SCREE_HD inline IncidentFace incident_face(const BoxPair& pair, int box, int k, 
   return face;
 }
 
-/// The incident face's corners over the reference face with axis k.
+/// Returns the incident face's corners in the coordinates of the reference face, which has axis k.
 SCREE_HD inline ClipPolygon corners(const BoxPair& pair, int box, int k, double side,
                                     const IncidentFace& face) {
   const int u = (k + 1) % 3, w = (k + 2) % 3;
@@ -161,8 +162,8 @@ SCREE_HD inline ClipPolygon corners(const BoxPair& pair, int box, int k, double 
 
 }  // namespace detail
 
-/// The contact of the face `axis` with the other box: false if no part of the opposed face lies over it
-/// within the margin. The gap of a point is its height over the face, its position halfway down.
+/// Finds the contact of the face `axis` with the other box. Returns false if no part of the opposed face lies
+/// over it within the margin. The gap of a point is its height over the face; its position is halfway down.
 SCREE_HD inline bool face_contact(const BoxPair& pair, const BoxAxis& axis, double margin, Manifold& out) {
   const int box = axis.box, k = axis.index[0];
   const int across[2] = {(k + 1) % 3, (k + 2) % 3};
@@ -190,7 +191,8 @@ SCREE_HD inline bool face_contact(const BoxPair& pair, const BoxAxis& axis, doub
     const detail::ClipPoint& p = polygon.point[c];
     Vec3 local;
     local[k] = side * (half[k] + 0.5 * p.height);
-    // A vertex that counts as over the face is put on it: positions never leave the reference face.
+    // A vertex may count as over the face although it is just beside it; it is moved onto the face, so that
+    // positions never leave the reference face.
     for (int d = 0; d < 2; ++d) local[across[d]] = fmax(-half[across[d]], fmin(half[across[d]], p.at[d]));
     const BoxFeature first = box == 0 ? p.own : p.other, second = box == 0 ? p.other : p.own;
     out.points[c] = {pair.position[box] + axes * local, p.height, contact_feature(first, second)};

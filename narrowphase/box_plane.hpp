@@ -1,18 +1,19 @@
-// A box and the half space below a plane: the contacts are corners of the box.
+// The contact of a box with the half space below a plane: the contact points are corners of the box.
 #pragma once
 
 #include "narrowphase/solid.hpp"
 
 namespace scree {
 
-/// All corners within the margin if they are at most 4; else those of them on the face that looks down most:
-/// it holds the deepest corner, and its rectangle has the largest support area of any face that does.
+/// Finds the contact of a box with a plane. If at most 4 corners are within the margin, all of them are
+/// contact points. Otherwise only those are that belong to the face that looks down most: this face holds the
+/// deepest corner, and no face that holds it has a rectangle with a larger support area.
 SCREE_HD inline bool box_plane(const Solid& box, const Solid& plane, double margin, Manifold& out) {
   const Vec3 up = plane.orientation * Vec3::UnitZ();
   const Mat3 axes = box.orientation.toRotationMatrix();
   const double height = up.dot(box.position - plane.position);
   const Vec3 slope = axes.transpose() * up;
-  const Vec3 arm = slope.cwiseProduct(box.size);  // height of each half edge
+  const Vec3 arm = slope.cwiseProduct(box.size);  // height that each half edge spans
   if (height - arm.cwiseAbs().sum() > margin) return false;
 
   double gap[8];

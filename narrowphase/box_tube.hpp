@@ -1,4 +1,4 @@
-// A box in a tube: the contacts are corners of the box.
+// The contacts of a box in a tube: the contact points are corners of the box.
 #pragma once
 
 #include "narrowphase/box_plane.hpp"
@@ -6,8 +6,8 @@
 
 namespace scree {
 
-/// The distance from the axis is convex, so no point of the box is nearer to the wall than its corners. Each
-/// of these has a normal of its own.
+/// Finds the contacts of a box in a tube. The distance from the axis is a convex function, so no point of the
+/// box is nearer to the wall than its corners. Each corner at the wall has its own normal.
 SCREE_HD inline int box_tube(const Solid& box, const Solid& tube, double margin, Manifold* out) {
   const Mat3 tube_axes = tube.orientation.toRotationMatrix();
   const Solid body = detail::relative_to(tube, box);

@@ -1,4 +1,5 @@
-// Each pair is a number that orders it; those of the candidates are sorted.
+// The list of candidate pairs. Each pair is encoded as a number (key) that orders it; the keys of the
+// candidates are sorted.
 #include "narrowphase/candidates.hpp"
 
 #include "core/parallel.hpp"
@@ -23,9 +24,9 @@ struct PlaneNumber {
   }
 };
 
-/// A pair as a number, whose order is that of the places (i, j), i < j.
+/// Encodes a pair as a number. Numbers have the order of the places (i, j), i < j.
 struct PairKey {
-  int bits;  // of a body's place
+  int bits;  // number of bits of a body's place
   SCREE_HD std::uint64_t of(std::int32_t i, std::int32_t j) const {
     return (static_cast<std::uint64_t>(i) << bits) | static_cast<std::uint64_t>(j);
   }
@@ -35,8 +36,8 @@ struct PairKey {
   }
 };
 
-/// Keys of what may become a candidate: the pairs of the PCS, then each plane with each body. `no_key` for
-/// what does not.
+/// Returns the keys of all pairs that may become candidates: first the pairs of the PCS, then each plane with
+/// each body. The key of a pair that is no candidate is `no_key`.
 struct CandidateKey {
   NearPairs near;
   ConstView<Pair> pcs;

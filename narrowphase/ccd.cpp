@@ -1,4 +1,5 @@
-// The faults of libccd 2.1 that this file keeps in are listed where each is met.
+// The calls of libccd 2.1. Its faults, which this file keeps from its callers, are described where each is
+// met.
 #include "narrowphase/ccd.hpp"
 
 #include <ccd/ccd.h>
@@ -16,8 +17,8 @@ struct Box {
   Vec3 half;
   int* supports_left;
 
-  /// A component that is exactly 0 picks the positive side: the middle of a face would be no vertex, and
-  /// makes EPA return NaN for aligned boxes.
+  /// Returns the vertex farthest along a direction. A component that is exactly 0 picks the positive side:
+  /// the middle of a face is no vertex, and would make EPA return NaN for aligned boxes.
   Vec3 support(const Vec3& along) const {
     const Vec3 local = axes.transpose() * along;
     const Vec3 vertex = (local.array() < 0.0).select(-half, half);
@@ -38,11 +39,11 @@ void centre(const void* object, ccd_vec3_t* out) {
   set(out, static_cast<const Shape*>(object)->centre);
 }
 
-/// The vertex farthest along a direction.
+/// Gives libccd the vertex farthest along a direction.
 ///
-/// When the budget is spent, the answer lies behind instead. Every loop of libccd 2.1 takes a support that
-/// is behind its direction for the sign that nothing is left to find, and ends. Leaving by exception or
-/// longjmp would leak the polytope.
+/// When the budget is spent, the answer is a point behind the origin instead. Every loop of libccd 2.1 takes
+/// a support that is behind its direction as the sign that nothing is left to find, and ends. Leaving by
+/// exception or longjmp would leak the polytope.
 template <class Shape>
 void support(const void* object, const ccd_vec3_t* direction, ccd_vec3_t* out) {
   const Shape& shape = *static_cast<const Shape*>(object);
@@ -54,9 +55,9 @@ void support(const void* object, const ccd_vec3_t* direction, ccd_vec3_t* out) {
   set(out, shape.support(along));
 }
 
-// EPA compares them with squares: 1e-5 and 1e-7 of a length. On a round body it ends when its polytope is
-// that near to the surface; with the first, half of the directions are worse than the best by more than
-// ccd_excess.
+// EPA compares these tolerances with squared lengths, so they are 1e-5 and 1e-7 of a length. On a round body
+// EPA ends when its polytope is that near to the surface; with box_tolerance, half of the directions would
+// have more overlap than the best one by more than ccd_excess.
 constexpr double box_tolerance = 1e-10, convex_tolerance = 1e-14;
 
 template <class Shape>
@@ -71,11 +72,12 @@ Answer search(const Shape& a, const Shape& b, Method method, double tolerance, i
   ccd.mpr_tolerance = 1e-10;
 
   ccd_real_t depth;
-  ccd_vec3_t direction{}, position;  // EPA leaves the direction as it is if it has none, and says success
+  ccd_vec3_t direction{},
+      position;  // EPA leaves the direction as it is if it finds none, and reports success
   const auto penetration = method == Method::gjk ? ccdGJKPenetration : ccdMPRPenetration;
   const bool overlap = penetration(&a, &b, &ccd, &depth, &direction, &position) == 0;
   Answer answer{{}, (2 * budget - supports_left) / 2};
-  // Touching boxes make libccd normalise a zero vector: NaN, with the return code of success.
+  // Touching boxes make libccd normalise a zero vector: the result is NaN, with the return code of success.
   const double length = vector_of(direction).norm();
   if (overlap && length > 0.5 && length < 2.0) answer.direction = vector_of(direction) / length;
   return answer;
@@ -84,7 +86,7 @@ Answer search(const Shape& a, const Shape& b, Method method, double tolerance, i
 }  // namespace
 
 Answer parting_direction(const Boxes& boxes, Method method, int budget) {
-  int supports_left = 2 * budget;  // each is asked of both bodies
+  int supports_left = 2 * budget;  // each support point is asked of both bodies
   const Box a{Vec3::Zero(), Mat3::Identity(), boxes.half[0], &supports_left};
   const Box b{boxes.offset, boxes.turn, boxes.half[1], &supports_left};
   return search(a, b, method, box_tolerance, budget, supports_left);

@@ -13,14 +13,15 @@ ConvexAxis centre_axis(const ConvexBody& a, const ConvexBody& b) {
   return {direction, separation_along(a, b, direction)};
 }
 
-/// At right angles to the axes of round bodies, through the other's centre, both ways.
+/// Calls visit() with the directions at right angles to each body's own z axis (of a cylinder, its axis) that
+/// point toward the other body's centre and away from it.
 template <class Visit>
 bool visit_radial(const ConvexBody& a, const ConvexBody& b, Visit& visit) {
   const Vec3 offset = b.centre() - a.centre();
   for (const ConvexBody* body : {&a, &b}) {
     const Vec3 axis = body->axes().col(2);
     const Vec3 across = offset - axis.dot(offset) * axis;
-    // Where the offset is along the axis, all are alike.
+    // If the offset is along the axis, all directions at right angles to it are equivalent.
     const Vec3 outward = across.isZero(0) ? tangent_of(axis) : Vec3(across.stableNormalized());
     for (const double side : {-1.0, 1.0}) {
       const Vec3 direction = side * outward;
@@ -64,7 +65,7 @@ bool best_axes(const ConvexBody& a, const ConvexBody& b, double margin, double s
     return take(axis);
   };
   if (!visit_faces(a, b, take_face)) return false;
-  // What is this far apart needs no more to be exact.
+  // From this distance on, the nearest points give the direction to rounding, and no other axis is needed.
   const bool clear = near.apart && near.distance > tolerance::clear_gap * size;
   if (clear) return take({near.normal, near.distance - radii});
   const bool round = a.is_cylinder() || b.is_cylinder();
@@ -74,14 +75,16 @@ bool best_axes(const ConvexBody& a, const ConvexBody& b, double margin, double s
   if (round) {
     ConvexAxis first = ascend(a, b, out.best, size);
     if (near.apart) {
-      // So near, its direction has few digits, but the climb may have ended on another top.
+      // At so small a distance the direction of the nearest points has few digits, but the ascent may have
+      // ended at another local maximum.
       const ConvexAxis seen{near.normal, separation_along(a, b, near.normal)};
       if (seen.separation > first.separation + tolerance::same_feature * size)
         first = ascend(a, b, seen, size);
     }
     if (!take(first)) return false;
     if (first.separation > -tolerance::shallow_overlap * size) return true;
-    // Deep in one another, there are several ways out that are the best of those around them.
+    // If bodies overlap deeply, there are several directions that are better than all around them; the ascent
+    // starts from each candidate.
     const auto climb = [&](const ConvexAxis& axis) { return take(ascend(a, b, axis, size)); };
     return visit_faces(a, b, climb) && visit_edges(a, b, climb) && visit_radial(a, b, climb);
   }

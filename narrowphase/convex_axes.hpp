@@ -1,4 +1,4 @@
-// The directions that can part two convex bodies, and the one that does best.
+// The directions that can separate two convex bodies, and the search for the best one.
 #pragma once
 
 #include "core/tolerances.hpp"
@@ -6,17 +6,18 @@
 
 namespace scree {
 
-/// A unit direction from the first body to the second, and how far apart they are along it.
+/// A unit direction from the first body to the second, and the separation of the bodies along it.
 struct ConvexAxis {
   Vec3 normal = Vec3::Zero();
-  double separation = -HUGE_VAL;  ///< m; negative: overlap
-  int owner = -1;                 ///< whose face's normal it is, 0 or 1; -1: no face's
+  double separation = -HUGE_VAL;  ///< separation (m); negative: overlap
+  int owner = -1;                 ///< owner of the face with this normal, 0 or 1; -1: not a face's normal
   int face = 0;
 };
 
 namespace detail {
 
-/// Edges of which one at least has no faces beside it: both ways along their common normal.
+/// Calls visit() with both directions along the common normal of each pair of edges, for two bodies that are
+/// no polytopes: their edges have no adjacent faces by which a pair could be ruled out.
 template <class Visit>
 bool visit_free_edges(const ConvexBody& a, const ConvexBody& b, Visit& visit) {
   for (int e = 0; e < a.edges(); ++e) {
@@ -34,13 +35,14 @@ bool visit_free_edges(const ConvexBody& a, const ConvexBody& b, Visit& visit) {
   return true;
 }
 
-/// The edges of a body with those of a polytope. An edge of the polytope is what faces a direction if that
-/// lies on the arc between the normals of its faces, and only where the arc passes the great circle at right
-/// angles to the other edge can the two part the bodies; where the first body is a polytope too, its own arc
-/// must pass there (the arcs cross: Gregorius 2013, "The separating axis test between convex polyhedra").
+/// Calls visit() with the common normals of the edges of a body and those of a polytope. An edge of the
+/// polytope faces a direction if the direction lies on the arc between the normals of its two faces. The two
+/// edges can separate the bodies only where this arc crosses the great circle at right angles to the other
+/// edge. If the first body is a polytope too, its own arc must cross there as well (the arcs cross: Gregorius
+/// 2013, "The separating axis test between convex polyhedra").
 template <class Visit>
 bool visit_polytope_edges(const ConvexBody& a, const ConvexBody& b, Visit& visit) {
-  double toward[ConvexBody::most_faces];  // of b's normals, along an edge of a
+  double toward[ConvexBody::most_faces];  // components of b's normals along an edge of a
   for (int e = 0; e < a.edges(); ++e) {
     const Vec3 along_a = a.edge(e);
     for (int f = 0; f < b.faces(); ++f) toward[f] = b.normal(f).dot(along_a);
@@ -66,8 +68,8 @@ bool visit_polytope_edges(const ConvexBody& a, const ConvexBody& b, Visit& visit
 
 }  // namespace detail
 
-/// Calls visit(axis) with each face's normal and each common normal of two edges, until it returns false. For
-/// polytopes that overlap the best of them is the best of all directions.
+/// Calls visit(axis) with each face's normal (visit_faces) and each common normal of two edges (visit_edges),
+/// until it returns false. For polytopes that overlap, the best of these axes is the best of all directions.
 template <class Visit>
 bool visit_faces(const ConvexBody& a, const ConvexBody& b, Visit&& visit) {
   for (int f = 0; f < a.faces(); ++f) {
@@ -90,17 +92,19 @@ bool visit_edges(const ConvexBody& a, const ConvexBody& b, Visit&& visit) {
   return detail::visit_polytope_edges(b, a, turned);
 }
 
-/// From an axis to one that parts the bodies more: they are moved apart along it, until the nearest points
-/// tell a direction, which cannot part them less. It ends where that is the same.
+/// Climbs from an axis to one that separates the bodies more. The bodies are moved apart along the axis until
+/// their nearest points give a direction, which cannot separate them less. The climb ends where the
+/// separation no longer grows.
 ConvexAxis ascend(const ConvexBody& a, const ConvexBody& b, const ConvexAxis& from, double size);
 
-/// What the search for the best axis has found.
+/// The result of the search for the best axis.
 struct ConvexAxes {
-  ConvexAxis face;  ///< the best of the faces; owner -1 if there are none
-  ConvexAxis best;  ///< of all directions
+  ConvexAxis face;  ///< best axis of the faces; owner -1 if there are no faces
+  ConvexAxis best;  ///< best axis of all directions
 };
 
-/// False if the bodies are farther apart than `margin` (m). `size`: what tolerances are relative to (m).
+/// Finds the best axes. Returns false if the bodies are farther apart than `margin` (m). `size` is the length
+/// to which tolerances are relative (m).
 bool best_axes(const ConvexBody& a, const ConvexBody& b, double margin, double size, ConvexAxes& out);
 
 }  // namespace scree

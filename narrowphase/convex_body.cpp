@@ -10,7 +10,7 @@ namespace scree {
 
 namespace {
 
-/// Its vertices are at -1 and 1.
+/// Returns a box whose vertices are at -1 and 1.
 const Hull& unit_box() {
   static const Hull box = [] {
     std::array<Vec3, 8> corners;
@@ -26,7 +26,7 @@ bool is_along(const Vec3& normal, const Vec3& along) {
   return normal.dot(along) >= 1 - tolerance::face_cosine;
 }
 
-/// Whether what runs along `edge` is nearly at right angles to a unit direction.
+/// Returns whether an edge is nearly at right angles to a unit direction.
 bool is_across(const Vec3& edge, const Vec3& direction) {
   return std::abs(edge.dot(direction)) <= tolerance::parallel_edges * edge.norm();
 }
@@ -86,8 +86,8 @@ void ConvexBody::take(const Hull& hull, const Vec3& scale) {
   for (int f = 0; f < face_count_; ++f) normals_[f] = axes_ * hull.faces[static_cast<std::size_t>(f)].normal;
 }
 
-/// The farthest point of a cylinder; `middle`: of a cap that is farthest as a whole, as a share of its
-/// radius.
+/// Returns the point of a cylinder that is farthest along a direction. If a whole cap is farthest, the point
+/// is at `middle` times the radius from the centre of the cap.
 Vec3 ConvexBody::of_cylinder(const Vec3& along, double middle) const {
   const Vec3 local = axes_.transpose() * along;
   const double across = std::sqrt(local.x() * local.x() + local.y() * local.y());
@@ -125,7 +125,8 @@ const Vec3& ConvexBody::edge_start(int e) const {
   return kind_ == Kind::polytope ? vertices_[hull_->edges[static_cast<std::size_t>(e)].from] : vertices_[e];
 }
 
-/// A polygon in the circle, with a corner where the cap is farthest along the direction.
+/// Returns a cap as a polygon with its corners on the circle, one of them where the cap is farthest along the
+/// direction.
 Facing ConvexBody::cap_toward(const Vec3& along) const {
   const Vec3 local = axes_.transpose() * along;
   const double across = std::hypot(local.x(), local.y());
@@ -157,7 +158,7 @@ Facing ConvexBody::widest_toward(const Vec3& along) const {
   double most = 1 - tolerance::face_cosine;
   for (int f = 0; f < faces(); ++f) {
     const double cosine = normal(f).dot(along);
-    // Of faces that face it alike the first, whatever the noise.
+    // If several faces are equally close to the direction, the first is taken, whatever the noise.
     if (cosine > most + (best < 0 ? 0.0 : tolerance::same_feature)) {
       most = cosine;
       best = f;

@@ -14,8 +14,9 @@ namespace detail {
 
 namespace {
 
-/// A body in units of the pair and in the frame of its first body, as boxes are: what is aligned with it is
-/// so exactly. Cylinders and hulls are refused a quarter less often for it.
+/// A body in the form in which libccd gets it: in units of the pair and in the frame of its first body, as
+/// boxes are. Features that are aligned with the first body are then aligned exactly: answers about cylinders
+/// and hulls are refused a quarter less often.
 struct Shown {
   const ConvexBody& body;
   const Mat3& frame;
@@ -63,8 +64,8 @@ std::optional<ConvexAxis> certified_axis(const ConvexBody& a, const ConvexBody& 
 
 namespace {
 
-/// The face whose normal is nearest to a direction, the first body's if several are; owner -1 if there are
-/// none.
+/// Returns the face whose normal is nearest to a direction. If several are equally near, the first body's
+/// face is taken. The owner is -1 if there are no faces.
 ConvexAxis face_along(const ConvexBody& a, const ConvexBody& b, const Vec3& direction) {
   ConvexAxis best;
   double best_cosine = -1.0;
@@ -80,11 +81,12 @@ ConvexAxis face_along(const ConvexBody& a, const ConvexBody& b, const Vec3& dire
   return best;
 }
 
-/// The axes with libccd's in the place of the best, and the face that it names.
+/// Replaces the best axis by libccd's, and takes the face whose normal is nearest to it.
 void take_axis(const ConvexBody& a, const ConvexBody& b, const ConvexAxis& axis, double size,
                ConvexAxes& axes) {
   axes.best = axis;
-  // Where a vertex touches, many directions are right, and the nearest face may not be among them.
+  // Where a vertex touches, many directions are right, and the face nearest to the given one may not be among
+  // them.
   const ConvexAxis named = face_along(a, b, axis.normal);
   if (named.owner >= 0 && !clearly_better(axes.face.separation, named.separation, size)) axes.face = named;
 }

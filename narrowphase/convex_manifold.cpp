@@ -9,7 +9,7 @@ namespace scree {
 
 namespace {
 
-/// A corner in the plane of a face: along two axes, and over it.
+/// A corner in the frame of a face: two coordinates in the plane of the face, and the height over it (m).
 struct Flat {
   double x, y, height;
   int name;
@@ -18,12 +18,12 @@ struct Flat {
 struct FlatPolygon {
   int count = 0;
   Flat corner[Facing::most];
-  double turn = 1;  ///< 1: counterclockwise
+  double turn = 1;  ///< 1 if the corners are counterclockwise, else -1
 
   const Flat& at(int k) const { return corner[k < count ? k : 0]; }
 };
 
-/// Twice the area of a triangle; positive: counterclockwise.
+/// Returns twice the area of a triangle, positive if counterclockwise.
 double area(const Flat& a, const Flat& b, double x, double y) {
   return (b.x - a.x) * (y - a.y) - (b.y - a.y) * (x - a.x);
 }
@@ -54,9 +54,9 @@ bool is_inside(const FlatPolygon& polygon, double x, double y, double slack) {
   return true;
 }
 
-/// Height of the plane of a polygon over a place.
+/// Returns the height of a polygon's plane at a place.
 double height_at(const FlatPolygon& polygon, double x, double y) {
-  // Newell's normal: of all corners.
+  // This is Newell's normal, which uses all corners.
   double nx = 0, ny = 0, nz = 0, mx = 0, my = 0, mh = 0;
   for (int k = 0; k < polygon.count; ++k) {
     const Flat &a = polygon.at(k), &b = polygon.at(k + 1);
@@ -130,7 +130,8 @@ void share_face(const Facing& face, const Vec3& normal, const Facing& other, boo
 
 namespace {
 
-/// Of a point with the surface across the normal: where both are closest along it.
+/// Returns the point shared by a point of each core: midway between the two surfaces, which are opposite each
+/// other along the normal.
 SharedPoint shared(const Corner& a, const Corner& b, const Vec3& normal, const double radii[2],
                    SharedPoint::Kind kind) {
   const double gap = normal.dot(b.at - a.at) - radii[0] - radii[1];
@@ -147,7 +148,8 @@ double nearest_share(const Facing& segment, const Vec3& to) {
   return std::clamp(way.dot(to - segment.corner[0].at) / way.squaredNorm(), 0.0, 1.0);
 }
 
-/// Parallel segments share a stretch; false if they lie one beyond the other.
+/// Adds the ends of the stretch over which two parallel segments are side by side. Returns false if one
+/// segment is wholly beyond the other.
 bool share_stretch(const Facing& a, const Facing& b, const Vec3& normal, const double radii[2],
                    SharedPoints& out) {
   using Kind = SharedPoint::Kind;
@@ -194,8 +196,8 @@ void share_edges(const Facing& a, const Facing& b, const Vec3& normal, const dou
 
 namespace {
 
-/// Moves to place `slot` the first of the later points whose value exceeds all before it by more than the
-/// slack.
+/// Moves a point to place `slot`: the first of the later points whose value exceeds all values before it by
+/// more than the slack.
 template <class Value>
 void select(std::vector<SharedPoint>& points, std::size_t slot, double slack, Value value) {
   std::size_t best = slot;
@@ -267,7 +269,8 @@ bool contact_along(const ConvexBody& a, const ConvexBody& b, const ConvexAxes& a
     SharedPoints shared;
     share_face((of_a ? a : b).face_toward(outward, face.face), outward,
                (of_a ? b : a).widest_toward(-outward), of_a, radii, slack, shared);
-    // As close as the bodies are: what is not over the face may be closer.
+    // The face must have a point as close as the bodies are: a feature that is not over the face may be
+    // closer.
     if (least_gap(shared) <= axes.best.separation + preference(axes.best.separation, size) &&
         take_points(shared, face.normal, origin, margin, slack, out))
       return true;
@@ -275,7 +278,8 @@ bool contact_along(const ConvexBody& a, const ConvexBody& b, const ConvexAxes& a
   const Vec3& normal = axes.best.normal;
   SharedPoints shared;
   share_edges(a.edge_toward(normal), b.edge_toward(-normal), normal, radii, shared);
-  // Points of a face may lie beside what the best direction touches: its gap is known all the same.
+  // The points may lie beside the place that the best direction touches; the separation along this direction
+  // is known all the same, and no gap is smaller.
   for (int k = 0; k < shared.count; ++k)
     shared.point[k].gap = std::max(shared.point[k].gap, axes.best.separation);
   return take_points(shared, normal, origin, margin, slack, out);

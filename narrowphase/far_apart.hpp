@@ -1,4 +1,4 @@
-// A look at two bodies that spares the test of most pairs.
+// A cheap early-out test of two bodies, which spares most pairs the full test.
 #pragma once
 
 #include "core/bodies.hpp"
@@ -6,9 +6,9 @@
 
 namespace scree {
 
-/// True if two centres, one `offset` from the other (m), are farther apart than `reach` (m), the sum of the
-/// radii around the bodies and of their margins: they cannot have a contact. Not of boundaries, in which
-/// other bodies are.
+/// Returns whether two centres, the second at `offset` from the first (m), are farther apart than `reach`
+/// (m), the sum of the radii around the bodies and of their margins: then they cannot have a contact. It does
+/// not apply to boundaries, because other bodies are inside them.
 SCREE_HD inline bool are_far_apart(const Vec3& offset, double reach) {
   return offset.squaredNorm() > (1 + tolerance::far_rounding) * reach * reach;
 }

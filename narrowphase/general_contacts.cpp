@@ -11,7 +11,8 @@ namespace scree {
 
 namespace {
 
-/// All corners of a body near the half space below a plane; of a cylinder those of what faces it.
+/// Finds the contact of a body with the half space below a plane: all corners within the margin; for a
+/// cylinder, the corners of the feature that faces the plane.
 bool convex_plane(const ConvexBody& body, const Solid& plane, const Vec3& origin, double margin,
                   Manifold& out) {
   const Vec3 up = plane.orientation * Vec3::UnitZ();
@@ -54,7 +55,7 @@ bool convex_convex(const ConvexBody& a, const ConvexBody& b, const Vec3& origin,
   return best_axes(a, b, margin, size, axes) && contact_along(a, b, axes, margin, size, origin, out);
 }
 
-/// Of shapes in the order of Shape.
+/// Finds the contact of two shapes that are in the order of Shape.
 bool ordered(const ShapedSolid& a, const ShapeData* data_a, const ShapedSolid& b, const ShapeData* data_b,
              const ContactReach& reach, Manifold& out) {
   if (b.shape == Shape::triangle) {

@@ -1,5 +1,5 @@
 // Contacts of the shapes that have no closed form in both spaces: triangles of meshes, capsules, cylinders
-// and polyhedra, with each other and with all others. On Host alone.
+// and polyhedra, with each other and with all other shapes. They are found on Host alone.
 #pragma once
 
 #include "core/bodies.hpp"
@@ -14,19 +14,20 @@ struct ShapedSolid {
   Solid solid;
 };
 
-/// Part of a manifold whose point is no contact: where a triangle is nearest, the mesh around it is what
-/// touches.
+/// Value of Manifold::part for a manifold whose point is no contact: a triangle is nearest there, but the
+/// mesh around it is what touches.
 inline constexpr int hidden_part = -1;
 
 struct ContactReach {
-  double margin;  ///< largest gap of a contact (m)
-  bool hidden =
-      false;  ///< whether hidden_part is given too: who searches for a meeting must know how far it is
+  double margin;        ///< largest gap of a contact (m)
+  bool hidden = false;  ///< whether manifolds with hidden_part are returned too: a search for a meeting must
+                        ///< know their gap
 };
 
-/// Sets everything of the pair's manifolds but i and j, and returns their number, at most max_pair_manifolds.
-/// One of the two shapes at least is general; surfaces make no contact with each other. Never NaN; no contact
-/// is missed: whichever way a normal was found, the gap along it is exact.
+/// Finds the contacts of a pair. It sets everything of the pair's manifolds except i and j, and returns their
+/// number, at most max_pair_manifolds. At least one of the two shapes is general; surfaces make no contact
+/// with each other. Results are never NaN, and no contact is missed: however a normal was found, the gap
+/// along it is exact.
 int find_general_contacts(const ShapedSolid& a, const ShapedSolid& b, const PairShapes& shapes,
                           const ContactReach& reach, Manifold* out);
 

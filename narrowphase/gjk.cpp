@@ -1,5 +1,5 @@
-// The nearest point of the simplex to the origin is found by regions (Ericson 2005, sections 5.1.5
-// and 5.1.6).
+// The distance of two convex bodies by GJK. The point of the simplex nearest to the origin is found by
+// regions (Ericson 2005, sections 5.1.5 and 5.1.6).
 #include "narrowphase/gjk.hpp"
 
 #include "core/tolerances.hpp"
@@ -10,12 +10,12 @@ namespace scree {
 
 namespace {
 
-/// A point of the second body less one of the first.
+/// The difference of a point of the second body and a point of the first.
 struct Difference {
   Vec3 at, on_a, on_b;
 };
 
-/// Points and the weights with which they give the one nearest to the origin.
+/// The points of a simplex, and the weights with which they give its point nearest to the origin.
 struct Simplex {
   int count = 0;
   std::array<Difference, 4> point;
@@ -47,7 +47,7 @@ Part nearest_of_segment(const Vec3& a, const Vec3& b, int i, int j) {
 Part nearest_of_triangle(const Vec3& a, const Vec3& b, const Vec3& c, int i, int j, int k) {
   const Vec3 ab = b - a, ac = c - a;
   const Vec3 normal = ab.cross(ac);
-  // On which side of each edge the origin is: by volumes of small vectors, which keep their digits.
+  // These volumes of small vectors show on which side of each edge the origin is, and keep their digits.
   const double wa = normal.dot(b.cross(c)), wb = normal.dot(c.cross(a)), wc = normal.dot(a.cross(b));
   const double sum = wa + wb + wc;
   if (sum > 0 && wa > 0 && wb > 0 && wc > 0) return {3, {i, j, k}, {wa / sum, wb / sum, wc / sum}};
@@ -93,7 +93,8 @@ void keep(Simplex& s, const Part& part) {
   s = kept;
 }
 
-/// False if the origin is in the tetrahedron, which it is not of bodies that are known to be apart.
+/// Reduces a tetrahedron to the part that is nearest to the origin. Returns false if the origin is inside,
+/// which is impossible for bodies that are known to be apart.
 bool reduce_tetrahedron(Simplex& s, bool apart) {
   const auto at = [&](int k) -> const Vec3& { return s.point[static_cast<std::size_t>(k)].at; };
   constexpr std::array<std::array<int, 4>, 4> faces = {
@@ -104,7 +105,7 @@ bool reduce_tetrahedron(Simplex& s, bool apart) {
   for (const auto& f : faces) {
     const Vec3 normal = (at(f[1]) - at(f[0])).cross(at(f[2]) - at(f[0]));
     const double origin = -normal.dot(at(f[0])), other = normal.dot(at(f[3]) - at(f[0]));
-    // Behind this face; of a flat tetrahedron nothing is.
+    // Skips a face that has the origin on its inner side; a flat tetrahedron has no inner side.
     const double rounding = tolerance::flat * normal.norm() * (at(f[3]) - at(f[0])).norm();
     if (!apart && std::abs(other) > rounding && origin * other > 0) continue;
     outside = true;
@@ -142,12 +143,12 @@ ClosestPoints closest_points(const ConvexBody& a, const ConvexBody& b, const Vec
   Vec3 v = b.centre() + shift - a.centre();
   if (v.isZero(0)) v = Vec3::UnitX();
   double square = HUGE_VAL;
-  bool separated = false;  // some plane was seen between them
+  bool separated = false;  // whether a plane between the bodies has been found
   for (int iteration = 0; iteration < most_iterations; ++iteration) {
     const Vec3 on_a = a.support(v);
     const Vec3 on_b = b.support(-v) + shift;
     const Difference next{on_b - on_a, on_a, on_b};
-    // No point of the difference is nearer than the plane through it.
+    // No point of the difference is nearer to the origin than the plane through `next` at right angles to v.
     if (const double length = v.norm(); v.dot(next.at) > most * length)
       return {.apart = true,
               .distance = v.dot(next.at) / length,
@@ -165,7 +166,7 @@ ClosestPoints closest_points(const ConvexBody& a, const ConvexBody& b, const Vec
     const Vec3 nearest = s.nearest();
     const double now = nearest.squaredNorm();
     if (now <= least * least) return {};
-    if (iteration > 0 && !(now < square)) {  // rounding
+    if (iteration > 0 && !(now < square)) {  // the distance no longer falls: rounding
       s = before;
       break;
     }

@@ -14,16 +14,17 @@ namespace {
 
 bool is_box_pair(Shape a, Shape b) { return a == Shape::box && b == Shape::box; }
 
-/// `automatic` is the 15 axes: scree_bench_narrowphase has them at 0.2 to 0.6 us for a pair, against 0.5
-/// to 1.2 us by MPR and 1.1 to 2.4 us by EPA (12 us where centres coincide). They are exact to rounding,
-/// while the certificate refuses some 10 % of libccd's answers and more in every family but that of shallow
-/// contacts: bench/results/xeon-2-cores/narrowphase.md.
+/// Returns the method of libccd, none for the axes. `automatic` means the 15 axes: scree_bench_narrowphase
+/// measures 0.2 to 0.6 us for a pair with them, against 0.5 to 1.2 us with MPR and 1.1 to 2.4 us with EPA (12
+/// us where centres coincide). The axes are exact to rounding, while the certificate refuses about 10 % of
+/// libccd's answers and more in every family except that of shallow contacts:
+/// bench/results/xeon-2-cores/narrowphase.md.
 std::optional<ccd::Method> method_of(BoxBoxMethod method) {
   if (method == BoxBoxMethod::ccd_gjk) return ccd::Method::gjk;
   if (method == BoxBoxMethod::ccd_mpr) return ccd::Method::mpr;
   return std::nullopt;
 }
-/// As for boxes, `automatic` is the search along axes.
+/// Returns the method of libccd, none for the axes. As for boxes, `automatic` means the search along axes.
 std::optional<ccd::Method> method_of(ConvexMethod method) {
   if (method == ConvexMethod::ccd_gjk) return ccd::Method::gjk;
   if (method == ConvexMethod::ccd_mpr) return ccd::Method::mpr;

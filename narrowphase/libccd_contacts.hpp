@@ -1,4 +1,5 @@
-// Contacts that a scene asks libccd about. On Host alone.
+// Contacts of the pairs that a scene has libccd decide, and the crosscheck with libccd. This file is for Host
+// only.
 #pragma once
 
 #include "core/shape_data.hpp"
@@ -12,29 +13,30 @@
 
 namespace scree {
 
-/// Two boxes, or two convex particles of which one is a capsule, a cylinder or a polyhedron. Several threads
-/// may ask at once.
+/// The use of libccd for pairs of two boxes, or of two convex particles of which one is a capsule, a cylinder
+/// or a polyhedron. Several threads may call it at once.
 class LibccdContacts {
  public:
   explicit LibccdContacts(const NarrowPhaseSettings& settings) : settings_(settings) {}
 
-  /// Whether the settings ask it about anything.
+  /// Returns whether the settings use libccd for anything.
   bool is_needed() const;
-  /// A search for contacts begins: it is another share of the pairs that is checked.
+  /// Begins a search for contacts. Each search crosschecks another share of the pairs.
   void start_search() { ++searches_; }
 
-  /// Whether it decides about two shapes.
+  /// Returns whether libccd decides about two shapes.
   bool decides(Shape a, Shape b) const;
-  /// The contacts of a pair of such shapes with a gap of at most `margin` (m). Returns how many.
+  /// Finds the contacts of a pair of such shapes with a gap of at most `margin` (m), and returns their
+  /// number.
   int find(const ShapedSolid& a, const ShapedSolid& b, const PairShapes& shapes, double margin,
            Manifold* out);
 
-  /// Whether a pair of bodies is one of those that it is asked about too, by their numbers.
+  /// Returns whether the pair of the bodies with numbers i and j is chosen for the crosscheck.
   bool checks(Shape a, Shape b, std::int32_t i, std::int32_t j) const;
-  /// Compares its answer about such a pair with that of the axes.
+  /// Compares libccd's answer about such a pair with that of the axes.
   void check(const ShapedSolid& a, const ShapedSolid& b, const PairShapes& shapes);
 
-  /// Since the last call of this.
+  /// Returns the counts since the last call of this function.
   NarrowPhaseStats take_stats();
 
  private:

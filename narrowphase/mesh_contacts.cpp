@@ -19,18 +19,19 @@ struct Part {
   int index;
 };
 
-/// The triangle's surroundings, asked in the world's axes.
+/// The surroundings of a triangle in its mesh, queried with vectors in world axes.
 struct Neighbourhood {
   const Surroundings& around;
   Mat3 axes;
-  double side;  ///< of the body: 1 before the triangle, -1 behind it
+  double side;  ///< side of the triangle on which the body is: 1 in front of it, -1 behind it
 
   Vec3 normal() const { return side * axes.col(2); }
   const Surroundings::Feature& feature(const Part& part) const {
     const auto k = static_cast<std::size_t>(part.index);
     return part.kind == Part::Kind::edge ? around.edges[k] : around.vertices[k];
   }
-  /// How far a unit normal leaves the cone of an edge or corner; at most cone_slack: it is in it.
+  /// Returns how far a unit normal is outside the cone of an edge or a corner; it counts as inside up to
+  /// cone_slack.
   double beyond(const Part& part, const Vec3& n) const {
     const Vec3 local = axes.transpose() * n;
     double most = -HUGE_VAL;
@@ -43,10 +44,10 @@ struct Neighbourhood {
   }
   bool owns(const Part& part) const { return part.kind == Part::Kind::face || feature(part).owned; }
 
-  /// Whether the mesh ends at an edge.
+  /// Returns whether the mesh ends at an edge.
   bool is_border(int edge) const { return around.edges[static_cast<std::size_t>(edge)].count == 1; }
-  /// Whether the mesh ends or bends away from the face at an edge or a corner, so that it bounds what may lie
-  /// on the face.
+  /// Returns whether the mesh ends or bends away from the face at an edge or a corner, so that the edge or
+  /// corner bounds the region of contact on the face.
   bool is_sharp(const Part& part) const {
     const Vec3 up(0, 0, side);
     const Surroundings::Feature& f = feature(part);
@@ -66,8 +67,8 @@ struct Neighbourhood {
   }
 };
 
-/// The point of a triangle nearest to another (Ericson 2005, section 5.1.5), in its frame, and the part that
-/// it is on.
+/// Finds the point of a triangle nearest to another point (Ericson 2005, section 5.1.5), in the triangle's
+/// frame, and returns the part of the triangle that it is on.
 Part nearest_part(const Vec3& size, const Vec3& point, Vec3& nearest) {
   const std::array<Vec3, 3> corner = {triangle_corner(size, 0), triangle_corner(size, 1),
                                       triangle_corner(size, 2)};
@@ -75,7 +76,8 @@ Part nearest_part(const Vec3& size, const Vec3& point, Vec3& nearest) {
     const Vec3 way = corner[(k + 1) % 3] - corner[k], to = point - corner[k];
     return way.x() * to.y() - way.y() * to.x();
   };
-  // What is over an edge or a corner but for rounding is so for all triangles there, of which one owns it.
+  // A point that is over an edge or a corner up to rounding counts as such for all triangles there, of which
+  // one owns the edge or corner.
   constexpr double rounding = tolerance::touching_gap;
   const double slack = rounding * 4 * size.x() * size.x();
   if (inside(0) > slack && inside(1) > slack && inside(2) > slack) {
@@ -128,7 +130,7 @@ bool sphere_triangle(const Solid& sphere, const Solid& triangle, const Surroundi
 
 namespace {
 
-/// A convex body and a triangle, relative to the triangle's middle.
+/// A convex body and a triangle, with positions relative to the triangle's middle.
 class TrianglePair {
  public:
   TrianglePair(const ShapedSolid& body, const ShapeData* data, const Solid& triangle,
@@ -142,7 +144,7 @@ class TrianglePair {
         slack_(tolerance::same_feature * size_) {}
 
   bool find(Manifold& out) {
-    // The normals here are from the triangle to the body, and turned at the end.
+    // The normals in this class point from the triangle to the body, and are reversed at the end.
     if (!search()) return false;
     const bool of_face = !clearly_better(allowed_.separation, face_.separation, size_);
     const bool found =
@@ -153,7 +155,7 @@ class TrianglePair {
   }
 
  private:
-  /// The best directions; false if one of them parts the two by more than the margin.
+  /// Finds the best directions. Returns false if one of them separates the two by more than the margin.
   bool search() {
     const Vec3 up = mesh_.normal();
     face_ = {up, separation_along(triangle_, body_, up), 0, mesh_.side > 0 ? 0 : 1};
@@ -178,7 +180,7 @@ class TrianglePair {
     return any_.separation <= reach_.margin;
   }
 
-  /// The part of the triangle that is farthest along a direction.
+  /// Returns the part of the triangle that is farthest along a direction.
   Part part_toward(const Vec3& along) const {
     double height[3];
     for (int k = 0; k < 3; ++k) height[k] = triangle_.vertices()[static_cast<std::size_t>(k)].dot(along);
@@ -196,7 +198,8 @@ class TrianglePair {
     return part.kind != Part::Kind::face && mesh_.holds(part, normal);
   }
 
-  /// On the face: corners of the body that are over it, and where the mesh ends or bends away, its own edges.
+  /// Finds the contact on the face. Its points are corners of the body that are over the face and, where the
+  /// mesh ends or bends away, points on the edges and corners of the face.
   bool face_contact(Manifold& out) {
     SharedPoints shared;
     share_face(triangle_.face_toward(face_.normal, face_.face), face_.normal,
@@ -211,9 +214,9 @@ class TrianglePair {
     using Kind = SharedPoint::Kind;
     if (p.kind == Kind::corner_of_a) return mesh_.is_sharp({Part::Kind::corner, p.name_a});
     if (p.kind == Kind::crossing) return mesh_.is_sharp({Part::Kind::edge, edge_from(p.name_a)});
-    // At a flat edge it is over the owner's face alone, unless the body ends there: a plane along its side
-    // parts it from what is beyond. Twice what counts as closed, so that no point falls between the two
-    // rules.
+    // A point at a flat edge counts only on the face of that edge's owner, unless the body ends at the edge:
+    // then a plane along the body's side separates it from the triangle beyond. `ends` is twice the gap that
+    // counts as closed, so that no point falls between the two rules.
     const double ends = 2 * tolerance::closed_gap * size_;
     for (int k = 0; k < 3; ++k) {
       const Vec3& from = triangle_.vertices()[static_cast<std::size_t>(k)];
@@ -226,12 +229,12 @@ class TrianglePair {
     return true;
   }
 
-  /// The edge that a corner begins, as the face is seen from the body.
+  /// Returns the edge that begins at a corner, in counterclockwise order as the face is seen from the body.
   int edge_from(int corner) const { return mesh_.side > 0 ? corner : (corner + 2) % 3; }
 
-  /// On an edge or a corner of the mesh, along the best of the directions in its cone.
+  /// Finds the contact on an edge or a corner of the mesh, along the best of the directions in its cone.
   bool edge_contact(Manifold& out) {
-    // What another direction shows to be farther apart does not touch there.
+    // If another direction shows the bodies to be farther apart, they do not touch at this edge or corner.
     const bool elsewhere = any_.separation > 0 ? any_.separation > allowed_.separation + slack_
                                                : clearly_better(any_.separation, allowed_.separation, size_);
     if (allowed_.normal == face_.normal || elsewhere) return false;

@@ -1,4 +1,4 @@
-// Which bodies are near enough for a contact, as told without their shapes.
+// Early-out tests that decide, without the bodies' shapes, whether two bodies are near enough for a contact.
 #pragma once
 
 #include "broadphase/bounds.hpp"
@@ -11,18 +11,19 @@
 
 namespace scree {
 
-/// Bodies, and how far the contacts of each reach (m).
+/// The bodies, and the margin of each within which it has contacts (m).
 struct NearPairs {
   ConstBodyView bodies;
   ConstView<double> margin;
 
-  /// Whether two bodies are of a kind that may be in contact: one of them is free, and both are there.
+  /// Returns whether two bodies are of kinds that may be in contact: at least one is free, and both are
+  /// present.
   SCREE_HD bool may_be_pair(std::int32_t i, std::int32_t j) const {
     return (is_free(i) || is_free(j)) && is_present(i) && is_present(j);
   }
-  /// Whether two bodies may have a gap of no more than the sum of their margins, as told from the spheres
-  /// around them: of a tube, from its wall and its caps. Spheres are in half of their boxes' volume: of a
-  /// packing's pairs this takes two of five.
+  /// Returns whether two bodies may have a gap of no more than the sum of their margins, judged from the
+  /// spheres around them (for a tube, from its wall and its caps). A sphere fills half of the volume of its
+  /// box: in a packing this test removes two of five pairs.
   SCREE_HD bool spheres_are_near(std::int32_t i, std::int32_t j) const {
     if (is_plane(i)) return is_near_plane(i, j);
     if (is_plane(j)) return is_near_plane(j, i);
@@ -30,14 +31,15 @@ struct NearPairs {
     if (is_boundary(bodies.shape[j])) return !is_within(j, i, reach(i) + margin[j]);
     return !are_far_apart(offset(i, j), reach(i) + reach(j));
   }
-  /// The same, as told from the boxes around them along the world's axes. Boxes are too coarse for planes,
-  /// which they are near everywhere.
+  /// Returns whether two bodies may have a gap of no more than the sum of their margins, judged from the
+  /// boxes around them along the world's axes. Boxes are too coarse for planes: they are near a plane
+  /// everywhere.
   SCREE_HD bool boxes_are_near(std::int32_t i, std::int32_t j) const {
     if (is_plane(i) || is_plane(j)) return true;
     const Vec3 apart = offset(i, j).cwiseAbs() - half_extent(i) - half_extent(j);
     return apart.maxCoeff() <= margin[i] + margin[j];
   }
-  /// Radius of a sphere around a body and its margin (m); infinite for a boundary.
+  /// Returns the radius of a sphere around a body and its margin (m); infinite for a boundary.
   SCREE_HD double sphere_around(std::int32_t k) const {
     return is_boundary(bodies.shape[k]) ? HUGE_VAL : reach(k);
   }
@@ -59,7 +61,7 @@ struct NearPairs {
     const Vec3 up = bodies.orientation[plane] * Vec3::UnitZ();
     return up.dot(bodies.position[body] - bodies.position[plane]) <= reach(body) + margin[plane];
   }
-  /// Whether a body is within a tube, and farther than `reach` (m) from its wall and its caps.
+  /// Returns whether a body is inside a tube and farther than `reach` (m) from its wall and its caps.
   SCREE_HD bool is_within(std::int32_t tube, std::int32_t body, double reach) const {
     const Vec3 up = bodies.orientation[tube] * Vec3::UnitZ();
     const Vec3 from = bodies.position[body] - bodies.position[tube];

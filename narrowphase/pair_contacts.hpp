@@ -1,5 +1,5 @@
-// The contacts of one pair, whatever its shapes: for code that finds them at instants of its own, in either
-// space.
+// The contacts of one pair of shapes with closed forms or boxes, for code in either space that finds contacts
+// at instants of its own.
 #pragma once
 
 #include "core/bodies.hpp"
@@ -15,13 +15,13 @@ namespace scree {
 
 namespace detail {
 
-/// The count of a test that has at most one manifold.
+/// Returns the number of manifolds of a test that has at most one.
 SCREE_HD inline int single(bool found, Manifold& out) {
   out.part = 0;
   return found ? 1 : 0;
 }
 
-/// What a test has found with its bodies in the other order.
+/// Reverses the result of a test that was made with the bodies in the other order.
 SCREE_HD inline int swapped(int count, Manifold* out) {
   for (int m = 0; m < count; ++m) out[m].normal = -out[m].normal;
   return count;
@@ -29,7 +29,7 @@ SCREE_HD inline int swapped(int count, Manifold* out) {
 
 constexpr int kind_of(Shape a, Shape b) { return 8 * static_cast<int>(a) + static_cast<int>(b); }
 
-/// Of shapes in the order of Shape.
+/// Finds the contacts of two shapes that are in the order of Shape.
 SCREE_HD inline int find_ordered_contacts(Shape shape_a, const Solid& a, Shape shape_b, const Solid& b,
                                           double margin, Manifold* out) {
   switch (kind_of(shape_a, shape_b)) {
@@ -54,9 +54,9 @@ SCREE_HD inline int find_ordered_contacts(Shape shape_a, const Solid& a, Shape s
 
 }  // namespace detail
 
-/// The contacts of one pair by the closed forms and the 15 axes, with gaps of at most `margin` (m): sets
-/// everything of its manifolds but i and j, and returns their number, at most max_pair_manifolds. Boundaries
-/// (planes and tubes) make no contact with each other.
+/// Finds the contacts of one pair by the closed forms and the 15 axes, with gaps of at most `margin` (m). It
+/// sets everything of the pair's manifolds except i and j, and returns their number, at most
+/// max_pair_manifolds. Boundaries (planes and tubes) make no contact with each other.
 SCREE_HD inline int find_pair_contacts(Shape shape_a, const Solid& a, Shape shape_b, const Solid& b,
                                        double margin, Manifold* out) {
   const bool ordered = shape_a <= shape_b;

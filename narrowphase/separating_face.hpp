@@ -1,11 +1,13 @@
-// Planes along the faces of two convex bodies in motion that separate them, in either space.
+// The search for a plane along a face of one of two convex bodies in motion that separates them, in either
+// space.
 #pragma once
 
 #include "narrowphase/any_contacts.hpp"
 
 namespace scree {
 
-/// Something at the beginning of a motion, when a contact is seen, and at the end.
+/// The states of something at three instants: at the beginning of a motion, when a contact is seen, and at
+/// the end.
 template <class T>
 struct Instants {
   T begin, seen, end;
@@ -13,17 +15,17 @@ struct Instants {
 
 /// The plane along a face of one of two bodies, which separates them.
 struct SeparatingFace {
-  Vec3 normal = Vec3::Zero();  ///< unit, from i to j, when the contact is seen
-  double separation = 0;       ///< then (m)
-  double approach = HUGE_VAL;  ///< by how much the bodies come closer along it (m); infinite: there is none
+  Vec3 normal = Vec3::Zero();  ///< unit vector from i to j, at the instant when the contact is seen
+  double separation = 0;       ///< separation at that instant (m)
+  double approach = HUGE_VAL;  ///< decrease of the separation (m); infinite: there is no such plane
 
   SCREE_HD bool exists() const { return approach < HUGE_VAL; }
 };
 
 namespace detail {
 
-/// A sphere or a box in place, with what the search for a separating face asks of a ConvexBody. Places are
-/// relative to an origin near the pair (m).
+/// A sphere or a box in place, with the functions of ConvexBody that the search for a separating face needs.
+/// Positions are relative to an origin near the pair (m).
 class BallOrBox {
  public:
   SCREE_HD BallOrBox(const ShapedSolid& body, const Vec3& origin)
@@ -34,7 +36,7 @@ class BallOrBox {
 
   SCREE_HD int faces() const { return is_box_ ? 6 : 0; }
   SCREE_HD Vec3 normal(int face) const { return (face % 2 == 0 ? 1.0 : -1.0) * axes_.col(face / 2); }
-  /// How far along a unit direction the body reaches.
+  /// Returns how far the body reaches along a unit direction.
   SCREE_HD double reach(const Vec3& along) const {
     const double extent = is_box_ ? (axes_.transpose() * along).cwiseAbs().dot(size_) : size_.x();
     return centre_.dot(along) + extent;
@@ -47,7 +49,7 @@ class BallOrBox {
   Vec3 size_;
 };
 
-/// Takes the best of the faces of the first body, if it is better than `best`.
+/// Replaces `best` by the best face of the first body, if that is better.
 template <class Body>
 SCREE_HD void look_at_faces(const Instants<Body>& first, const Instants<Body>& second, double slack,
                             const Vec3& crossing, SeparatingFace& best) {
@@ -79,15 +81,16 @@ SCREE_HD SeparatingFace best_face(const Instants<Body>& i, const Instants<Body>&
   return of_j;
 }
 
-/// As find_separating_face(), of any convex shapes, on Host.
+/// Finds the face as find_separating_face() does, for any convex shapes, on Host.
 SeparatingFace find_general_separating_face(const Instants<ShapedSolid>& i, const Instants<ShapedSolid>& j,
                                             const PairShapes& shapes, double slack, const Vec3& crossing);
 
 }  // namespace detail
 
-/// Of the planes along the faces of two convex bodies that separate them by at least -slack (m) at the
-/// beginning of their motion, and that they approach after that by no more than slack and their normal's part
-/// of `crossing` (m), the one that they approach least.
+/// Finds a plane along a face of one of two convex bodies that separates them. It must separate them by at
+/// least -slack (m) at the beginning of their motion, and they must approach it after that by no more than
+/// slack plus the component of `crossing` (m) along its normal. Of these planes, the one that they approach
+/// least is returned.
 SCREE_HD inline SeparatingFace find_separating_face(const Instants<ShapedSolid>& i,
                                                     const Instants<ShapedSolid>& j, const PairShapes& shapes,
                                                     double slack, const Vec3& crossing) {

@@ -1,4 +1,4 @@
-// What a pair function knows of a body, and how the features of a box are named.
+// The body data that a pair function gets, and the names of the features of a box.
 #pragma once
 
 #include "core/math.hpp"
@@ -8,7 +8,7 @@
 
 namespace scree {
 
-/// A shape in place. `size` as in Shape (m).
+/// A shape in place. `size` is as in Shape (m).
 struct Solid {
   Vec3 position;
   Quat orientation;
@@ -17,25 +17,25 @@ struct Solid {
 
 // Every pair function has the form
 //   bool pair(const Solid& a, const Solid& b, double margin, Manifold& out)
-// It tells whether a and b have contact points with gaps of at most `margin`, and sets normal (from a to b),
-// count and points of `out`. Where one normal cannot serve, it is
+// It returns whether a and b have contact points with gaps of at most `margin`, and sets normal (from a to
+// b), count and points of `out`. Where one normal is not enough, the form is
 //   int pair(const Solid& a, const Solid& b, double margin, Manifold* out)
-// which sets as many manifolds as it returns, `part` included, and at most max_pair_manifolds. The offset b -
-// a is formed in double before anything else: far from the origin nothing is lost but what the positions
-// themselves have lost.
+// It returns the number of manifolds that it sets, `part` included, at most max_pair_manifolds. The offset b
+// - a is formed in double before anything else: far from the origin, only the digits that the positions
+// themselves have lost are lost.
 
-/// The sign of x, never 0.
+/// Returns the sign of x, never 0.
 SCREE_HD inline double sign_of(double x) { return x < 0.0 ? -1.0 : 1.0; }
 
 /// A vertex, edge or face of a box, as two bits for each axis: 0 free, 1 the negative side, 2 the positive
-/// side. A vertex leaves no axis free, an edge one, a face two. So `p & q` is the smallest feature that holds
-/// both.
+/// side. A vertex leaves no axis free, an edge leaves one, a face two. So `p & q` is the smallest feature
+/// that holds both.
 using BoxFeature = std::uint32_t;
 
 SCREE_HD inline BoxFeature box_side(int axis, double side) { return (side < 0.0 ? 1u : 2u) << (2 * axis); }
 
-/// Names a contact of feature `a` of the first body with feature `b` of the second: the same for one pair of
-/// features, whichever body gave the reference face.
+/// Returns the name of a contact of feature `a` of the first body with feature `b` of the second. A pair of
+/// features has one name, whichever body gave the reference face.
 SCREE_HD inline std::uint32_t contact_feature(BoxFeature a, BoxFeature b) { return a << 6 | b; }
 
 struct BoxCorner {
@@ -43,7 +43,7 @@ struct BoxCorner {
   BoxFeature feature;
 };
 
-/// Corner c of the 8 of a box with the given axes: bit k of c chooses the side along axis k.
+/// Returns corner c of the 8 corners of a box with the given axes: bit k of c chooses the side along axis k.
 SCREE_HD inline BoxCorner box_corner(const Solid& box, const Mat3& axes, int c) {
   BoxCorner corner{box.position, 0};
   for (int k = 0; k < 3; ++k) {
@@ -54,7 +54,8 @@ SCREE_HD inline BoxCorner box_corner(const Solid& box, const Mat3& axes, int c) 
   return corner;
 }
 
-/// A surface that has at most one point needs no name to find it again.
+/// Name of the feature of a surface that has at most one contact point: the point needs no name to be found
+/// again.
 inline constexpr std::uint32_t only_feature = 0;
 
 SCREE_HD inline void set_single(Manifold& out, const Vec3& normal, const ContactPoint& point) {

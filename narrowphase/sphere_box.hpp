@@ -1,4 +1,5 @@
-// A sphere and a box: exact in the regions of faces, edges and vertices, and with the centre inside.
+// The contact of a sphere and a box, exact in the regions of faces, edges and vertices, and if the sphere's
+// centre is inside the box.
 #pragma once
 
 #include "narrowphase/solid.hpp"
@@ -7,8 +8,9 @@ namespace scree {
 
 namespace detail {
 
-/// The way out of a box for a point inside it: through the nearest face, the first axis where several are
-/// equally near. Sets the direction (box frame) and returns the signed distance to the face (negative, m).
+/// Finds the shortest way out of a box for a point inside it: through the nearest face, or along the first
+/// axis if several faces are equally near. It sets the direction (box frame) and returns the signed distance
+/// to the face (negative, m).
 SCREE_HD inline double exit_of(const Vec3& inside, const Vec3& half, Vec3& direction) {
   int axis = 0;
   for (int k = 1; k < 3; ++k) {

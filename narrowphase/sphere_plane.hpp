@@ -1,4 +1,4 @@
-// A sphere and the half space below a plane.
+// The contact of a sphere and the half space below a plane.
 #pragma once
 
 #include "narrowphase/solid.hpp"

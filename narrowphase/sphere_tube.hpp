@@ -1,4 +1,4 @@
-// A sphere in a tube: it may touch the wall and both caps.
+// The contacts of a sphere in a tube: it may touch the wall and both caps.
 #pragma once
 
 #include "narrowphase/sphere_plane.hpp"

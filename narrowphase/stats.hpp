@@ -1,4 +1,4 @@
-// What the narrow phase counts.
+// The counts of the narrow phase.
 #pragma once
 
 #include <array>
@@ -6,11 +6,13 @@
 
 namespace scree {
 
-/// Disagreements of two methods by their size, which is relative to the smaller body's smallest_size.
+/// Counts of the disagreements of two methods by their size, which is relative to the smaller body's
+/// smallest_size.
 struct Disagreements {
-  /// Decade k counts sizes from least * 10^k to 10 times as much; the last one also all that is larger.
+  /// Decade k counts sizes from least * 10^k to 10 times as much; the last decade also counts all larger
+  /// sizes.
   static constexpr int decades = 7;
-  static constexpr double least = 1e-6;  ///< smaller ones are none
+  static constexpr double least = 1e-6;  ///< smaller differences are not counted
 
   std::array<std::int64_t, decades> count{};
 
@@ -31,12 +33,12 @@ struct Disagreements {
   }
 };
 
-/// The search along axes against libccd, for the pairs that `narrowphase.crosscheck` chose.
+/// The comparison of the search along axes with libccd, for the pairs that `narrowphase.crosscheck` chose.
 struct CrosscheckStats {
-  std::int64_t asked = 0;       ///< pairs
-  Disagreements touching;       ///< only one of the two sees an overlap: the depth or the distance by axes
+  std::int64_t asked = 0;       ///< number of pairs compared
+  Disagreements touching;       ///< overlap found by only one method; size: depth or distance by axes
   Disagreements ccd_deeper;     ///< overlap along libccd's direction beyond the least known: libccd's error
-  Disagreements ccd_shallower;  ///< overlap short of the least known: the error of the axes
+  Disagreements ccd_shallower;  ///< overlap along libccd's direction short of the least known: error of axes
 
   CrosscheckStats& operator+=(const CrosscheckStats& other) {
     asked += other.asked;
@@ -48,10 +50,10 @@ struct CrosscheckStats {
 };
 
 struct NarrowPhaseStats {
-  std::int64_t tested = 0;        ///< pairs tested, planes included
-  std::int64_t ccd_calls = 0;     ///< pairs given to libccd
-  std::int64_t ccd_rejected = 0;  ///< of these, answers that the certificate refused (axes then decided)
-  std::int64_t ccd_stopped = 0;   ///< of these, searches that used up their budget of support points
+  std::int64_t tested = 0;        ///< number of pairs tested, planes included
+  std::int64_t ccd_calls = 0;     ///< number of pairs given to libccd
+  std::int64_t ccd_rejected = 0;  ///< answers of libccd that the certificate refused (the axes then decided)
+  std::int64_t ccd_stopped = 0;   ///< searches of libccd that used up their budget of support points
   CrosscheckStats crosscheck;
 
   NarrowPhaseStats& operator+=(const NarrowPhaseStats& other) {

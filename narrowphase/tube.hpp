@@ -1,4 +1,4 @@
-// The inside of a tube: its wall and its caps. It has one side: what is outside passes it by.
+// The inside of a tube: its wall and its caps. A tube has an inner side only: bodies outside do not touch it.
 #pragma once
 
 #include "core/tolerances.hpp"
@@ -6,8 +6,8 @@
 
 namespace scree {
 
-/// Manifold::part of contacts with a tube: the wall, or the cap at the negative or positive end of its axis.
-/// Each is a surface of its own: a ball that rests on the wall still bounces off a cap.
+/// Values of Manifold::part for contacts with a tube: the wall, or the cap at the negative or positive end of
+/// its axis. Each is a separate surface: a ball that rests on the wall still bounces off a cap.
 enum TubePart : std::int32_t { tube_wall, tube_cap_below, tube_cap_above };
 
 namespace detail {
@@ -18,7 +18,7 @@ SCREE_HD inline Solid relative_to(const Solid& tube, const Solid& body) {
   return {body.position - tube.position, body.orientation, body.size};
 }
 
-/// Moves the contact points of so many manifolds back to where the tube is; returns their number.
+/// Moves the contact points of `count` manifolds back to where the tube is, and returns that number.
 SCREE_HD inline int place_at(const Solid& tube, int count, Manifold* out) {
   for (int m = 0; m < count; ++m) {
     for (int k = 0; k < out[m].count; ++k) out[m].points[k].position += tube.position;
@@ -26,15 +26,15 @@ SCREE_HD inline int place_at(const Solid& tube, int count, Manifold* out) {
   return count;
 }
 
-/// Tells whether a body with this centre is in the tube with the given axes. One that is beyond the wall or a
-/// cap by no more than the margin has come from inside since the step began, and is held.
+/// Returns whether a body with this centre is in the tube with the given axes. A body that is beyond the wall
+/// or a cap by no more than the margin has come from inside since the step began, and is held.
 SCREE_HD inline bool is_in_tube(const Solid& tube, const Mat3& axes, const Vec3& centre, double margin) {
   const Vec3 at = axes.transpose() * centre;
   return hypot(at.x(), at.y()) <= tube.size.x() + margin && fabs(at.z()) <= tube.size.z() + margin;
 }
 
-/// The contact of a ball with the wall; of a point, if the radius is 0. A ball that is wider than the tube
-/// overlaps it wherever it is.
+/// Finds the contact of a ball with the wall, or of a point if the radius is 0. A ball that is wider than the
+/// tube overlaps it wherever it is.
 SCREE_HD inline bool wall_contact(const Solid& tube, const Mat3& axes, const Vec3& centre, double radius,
                                   BoxFeature feature, double margin, Manifold& out) {
   const Vec3 at = axes.transpose() * centre;
@@ -42,7 +42,7 @@ SCREE_HD inline bool wall_contact(const Solid& tube, const Mat3& axes, const Vec
   const double to_wall = tube.size.x() - from_axis;
   const double gap = to_wall - radius;
   if (gap > margin) return false;
-  // On the axis no direction is nearer than another; any one does, if it is always the same.
+  // On the axis no direction to the wall is shorter than another; any fixed one will do.
   const Vec3 outward = from_axis > tolerance::coincident * tube.size.x()
                            ? Vec3(axes * (Vec3(at.x(), at.y(), 0.0) / from_axis))
                            : Vec3(axes.col(0));
@@ -51,7 +51,7 @@ SCREE_HD inline bool wall_contact(const Solid& tube, const Mat3& axes, const Vec
   return true;
 }
 
-/// A cap as the plane that it lies in.
+/// Returns the plane in which a cap lies.
 SCREE_HD inline Solid tube_cap(const Solid& tube, const Mat3& axes, TubePart part) {
   const Quat half_turn(0, 1, 0, 0);
   const bool below = part == tube_cap_below;

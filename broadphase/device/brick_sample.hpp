@@ -1,4 +1,4 @@
-// What the plan of the bricks has to know, from some of the objects, on Device.
+// The kernels that sample some of the objects for the plan of the bricks, on Device.
 #pragma once
 
 #include "broadphase/aabb.hpp"
@@ -14,7 +14,7 @@ struct Sampled {
   const Aabb* bounds;
   std::int64_t count;
 
-  /// Calls f(box) for those of the sample that are this thread's.
+  /// Calls f(box) for the objects of the sample that belong to this thread.
   template <class F>
   __device__ void for_each(const F& f) const {
     for (std::int64_t k = std::int64_t{blockIdx.x} * sample_threads + threadIdx.x;
@@ -25,13 +25,14 @@ struct Sampled {
   }
 };
 
-/// A shared word becomes the largest of itself and the values of a warp.
+/// Raises a shared word to the largest of the values of a warp.
 __device__ inline void raise(std::uint32_t& word, std::uint32_t value) {
   for (int d = 16; d > 0; d /= 2) value = max(value, __shfl_xor_sync(detail::all_lanes, value, d));
   if (threadIdx.x % 32 == 0) atomicMax(&word, value);
 }
 
-/// Extremes and sizes. The sample's lo stands inverted meanwhile, so that all begins with zero.
+/// Finds the extremes and the sizes of the sample. The bits of the sample's lo are inverted here, so that all
+/// members can begin with zero.
 __global__ void __launch_bounds__(sample_threads)
     sample_sizes(const __grid_constant__ Sampled sampled, BrickSample* sample) {
   __shared__ std::uint32_t sizes[BrickSample::size_bins];
@@ -50,7 +51,8 @@ __global__ void __launch_bounds__(sample_threads)
     largest = max(largest, std::bit_cast<std::uint32_t>(extent));
     atomicAdd(&sizes[size_class(extent)], 1u);
   });
-  // In the block first: all others would wait for the same few words.
+  // The extremes are first reduced in the block, because otherwise all threads would wait for the same few
+  // words.
   raise(extreme[0], largest);
   for (int a = 0; a < 3; ++a) {
     raise(extreme[1 + a], lo[a]);

@@ -1,5 +1,5 @@
-// From bounds to bricks, on Device: which objects each brick holds. The order within a brick is that of
-// chance; the search puts it right.
+// The kernels that distribute the objects from their bounds to the bricks, on Device. The order within a
+// brick is random at first; the search sorts it.
 #pragma once
 
 #include "broadphase/brick_plan.hpp"
@@ -12,14 +12,14 @@ namespace scree {
 
 using detail::Word;
 
-/// Set to zero before each call of find().
+/// The state of one call of find(), set to zero before it.
 struct BrickState {
-  /// Number of bodies less that of the first one whose box is not proper; 0 if all are.
+  /// Number of bodies minus the number of the first body whose box is not proper; 0 if all boxes are proper.
   Word first_bad;
   std::uint32_t oversize_objects;  ///< objects wider than a brick
-  std::uint32_t chunks;            ///< in use
+  std::uint32_t chunks;            ///< number of chunks in use
   std::uint32_t over_full;         ///< whether a brick has more objects than there is room for
-  // Of a search.
+  // The members below are results of a search.
   std::uint32_t crowded;  ///< whether the objects of a brick have more entries than there is room for
   Word pairs;
   Word tests[detail::test_counters];
@@ -31,15 +31,15 @@ struct BrickInput {
   std::int64_t count;
 };
 
-/// The bricks, and what is known of them while they are filled and searched.
+/// The bricks, and the data about them while they are filled and searched.
 struct BrickStore {
   BrickPlan plan;
   BrickState* state;
-  std::uint32_t* oversize_objects;  ///< bodies
-  std::uint32_t* counts;            ///< entries of each brick, with those that found no room
-  Entry* entries;                   ///< brick_objects for each brick
+  std::uint32_t* oversize_objects;  ///< bodies that are oversize objects
+  std::uint32_t* counts;            ///< number of entries of each brick, including entries without room
+  Entry* entries;                   ///< entries; each brick has room for brick_objects
 
-  /// Puts an entry where the brick has room for it.
+  /// Adds an entry to a brick if there is room for it.
   __device__ void add(std::uint32_t brick, const Entry& entry) const {
     const std::uint32_t place = atomicAdd(&counts[brick], 1u);
     if (place < brick_objects) {
@@ -50,12 +50,13 @@ struct BrickStore {
   }
 };
 
-/// An object on its way: for each axis the lower number from that of its bucket on (17 bits), and the extent.
+/// An object on its way to its bricks. For each axis, a word holds the lower number relative to the bucket
+/// (17 bits) and the extent.
 struct alignas(16) StagedRecord {
   std::uint32_t axis[3];
   std::uint32_t tag;
 
-  __device__ LatticeBox box() const {  // from the bucket on
+  __device__ LatticeBox box() const {  // relative to the bucket
     LatticeBox box;
     for (int a = 0; a < 3; ++a) {
       box.lo[a] = static_cast<std::int32_t>(axis[a] & 0x1ffffu);
@@ -68,10 +69,10 @@ struct alignas(16) StagedRecord {
 struct Located {
   LatticeBox box;
   std::uint32_t tag;
-  bool here;  ///< else absent, bad or an oversize object
+  bool here;  ///< whether the object goes to a bucket: it is not absent, bad or oversize
 };
 
-/// Of a body; absent beyond the last one.
+/// The box and mobility of a body as loaded from memory; absent beyond the last body.
 struct Loaded {
   float2 part[3];
   Mobility mobility;
@@ -122,9 +123,10 @@ __device__ void for_each_brick(const LatticeBox& box, const F& f) {
       for (std::int32_t x = box.lo[0] >> brick_bits; x <= box.hi[0] >> brick_bits; ++x) f(x, y, z);
 }
 
-/// Giants to their bricks, entered by `blocks` blocks, of which this is number `block`: if they are fewer
-/// than the blocks, several share one.
+/// Number of blocks that distribute oversize objects.
 inline constexpr unsigned oversize_blocks = 64;
+/// Distributes oversize objects to their bricks. It is called by `blocks` blocks, of which this one is number
+/// `block`. If there are fewer objects than blocks, several blocks share an object.
 __device__ inline void scatter_oversize_objects(const BrickInput& input, const BrickStore& store,
                                                 unsigned block, unsigned blocks) {
   const std::uint32_t oversize_objects = store.state->oversize_objects;
@@ -151,23 +153,25 @@ __device__ inline void scatter_oversize_objects(const BrickInput& input, const B
   }
 }
 
-/// Buckets grow by chunks, which whoever needs the first place of one takes from all that there are.
+/// Number of records in a chunk. Buckets grow by chunks: the thread that gets the first place of a new chunk
+/// takes it from the common store of chunks.
 inline constexpr std::uint32_t chunk_records = 2048;
 struct BucketStore {
-  StagedRecord* records;     ///< chunk_records in each chunk
-  std::uint32_t* counts;     ///< records of each bucket
-  std::uint32_t* chunk;      ///< of each bucket its chunks in order, each plus one; 0: not taken yet
-  std::uint32_t per_bucket;  ///< chunks that it can have
-  std::uint32_t* owner;      ///< of each chunk: its place in `chunk`
+  StagedRecord* records;     ///< records; each chunk has room for chunk_records
+  std::uint32_t* counts;     ///< number of records of each bucket
+  std::uint32_t* chunk;      ///< chunks of each bucket in order, each number plus one; 0: not taken yet
+  std::uint32_t per_bucket;  ///< largest number of chunks of a bucket
+  std::uint32_t* owner;      ///< for each chunk, its index in `chunk`
 };
 
 inline constexpr int scatter_threads = 256;
-inline constexpr int scatter_items = 8;  // of a thread
-inline constexpr int loads_at_once = 4;  // of them
+inline constexpr int scatter_items = 8;  // items of a thread
+inline constexpr int loads_at_once = 4;  // items that a thread loads at once
 inline constexpr std::uint32_t scatter_tile = scatter_threads * scatter_items;
 static_assert(scatter_tile <= chunk_records);
 
-/// counts[0..n) become the sums of what stands before them; entered by the block.
+/// Replaces counts[0..n) by the sums of the counts before each, and returns the total. The whole block calls
+/// it.
 template <int threads>
 __device__ std::uint32_t scan_in_block(std::uint32_t* counts, int n, std::uint32_t* sums) {
   const int each = (n + threads - 1) / threads;
@@ -198,13 +202,14 @@ __device__ inline void take_chunk(const BrickStore& store, const BucketStore& bu
   asm volatile("st.relaxed.gpu.global.u32 [%0], %1;" ::"l"(buckets.chunk + slot), "r"(chunk + 1) : "memory");
 }
 
-/// What goes to one bucket from a tile.
+/// The records that go from one tile to one bucket.
 struct BucketRun {
-  std::uint32_t split;     ///< as many records go to the first chunk, the others to a second one
-  std::uint32_t place[2];  ///< of the first record in each, in all chunks
+  std::uint32_t split;     ///< number of records that go to the first chunk; the others go to a second one
+  std::uint32_t place[2];  ///< index, among all records, of the first one in each chunk
 };
 
-/// Tiles of objects, to buckets: sorted by bucket in shared memory, so that what is written lies together.
+/// Distributes the objects of a tile to buckets. The records are sorted by bucket in shared memory, so that
+/// writes are contiguous.
 __global__ void __launch_bounds__(scatter_threads, 4)
     scatter_to_buckets(const __grid_constant__ BrickInput input, const __grid_constant__ BrickStore store,
                        const __grid_constant__ BucketStore buckets) {
@@ -218,7 +223,7 @@ __global__ void __launch_bounds__(scatter_threads, 4)
   for (int b = static_cast<int>(threadIdx.x); b < count; b += scatter_threads) begin[b] = 0;
   __syncthreads();
   StagedRecord record[scatter_items];
-  std::uint32_t rank[scatter_items];  // in its bucket, and 2^16 times the bucket
+  std::uint32_t rank[scatter_items];  // rank in its bucket, plus 2^16 times the bucket
   Loaded loaded[loads_at_once];
   const std::int64_t first = std::int64_t{blockIdx.x} * scatter_tile + threadIdx.x;
 #pragma unroll
@@ -247,7 +252,7 @@ __global__ void __launch_bounds__(scatter_threads, 4)
   for (int b = static_cast<int>(threadIdx.x); b < count; b += scatter_threads) {
     const std::uint32_t n = begin[b];
     if (n == 0) continue;
-    // The places in the bucket, and the chunks that these are in.
+    // This finds the places in the bucket, and takes the chunks whose first places are among them.
     const std::uint32_t first = atomicAdd(&buckets.counts[b], n);
     const std::uint32_t slot = static_cast<std::uint32_t>(b) * buckets.per_bucket + first / chunk_records;
     const std::uint32_t room = chunk_records - first % chunk_records;
@@ -284,17 +289,17 @@ __global__ void __launch_bounds__(scatter_threads, 4)
   }
 }
 
-/// What goes to one brick from a chunk.
+/// The entries that go from one chunk to one brick.
 struct BrickRun {
-  std::uint32_t end;  ///< in the order of the chunk, of those that find room in the brick
-  std::uint32_t to;   ///< where they go in all entries, less their place in the order
+  std::uint32_t end;  ///< end of the entries with room in the brick, in the order of the chunk
+  std::uint32_t to;   ///< their index among all entries, minus their index in the order
 };
 
-/// The bricks that the objects of a bucket can overlap: those that begin there, and one more on each axis.
+/// The bricks that the objects of a bucket can overlap: the bricks in the bucket, and one more on each axis.
 struct BucketBricks {
   std::int32_t side;
   std::int32_t corner[3];
-  std::uint32_t inverse;  ///< so that k * inverse / 2^16 is k / side
+  std::uint32_t inverse;  ///< factor for which k * inverse / 2^16 is k / side
 
   __device__ BucketBricks(const BrickPlan& plan, std::uint32_t bucket)
       : side(plan.bucket_width + 1), inverse(65536u / static_cast<std::uint32_t>(side) + 1) {
@@ -306,7 +311,7 @@ struct BucketBricks {
   __device__ std::uint32_t local(std::int32_t x, std::int32_t y, std::int32_t z) const {
     return static_cast<std::uint32_t>((z * side + y) * side + x);
   }
-  /// Where the local brick k is.
+  /// Finds the position of local brick k.
   __device__ void locate(std::uint32_t k, std::int32_t (&at)[3]) const {
     const auto wide = static_cast<std::uint32_t>(side);
     const std::uint32_t row = k * inverse >> 16;
@@ -322,13 +327,14 @@ struct BucketBricks {
   }
 };
 
-/// The objects of a chunk to the bricks that they overlap: each to the brick of its lower corner, and its
-/// copies to the others from a list, so that no lanes wait for those that have some. They are put in order
-/// before they are written, so that what goes to a brick lies together. Blocks beyond the chunks deal the
-/// oversize objects.
+/// Capacities: listed copies of a thread, listed copies of a block, and entries that a block puts in order.
 inline constexpr int copies_of_thread = 5;
 inline constexpr std::uint32_t most_listed = copies_of_thread * scatter_threads;
 inline constexpr std::uint32_t most_ordered = chunk_records + most_listed;
+/// Distributes the objects of a chunk to the bricks that they overlap. Each object goes to the brick of its
+/// lower corner; its copies go to the other bricks by way of a list, so that no lanes wait for those whose
+/// objects have copies. The entries are put in order before they are written, so that writes to a brick are
+/// contiguous. Blocks beyond the chunks distribute the oversize objects.
 __global__ void __launch_bounds__(scatter_threads, 5)
     scatter_to_bricks(const __grid_constant__ BrickInput input, const __grid_constant__ BrickStore store,
                       const __grid_constant__ BucketStore buckets) {
@@ -337,8 +343,8 @@ __global__ void __launch_bounds__(scatter_threads, 5)
   __shared__ std::uint32_t wide;
   __shared__ std::uint32_t listed;
   __shared__ std::uint16_t wider[chunk_records];  // records that overlap more than one brick
-  __shared__ std::uint32_t list[most_listed];     // record, and 2^16 times the local brick
-  __shared__ std::uint32_t order[most_ordered];   // likewise
+  __shared__ std::uint32_t list[most_listed];     // record, plus 2^16 times the local brick
+  __shared__ std::uint32_t order[most_ordered];   // entries in order, encoded as in `list`
   const std::uint32_t chunks = store.state->chunks;
   if (blockIdx.x >= chunks) {
     scatter_oversize_objects(input, store, blockIdx.x - chunks, gridDim.x - chunks);
@@ -356,7 +362,7 @@ __global__ void __launch_bounds__(scatter_threads, 5)
   for (int b = static_cast<int>(threadIdx.x); b < count; b += scatter_threads) begin[b] = 0;
   if (threadIdx.x == 0) wide = listed = 0;
   __syncthreads();
-  std::uint32_t rank[scatter_items];  // in its brick, and 2^16 times the brick
+  std::uint32_t rank[scatter_items];  // rank in its brick, plus 2^16 times the brick
   StagedRecord loaded[loads_at_once];
 #pragma unroll
   for (int k = 0; k < scatter_items; ++k) {

@@ -1,5 +1,5 @@
-// The pairs of each brick, on Device: a block of threads sorts the brick's entries in its own memory, deals
-// the tests to all lanes and writes what it finds where the bricks before it end.
+// The search for the pairs of each brick, on Device: a block of threads sorts the brick's entries in shared
+// memory, distributes the tests over all lanes, and writes the pairs behind those of the bricks before it.
 #pragma once
 
 #include "broadphase/device/brick_sort.hpp"
@@ -13,8 +13,8 @@ struct SearchOutput {
   Word* tiles;
 };
 
-/// Of pairs that meet on numbers, those whose numbers leave it open and whose boxes are apart are taken out
-/// of the hits; entered by the warp.
+/// Removes from the hits the pairs whose numbers leave the answer open (`ask`) and whose boxes do not
+/// overlap. The whole warp calls it.
 template <int n>
 __device__ void ask_bounds(const SearchOutput& out, const bool (&ask)[n], const Entry (&a)[n],
                            const Entry (&b)[n], unsigned (&hits)[n]) {
@@ -28,9 +28,10 @@ __device__ void ask_bounds(const SearchOutput& out, const bool (&ask)[n], const 
   }
 }
 
-/// The tests of 32 entries, those from `end` on left out, dealt to the lanes of a warp in the order of
-/// entries, runs and candidates. Calls sink(hits, pair), which the whole warp enters: a bit for each lane,
-/// and the slots of its pair in bytes of entries. Returns the number of tests.
+/// Makes the tests of 32 entries, without those from `end` on. The tests are distributed over the lanes of a
+/// warp in the order of entries, runs and candidates. Calls sink(hits, pair) with the whole warp: `hits` has
+/// a bit for each lane, and `pair` holds the slots of the lane's pair in bytes of entries. Returns the number
+/// of tests.
 template <BrickMethod method, class Sink>
 __device__ std::uint32_t search_entries(const BrickSearch<method>& search, const SearchOutput& out,
                                         SearchMemory<method>& memory, std::uint32_t first, std::uint32_t end,
@@ -47,7 +48,7 @@ __device__ std::uint32_t search_entries(const BrickSearch<method>& search, const
     stage.turned[lane] = facing(entry);
     search.find_runs(entry, slot, memory, run);
   }
-  // Two sums in one: there are at most 160 runs, and 32 times most_entries tests.
+  // Two sums are made in one word: there are at most 160 runs, and 32 times most_entries tests.
   std::uint32_t used[runs];
   std::uint32_t length = 0;
 #pragma unroll
@@ -69,12 +70,12 @@ __device__ std::uint32_t search_entries(const BrickSearch<method>& search, const
     at += run[r].length;
   }
   if (lane == 31) stage.run[number] = ((0u - tests * 16) & 0xffffu) | (first + 32) << 20;
-  // Marks the tests with which runs start, of a window of tests. The last lane marks the end, so that what is
-  // left of the last words goes to nobody.
+  // mark() sets the bits of the tests with which runs start, within a window of tests. The last lane also
+  // marks the end, so that the remaining tests of the last words belong to no entry.
   const auto mark = [&](std::uint32_t done) {
     auto from = static_cast<std::int32_t>(first_test - done);  // negative: before the window
     const std::int32_t word = from >> 5;
-    std::uint32_t bits[2] = {};  // of this word and the next one: further on there is hardly ever anything
+    std::uint32_t bits[2] = {};  // bits of this word and the next one; runs hardly ever start further on
     bool far = false;
 #pragma unroll
     for (int r = 0; r <= runs; ++r) {
@@ -101,7 +102,7 @@ __device__ std::uint32_t search_entries(const BrickSearch<method>& search, const
   const std::uint32_t up_to_lane = held((2u << lane) - 1);
   const std::uint32_t turned_from = held(shared_address(stage.turned) - first * 16);
   const std::uint32_t entries_from = held(shared_address(memory.entry));
-  std::uint32_t started = 0;  // runs, before the word
+  std::uint32_t started = 0;  // number of runs that start before the word
   for (std::uint32_t done = 0; done < tests; done += window) {
     if (done > 0) {
       stage.starts[lane] = 0;
@@ -110,7 +111,7 @@ __device__ std::uint32_t search_entries(const BrickSearch<method>& search, const
     }
     __syncwarp();
     const std::uint32_t words = held((min(tests - done, window) + 31) / 32);
-    std::uint32_t test = (done + lane) * 16;  // in bytes of entries
+    std::uint32_t test = (done + lane) * 16;  // its number, in bytes of entries
     for (std::uint32_t word = 0; word < words; word += 2) {
       const uint2 starts = *reinterpret_cast<const uint2*>(stage.starts + word);
       const std::uint32_t in_first = started + static_cast<std::uint32_t>(__popc(starts.x));
@@ -130,7 +131,7 @@ __device__ std::uint32_t search_entries(const BrickSearch<method>& search, const
         a[h] = *shared_at<Entry>(turned_from + (of[h] >> 16));
         b[h] = *shared_at<Entry>(entries_from + candidate);
       }
-      __syncwarp();  // so that all loads are under way before the first is needed
+      __syncwarp();  // puts all loads under way before the first result is needed
 #pragma unroll
       for (int h = 0; h < 2; ++h) {
         const bool near = may_meet(a[h], b[h]);
@@ -146,7 +147,8 @@ __device__ std::uint32_t search_entries(const BrickSearch<method>& search, const
   return tests;
 }
 
-/// The tests of 32 entries against the wide ones after them, each entry by a lane. As above.
+/// Tests 32 entries against the wide entries after them, one entry in each lane. It calls sink() and returns
+/// the number of tests as search_entries() does.
 template <BrickMethod method, class Sink>
 __device__ std::uint32_t search_wide(const SearchOutput& out, const SearchMemory<method>& memory,
                                      std::uint32_t first, std::uint32_t first_wide, std::uint32_t entries,
@@ -166,7 +168,7 @@ __device__ std::uint32_t search_wide(const SearchOutput& out, const SearchMemory
   return tests;
 }
 
-/// All tests of a batch of 32 entries.
+/// Makes all tests of a batch of 32 entries.
 template <BrickMethod method, class Sink>
 __device__ std::uint32_t search_batch(const BrickSearch<method>& search, const SearchOutput& out,
                                       SearchMemory<method>& memory, std::uint32_t batch,
@@ -178,10 +180,10 @@ __device__ std::uint32_t search_batch(const BrickSearch<method>& search, const S
   return tests;
 }
 
-/// Keeps the slots of pairs in shared memory, as long as there is room.
+/// A sink that keeps the slots of pairs in shared memory, as long as there is room.
 template <std::uint32_t room>
 struct KeepPairs {
-  std::uint32_t kept;  ///< shared address
+  std::uint32_t kept;  ///< address in shared memory
   unsigned lane_bit;
   std::uint32_t count = 0;
 
@@ -200,7 +202,7 @@ __device__ inline Pair pair_at(const Entry* entry, std::uint32_t pair) {
   return pair_of(body_at(entry, pair & 0xffffu), body_at(entry, pair >> 16));
 }
 
-/// Writes the pairs, as long as there is room.
+/// A sink that writes the pairs, as long as there is room.
 struct WritePairs {
   const Entry* entry;
   Pair* to;
@@ -222,13 +224,14 @@ __global__ void __launch_bounds__(search_threads, 4)
   const BrickSearch<method> search{store.plan};
   const unsigned warp = threadIdx.x / 32;
   const unsigned lane = threadIdx.x % 32;
-  // Blocks start in the order of their numbers, so that what a block waits for has started.
+  // Blocks start in the order of their numbers, so that the blocks that this one waits for have started.
   const std::uint32_t brick = blockIdx.x;
   if (store.state->over_full) return;
   const std::uint32_t objects = store.counts[brick];
   std::uint32_t entries = 0;
-  // Tests are done two words at a time. What is left of the last two looks at the first entries, however few
-  // there are, against turned[32], which numbers of 15 bits alone do not meet.
+  // Tests are made two words at a time. The tests left over in the last two words are made between the first
+  // entries, which exist however few objects there are, and turned[32], which no entry with numbers of 15
+  // bits meets.
   constexpr std::uint32_t in_two_words = 64;
   static_assert(memory.entries >= in_two_words && search_threads >= in_two_words);
   if (threadIdx.x < in_two_words) memory.entry[threadIdx.x] = {};
@@ -238,7 +241,7 @@ __global__ void __launch_bounds__(search_threads, 4)
     entries = 0;
   }
   if (lane == 0) memory.stage[warp].turned[32].axis[0] = apart_bits;
-  // Each warp has as many batches of 32 entries, one more or less, in order.
+  // Each warp has the same number of batches of 32 entries, give or take one, in order.
   const std::uint32_t batches = (entries + 31) / 32;
   const std::uint32_t begin = batches * warp / search_warps;
   const std::uint32_t end = batches * (warp + 1) / search_warps;

@@ -1,5 +1,5 @@
-// The entries of a brick in order, on Device: by cell and body, in the memory of the block that searches
-// them.
+// The sorting of a brick's entries by cell and body, on Device, in the shared memory of the block that
+// searches them.
 #pragma once
 
 #include "broadphase/device/brick_scatter.hpp"
@@ -9,16 +9,17 @@ namespace scree {
 inline constexpr int search_threads = 256;
 inline constexpr int search_warps = search_threads / 32;
 
-/// What a warp needs while it searches.
+/// The memory that a warp needs while it searches.
 template <int runs>
 struct SearchStage {
-  Entry turned[33];  ///< the last one meets nothing
-  /// Candidates less tests, modulo 2^16, and 2^16 times the slot of the object, both in bytes of entries.
+  Entry turned[33];  ///< entries with halves exchanged; the last one meets nothing
+  /// For each run, its candidates minus its tests, modulo 2^16, plus 2^16 times the slot of the object; both
+  /// are in bytes of entries.
   std::uint32_t run[32 * runs + 1];
-  alignas(8) std::uint32_t starts[32];  ///< a bit for each test: a run starts
+  alignas(8) std::uint32_t starts[32];  ///< one bit for each test, set if a run starts there
 };
 
-/// Candidates: slots from `begin` on.
+/// A run of candidates: the slots from `begin` on.
 struct SlotRun {
   std::uint32_t begin = 0;
   std::uint32_t length = 0;
@@ -30,22 +31,22 @@ struct BrickSearch;
 template <BrickMethod method>
 struct SearchMemory {
   static constexpr std::uint32_t entries = most_entries(method);
-  static constexpr std::uint32_t kept_pairs = method == BrickMethod::stencil ? 576 : 448;  // of a warp
+  static constexpr std::uint32_t kept_pairs = method == BrickMethod::stencil ? 576 : 448;  // per warp
 
   Entry entry[entries];
-  /// Cell of each, where it does not show that.
+  /// Cell of each entry, for method rows alone, whose entries do not show it.
   std::uint16_t key[method == BrickMethod::rows ? entries : 2];
-  /// First slot of each cell, and of what follows the last.
+  /// First slot of each cell, and of the entries after the last cell.
   std::uint16_t begin[(most_cells(method) + 3) / 2 * 2];
   SearchStage<BrickSearch<method>::runs> stage[search_warps];
-  /// Slots of pairs in bytes of entries, until their place is known.
+  /// Pairs as two slots in bytes of entries, kept until their place in the output is known.
   std::uint32_t kept[search_warps][kept_pairs];
   std::uint32_t sums[search_warps];
   std::uint32_t found[search_warps];
   Word place;
 };
 
-/// Keeps a value in a register, where the compiler would rather work it out again at each use.
+/// Keeps a value in a register, because the compiler would rather compute it again at each use.
 __device__ inline std::uint32_t held(std::uint32_t value) {
   asm volatile("" : "+r"(value));
   return value;
@@ -58,19 +59,20 @@ __device__ T* shared_at(std::uint32_t address) {
   return static_cast<T*>(__cvta_shared_to_generic(address));
 }
 
-/// The memory that the block was started with.
+/// Returns the dynamic shared memory of the block.
 __device__ inline void* shared_memory() {
   extern __shared__ uint4 shared[];
   return shared_at<void>(held(shared_address(shared)));
 }
 
-/// Adds one to a half of a word; returns what it was.
+/// Adds one to half-word k of an array, and returns the value before.
 __device__ inline std::uint32_t count_up(std::uint16_t* counts, std::uint32_t k) {
   const std::uint32_t shift = k % 2 * 16;
   return atomicAdd(reinterpret_cast<std::uint32_t*>(counts) + k / 2, 1u << shift) >> shift & 0xffffu;
 }
 
-/// counts[0..n) become the sums of what stands before them; entered by the block. n is rounded up to even.
+/// Replaces counts[0..n) by the sums of the counts before each, and returns the total. The whole block calls
+/// it. n is rounded up to even.
 __device__ inline std::uint32_t scan_halves(std::uint16_t* counts, int n, std::uint32_t* sums) {
   auto* words = reinterpret_cast<std::uint32_t*>(counts);
   const int total = (n + 1) / 2;
@@ -92,8 +94,9 @@ __device__ inline std::uint32_t scan_halves(std::uint16_t* counts, int n, std::u
   return all;
 }
 
-/// Each object in the cell of its lower corner, against half of the cells around. Wide ones stand in a cell
-/// of their own after all others, which look at all of them.
+/// The search by method stencil. Each object is in the cell of its lower corner, and is tested against half
+/// of the cells around it. Objects too wide for the stencil are in a cell of their own after all others, and
+/// all objects before them are tested against them.
 template <>
 struct BrickSearch<BrickMethod::stencil> {
   static constexpr int runs = 5;
@@ -106,7 +109,7 @@ struct BrickSearch<BrickMethod::stencil> {
            e.hi(2) - e.lo(2) > plan.reach[2];
   }
 
-  /// Puts the entries of a brick in order: by cell, and in a cell by body. Returns how many there are.
+  /// Sorts the entries of a brick by cell, and within a cell by body. Returns their number.
   __device__ std::uint32_t sort(const Entry* from, std::uint32_t objects, Memory& memory) const {
     constexpr int each = brick_objects / search_threads;
     const BrickCells& cells = plan.cells;
@@ -120,7 +123,7 @@ struct BrickSearch<BrickMethod::stencil> {
     for (int w = static_cast<int>(threadIdx.x); 2 * w < counts; w += search_threads)
       reinterpret_cast<std::uint32_t*>(memory.begin)[w] = 0;
     __syncthreads();
-    std::uint32_t place[each];  // in the cell, as chance has it, and 2^16 times the cell
+    std::uint32_t place[each];  // random rank in the cell, plus 2^16 times the cell
 #pragma unroll
     for (int k = 0; k < each; ++k) {
       const std::uint32_t t = static_cast<unsigned>(k) * search_threads + threadIdx.x;
@@ -159,12 +162,12 @@ struct BrickSearch<BrickMethod::stencil> {
     return objects;
   }
 
-  /// The slot of the first of those that all look at.
+  /// Returns the first slot of the wide entries, against which all entries before them are tested.
   __device__ std::uint32_t first_wide(const Memory& memory, std::uint32_t) const {
     return memory.begin[plan.cells.total()];
   }
 
-  /// Of an entry before the first wide one.
+  /// Finds the runs of candidates of an entry before the first wide one.
   __device__ void find_runs(const Entry& e, std::uint32_t slot, const Memory& memory,
                             SlotRun (&run)[runs]) const {
     const BrickCells& cells = plan.cells;
@@ -189,8 +192,8 @@ struct BrickSearch<BrickMethod::stencil> {
   }
 };
 
-/// An object stands in each row along x that it overlaps and looks at those after it in that row. The pair is
-/// found in the row that holds the larger of both lower corners.
+/// The search by method rows. An object is in each row along x that it overlaps, and is tested against the
+/// objects after it in that row. A pair is found in the row that holds the larger of both lower corners.
 template <>
 struct BrickSearch<BrickMethod::rows> {
   static constexpr int runs = 1;
@@ -198,7 +201,8 @@ struct BrickSearch<BrickMethod::rows> {
 
   const BrickPlan& plan;
 
-  /// The cells of an entry: the first, and the rows along y and z, in one word.
+  /// Returns the cells of an entry in one word: its first cell, and how many more rows it overlaps along y
+  /// and z.
   __device__ std::uint32_t cells_of(const Entry& e) const {
     const BrickCells& cells = plan.cells;
     const std::int32_t y = cells.cell_of(e.lo(1), 1);
@@ -208,7 +212,7 @@ struct BrickSearch<BrickMethod::rows> {
     return static_cast<std::uint32_t>(cells.key(cells.cell_of(e.lo(0), 0), y, z) | rows_y << 16 |
                                       rows_z << 24);
   }
-  /// Calls f(cell, tag) for each of them, with the tag that the entry has there.
+  /// Calls f(cell, tag) for each cell of an entry, with the tag that the entry has there.
   template <class F>
   __device__ void for_each_cell(std::uint32_t cells, std::uint32_t tag, const F& f) const {
     const auto row = static_cast<std::uint32_t>(plan.cells.count[0]);
@@ -220,7 +224,8 @@ struct BrickSearch<BrickMethod::rows> {
       }
   }
 
-  /// As above. Where there are more entries than the memory holds, they are not put in order.
+  /// Sorts the entries as for method stencil, and returns their number. If there are more than the memory
+  /// holds, they are not sorted.
   __device__ std::uint32_t sort(const Entry* from, std::uint32_t objects, Memory& memory) const {
     constexpr int each = brick_objects / search_threads;
     constexpr int slots_each = Memory::entries / search_threads;
@@ -235,8 +240,8 @@ struct BrickSearch<BrickMethod::rows> {
       reinterpret_cast<std::uint32_t*>(memory.begin)[w] = 0;
     __syncthreads();
     std::uint32_t cells[each];
-    // Counted one cell further on, so that begin[c + 1] is where the cell c has its next place, and in the
-    // end where it ends.
+    // The counts are made one cell further on, so that begin[c + 1] is the next free place of cell c, and at
+    // last the end of cell c.
 #pragma unroll
     for (int k = 0; k < each; ++k) {
       const std::uint32_t t = static_cast<unsigned>(k) * search_threads + threadIdx.x;
@@ -259,7 +264,7 @@ struct BrickSearch<BrickMethod::rows> {
         });
     }
     __syncthreads();
-    // Chance gave the places within a cell: the bodies' numbers give the last ones.
+    // The order within a cell is random so far; the bodies' numbers give the final order.
     std::uint32_t place[slots_each];
 #pragma unroll
     for (int k = 0; k < slots_each; ++k) {
@@ -285,7 +290,8 @@ struct BrickSearch<BrickMethod::rows> {
     return entries;
   }
 
-  /// Entries are as long as they are: there are none that all would have to look at.
+  /// Returns the number of entries: an entry may have any length, so there are no wide entries to be tested
+  /// apart.
   __device__ std::uint32_t first_wide(const Memory&, std::uint32_t entries) const { return entries; }
 
   __device__ void find_runs(const Entry& e, std::uint32_t slot, const Memory& memory,

@@ -31,7 +31,8 @@ constexpr std::size_t shared_to_bricks(std::int32_t bucket_width) {
   return side * side * side * (sizeof(BrickRun) + 4);
 }
 
-/// Whether a block of threads can have the shared memory that it needs; then the kernels are told to.
+/// Returns whether a block of threads can have the shared memory that the kernels need, and if so, sets the
+/// kernels' limits to it.
 bool make_room() {
   int device = 0;
   int most = 0;
@@ -51,7 +52,7 @@ bool make_room() {
          allow(reinterpret_cast<const void*>(search_bricks<BrickMethod::rows>), shared_to_search);
 }
 
-/// A T in memory of the host that the device reaches.
+/// A T in pinned memory of the host, which the device can access.
 template <class T>
 class Pinned {
  public:
@@ -72,7 +73,7 @@ class Pinned {
 
 struct Bricks<Device>::Arrays {
   Array<BrickSample, Device> sample{1};
-  /// All that has to be zero: the state, the tiles of the search, and the counts.
+  /// All words that must be zero at the start: the state, the tiles of the search, and the counts.
   Array<Word, Device> zeros;
   Array<std::uint32_t, Device> oversize_objects;
   Array<std::uint32_t, Device> owners;
@@ -80,7 +81,8 @@ struct Bricks<Device>::Arrays {
   Array<Entry, Device> entries;
   Array<Pair, Device> pairs;
 
-  /// In memory that the device writes to by itself: a copy to any other goes by way of such memory.
+  /// Results in pinned memory, to which the device writes directly: a copy to other memory would go by way of
+  /// such memory.
   struct ToHost {
     BrickSample sample;
     BrickState state;
@@ -155,7 +157,7 @@ struct Bricks<Device>::Arrays {
     return to_host->state;
   }
 
-  /// What a search leaves behind, so that another can be made.
+  /// Clears the results of a search, so that another search can be made.
   void clear_search(const BrickStore& store) {
     detail::clear_bytes(&state()->crowded,
                         sizeof(BrickState) - offsetof(BrickState, crowded) +

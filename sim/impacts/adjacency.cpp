@@ -18,7 +18,7 @@ struct CountPairs {
   }
 };
 
-/// Takes the counts down again.
+/// Writes each pair into the rows of its free bodies, and counts their counters down to 0 again.
 struct FillRows {
   ConstView<Pair> pairs;
   ConstView<Mobility> mobility;

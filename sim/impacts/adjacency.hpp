@@ -1,4 +1,4 @@
-// Which candidate pairs each free body is in: compressed sparse rows.
+// The candidate pairs that each free body is in, as compressed sparse rows.
 #pragma once
 
 #include "core/array.hpp"
@@ -9,14 +9,14 @@
 
 namespace scree {
 
-/// Cheap to copy; the lists are an Adjacency's.
+/// A view of an Adjacency, which owns the lists. It is cheap to copy.
 struct AdjacencyView {
   /// A body with more pairs than this has many.
   static constexpr std::int64_t most_of_few = 256;
 
-  ConstView<std::int64_t> begin;         ///< of each body's row; one more than bodies, or none
-  ConstView<std::int32_t> row;           ///< indices of pairs, in any order
-  ConstView<std::int32_t> between_many;  ///< those pairs of which both bodies are free and have many
+  ConstView<std::int64_t> begin;  ///< start of each body's row, and the end of the last one; empty: no rows
+  ConstView<std::int32_t> row;    ///< indices of the pairs, in any order within a row
+  ConstView<std::int32_t> between_many;  ///< pairs whose two bodies are both free and have many pairs
 
   SCREE_HD bool is_empty() const { return begin.size() == 0; }
   SCREE_HD std::int64_t count(std::int32_t body) const { return begin[body + 1] - begin[body]; }
@@ -27,7 +27,7 @@ struct AdjacencyView {
 template <class Space>
 class Adjacency {
  public:
-  /// Rows of bodies that are not free are empty.
+  /// Builds the rows. The rows of bodies that are not free are empty.
   void build(ConstView<Pair> pairs, ConstView<Mobility> mobility);
   void clear() { begin_.resize(0); }
   AdjacencyView view() const { return {begin_.view(), row_.view(), between_many_.view()}; }

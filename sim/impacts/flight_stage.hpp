@@ -1,4 +1,4 @@
-// The bodies of one flight, as the search for their impacts sees them, in either space.
+// The bodies of one flight and their state, as the search for impacts uses them, in either space.
 #pragma once
 
 #include "core/array.hpp"
@@ -24,32 +24,36 @@ SCREE_HD inline double impact_cost(double restitution) {
   return fmax(0.125, fmin(-bounces_end / 3 * log10(fmax(restitution, 0.01)), 2.0));
 }
 
-/// What holds in one flight. It ends with the substep.
+/// The terms of one flight. A flight ends with the substep.
 struct FlightTerms {
   ContactLaws laws;
-  double step;   ///< length of the substep (s)
-  double from;   ///< start of the flight, into the substep (s). If not 0, the last one began at 0 (who was
-                 ///< struck later in it starts then), and the response has kicked the bodies since
-  bool bounces;  ///< whether approaches faster than the threshold count; else only those that would go deep
+  double step;  ///< length of the substep (s)
+  /// Start of the flight, into the substep (s). If it is not 0, the previous flight began at 0, a body that
+  /// was struck in it after `from` starts at its last impact, and the response has kicked the bodies since.
+  double from;
+  bool bounces;  ///< whether approaches faster than the threshold count; if not, only deep approaches do
 };
 
-/// Which parts of a pair carried an impulse in the last substep: these do not bounce.
+/// The parts of a pair that carried an impulse in the last substep: these do not bounce.
 struct LoadedParts {
-  std::uint8_t bits = 0;  ///< one for each part
+  std::uint8_t bits = 0;  ///< one bit for each part
 
   SCREE_HD bool is_loaded(int part) const { return (bits >> part & 1) != 0; }
 };
 
-/// Of each body in a flight.
+/// The values that a flight keeps for each body.
 template <class Space>
 struct FlightLog {
-  Array<double, Space> clock;        ///< time of its last impact (s); the start if it had none
-  Array<double, Space> budget_used;  ///< what its impacts so far have cost, by impact_cost()
-  Array<double, Space> turn;         ///< bound on the speed that turning gives its surface (m/s)
-  Array<double, Space> top_speed;    ///< bound on that of its surface, but for what gravity adds (m/s)
-  Array<double, Space> reach;        ///< of its surface from the midpoint, to either end of the substep (m)
-  Array<double, Space> extent;  ///< how far from its centre it may be in the substep (m); infinite: boundary
-  /// 1: bore load together with another free body in the last substep. Empty: nobody did, or none counts.
+  Array<double, Space> clock;        ///< time of its last impact (s); the start of the flight if it had none
+  Array<double, Space> budget_used;  ///< cost of its impacts so far, by impact_cost()
+  Array<double, Space> turn;         ///< bound on the speed that rotation gives its surface (m/s)
+  Array<double, Space> top_speed;    ///< bound on its surface's speed, without what gravity adds (m/s)
+  Array<double, Space> reach;        ///< bound on its surface's travel from the midpoint to either end (m)
+  /// The distance from its midpoint position within which the body stays in the substep (m); infinite for a
+  /// boundary.
+  Array<double, Space> extent;
+  /// 1 for a body that bore load together with another free body in the last substep. Empty if there is no
+  /// such body, or if none counts.
   Array<std::uint32_t, Space> bore_load;
 
   void resize(std::int64_t bodies) {
@@ -62,19 +66,20 @@ struct FlightLog {
   }
 };
 
-/// What counts as an impact of two bodies.
+/// The limits that decide which approaches of two bodies count as impacts.
 struct ImpactLimits {
-  double earliest;  ///< into the substep (s)
-  double left;      ///< from then to its end (s)
-  double slowest;   ///< approach that bounces (m/s)
-  double farthest;  ///< approach until the end that is shallow enough to be none (m)
+  double earliest;  ///< earliest time of an impact, into the substep (s)
+  double left;      ///< time from `earliest` to the end of the substep (s)
+  double slowest;   ///< speed over which an approach bounces (m/s)
+  double farthest;  ///< distance over which an approach until the end is deep (m)
 
   SCREE_HD bool may_bounce(double speed) const { return speed > slowest; }
   SCREE_HD bool may_go_deep(double speed) const { return speed * left > farthest; }
   SCREE_HD bool may_count(double speed) const { return may_bounce(speed) || may_go_deep(speed); }
 };
 
-/// The bodies in flight, and what has become of them. Cheap to copy; the bodies and the log are the caller's.
+/// The bodies in flight, with the results of their impacts so far. It is cheap to copy; the caller owns the
+/// bodies and the log.
 struct FlightStage {
   template <class Space>
   FlightStage(const FlightTerms& t, const ResponseParameters& r, const BodyView& b, FlightLog<Space>& log)
@@ -102,18 +107,19 @@ struct FlightStage {
   double least_impact_speed = -1;  ///< two bodies whose top speeds sum to no more have no impact (m/s)
 
   SCREE_HD bool is_free(std::int32_t body) const { return bodies.mobility[body] == Mobility::free; }
-  /// Whether an impact with the other hardly moves a body.
+  /// Returns whether a body is so heavy that an impact with the other one hardly moves it.
   SCREE_HD bool is_heavy_to(std::int32_t body, std::int32_t other) const {
     return is_free(body) && tolerance::heavy_ratio * bodies.inverse_mass[body] <= bodies.inverse_mass[other];
   }
   SCREE_HD bool has_late_impact(std::int32_t body) const { return clock[body] > 0.5 * terms.step; }
-  /// Whether two bodies bounce off each other together with the contacts that they bear load in, and not
-  /// before those: the order of impacts in a crowd is chaos, and its contacts are solved at once.
+  /// Returns whether two bodies bounce off each other together with the contacts in which they bear load, and
+  /// not in an impact before that: among many bodies that bear load the order of impacts is chaotic, and
+  /// their contacts are solved at once.
   SCREE_HD bool both_bore_load(std::int32_t i, std::int32_t j) const {
     return bore_load.size() > 0 && bore_load[i] != 0 && bore_load[j] != 0;
   }
 
-  /// What the bodies' velocities have of the substep's kick already (m/s).
+  /// Returns the part of the substep's kick that the velocity of a body contains already (m/s).
   SCREE_HD Vec3 kick_of(std::int32_t body) const {
     return terms.from > 0 && is_free(body) ? Vec3(terms.step * parameters.acceleration_of(body))
                                            : Vec3(Vec3::Zero());
@@ -131,7 +137,8 @@ struct FlightStage {
             .midpoint = 0.5 * terms.step};
   }
 
-  /// The slowest approach that bounces on a part without load, but for sinking_velocity() (m/s).
+  /// Returns the speed over which an approach bounces on a part without load, apart from sinking_velocity()
+  /// (m/s).
   SCREE_HD double slowest_bounce(std::int32_t i, std::int32_t j) const {
     const double restitution = terms.laws.between(i, j).restitution;
     if (!parameters.restitution || restitution == 0) return HUGE_VAL;
@@ -144,7 +151,7 @@ struct FlightStage {
     return {terms.laws.shape_data(i), terms.laws.shape_data(j)};
   }
 
-  /// Two bodies until the end of the substep; no meeting of theirs counts yet.
+  /// Returns the flights of two bodies until a time into the substep (s); no meeting of theirs counts yet.
   SCREE_HD PairFlight pair_of(std::int32_t i, std::int32_t j, double until) const {
     PairFlight pair{.i = flight(i), .j = flight(j), .until = until, .slowest = {}, .shapes = shapes_of(i, j)};
     bodies.period.bring_near(pair.i.position, pair.j.position);
@@ -152,7 +159,7 @@ struct FlightStage {
     return pair;
   }
 
-  /// Sets the turn and the reach of a body as it flies now.
+  /// Sets the turn, the top speed, the reach and the extent of a body from its present flight.
   SCREE_HD void bound(std::int32_t body) const {
     const bool absent = bodies.mobility[body] == Mobility::absent;
     turn[body] = absent ? 0.0 : fastest_turn(flight(body));
@@ -166,21 +173,22 @@ struct FlightStage {
                        : bounding_radius(bodies.shape[body], bodies.size[body]) + reach[body];
   }
 
-  /// The length to which the tolerances of a body that is there are relative (m); infinite for others.
+  /// Returns the length to which the tolerances of a body are relative (m); infinite for absent bodies.
   SCREE_HD double size_of(std::int64_t body) const {
     return bodies.mobility[body] == Mobility::absent ? HUGE_VAL
                                                      : smallest_size(bodies.shape[body], bodies.size[body]);
   }
 
-  /// Whether when it meets others is searched for (next_meeting). As bound() has seen it.
+  /// Returns whether the meetings of a body with others need a search (next_meeting), by the turn that
+  /// bound() has set.
   SCREE_HD bool needs_search(std::int32_t body) const {
     if (bodies.mobility[body] == Mobility::absent || bodies.shape[body] == Shape::sphere) return false;
     return !is_boundary(bodies.shape[body]) || turn[body] == HUGE_VAL;
   }
 
-  /// What `least_impact_speed` may be, for the bodies as bound() has seen them (m/s): such two neither go
-  /// deep, nor do they close as fast as what bounces, even if gravity adds to it. `smallest`: the smallest
-  /// size_of() (m); `restitution`: the largest of the laws.
+  /// Returns the largest possible `least_impact_speed` for the bodies as bound() has set them (m/s): two
+  /// bodies whose speeds sum to no more neither go deep nor close fast enough to bounce, even if gravity adds
+  /// to their approach. `smallest`: the smallest size_of() (m); `restitution`: the largest of the laws.
   SCREE_HD double find_least_impact_speed(double smallest, double restitution) const {
     double speed = HUGE_VAL;
     if (parameters.continuous) speed = tolerance::deep_approach * smallest / terms.step;
@@ -189,8 +197,8 @@ struct FlightStage {
     return speed - terms.step * parameters.gravity.norm();
   }
 
-  /// Whether two bodies, of which one is free, may meet in an impact, told without a look at their shapes;
-  /// then sets what counts as one.
+  /// Returns whether two bodies, one of which is free, may meet in an impact, without a look at their shapes.
+  /// If so, sets the limits of what counts as an impact.
   SCREE_HD bool may_meet(std::int32_t i, std::int32_t j, ImpactLimits& limits) const {
     if (top_speed[i] + top_speed[j] <= least_impact_speed || are_far(i, j) ||
         std::max(budget_used[i], budget_used[j]) >= impacts_end)
@@ -204,9 +212,10 @@ struct FlightStage {
     return limits.may_count(fastest(i, j));
   }
 
-  /// Of two bodies that may_meet(), whether an impact may count with these loads and they come near each
-  /// other, told by one look at their shapes. Balls are not looked at, since next() costs as little. It is
-  /// called, so that its many registers are not taken from searches.
+  /// Returns for two bodies that may_meet() whether an impact may count with these loads and whether they
+  /// come near each other, by one look at their shapes. Balls are not looked at, since next() costs no more
+  /// for them. The function is called and not inlined, so that its many registers are not taken from the
+  /// searches.
   template <class Loads>
   [[gnu::noinline]] SCREE_HD bool come_near(std::int32_t i, std::int32_t j, const ImpactLimits& limits,
                                             const Loads& loads) const {
@@ -215,7 +224,8 @@ struct FlightStage {
     return may_touch(pair_of(i, j, terms.step), limits.earliest);
   }
 
-  /// The next impact of two bodies, of which one is free. `loads` are those of the pair, as LoadedParts.
+  /// Returns the next impact of two bodies, one of which is free. `loads`: the loads of the pair, as
+  /// LoadedParts.
   template <class Loads>
   SCREE_HD Meeting next(std::int32_t i, std::int32_t j, const Loads& loads) const {
     ImpactLimits limits;
@@ -235,7 +245,7 @@ struct FlightStage {
   }
 
  private:
-  /// Whether an approach at this speed may go deep, or bounce on a part that bears no load.
+  /// Returns whether an approach at this speed may go deep, or bounce on a part that bears no load.
   template <class Loads>
   SCREE_HD bool may_count(std::int32_t i, std::int32_t j, const ImpactLimits& limits, const Loads& loads,
                           double speed) const {
@@ -247,7 +257,7 @@ struct FlightStage {
       all_loaded = all_loaded && loads.is_loaded(part);
     return !all_loaded;
   }
-  /// Bound on how fast two bodies come closer in the substep (m/s).
+  /// Returns a bound on how fast two bodies come closer in the substep (m/s).
   SCREE_HD double fastest(std::int32_t i, std::int32_t j) const {
     Vec3 velocity = bodies.velocity[j] - bodies.velocity[i];
     Vec3 gained = Vec3::Zero();
@@ -259,7 +269,7 @@ struct FlightStage {
     return velocity.norm() + gained.norm() + turn[i] + turn[j];
   }
 
-  /// True if two bodies do not come near one another in the substep.
+  /// Returns true if two bodies do not come near one another in the substep.
   SCREE_HD bool are_far(std::int32_t i, std::int32_t j) const {
     const double near = extent[i] + extent[j];
     const Vec3 offset = bodies.period.nearest(bodies.position[j] - bodies.position[i]);

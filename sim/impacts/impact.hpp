@@ -1,4 +1,4 @@
-// One impact, at its own time, in either space.
+// The solution of one impact at its own time, in either space.
 #pragma once
 
 #include "core/tolerances.hpp"
@@ -12,14 +12,14 @@
 
 namespace scree {
 
-/// What an impact gave to body j, and reversed to i.
+/// The impulse of an impact: it acts on body j, and its opposite on i.
 struct Impact {
   std::int32_t i, j;
-  Vec3 impulse;  ///< N s
-  Vec3 point;    ///< m
+  Vec3 impulse;  ///< impulse on j (N s)
+  Vec3 point;    ///< place where it acts (m)
 };
 
-/// A body before its first impact of the flight.
+/// The state of a body before its first impact of the flight.
 struct StruckBody {
   std::int32_t body;
   Vec3 position;
@@ -38,7 +38,7 @@ SCREE_HD inline StruckBody before_impacts(const FlightStage& stage, std::int32_t
           stage.clock[body]};
 }
 
-/// Puts a body back to where it was.
+/// Puts a body back to its saved state.
 SCREE_HD inline void restore(const StruckBody& saved, const BodyView& bodies, View<double> clock) {
   bodies.position[saved.body] = saved.position;
   bodies.orientation[saved.body] = saved.orientation;
@@ -49,11 +49,11 @@ SCREE_HD inline void restore(const StruckBody& saved, const BodyView& bodies, Vi
 
 /// Rolling friction in an impact.
 struct RollingCouple {
-  double reach = 0;  ///< of the couple for each normal impulse, at most (m); 0: nothing rolls
-  Vec3 couple;       ///< on j, and reversed on i (N m s)
+  double reach = 0;  ///< largest couple for each unit of normal impulse (m); 0: nothing rolls
+  Vec3 couple;       ///< couple on j; its opposite acts on i (N m s)
   Vec3 before;       ///< spin of j relative to i before the impact (rad/s)
 
-  /// As Moved::square, of the couple. `i` and `j` are as after it.
+  /// Returns Moved::square of the couple (J). `i` and `j` are the bodies after the impact.
   SCREE_HD double square(const SolverBody& i, const SolverBody& j) const {
     return 0.5 * couple.dot(j.spin - i.spin - before);
   }
@@ -61,7 +61,8 @@ struct RollingCouple {
 
 namespace detail {
 
-/// Without friction nothing turns a ball, and no rounding may.
+/// Returns the state of a body at the impact. Friction alone can turn a ball; without it the ball gets no
+/// inverse inertia, so that rounding cannot turn it.
 SCREE_HD inline SolverBody struck_body(const FlightStage& stage, std::int32_t body, const BodyInstant& at,
                                        bool rubs) {
   const bool turns = rubs || stage.bodies.shape[body] != Shape::sphere;
@@ -77,14 +78,15 @@ SCREE_HD inline bool is_of_balls(const FlightStage& stage, std::int32_t i, std::
   return is_ball(i) && is_ball(j);
 }
 
-/// Balls touch at one point, where nothing couples: that is solved at once, and cannot gain energy.
+/// Solves the impact of two balls. They touch at one point, where W couples nothing: the solution is direct,
+/// and cannot gain energy.
 SCREE_HD inline void strike_balls(ContactRow& row, const Vec3& before, const Vec3& normal, double friction,
                                   SolverBody& i, SolverBody& j) {
   row.impulse = natural_map(row, normal, friction, before);
   row.push(row.impulse, i, j);
 }
 
-/// The guides of two bodies, which have their say after each sweep: rows take such a body for a free one.
+/// The guides of two bodies. They act after each sweep, since the rows treat a guided body as a free one.
 struct PairGuides {
   ConstView<Guide> guides;
   std::int32_t i, j;
@@ -95,7 +97,7 @@ struct PairGuides {
   }
 };
 
-/// Gives a contact the couple against rolling that its impulses allow.
+/// Gives a contact the couple against rolling that its normal impulses allow.
 SCREE_HD inline void roll(const ContactRow* rows, int count, const Vec3& normal, RollingCouple& rolling,
                           SolverBody& i, SolverBody& j) {
   double pn = 0;
@@ -106,15 +108,15 @@ SCREE_HD inline void roll(const ContactRow* rows, int count, const Vec3& normal,
   rolling.couple = couple;
 }
 
-/// The fixed point of a map from the impulses of up to Manifold::max_points points to themselves is closer
-/// than what the map gives: of the last two steps, the combination that would change least goes on (Anderson
-/// 1965, with a memory of one). A step that changes more than the last one is taken as it is. None goes on by
-/// more than `farthest` of the last: far away the bodies' velocities would lose digits that they do not
-/// regain.
+/// An extrapolation towards the fixed point of a map from the impulses of up to Manifold::max_points points
+/// to themselves. Of the last two steps it continues with the combination that would change least (Anderson
+/// 1965, with a memory of one). A step that changes more than the last one is taken as it is. No step is
+/// continued by more than `farthest` times the last one: far away the bodies' velocities would lose digits
+/// that they do not regain.
 class ImpulseExtrapolation {
  public:
-  /// `change` is what the map made of the impulses that it was given, and `given` what it gives. Sets
-  /// `change` to what is to be added to `given`.
+  /// Sets `change` to what is to be added to `given`. On entry `given` holds the impulses that the map
+  /// returned, and `change` their difference from the impulses that the map was given.
   SCREE_HD void extrapolate(const Vec3* given, Vec3* change, int count) {
     constexpr double farthest = 8;
     double along = 0, square = 0, size = 0;
@@ -144,7 +146,7 @@ class ImpulseExtrapolation {
   static_assert(Manifold::max_points == 4);
 };
 
-/// Goes on until only rounding changes, which does not fall.
+/// Sweeps over the rows of an impact until only rounding changes the impulses, which does not decrease.
 SCREE_HD inline void sweep_impact(ContactRow* rows, const RowCoupling* couplings, int count,
                                   const Vec3& normal, double friction, RollingCouple& rolling,
                                   const PairGuides& guides, SolverBody& i, SolverBody& j) {
@@ -169,7 +171,7 @@ SCREE_HD inline void sweep_impact(ContactRow* rows, const RowCoupling* couplings
     if (change <= tolerance::impact_residual * size) break;
     if (change >= last_change && change <= tolerance::impact_rounding * size) break;
     last_change = change;
-    // Couples and guides are not among what is extrapolated.
+    // The extrapolation does not know couples and guides.
     if (rolling.reach > 0 || guides.guides.size() > 0) continue;
     extrapolation.extrapolate(impulses, changes, count);
     for (int k = 0; k < count; ++k) {
@@ -179,8 +181,8 @@ SCREE_HD inline void sweep_impact(ContactRow* rows, const RowCoupling* couplings
   }
 }
 
-/// Newton's law with friction at several points, or at one whose Delassus matrix couples normal and
-/// tangents, can gain energy.
+/// Scales the impulses of an impact down if they gain energy. Newton's law with friction can do so at several
+/// points, or at one point whose Delassus matrix couples normal and tangents.
 SCREE_HD inline void keep_from_gaining(ContactRow* rows, const Vec3* before, int count,
                                        RollingCouple& rolling, const PairGuides& guides, SolverBody& i,
                                        SolverBody& j) {
@@ -206,8 +208,8 @@ SCREE_HD inline void keep_from_gaining(ContactRow* rows, const Vec3* before, int
   guides.hold(i, j);
 }
 
-/// Turns a body from the midpoint to `s`, gives it the spin that it has there after an impact, and turns it
-/// back. Returns by how much its energy at the midpoint has grown (J).
+/// Gives a body the orientation and the spin that it has at `s` after an impact, and turns it back from there
+/// to the midpoint. Returns by how much its energy at the midpoint has grown (J).
 SCREE_HD inline double turn_on(const FlightStage& stage, std::int32_t body, const BodyFlight& flown,
                                const Quat& orientation, const Vec3& spin, double s) {
   stage.bodies.orientation[body] = orientation;
@@ -220,7 +222,7 @@ SCREE_HD inline double turn_on(const FlightStage& stage, std::int32_t body, cons
 
 }  // namespace detail
 
-/// An impact at one configuration: solved, but not yet its bodies'.
+/// An impact that is solved at one configuration, but not yet applied to its bodies.
 struct SolvedImpact {
   std::int32_t i, j;
   double time;
@@ -228,29 +230,29 @@ struct SolvedImpact {
   BodyInstant at_i, at_j;
   SolverBody after_i, after_j;
   Vec3 normal;
-  Vec3 at[Manifold::max_points];            ///< the points that close (m)
-  ContactRow rows[Manifold::max_points];    ///< of these
-  Vec3 before[Manifold::max_points];        ///< their relative velocities (m/s)
-  std::int32_t wall[Manifold::max_points];  ///< StruckPoints::wall
+  Vec3 at[Manifold::max_points];            ///< points that close (m)
+  ContactRow rows[Manifold::max_points];    ///< rows of these points
+  Vec3 before[Manifold::max_points];        ///< relative velocities at these points before the impact (m/s)
+  std::int32_t wall[Manifold::max_points];  ///< StruckPoints::wall of these points
   int count;
   RollingCouple rolling;
   double restitution;
 
-  /// On j, and reversed on i.
+  /// Returns the impulse on j; its opposite acts on i.
   SCREE_HD Vec3 impulse() const {
     Vec3 sum = Vec3::Zero();
     for (int k = 0; k < count; ++k) sum += rows[k].impulse;
     return sum;
   }
-  /// What the pair had of the impact.
+  /// Returns the part of the impact between the bodies of the pair itself.
   SCREE_HD Impact of_pair() const { return of_points(StruckPoints::own, i, j); }
-  /// Whether a point is the first of those on another wall.
+  /// Returns whether a point is the first of those on another wall than that of the pair.
   SCREE_HD bool is_first_of_wall(int point) const {
     bool first = wall[point] != StruckPoints::own;
     for (int k = 0; k < point; ++k) first = first && wall[k] != wall[point];
     return first;
   }
-  /// What another wall had of it.
+  /// Returns the part of the impact between the free body of the pair and another wall.
   SCREE_HD Impact of_wall(std::int32_t other) const {
     const bool free_i = after_i.is_free();
     const std::int32_t body = free_i ? i : j;
@@ -282,8 +284,8 @@ struct SolvedImpact {
 
 namespace detail {
 
-/// Adds the points on other walls that the free body of the pair strikes in the same plane. A ball has one
-/// point, and needs no others.
+/// Adds the points on other walls that the free body of the pair strikes in the same plane. A ball has only
+/// one point, and needs no others.
 template <class OtherWalls>
 SCREE_HD void add_other_walls(const FlightStage& stage, const SolvedImpact& of, const Vec3& normal,
                               const OtherWalls& other_walls, StruckPoints& points) {
@@ -304,9 +306,9 @@ SCREE_HD void add_other_walls(const FlightStage& stage, const SolvedImpact& of, 
 
 }  // namespace detail
 
-/// Newton's law u+ = -e u- at all points that touch and close, with Coulomb friction. `loads` are those of
-/// the pair, as LoadedParts. `other_walls(then)` calls then(wall, part) for what the free body of the pair
-/// meets besides and is not free. False if no point closes.
+/// Solves an impact by Newton's law u+ = -e u- at all points that touch and close, with Coulomb friction.
+/// `loads`: the loads of the pair, as LoadedParts. `other_walls(then)` calls then(wall, part) for each other
+/// body that is not free and that the free body of the pair meets. Returns false if no point closes.
 template <class Loads, class OtherWalls>
 SCREE_HD bool solve_impact(const FlightStage& stage, std::int32_t i, std::int32_t j, const Meeting& meeting,
                            const Loads& loads, const OtherWalls& other_walls, SolvedImpact& out) {
@@ -337,7 +339,7 @@ SCREE_HD bool solve_impact(const FlightStage& stage, std::int32_t i, std::int32_
   b = detail::struck_body(stage, j, out.at_j, friction > 0 || rolls);
   out.rolling.couple.setZero();
   out.rolling.before = b.spin - a.spin;
-  // With a couple the point of two balls couples, too.
+  // With a rolling couple, the point of two balls couples, too.
   const bool of_balls = !rolls && detail::is_of_balls(stage, i, j);
   StruckPoints points;
   for (int k = 0; k < m.count; ++k) {
@@ -377,8 +379,8 @@ SCREE_HD bool solve_impact(const FlightStage& stage, std::int32_t i, std::int32_
   return true;
 }
 
-/// Gives a body the flight that leads from the impact on. Returns the drift of its energy on the way there
-/// and back (J).
+/// Gives a body the flight that leads on from the impact. Returns the drift of its energy by turning to the
+/// impact and back (J).
 SCREE_HD inline double fly_on(const FlightStage& stage, std::int32_t body, const BodyFlight& flown,
                               const BodyInstant& at, const SolverBody& after, double s) {
   if (!after.is_free()) return 0;
@@ -406,7 +408,7 @@ SCREE_HD inline void count_impact_cost(const FlightStage& stage, const SolvedImp
   charge(solved.j, solved.i);
 }
 
-/// Gives both bodies the flights that delay on from an impact. Returns what it moved.
+/// Gives both bodies the flights that lead on from an impact. Returns the ledger of what the impact moved.
 SCREE_HD inline Ledger fly_on(const FlightStage& stage, const SolvedImpact& solved, Impact& impact) {
   impact = solved.of_pair();
   count_impact_cost(stage, solved);

@@ -1,16 +1,17 @@
-// What impacts of many light bodies give to one heavy body at once, in either space.
+// The joint effect of the impacts of many light bodies on one heavy body in the same round, in either space.
 //
-// Each is solved as if it were the only one. Together they would move more energy than the sum of what each
-// does by itself, since what they give to the heavy body adds up or cancels out. So all are scaled by
+// Each impact is solved as if it were the only one. Together they would move more energy than the sum of what
+// each does by itself, since what they give to the heavy body adds up or cancels out. So all of them are
+// scaled by
 //
 //   x = Q / (Q + C),   C = E(sum of P) - sum of E(P),
 //
-// where Q is the sum of all p.W p / 2 (J), P what one impact gives to the heavy body, and E the energy that
-// this gives to it at rest. The energy moved is L x + (Q + C) x^2, with L the sum of all p.u, and that is x
-// (L + Q): x times what the impacts would move one by one. So elastic impacts keep the energy, others cannot
-// gain any, and the ledger of each is scaled by x as well. Momentum is exact, since each impulse acts on both
-// bodies, and scaled ones stay in Coulomb's cone. A single impact has C = 0. x differs from 1 by about the
-// ratio of the light bodies' mass to the heavy one's.
+// where Q is the sum of all p.W p / 2 (J), P is what one impact gives to the heavy body, and E is the energy
+// that this gives to it at rest. The energy moved is L x + (Q + C) x^2, where L is the sum of all p.u, and
+// this is x (L + Q): x times what the impacts would move one by one. So elastic impacts keep the energy,
+// others cannot gain any, and the ledger of each impact is scaled by x as well. Momentum is exact, since each
+// impulse acts on both bodies, and scaled impulses stay in Coulomb's cone. A single impact has C = 0. x
+// differs from 1 by about the ratio of the light bodies' mass to that of the heavy one.
 #pragma once
 
 #include "core/space_atomic.hpp"
@@ -22,24 +23,25 @@
 
 namespace scree::detail {
 
-/// What impacts of lighter bodies give to a heavy one, in units.
+/// The sums of what impacts of lighter bodies give to a heavy one, in units (ImpactGroupUnits).
 struct ImpactGroup {
-  std::uint64_t fastest;         ///< of the lighter bodies, as the bits of a speed (m/s)
-  std::uint64_t momentum[3];     ///< given to the heavy body
-  std::uint64_t delayed[3];      ///< the same times the time into the substep
-  std::uint64_t angular[3];      ///< about its centre
-  std::uint64_t light;           ///< share of p.W p / 2 of the lighter bodies
-  std::uint64_t own;             ///< its own
-  std::uint64_t turning;         ///< energy that the angular momentum gives, but for its square
-  std::uint64_t weight;          ///< sizes of impulses
-  std::uint64_t delayed_weight;  ///< the same times the time
+  std::uint64_t fastest;         ///< largest speed of the lighter bodies, as the bits of a double (m/s)
+  std::uint64_t momentum[3];     ///< momentum given to the heavy body
+  std::uint64_t delayed[3];      ///< sum of momentum times the time of its impact, into the substep
+  std::uint64_t angular[3];      ///< angular momentum given to it, about its centre
+  std::uint64_t light;           ///< the lighter bodies' share of p.W p / 2
+  std::uint64_t own;             ///< the heavy body's share of p.W p / 2
+  std::uint64_t turning;         ///< energy that the angular momentum gives, without its quadratic part
+  std::uint64_t weight;          ///< sum of the sizes of the impulses
+  std::uint64_t delayed_weight;  ///< sum of sizes times the times
   std::uint64_t impacts;
-  std::uint64_t first_missing;  ///< of the pairs that are in it the first, as ~PairNumbers: 0 for none
-  std::uint64_t place;          ///< of that one's impact among all resolved
+  std::uint64_t first_missing;  ///< first pair of the group, as ~PairNumbers; 0: none
+  std::uint64_t place;          ///< place of that pair's impact among all resolved
 };
 
-/// Units of the sums. They are counted in integers, so that a sum does not hang on the order of its terms: as
-/// fine as the rounding of the body's own state, and with room for hundreds of times its momentum.
+/// The units of the sums. The sums are counted in integers, so that they do not depend on the order of their
+/// terms. The units are as fine as the rounding of the body's own state, and leave room for hundreds of times
+/// its momentum.
 class ImpactGroupUnits {
  public:
   SCREE_HD ImpactGroupUnits(const FlightStage& stage, std::int32_t heavy, const ImpactGroup& impact_group) {
@@ -56,7 +58,7 @@ class ImpactGroupUnits {
   double momentum, delayed, angular, energy;
 
  private:
-  /// A power of two, so that nothing is rounded but to whole units.
+  /// Returns a power of two above x, so that values are rounded only to whole units.
   SCREE_HD static double power_over(double x) { return scalbn(1.0, ilogb(x) + 1); }
 };
 
@@ -70,7 +72,7 @@ SCREE_HD inline Vec3 value_of(const std::uint64_t (&sum)[3], double unit) {
   return {value_of(sum[0], unit), value_of(sum[1], unit), value_of(sum[2], unit)};
 }
 
-/// The heavy one of two bodies in an impact: what the impact gives to it.
+/// The heavy one of two bodies in an impact, with what the impact gives to it.
 struct HeavySide {
   SCREE_HD HeavySide(const SolvedImpact& solved, bool is_i)
       : at(is_i ? solved.at_i : solved.at_j), after(is_i ? solved.after_i : solved.after_j) {
@@ -85,7 +87,7 @@ struct HeavySide {
     if (solved.rolling.reach > 0) angular += sign * solved.rolling.couple;
   }
 
-  /// Energy that it gives to a body at rest (J).
+  /// Returns the energy that the impact gives to the body if it is at rest (J).
   SCREE_HD double own_energy() const {
     return 0.5 * (momentum.dot(after.velocity - at.velocity) + angular.dot(after.spin - at.spin));
   }
@@ -96,7 +98,7 @@ struct HeavySide {
   bool turns;
 };
 
-/// Adds an impact.
+/// Adds an impact to the group of its heavy body.
 SCREE_HD inline void add_to_impact_group(const FlightStage& stage, std::int32_t heavy,
                                          const SolvedImpact& solved, std::uint64_t pair,
                                          ImpactGroup& impact_group) {
@@ -123,7 +125,7 @@ SCREE_HD inline void add_to_impact_group(const FlightStage& stage, std::int32_t 
   raise(&impact_group.first_missing, ~pair);
 }
 
-/// What an impact group does to its heavy body.
+/// The effect of an impact group on its heavy body.
 class ImpactGroupOutcome {
  public:
   SCREE_HD ImpactGroupOutcome(const FlightStage& stage, std::int32_t heavy, const ImpactGroup& impact_group)
@@ -146,11 +148,12 @@ class ImpactGroupOutcome {
     if (light > 0) scale_ = (light + value_of(impact_group.own, unit.energy)) / (light + together);
   }
 
-  /// x.
+  /// Returns x, the scale of all impacts of the group.
   SCREE_HD double scale() const { return scale_; }
 
-  /// Gives it to the body, which turns by the mean time of the impacts. Returns the drift of its energy, and
-  /// the angular momentum by which impacts at several times differ from one at their mean.
+  /// Applies the group to the heavy body, which gets it at the mean time of the impacts. Returns the drift of
+  /// its rotational energy, and the angular momentum by which impacts at several times differ from one at
+  /// their mean.
   SCREE_HD Ledger fly_on(const FlightStage& stage, std::int32_t heavy) const {
     Ledger moved;
     const Vec3 back = scale_ * (delayed_velocity_ - flight_.midpoint * velocity_);
@@ -172,11 +175,12 @@ class ImpactGroupOutcome {
   double turning_;
   double time_;
   BodyInstant at_;
-  Vec3 velocity_, delayed_velocity_, spin_;  // delayed: times the time
+  Vec3 velocity_, delayed_velocity_, spin_;  // delayed_velocity_: times the time (m)
   double scale_ = 1;
 };
 
-/// Gives the share of an impact in an impact group to the lighter body. Returns what the impact moved.
+/// Gives the lighter body its share of an impact in an impact group. Returns the ledger of what the impact
+/// moved.
 SCREE_HD inline Ledger fly_on_scaled(const FlightStage& stage, std::int32_t heavy, const SolvedImpact& solved,
                                      double scale, Impact& impact) {
   const bool heavy_is_i = solved.i == heavy;

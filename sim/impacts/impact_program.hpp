@@ -1,5 +1,6 @@
-// The rounds of impacts of a flight as phases (core/space_phases.hpp). The first half of a round predicts
-// which pairs meet, the second one resolves the meetings that are first where they are.
+// The rounds of impacts of a flight, as a program of phases (core/space_phases.hpp). The first half of a
+// round predicts which pairs meet, the second half resolves the meetings that are the first in their
+// neighbourhood.
 #pragma once
 
 #include "core/array.hpp"
@@ -17,15 +18,15 @@
 
 namespace scree::detail {
 
-/// A meeting, as foreseen.
+/// A predicted meeting.
 struct PredictedMeeting {
-  double time;        ///< into the substep (s); infinite: it has come to nothing
-  std::int64_t pair;  ///< in the list of the pairs
+  double time;        ///< time into the substep (s); infinite: the meeting has come to nothing
+  std::int64_t pair;  ///< index in the list of pairs
   std::int32_t part;
-  std::uint32_t next_of_wall = 0;  ///< ImpactProgram::walls_of
+  std::uint32_t next_of_wall = 0;  ///< next meeting of the same body, see ImpactProgram::walls_of
 };
 
-/// The order of pairs, which is that of their bodies' numbers: it does not hang on where bodies lie.
+/// A sort key of pairs, made of their bodies' numbers: it does not depend on the places of the bodies.
 struct PairNumbers {
   std::uint64_t bits;
 
@@ -36,18 +37,18 @@ struct PairNumbers {
   }
 };
 
-/// An impact, and what it moved.
+/// An impact, and the ledger of what it moved.
 struct Resolved {
   Impact impact;
   Ledger moved;
 };
 
-/// The bits of a number that is not negative are in the order of such numbers.
+/// Returns the bits of a number that is not negative; they are in the order of such numbers.
 SCREE_HD inline std::uint64_t ordered_bits(double x) { return std::bit_cast<std::uint64_t>(x + 0.0); }
 
-/// The first meeting of a body, in one word, so that the smaller of two is the earlier one: its time, in
-/// parts of 2^-32 of the substep, and the number of the partner. Of meetings in the same part that of the
-/// first pair is the smaller one (PairNumbers).
+/// The first meeting of a body in one word. Of two such words the smaller one is the earlier meeting: it
+/// holds the time, in parts of 2^-32 of the substep, and the number of the partner. Of meetings in the same
+/// part, that of the first pair is the smaller one (PairNumbers).
 struct FirstMeeting {
   std::uint64_t bits;
 
@@ -57,7 +58,7 @@ struct FirstMeeting {
   }
   SCREE_HD bool is_none() const { return bits == ~std::uint64_t{0}; }
   SCREE_HD std::uint64_t part() const { return bits >> 32; }
-  /// Into the substep, rounded down (s).
+  /// Returns the time into the substep, rounded down (s).
   SCREE_HD double time(double step) const { return static_cast<double>(part()) / parts * step; }
   SCREE_HD BodyNumber partner() const { return BodyNumber{static_cast<std::int32_t>(bits & 0xffffffffu)}; }
 
@@ -66,63 +67,65 @@ struct FirstMeeting {
 };
 
 inline constexpr std::uint64_t no_meeting = ~std::uint64_t{0};
-inline constexpr std::uint32_t no_impact_group = ~std::uint32_t{0};  ///< of meetings
+inline constexpr std::uint32_t no_impact_group =
+    ~std::uint32_t{0};  ///< ImpactProgram::impact_group_of of a body without group
 
-/// How many a round has found.
+/// The numbers of items that a round has found.
 struct RoundCounts {
   std::uint64_t to_search = 0;
   std::uint64_t meetings = 0;
-  std::uint64_t with_heavy = 0;  ///< of these, with a body that is heavy to the other
+  std::uint64_t with_heavy = 0;  ///< meetings with a body that is heavy to the other
 };
 
-/// The first meeting of all: by its exact time, of equal ones by its pair.
+/// The first meeting of all: the one with the smallest exact time, and of equal times the first pair.
 struct FirstOfAll {
   std::uint64_t time = no_meeting, pair = no_meeting;
 };
 
-/// What the threads of a flight tell each other, and the host at the end.
+/// The progress of a flight, which its threads share, and which the host reads at the end.
 struct ImpactProgress {
-  RoundCounts counts[2];          ///< of the even rounds and of the odd ones
-  FirstOfAll first[2];            ///< likewise
-  double least_impact_speed = 0;  ///< FlightStage::least_impact_speed; infinite where nobody is faster (m/s)
-  bool needs_search = false;      ///< some body's meetings have no closed form
-  std::uint64_t near = 0;         ///< pairs that come near each other, listed before the first round
-  std::uint64_t chunks = 0;       ///< listed by this round
+  RoundCounts counts[2];          ///< counts of the even rounds and of the odd ones
+  FirstOfAll first[2];            ///< first meetings of the even rounds and of the odd ones
+  double least_impact_speed = 0;  ///< FlightStage::least_impact_speed; infinite if no pair is faster (m/s)
+  bool needs_search = false;      ///< whether the meetings of some body have no closed form
+  std::uint64_t near = 0;         ///< number of pairs that come near each other, before the first round
+  std::uint64_t chunks = 0;       ///< number of chunks that this round has listed
   std::uint64_t impacts = 0;
-  std::uint64_t struck = 0;       ///< bodies
-  std::uint32_t late_impact = 0;  ///< whether one of them was struck after the midpoint
+  std::uint64_t struck = 0;       ///< number of struck bodies
+  std::uint32_t late_impact = 0;  ///< whether a body was struck after the midpoint
   std::uint32_t hit_bound = 0;
 };
 
-/// Where the rounds are.
+/// The state of the rounds.
 struct RoundsState {
-  /// They halt at the end, or where there is no room to go on: in the lists of the first half, or for what
-  /// the second half may resolve, which also asks for the pairs of each body.
+  /// The reason why the rounds halt: they are at their end; or there is no room in the lists of the first
+  /// half; or there is none for the results of the second half, which also needs the pairs of each body
+  /// (adjacency).
   enum class Halt : std::uint8_t { none, end, lists, results };
 
   Halt halt = Halt::none;
-  bool resolving = false;  ///< in the second half
+  bool resolving = false;  ///< whether the rounds are in the second half
   std::uint32_t round = 1;
-  std::int64_t kept = 0;    ///< meetings of the round before
-  std::int64_t chunks = 0;  ///< of the pairs of bodies that were struck in it
-  RoundCounts counts;       ///< of this round, once its first half is over
+  std::int64_t kept = 0;    ///< number of meetings of the round before
+  std::int64_t chunks = 0;  ///< number of chunks of pairs of bodies that were struck in it
+  RoundCounts counts;       ///< counts of this round, once its first half is over
 };
 
 SCREE_HD inline LoadedParts loads_at(ConstView<LoadedParts> loaded, std::int64_t pair) {
   return loaded.size() > 0 ? loaded[pair] : LoadedParts{};
 }
 
-/// Nothing to add up.
+/// An empty sum, since the phases add up nothing.
 struct NoSum {
   SCREE_HD friend NoSum operator+(NoSum, NoSum) { return {}; }
 };
 
-/// Some pairs of a body that has been struck: chunk_size of them from the one given on, among its own.
+/// Some pairs of a body that has been struck: chunk_size entries of its row, from `first` on.
 struct StruckPairs {
   std::int32_t body, first;
 };
 
-/// One round after another, until nobody meets.
+/// The program of the rounds: one round after another, until no bodies meet.
 struct ImpactProgram {
   using State = RoundsState;
   using Sum = NoSum;
@@ -132,26 +135,27 @@ struct ImpactProgram {
 
   FlightStage stage;
   ConstView<Pair> pairs;
-  ConstView<LoadedParts> loaded;  ///< of each pair; empty: none
-  AdjacencyView adjacency;        ///< from the first second half on
-  bool one_by_one;                ///< in the order of their times, one a round
-  int lanes;                      ///< threads that look at the pairs of one body
+  ConstView<LoadedParts> loaded;  ///< loaded parts of each pair; empty: none
+  AdjacencyView adjacency;        ///< pairs of each body; there from the first second half on
+  bool one_by_one;                ///< whether meetings are resolved in the order of their times, one a round
+  int lanes;                      ///< number of threads that look at the pairs of one body
   ImpactProgress* progress;
-  // Of each body:
+  // Values of each body:
   View<std::uint64_t> first[2];             ///< FirstMeeting in the even rounds and in the odd ones
-  View<std::uint32_t> struck_in, waits_in;  ///< the last such round, 0 for none
-  View<std::uint32_t> impact_group_of;      ///< its first meeting with a lighter one
-  /// One of its meetings with what is not free, from 1 on; the next is that meeting's next_of_wall. 0: none.
+  View<std::uint32_t> struck_in, waits_in;  ///< last round in which it was struck, or waited; 0: none
+  View<std::uint32_t> impact_group_of;      ///< index of its first meeting with a lighter body
+  /// A meeting of the body with one that is not free, counted from 1; next_of_wall of that meeting is the
+  /// next one. 0: none.
   View<std::uint32_t> walls_of;
-  // As long as there is room:
+  // Lists, of which only as much is filled as there is room for:
   ConstView<std::int64_t> near;        ///< pairs that come near each other, for the first round
   View<std::int64_t> to_search;        ///< pairs whose meeting is to be searched for in this round
-  View<PredictedMeeting> meetings[2];  ///< of the even rounds and of the odd ones, in any order
-  View<ImpactGroup> impact_groups;     ///< of each meeting
+  View<PredictedMeeting> meetings[2];  ///< meetings of the even rounds and of the odd ones, in any order
+  View<ImpactGroup> impact_groups;     ///< impact group of each meeting
   View<Resolved> resolved;             ///< impacts, in any order
-  View<std::uint64_t> key;             ///< of each one's place
+  View<std::uint64_t> key;             ///< sort key of each impact
   View<StruckBody> struck;
-  View<StruckPairs> chunks;  ///< of those that were struck in the last round; there is room for all bodies
+  View<StruckPairs> chunks;  ///< chunks of bodies that were struck in the last round; there is room for all
 
   SCREE_HD int phases(const State& state) const {
     if (state.halt != State::Halt::none) return 0;
@@ -209,7 +213,7 @@ struct ImpactProgram {
   SCREE_HD static std::int64_t meetings_of(const State& state) {
     return static_cast<std::int64_t>(state.counts.meetings);
   }
-  /// As far as there is room.
+  /// Returns the number of listed pairs, as far as there is room.
   SCREE_HD std::int64_t near_listed() const {
     return std::min(static_cast<std::int64_t>(progress->near), near.size());
   }
@@ -233,8 +237,8 @@ struct ImpactProgram {
     return i == body ? j : i;
   }
 
-  // The first half: meetings of the last round that have stayed as they were, and those of pairs of which a
-  // body has been struck in it.
+  // The first half of a round: it keeps the meetings of the last round that are unchanged, and predicts those
+  // of pairs of which a body was struck in that round.
   SCREE_HD void predict(const State& state, int phase, std::int64_t item) const {
     if (phase == 1) {
       predict_pair(state, to_search[item]);
@@ -247,7 +251,8 @@ struct ImpactProgram {
     }
   }
 
-  /// At a pair of a body that has been struck; if both have been, only as one of the first.
+  /// Looks again at a pair of a body that has been struck; if both bodies have been, only from the row of the
+  /// first one.
   SCREE_HD void look_again(const State& state, std::int64_t item) const {
     const StruckPairs of = chunks[item / chunk_size];
     const std::int64_t place = of.first + item % chunk_size;
@@ -271,8 +276,8 @@ struct ImpactProgram {
     ImpactLimits limits;
     if (stage.may_meet(i, j, limits) && stage.come_near(i, j, limits, loads_of(k))) predict_or_list(state, k);
   }
-  /// Foresees the meeting of a pair that comes near, or lists it if that takes a search: searches that lie
-  /// side by side keep all threads of a warp busy.
+  /// Predicts the meeting of a pair that comes near, or lists the pair if that takes a search: searches that
+  /// lie side by side keep all threads of a warp busy.
   SCREE_HD void predict_or_list(const State& state, std::int64_t k) const {
     const auto [i, j] = pairs[k];
     if (!stage.needs_search(i) && !stage.needs_search(j)) return predict_pair(state, k);
@@ -306,11 +311,11 @@ struct ImpactProgram {
     return stage.is_heavy_to(i, j) || stage.is_heavy_to(j, i);
   }
 
-  // The second half.
+  // The second half of a round: it resolves the meetings that are first.
   SCREE_HD void resolve(const State& state, int phase, std::int64_t item) const {
     const bool with_heavy = state.counts.with_heavy > 0;
     if (phase == 0) {
-      // Nobody counts in those of the next round yet.
+      // No thread counts in the values of the next round yet.
       if (item == 0) {
         progress->counts[(state.round + 1) % 2] = {};
         progress->first[(state.round + 1) % 2] = {};
@@ -332,11 +337,12 @@ struct ImpactProgram {
     }
   }
 
-  /// Whether a meeting with the other has its turn among those of a body.
+  /// Returns whether a meeting with the other body takes part in the order of a body's meetings.
   SCREE_HD bool counts_for(std::int32_t body, std::int32_t other) const {
     return stage.is_free(body) && !stage.is_heavy_to(body, other);
   }
-  /// All that are first; no two of them share a body but one that is heavy to both others.
+  /// Returns whether a meeting is first. Two such meetings may share only a body that is heavy to both
+  /// others.
   SCREE_HD bool is_first(const State& state, const PredictedMeeting& of) const {
     if (one_by_one) return progress->first[state.round % 2].pair == numbers_of(of.pair).bits;
     const auto [i, j] = pairs[of.pair];
@@ -351,13 +357,13 @@ struct ImpactProgram {
     return impact_groups[impact_group_of[heavy]];
   }
 
-  /// Of a meeting of the last round: what was first then is asked for no more, and its place is the next
-  /// round's.
+  /// Clears the first meetings of the bodies of a meeting of the last round: they are not needed any more,
+  /// and the next round uses the same array.
   SCREE_HD void forget(const State& state, const PredictedMeeting& last) const {
     const auto [i, j] = pairs[last.pair];
     for (const std::int32_t body : {i, j}) put(&first[(state.round + 1) % 2][body], no_meeting);
   }
-  /// Each body of each meeting has `lanes` items.
+  /// Prepares a meeting. Each body of each meeting has `lanes` items.
   SCREE_HD void prepare(const State& state, std::int64_t item) const {
     const auto lane = static_cast<int>(item % lanes);
     const std::int64_t e = item / lanes / 2;
@@ -383,7 +389,7 @@ struct ImpactProgram {
     if (one_by_one && of_all.time == ordered_bits(of.time)) lower(&of_all.pair, numbers_of(of.pair).bits);
   }
 
-  /// Makes those wait that are to, of a body that has a meeting and of its partners that have one. A pair is
+  /// Finds the waits between a body that has a meeting and those of its partners that have one. A pair is
   /// looked at from the body that is in fewer pairs, since a body with many pairs may be in very many.
   SCREE_HD void find_waits(const State& state, std::int32_t body, int lane) const {
     if (adjacency.has_many_pairs(body)) return find_waits_of_many(state, body, lane);
@@ -403,10 +409,10 @@ struct ImpactProgram {
     }
   }
 
-  /// Of two bodies that could meet, the one whose first meeting is later waits for the other's, if that could
-  /// drive the other into it before. Of meetings at the same time the first pair's goes first, if one body is
-  /// heavy to the other: both meetings would change that. Nobody waits in a circle: meetings are in one
-  /// order.
+  /// Lets one of two bodies that could meet wait. The one whose first meeting is later waits for the other
+  /// one's, if that could drive the other body into it before. If both meetings are at the same time and one
+  /// body is heavy to the other, the meeting of the first pair goes first, since both meetings would change
+  /// the heavy body. No circle of bodies can wait for each other, since all meetings are in one order.
   SCREE_HD void make_wait(const State& state, std::int32_t i, std::int32_t j) const {
     const FirstMeeting of_i = first_of(state, i);
     const FirstMeeting of_j = first_of(state, j);
@@ -425,13 +431,14 @@ struct ImpactProgram {
     if (with_it || may_meet_before(goes, waits, i_goes ? of_i : of_j, i_goes ? of_j : of_i))
       put(&waits_in[waits], state.round);
   }
-  /// Whether a body may meet another one between its first meeting and the other's.
+  /// Returns whether a body may meet another one between its first meeting and that of the other.
   SCREE_HD bool may_meet_before(std::int32_t body, std::int32_t other, const FirstMeeting& of_body,
                                 const FirstMeeting& of_other) const {
     const std::int32_t partner = stage.bodies.place(of_body.partner());
     const double from = of_body.time(stage.terms.step);
     const double until = of_other.time(stage.terms.step);
-    const double driven = stage.top_speed[body] + 2 * stage.top_speed[partner];  // as by a moving wall
+    // The largest speed after its meeting, as off a moving wall.
+    const double driven = stage.top_speed[body] + 2 * stage.top_speed[partner];
     const BodyFlight flight = stage.flight(body);
     const BodyFlight others = stage.flight(other);
     const double reach = bounding_radius(flight.shape, flight.size) +
@@ -451,7 +458,7 @@ struct ImpactProgram {
     if (stage.is_heavy_to(body, other))
       raise(&impact_group(body).fastest, ordered_bits(stage.top_speed[other]));
   }
-  /// Adds up what the first meetings give to heavy bodies.
+  /// Adds up what the first meetings give to heavy bodies in impact groups.
   SCREE_HD void gather_impact_groups(const State& state, std::int64_t e) const {
     const PredictedMeeting& of = meeting(state, e);
     const auto [i, j] = pairs[of.pair];
@@ -523,7 +530,8 @@ struct ImpactProgram {
         if (of->pair != pair) then(first == body ? second : first, of->part);
       }
     }
-    /// The first of a body's from a pair on; null if there is none.
+    /// Returns the first meeting of a body with a wall whose PairNumbers are at least `least`; null if there
+    /// is none.
     SCREE_HD const PredictedMeeting* from(std::int32_t body, std::uint64_t least) const {
       const PredictedMeeting* next = nullptr;
       std::uint64_t of_next = ~std::uint64_t{0};
@@ -540,7 +548,8 @@ struct ImpactProgram {
     }
   };
 
-  /// There is room, since its meeting is not resolved besides.
+  /// Adds the part of an impact with another wall. There is room for it, since the meeting with that wall is
+  /// not resolved by itself.
   SCREE_HD void add_impact_of_wall(const State& state, const SolvedImpact& solved, std::int32_t wall) const {
     const std::int32_t body = stage.is_free(solved.i) ? solved.i : solved.j;
     for (std::uint32_t e = walls_of[body]; e != 0;) {
@@ -565,7 +574,7 @@ struct ImpactProgram {
       chunks[place + c] = {body, static_cast<std::int32_t>(c * chunk_size)};
   }
 
-  /// Gives each impact group to its heavy body.
+  /// Applies each impact group to its heavy body.
   SCREE_HD void end_impact_groups(const State& state, std::int64_t e) const {
     const auto [i, j] = pairs[meeting(state, e).pair];
     if (!is_of_heavy(i, j)) return;

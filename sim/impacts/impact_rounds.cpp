@@ -20,8 +20,8 @@ using detail::ImpactProgress;
 using detail::Resolved;
 using detail::RoundsState;
 
-/// Who has had an impact later than the flight begins has been where it was before that. Also looks at the
-/// laws.
+/// Starts the values of a body, and bounds those of bodies and laws. A body that was struck after the start
+/// of the flight starts at that impact: its way until then is over.
 struct StartFlight {
   FlightStage stage;
   SCREE_HD FlightBounds operator()(std::int64_t k) const {
@@ -66,7 +66,7 @@ struct MarkLoaded {
   }
 };
 
-/// What the first round begins with.
+/// Resets the values of a body before the first round.
 struct ResetBodies {
   ImpactProgram program;
   SCREE_HD void operator()(std::int64_t body) const {
@@ -76,8 +76,9 @@ struct ResetBodies {
   }
 };
 
-/// Pairs that come near each other. A loop of its own looks at more pairs at once than the rounds, which take
-/// many registers. Of four pairs the speeds are on their way together: most pairs are too slow.
+/// Lists the pairs that come near each other. This loop is not part of the rounds, which take many registers,
+/// so that more pairs are looked at in parallel. It loads the speeds of four pairs together, since most pairs
+/// are too slow.
 struct ListNear {
   static constexpr int together = 4;
   SCREE_HD static std::int64_t items(std::int64_t pairs) { return (pairs + together - 1) / together; }
@@ -143,7 +144,7 @@ struct Restore {
 constexpr std::int64_t least_room = 4096;
 constexpr int lanes_on_device = 8;
 
-/// Makes room for so many, and keeps the `used` first.
+/// Makes room for `needed` elements, and keeps the first `used` ones.
 template <class T, class Space>
 void grow(Array<T, Space>& list, std::int64_t used, std::int64_t needed) {
   if (needed > list.capacity()) {
@@ -262,7 +263,7 @@ void ImpactRounds<Space>::make_room(const FlightStage& stage, const Problem& pro
   copy_bytes<Host, Space>(&progress_, progress, sizeof(progress_));
   const std::int64_t meetings = signed_count(state.counts.meetings);
   if (state.halt == RoundsState::Halt::lists) {
-    // The first half is done again.
+    // The first half of the round is repeated.
     grow(to_search_, 0, signed_count(state.counts.to_search));
     for (auto& list : meetings_) grow(list, list.size(), std::max(meetings, meetings_[0].size()));
     progress_.counts[state.round % 2] = {};
@@ -289,7 +290,7 @@ void ImpactRounds<Space>::make_room(const FlightStage& stage, const Problem& pro
   state.halt = RoundsState::Halt::none;
 }
 
-/// Returns the sum of what the impacts moved.
+/// Puts the impacts in order, and returns the sum of their ledgers.
 template <class Space>
 Ledger ImpactRounds<Space>::put_in_order(std::int64_t pairs, ConstView<BodyNumber> number) {
   const std::int64_t n = signed_count(progress_.impacts);

@@ -1,5 +1,5 @@
-// All impacts of a flight in a space: in rounds, all at once in each that are the first in their
-// neighbourhood.
+// The resolution of all impacts of a flight in one space. It works in rounds, each of which resolves all
+// impacts that are the first in their neighbourhood.
 #pragma once
 
 #include "core/array.hpp"
@@ -14,12 +14,12 @@ namespace scree {
 
 namespace detail {
 
-/// What all bodies and laws stay within.
+/// Bounds on all bodies and laws.
 struct FlightBounds {
-  double top_speed = 0;        ///< the largest of the bodies' (m/s)
-  double smallest = HUGE_VAL;  ///< of their sizes (m)
-  double restitution = 0;      ///< the largest of the laws'
-  bool needs_search = false;   ///< one of them does (FlightStage::needs_search)
+  double top_speed = 0;        ///< largest top speed of the bodies (m/s)
+  double smallest = HUGE_VAL;  ///< smallest FlightStage::size_of() of the bodies (m)
+  double restitution = 0;      ///< largest restitution of the laws
+  bool needs_search = false;   ///< whether any body needs a search (FlightStage::needs_search)
   SCREE_HD friend FlightBounds operator+(const FlightBounds& a, const FlightBounds& b) {
     return {fmax(a.top_speed, b.top_speed), fmin(a.smallest, b.smallest), fmax(a.restitution, b.restitution),
             a.needs_search || b.needs_search};
@@ -28,53 +28,56 @@ struct FlightBounds {
 
 }  // namespace detail
 
-/// An impact is the meeting of a pair that was not loaded before, bounces, and closes faster than the
-/// threshold; or of any pair whose approach would go on for more than tolerance::deep_approach by the end of
-/// the substep: the response, which sees the midpoint alone, could not tell which way to part them. A body in
-/// flight is, at the time s into the substep, at
+/// Finds and resolves all impacts of a flight. An impact is the meeting of a pair that was not loaded before,
+/// bounces, and closes faster than the threshold; or of any pair whose approach would go on for more than
+/// tolerance::deep_approach by the end of the substep: the response, which only knows the midpoint, could not
+/// tell in which direction to separate such a pair. A body in flight is, at the time s into the substep, at
 ///   x(s) = x_mid + (s - step/2) v + g s^2 / 2,
-/// and turns freely; after an impact its midpoint is that from which its new velocity leads through the
+/// and turns freely; after an impact its midpoint is the one from which its new velocity leads through the
 /// impact. So flight, bounce and energy are exact whatever the step (docs/method.md). The bodies are at the
-/// midpoint, with their velocities before gravity's kick. Chains run on until nothing meets; a body that has
-/// had its bound of impacts takes e = 0.
+/// midpoint, with their velocities before gravity's kick. Chains of impacts run on until nothing meets; a
+/// body that has used up its budget for bounces takes e = 0.
 ///
-/// In each round a meeting is resolved if no other of its two bodies is earlier, nor any that could drive a
-/// body into these before: what comes later in one place waits for what is earlier there, while places apart
-/// do not wait for each other. A chain that would run through two bodies and reach a third before its own
-/// meeting comes too late for that, and strikes it right after. Bodies that are not free change nothing, and
-/// nobody waits for them. A heavy body is struck by many light ones in one round, and between light ones it
-/// is as one that is not free. Results do not depend on the threads.
+/// In each round a meeting is resolved if neither of its two bodies has an earlier one, and if no earlier
+/// meeting could drive another body into one of them before. So a later meeting waits for an earlier one in
+/// the same place, and meetings in places apart do not wait for each other. A chain that would run through
+/// two bodies and reach a third one before that body's own meeting is found too late for that, and strikes
+/// the third body right after its meeting. Bodies that are not free do not change, and no meeting waits for
+/// them. A heavy body is struck by many light ones in one round, and between light ones it counts like a body
+/// that is not free. Results do not depend on the threads.
 template <class Space>
 class ImpactRounds {
  public:
-  /// What may meet, and how, in one flight.
+  /// The pairs that may meet in one flight, and the terms of the flight.
   struct Problem {
     ConstView<Pair> pairs;          ///< candidates, among which are all that may meet; each has a free body
-    ConstView<LoadedParts> loaded;  ///< of each pair; empty: none
+    ConstView<LoadedParts> loaded;  ///< loaded parts of each pair; empty: none
     FlightTerms terms;
-    bool one_by_one = false;      ///< strictly in the order of their times, whatever that costs
-    std::int64_t pairs_made = 0;  ///< the same number: the same pairs of the same bodies; 0: unknown
+    bool one_by_one = false;      ///< resolve strictly in the order of the times, whatever that costs
+    std::int64_t pairs_made = 0;  ///< an equal number means the same pairs of the same bodies; 0: unknown
   };
 
-  /// False if all are too slow for one in the flight, wherever they are.
+  /// Returns false if all bodies are too slow for an impact in the flight, wherever they are.
   bool any_may_meet(const FlightTerms& terms, const ResponseParameters& parameters, BodyView bodies);
-  /// Finds and resolves the impacts of the flight. Returns what they moved. All views are of the space.
+  /// Finds and resolves the impacts of the flight. Returns the ledger of what they moved. All views are of
+  /// Space.
   Ledger resolve(const Problem& problem, const ResponseParameters& parameters, BodyView bodies);
   /// Puts the bodies back to where they were before the last resolve().
   void undo(BodyView bodies);
 
-  /// Of the last resolve(), between bodies by their numbers: round by round, in each in the order of the
-  /// pairs, so that those of one body are in the order of their times.
+  /// Returns the impacts of the last resolve(), with bodies by their numbers. They are in the order of the
+  /// rounds, and within a round in that of the pairs, so that the impacts of one body are in the order of
+  /// their times.
   ConstView<Impact> impacts() const { return impacts_.view(); }
-  /// The bodies that have had one, as they were before it, in any order.
+  /// Returns the bodies that have had an impact, as they were before their first one, in any order.
   ConstView<StruckBody> struck() const { return struck_.view(); }
-  /// Whether one of them had it after the midpoint.
+  /// Returns whether a body was struck after the midpoint.
   bool any_late_impact() const { return progress_.late_impact != 0; }
-  /// Whether a body, or the rounds, have had their bound.
+  /// Returns whether a body has used up its impact budget, or the number of rounds has reached its bound.
   bool hit_bound() const { return progress_.hit_bound != 0; }
   std::int64_t rounds() const { return rounds_; }
 
-  /// The bodies after resolve(), for flight_of_contact() and shift_after_late_impact().
+  /// Returns the bodies after resolve(), for flight_of_contact() and shift_after_late_impact().
   FlightStage stage(const FlightTerms& terms, const ResponseParameters& parameters, const BodyView& bodies) {
     return {terms, parameters, bodies, log_};
   }
@@ -84,16 +87,16 @@ class ImpactRounds {
   detail::ImpactProgram program(const FlightStage& stage, const Problem& problem);
   /// Lists the pairs that may meet, as far as there is room.
   void list_near(const FlightStage& stage, const Problem& problem);
-  /// For rounds that have halted for want of it.
+  /// Makes room in the lists for rounds that have halted for want of it.
   void make_room(const FlightStage& stage, const Problem& problem, detail::RoundsState& state);
   Ledger put_in_order(std::int64_t pairs, ConstView<BodyNumber> number);
 
   FlightLog<Space> log_;
-  detail::ImpactProgress progress_;                       ///< as the host last saw it
-  Array<detail::ImpactProgress, Space> shared_progress_;  // one
+  detail::ImpactProgress progress_;                       ///< progress as the host last read it
+  Array<detail::ImpactProgress, Space> shared_progress_;  // one element
   Array<detail::FlightBounds, Space> bounds_, bounds_scratch_;
   std::int64_t rounds_ = 0;
-  // As in detail::ImpactProgram:
+  // Arrays that detail::ImpactProgram views:
   Array<std::uint64_t, Space> first_[2];
   Array<std::uint32_t, Space> struck_in_, waits_in_, impact_group_of_, walls_of_;
   Array<std::int64_t, Space> near_, to_search_;
@@ -104,8 +107,8 @@ class ImpactRounds {
   Array<StruckBody, Space> struck_;
   Array<detail::StruckPairs, Space> chunks_;
   Adjacency<Space> adjacency_;
-  std::int64_t adjacency_of_ = 0;  // Problem::pairs_made
-  // In order:
+  std::int64_t adjacency_of_ = 0;  // Problem::pairs_made of the adjacency
+  // Impacts in order:
   Array<std::int64_t, Space> order_;
   Array<Impact, Space> impacts_;
 };

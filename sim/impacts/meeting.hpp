@@ -1,4 +1,4 @@
-// When two bodies in flight meet, and where: at any speed, linear or angular.
+// The time and place at which two bodies in flight meet, at any linear and angular speed.
 #pragma once
 
 #include "narrowphase/tube.hpp"
@@ -9,7 +9,7 @@ namespace scree {
 
 namespace detail {
 
-/// Position, velocity and acceleration of j relative to i.
+/// Returns the position and the acceleration of j relative to i.
 SCREE_HD inline Flight relative_flight(const BodyFlight& i, const BodyFlight& j) {
   return {j.position - i.position, j.acceleration - i.acceleration};
 }
@@ -24,7 +24,7 @@ SCREE_HD inline Meeting next_of_balls(const PairFlight& pair, double earliest) {
   return {.time = next.time, .part = 0};
 }
 
-/// A ball and a plane that moves along but keeps its normal.
+/// Returns the next meeting of a ball with a plane that moves but keeps its normal.
 SCREE_HD inline Meeting next_of_ball_and_plane(const PairFlight& pair, int part, const BodyFlight& ball,
                                                const Vec3& point, const Vec3& normal, const BodyFlight& plane,
                                                double earliest) {
@@ -35,10 +35,10 @@ SCREE_HD inline Meeting next_of_ball_and_plane(const PairFlight& pair, int part,
   const Vec3 offset = ball.position - point + (earliest - ball.midpoint) * velocity +
                       (0.5 * earliest * earliest) * flight.acceleration;
   const double gap = normal.dot(offset) - ball.size.x();
-  // What touches at rest bears load from then on, and does not bounce.
+  // A ball that touches at rest bears load from then on, and does not bounce.
   const bool rests = u == 0 && gap <= tolerance::touching_gap * ball.size.x();
   if (rests && pair.slowest[part] > 0 && pair.farthest == HUGE_VAL) return {};
-  // A ball that leaves is at the surface at the latest now, whatever rounding says: it may come back.
+  // A ball that leaves is at or above the surface, even if rounding says otherwise: it may come back.
   const double s = earliest + time_of_impact(u > 0 ? std::max(gap, DBL_MIN) : gap, u, a);
   if (!(s <= pair.until) || !pair.counts(part, normal, -(u + a * (s - earliest)), s)) return {};
   return {.time = s, .part = part};
@@ -73,9 +73,10 @@ SCREE_HD inline Meeting next_of_ball_in_tube(const PairFlight& pair, const BodyF
 
 }  // namespace detail
 
-/// Whether two bodies may touch at `earliest` (s) or later, told by one look at the middle of that time, with
-/// both turned as they are at the midpoint: nothing has to be turned for it. True for surfaces: they have one
-/// side, and do not see what has passed through them by then.
+/// Returns whether two bodies may touch at `earliest` (s) or later. One look at the middle of the remaining
+/// time decides this; it takes the orientations of the midpoint, so that no body has to be turned. Returns
+/// true for surfaces: they have one side, and such a look would miss a body that has passed through them by
+/// then.
 SCREE_HD inline bool may_touch(const PairFlight& pair, double earliest) {
   if (is_surface(pair.i.shape) || is_surface(pair.j.shape)) return true;
   const ApproachBound approach = bound_approach(pair);
@@ -91,8 +92,9 @@ SCREE_HD inline bool may_touch(const PairFlight& pair, double earliest) {
                            {.margin = reach, .hidden = true}, manifolds) > 0;
 }
 
-/// The first meeting that counts, at `earliest` (s) or later. Balls, and balls with planes and tubes that do
-/// not turn over, have closed forms; for the others it is a search. `divide`: see MeetingSearch::run.
+/// Returns the first meeting that counts, at `earliest` (s) or later. Two balls, and a ball with a plane or a
+/// tube that does not tilt, have closed forms; all other pairs need a search. `divide`: see
+/// MeetingSearch::run.
 SCREE_HD inline Meeting next_meeting(const PairFlight& pair, double earliest, double divide = NAN) {
   if (pair.i.is_ball() && pair.j.is_ball()) return detail::next_of_balls(pair, earliest);
   const bool ball_first = pair.i.is_ball();
@@ -107,8 +109,9 @@ SCREE_HD inline Meeting next_meeting(const PairFlight& pair, double earliest, do
   return MeetingSearch(pair, fastest).run(earliest, divide);
 }
 
-/// The contact of two bodies at an instant, on the part given: of its manifolds the one with the smallest gap
-/// at a point that closes, or of all if none does. False if there is none within `reach` (m).
+/// Finds the contact of two bodies at an instant, on the given part. Of the manifolds on that part it takes
+/// the one with the smallest gap at a point that closes, or at any point if none closes. Returns false if
+/// there is none within `reach` (m).
 SCREE_HD inline bool contact_at(const BodyInstant& i, Shape shape_i, const BodyInstant& j, Shape shape_j,
                                 const PairShapes& shapes, int part, double reach, Manifold& out) {
   Manifold manifolds[max_pair_manifolds];

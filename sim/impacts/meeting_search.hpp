@@ -1,4 +1,4 @@
-// When two bodies of any shape meet: a search along their flights.
+// The search for the time at which two bodies of any shape meet along their flights.
 #pragma once
 
 #include "core/tolerances.hpp"
@@ -11,21 +11,21 @@
 namespace scree {
 
 struct Meeting {
-  double time = HUGE_VAL;  ///< into the substep (s); infinite: none
-  int part = 0;            ///< Manifold::part
+  double time = HUGE_VAL;  ///< time into the substep (s); infinite: no meeting
+  int part = 0;            ///< Manifold::part of the contact
 };
 
-/// The first meeting that counts, by conservative advancement (Mirtich 1996, sec. 2.3): no step is longer
-/// than the gap over the fastest approach; near the contact Newton's steps replace it, and an overlap is
-/// bisected.
+/// A search for the first meeting that counts, by conservative advancement (Mirtich 1996, sec. 2.3): no step
+/// is longer than the gap divided by the fastest approach. Near the contact Newton's steps are taken instead,
+/// and an overlap is bisected.
 class MeetingSearch {
  public:
-  /// `fastest`: fastest_approach() of the pair (m/s).
+  /// Prepares a search. `fastest`: fastest_approach() of the pair (m/s).
   SCREE_HD MeetingSearch(const PairFlight& pair, double fastest)
       : pair_(pair), fastest_(fastest), size_(pair.smaller_size()) {}
 
-  /// At `earliest` (s) or later. `divide`: if it is given, the time may be any on the right side of this one,
-  /// where it takes no further look to tell that.
+  /// Returns the first meeting at `earliest` (s) or later. If `divide` is given, only the side of `divide` on
+  /// which the time of the meeting lies is exact: the search ends as soon as that is known.
   SCREE_HD Meeting run(double earliest, double divide = NAN) {
     double s = earliest;
     Look now = look(s);
@@ -40,7 +40,7 @@ class MeetingSearch {
         SCREE_ON_HOST(if (now.hidden) return first_hit(s, next, then);)
         const bool is_told = next <= divide || s >= divide;
         if (is_told || then.gap >= level - touching()) return {.time = next, .part = then.part};
-        // Where it reaches that gap, unless it is not fast enough there yet.
+        // The meeting is where the gap falls to that level, unless the approach does not count there yet.
         double touch = next;
         const Look at = find_touch(s, now, touch, then, level);
         return at.hit ? Meeting{.time = touch, .part = at.part} : Meeting{.time = next, .part = then.part};
@@ -57,18 +57,18 @@ class MeetingSearch {
 
   /// The pair at one instant.
   struct Look {
-    bool near = false;                   // within reach
-    bool hidden = false;                 // what is nearest is none of the pair's contacts
-    double gap = HUGE_VAL;               // smallest of the points whose part may count (m)
-    double closing = 0;                  // approach there (m/s)
-    bool hit = false;                    // at some point that touches the approach counts
-    int part = 0;                        // of that point
+    bool near = false;      // whether anything of the pair is within reach
+    bool hidden = false;    // whether the nearest manifold is no contact of the pair (hidden_part)
+    double gap = HUGE_VAL;  // smallest gap of the points whose part may count (m)
+    double closing = 0;     // speed at which the bodies close there (m/s)
+    bool hit = false;       // whether the approach counts at a point that touches
+    int part = 0;           // Manifold::part of that point
     bool rests[PairFlight::parts] = {};  // parts where a point touches whose approach does not count
   };
 
   SCREE_HD double touching() const { return tolerance::touching_gap * size_; }
 
-  /// A part that has touched slowly, or touches at rest, bears load from then on, and does not bounce.
+  /// Excludes parts from bouncing that have touched slowly or touch at rest: they bear load from then on.
   SCREE_HD void settle(const Look& now) {
     for (int part = 0; part < PairFlight::parts; ++part) {
       if (now.rests[part]) pair_.slowest[part] = HUGE_VAL;
@@ -113,7 +113,7 @@ class MeetingSearch {
     return look;
   }
 
-  /// What is no contact yet may delay to one.
+  /// Notes a hidden manifold, which is no contact yet but may lead to one.
   void see_hidden(const Manifold& m, const BodyInstant& i, const BodyInstant& j, Look& look) const {
     look.near = true;
     if (m.points[0].gap >= look.gap) return;
@@ -122,7 +122,8 @@ class MeetingSearch {
     look.closing = closing_speed(m.normal, m.points[0].position, i, j);
   }
 
-  /// As far as the gap lasts at the fastest approach; more where that is next to nothing.
+  /// Returns the length of the next step (s): the time that the gap lasts at the fastest approach, or more
+  /// where that is next to nothing.
   SCREE_HD double step_from(const Look& now) const {
     const double safe = std::max(now.gap, 0.0) / fastest_;
     const double least = tolerance::search_advance * size_ / fastest_;
@@ -131,7 +132,7 @@ class MeetingSearch {
     return std::max(safe, least);
   }
 
-  /// Where a contact begins that was hidden before: its gap need not have been 0 then.
+  /// Finds where a contact begins that was hidden before, by bisection: its gap need not have been 0 then.
   Meeting first_hit(double from, double to, Look after) const {
     for (int k = 0; k < most_bisections; ++k) {
       const double middle = 0.5 * (from + to);
@@ -147,11 +148,11 @@ class MeetingSearch {
     return {.time = to, .part = after.part};
   }
 
-  /// Where the gap falls through the level between two instants, from above: moves `to` there. By Newton's
-  /// steps from the instants before and after, as far as bodies close there: of two, from that whose gap is
-  /// nearer to it. Where they leave the interval, or are not quick, since nearest features change and gaps
-  /// have kinks and leaps, it is halved. It aims at the near end of what counts as touching: from deeper in
-  /// it bodies at rest with e = 1 would bounce more.
+  /// Finds where the gap falls through the level from above, between two instants, and moves `to` there. It
+  /// takes Newton's steps from the instants before and after, if the bodies close there; from both, it
+  /// prefers the one whose gap is nearer to the level. It halves the interval where these steps leave it or
+  /// converge slowly, since nearest features change and gaps have kinks and jumps. It aims at the near end of
+  /// the gaps that count as touching: if it went deeper, bodies at rest with e = 1 would bounce more.
   SCREE_HD Look find_touch(double from, Look before, double& to, Look after, double level) const {
     constexpr int usual_steps = 4;
     const double aim = level - tolerance::touch_aim * touching();

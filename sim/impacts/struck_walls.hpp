@@ -1,5 +1,5 @@
-// Where a body strikes several bodies that are not free at once, if they make one flat surface, in either
-// space.
+// The points of an impact in which a body strikes several bodies that are not free ("walls") at once, because
+// they make one flat surface, in either space.
 #pragma once
 
 #include "core/tolerances.hpp"
@@ -14,8 +14,8 @@ struct StruckPoints {
   static constexpr int most = 4 * Manifold::max_points;
   static constexpr std::int32_t own = -1;
 
-  Vec3 at[most];            ///< m
-  std::int32_t wall[most];  ///< the body that is struck there; own: that of the pair that meets
+  Vec3 at[most];            ///< places of the points (m)
+  std::int32_t wall[most];  ///< the body that is struck there; own: the wall of the pair that meets
   int count = 0;
 
   SCREE_HD void add(const Vec3& normal, const Vec3& point, std::int32_t of) {
@@ -24,8 +24,8 @@ struct StruckPoints {
     wall[count++] = of;
   }
 
-  /// Leaves as many as a manifold has, which span most area: if these part as Newton's law says, those
-  /// between them do so too.
+  /// Keeps at most as many points as a manifold has, which span the most area: if these separate as Newton's
+  /// law says, the points between them do so too.
   SCREE_HD void keep_widest(const Vec3& normal) {
     if (count <= Manifold::max_points) return;
     const auto distance = [this](const Vec3& p) { return (p - at[0]).squaredNorm(); };
@@ -44,8 +44,8 @@ struct StruckPoints {
   }
 
  private:
-  /// Leaves those that reach farthest along eight directions, 45 degrees apart: corners of less than 135
-  /// degrees are among them, whatever comes later.
+  /// Keeps the points that reach farthest along eight directions, 45 degrees apart. Corners of less than 135
+  /// degrees are among them, whatever points are added later.
   SCREE_HD void keep_farthest(const Vec3& normal) {
     constexpr int directions = 8;
     const Vec3 x = tangent_of(normal);
@@ -68,7 +68,8 @@ struct StruckPoints {
     count = kept;
   }
 
-  /// Exchanges the point in a place with that of it and those after it at which the value is largest.
+  /// Exchanges the point in a place with the one for which `value` is largest, among it and the points after
+  /// it.
   template <class Value>
   SCREE_HD void bring_to(int place, const Value& value) {
     int best = place;
@@ -83,18 +84,18 @@ struct StruckPoints {
   }
 };
 
-/// A body that strikes a wall, which is what is not free.
+/// A body that strikes a wall, that is, a body that is not free.
 struct WallStrike {
   std::int32_t body, wall;
-  Vec3 normal;  ///< unit, from the wall to the body
-  double time;  ///< into the substep (s)
+  Vec3 normal;  ///< unit normal, from the wall to the body
+  double time;  ///< time into the substep (s)
   BodyFlight flight;
   BodyInstant at_body, at_wall;
 };
 
-/// Adds the points at which the body closes with another wall, on a part, if the surface of the first goes on
-/// there: in one plane, with the same law and velocity. A face that falls flat on a seam strikes both sides
-/// at once; one after the other, they would turn the body.
+/// Adds the points at which the body closes with another wall, on a part, if the surface of the first wall
+/// goes on there: in one plane, with the same law and velocity. A face that falls flat on a seam strikes both
+/// sides at once; two impacts one after the other would turn the body.
 [[gnu::noinline]] SCREE_HD inline void add_wall(const FlightStage& stage, const WallStrike& strike,
                                                 std::int32_t wall, int part, StruckPoints& points) {
   const ContactLaws& laws = stage.terms.laws;

@@ -11,19 +11,19 @@
 
 namespace scree {
 
-/// Free flight of a body through a substep, told by where it is at the midpoint.
+/// The free flight of a body through a substep, given by its state at the midpoint.
 struct BodyFlight {
   Shape shape;
-  Vec3 size;             ///< see Shape (m)
-  Vec3 inverse_inertia;  ///< principal, 1/(kg m^2)
-  Vec3 position;         ///< at the midpoint, without what the acceleration moves it (m)
-  Quat orientation;      ///< at the midpoint
-  Vec3 velocity;         ///< at the start (m/s)
-  Vec3 spin;             ///< at the midpoint (rad/s)
-  Vec3 acceleration;     ///< m/s^2
+  Vec3 size;             ///< size as Shape defines it (m)
+  Vec3 inverse_inertia;  ///< inverse principal moments of inertia, 1/(kg m^2)
+  Vec3 position;         ///< position at the midpoint, without the displacement by the acceleration (m)
+  Quat orientation;      ///< orientation at the midpoint
+  Vec3 velocity;         ///< velocity at the start (m/s)
+  Vec3 spin;             ///< spin at the midpoint (rad/s)
+  Vec3 acceleration;     ///< constant acceleration (m/s^2)
   double midpoint;       ///< time of the midpoint, into the substep (s)
 
-  /// At the time s into the substep (s).
+  /// Returns the position at the time s into the substep (s).
   SCREE_HD Vec3 position_at(double s) const {
     return position + (s - midpoint) * velocity + (0.5 * s * s) * acceleration;
   }
@@ -31,7 +31,8 @@ struct BodyFlight {
 
   SCREE_HD bool is_ball() const { return shape == Shape::sphere; }
   SCREE_HD Vec3 axis() const { return orientation * Vec3::UnitZ(); }
-  /// Part of a boundary's spin that moves its surfaces (rad/s): not that about its own axis.
+  /// Returns the part of a boundary's spin that moves its surfaces (rad/s): all but the spin about its own
+  /// axis.
   SCREE_HD Vec3 tilting_spin() const {
     const Vec3 up = axis();
     return spin - up.dot(spin) * up;
@@ -56,20 +57,21 @@ SCREE_HD inline BodyInstant instant_of(const BodyFlight& flight, double s) {
   return now;
 }
 
-/// Speed at which the bodies close at a point along the normal (m/s); negative: they part.
+/// Returns the speed at which the bodies close at a point along the normal (m/s); negative where they
+/// separate.
 SCREE_HD inline double closing_speed(const Vec3& normal, const Vec3& point, const BodyInstant& i,
                                      const BodyInstant& j) {
   return normal.dot(i.velocity_at(point) - j.velocity_at(point));
 }
 
-/// Whether two bodies may touch elsewhere than at one smooth surface.
+/// Returns whether two bodies may touch elsewhere than at one smooth surface (at an edge or a corner).
 SCREE_HD inline bool have_edges(Shape a, Shape b) {
   return !is_boundary(a) && !is_boundary(b) && (a != Shape::sphere || b != Shape::sphere);
 }
 
-/// What accelerations add in a substep to the relative velocity of two bodies with edges (m/s): as fast does
-/// what rests on others beside them come over an edge of theirs, since nothing holds it in flight. 0 for
-/// bodies without edges.
+/// Returns what the accelerations add in a substep to the relative velocity of two bodies with edges (m/s). A
+/// body that rests on a surface made of several bodies may run against an edge of one of them at this speed,
+/// since nothing holds it in flight. Returns 0 for bodies without edges.
 SCREE_HD inline Vec3 sinking_velocity(const BodyFlight& i, const BodyFlight& j) {
   if (!have_edges(i.shape, j.shape)) return Vec3::Zero();
   return 2 * i.midpoint * (j.acceleration - i.acceleration);
@@ -77,36 +79,36 @@ SCREE_HD inline Vec3 sinking_velocity(const BodyFlight& i, const BodyFlight& j) 
 
 /// Two bodies in flight, and which of their meetings count.
 struct PairFlight {
-  static constexpr int parts = 3;  ///< most surfaces of a pair, Manifold::part
+  static constexpr int parts = 3;  ///< largest number of surfaces of a pair (Manifold::part)
 
   BodyFlight i, j;
   double until;           ///< end of the search, into the substep (s)
-  double slowest[parts];  ///< approach that counts at each part (m/s); infinite: none does
-  double farthest =
-      HUGE_VAL;            ///< an approach that would go on for more than this until the end counts too (m)
-  PairShapes shapes = {};  ///< of i and j
-  Vec3 sinking =
-      Vec3::Zero();  ///< sinking_velocity() of the two, if approaches are to be faster by that (m/s)
+  double slowest[parts];  ///< speed over which an approach counts at each part (m/s); infinite: none does
+  /// An approach that would go on for more than this until the end counts too (m).
+  double farthest = HUGE_VAL;
+  PairShapes shapes = {};  ///< shape data of i and j
+  /// The sinking_velocity() of the two, if an approach must be faster by its normal part to count (m/s).
+  Vec3 sinking = Vec3::Zero();
 
-  /// Acceleration of the two along a unit normal, relative to each other (m/s^2).
+  /// Returns the magnitude of the relative acceleration along a unit normal (m/s^2).
   SCREE_HD double acceleration_along(const Vec3& normal) const {
     return fabs(normal.dot(j.acceleration - i.acceleration));
   }
-  /// Whether an approach along the normal counts at the time s. What accelerations have added in this flight
-  /// cannot make it deep: the rows of the contact hold that, and what rests would never do so if it is
-  /// thinner than it falls in a substep.
+  /// Returns whether an approach along the normal counts at the time s. What the accelerations have added to
+  /// it in this flight cannot make it deep: the rows of the contact hold the bodies against that, and
+  /// otherwise a body that is thinner than the distance it falls in a substep would never come to rest.
   SCREE_HD bool counts(int part, const Vec3& normal, double approach, double s) const {
     if (approach > slowest[part] + fabs(normal.dot(sinking))) return true;
     return (approach - s * acceleration_along(normal)) * (until - s) > farthest;
   }
-  /// The smaller smallest_size of the two (m).
+  /// Returns the smaller smallest_size() of the two (m).
   SCREE_HD double smaller_size() const {
     return std::min(smallest_size(i.shape, i.size), smallest_size(j.shape, j.size));
   }
 };
 
-/// Bound on how fast turning moves a body's surface where it is nearest to a partner whose every point is
-/// within `far` of the body's centre (m/s).
+/// Returns a bound on how fast rotation moves a body's surface where it is nearest to a partner, if every
+/// point of the partner is within `far` of the body's centre (m/s).
 SCREE_HD inline double fastest_turn(const BodyFlight& body, double far) {
   if (body.is_ball()) return 0;
   if (is_boundary(body.shape)) return body.tilting_spin().norm() * far;
@@ -114,23 +116,23 @@ SCREE_HD inline double fastest_turn(const BodyFlight& body, double far) {
          bounding_radius(body.shape, body.size);
 }
 
-/// Bound on the speed that turning gives any point of a body's surface (m/s); infinite for a boundary that
-/// turns over.
+/// Returns a bound on the speed that rotation gives any point of a body's surface (m/s); infinite for a
+/// boundary that tilts.
 SCREE_HD inline double fastest_turn(const BodyFlight& flight) {
   if (is_boundary(flight.shape) && !flight.tilting_spin().isZero(0)) return HUGE_VAL;
   return fastest_turn(flight, 0.0);
 }
 
-/// Bound on how fast any two points of the bodies near one another approach, until the search ends (m/s).
+/// A bound on how fast any two points of the bodies near one another approach, until the search ends (m/s).
 struct ApproachBound {
-  double linear;                ///< of the centres
-  double turning_i, turning_j;  ///< of the surfaces about them
+  double linear;                ///< part of the centres' motion
+  double turning_i, turning_j;  ///< parts of the surfaces' motion about the centres
 
   SCREE_HD double turning() const { return turning_i + turning_j; }
   SCREE_HD double speed() const { return linear + turning_i + turning_j; }
 };
 SCREE_HD inline ApproachBound bound_approach(const PairFlight& pair) {
-  // To a plane that keeps its normal, only what is along it.
+  // Only motion along the normal counts towards a plane that keeps its normal.
   Vec3 normal = Vec3::Zero();
   for (const BodyFlight* body : {&pair.i, &pair.j}) {
     if (body->shape == Shape::plane && body->tilting_spin().isZero(0)) normal = body->axis();
@@ -138,7 +140,8 @@ SCREE_HD inline ApproachBound bound_approach(const PairFlight& pair) {
   const auto speed = [&normal](const Vec3& v) { return normal.isZero(0) ? v.norm() : fabs(normal.dot(v)); };
   const double linear = speed(pair.j.velocity - pair.i.velocity) +
                         speed(pair.j.acceleration - pair.i.acceleration) * pair.until;
-  // Of a boundary that tilts: how far from its centre the partner may be. Others do not ask.
+  // How far the partner may be from the centre of a boundary that tilts. For other bodies fastest_turn()
+  // ignores it.
   const auto far = [&](const BodyFlight& partner) {
     return is_boundary(partner.shape) ? 0.0
                                       : (pair.j.position - pair.i.position).norm() + linear * pair.until +

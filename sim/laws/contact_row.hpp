@@ -7,13 +7,13 @@
 
 namespace scree {
 
-/// What the solver reads and writes of a body: velocities, and the inverse masses at the midpoint
-/// orientation.
+/// The state of a body that the solver reads and writes: its velocities, and its inverse mass and inertia at
+/// the midpoint orientation (in an impact, at the orientation of that instant).
 struct SolverBody {
   Vec3 velocity;
   Vec3 spin;
-  double inverse_mass;   ///< 0: not free
-  Mat3 inverse_inertia;  ///< world frame
+  double inverse_mass;   ///< inverse mass (1/kg); 0 for a body that is not free
+  Mat3 inverse_inertia;  ///< inverse inertia tensor, world frame (1/(kg m^2))
 
   SCREE_HD bool is_free() const { return inverse_mass > 0; }
   SCREE_HD Vec3 velocity_at(const Vec3& arm) const { return velocity + spin.cross(arm); }
@@ -23,16 +23,16 @@ struct SolverBody {
   }
 };
 
-/// A contact point between bodies i and j. Impulses act on j, and reversed on i, at one common point, so that
-/// momentum and angular momentum are conserved to rounding.
+/// A contact point between bodies i and j. An impulse acts on j, and its opposite on i, at one common point,
+/// so that momentum and angular momentum are conserved to rounding.
 struct ContactRow {
-  Vec3 arm_i;  ///< from the centre of i to the common point (m)
+  Vec3 arm_i;  ///< arm from the centre of i to the common point (m)
   Vec3 arm_j;
-  double gap;           ///< at the midpoint (m)
+  double gap;           ///< gap at the midpoint (m)
   double curvature;     ///< acceleration of the gap by the turning of the normal (m/s^2)
-  double target;        ///< normal velocity to reach if the contact pushes (m/s)
-  Vec3 impulse;         ///< accumulated, world frame (N s)
-  double normal_mass;   ///< 1 / (n.W n), W: the Delassus matrix of the point (kg)
+  double target;        ///< normal relative velocity to reach if the contact pushes (m/s)
+  Vec3 impulse;         ///< accumulated impulse, world frame (N s)
+  double normal_mass;   ///< effective mass 1 / (n.W n); W is the Delassus matrix of the point (kg)
   double tangent_mass;  ///< 1 / largest eigenvalue of W in the tangent plane (kg)
 
   SCREE_HD Vec3 relative_velocity(const Vec3& velocity_i, const Vec3& spin_i, const Vec3& velocity_j,
@@ -48,14 +48,15 @@ struct ContactRow {
   }
 };
 
-/// What a row needs besides where W couples the normal to the tangents or tells them apart.
+/// The data that a row needs in addition if W couples the normal with the tangents, or if the tangents
+/// differ.
 struct RowCoupling {
   Mat3 stick;   ///< inverse of W (kg)
   Vec3 normal;  ///< W n: change of relative velocity by a unit normal impulse (1/kg)
 };
 
-/// How much something changes impulses, and their size: sums of squares over rows, each by the mass that it
-/// meets (J), so that heavy and light contacts weigh alike.
+/// The change of impulses and their size: sums of squares over rows, each divided by the effective mass of
+/// its row (J), so that heavy and light contacts have the same weight.
 struct ImpulseChange {
   double step = 0;
   double size = 0;
@@ -70,14 +71,16 @@ struct ImpulseChange {
   }
 };
 
-/// Delassus matrix of one body at an arm: its share of the change of relative velocity by an impulse (1/kg).
+/// Returns the Delassus matrix of one body at an arm: its share of the change of relative velocity by a unit
+/// impulse (1/kg).
 SCREE_HD inline Mat3 delassus_share(const SolverBody& body, const Vec3& arm) {
   Mat3 cross;
   cross << 0, -arm.z(), arm.y(), arm.z(), 0, -arm.x(), -arm.y(), arm.x(), 0;
   return body.inverse_mass * Mat3::Identity() - cross * body.inverse_inertia * cross;
 }
 
-/// A row with its lever arms and gap; the impulse, its target and the masses are for the caller to set.
+/// Returns a row with its lever arms and gap. Its impulse, target and curvature are 0; the caller sets the
+/// effective masses.
 SCREE_HD inline ContactRow row_at(const Vec3& arm_i, const Vec3& arm_j, double gap) {
   ContactRow row;
   row.arm_i = arm_i;
@@ -88,7 +91,7 @@ SCREE_HD inline ContactRow row_at(const Vec3& arm_i, const Vec3& arm_j, double g
   return row;
 }
 
-/// The largest eigenvalue of a symmetric matrix in the plane across a normal.
+/// Returns the largest eigenvalue of a symmetric matrix in the plane across a normal.
 SCREE_HD inline double largest_across(const Mat3& w, const Vec3& normal) {
   const Vec3 t = tangent_of(normal);
   const Vec3 b = normal.cross(t);
@@ -99,7 +102,7 @@ SCREE_HD inline double largest_across(const Mat3& w, const Vec3& normal) {
   return 0.5 * (tt + bb) + sqrt(half_difference * half_difference + tb * tb);
 }
 
-/// Prepares a row with zero impulse and target. At least one of the bodies is free.
+/// Returns a row with zero impulse and target, and sets its coupling. At least one of the bodies is free.
 SCREE_HD inline ContactRow make_row(const Vec3& normal, const Vec3& arm_i, const Vec3& arm_j, double gap,
                                     const SolverBody& i, const SolverBody& j, RowCoupling& coupling) {
   const Mat3 w = delassus_share(i, arm_i) + delassus_share(j, arm_j);
@@ -111,9 +114,9 @@ SCREE_HD inline ContactRow make_row(const Vec3& normal, const Vec3& arm_i, const
   return row;
 }
 
-/// Inverses of the normal and of the tangential share of W for a contact of balls (a body that is not free
-/// counts as one): their arms lie along the normal, so that W is diagonal with equal tangents and nothing
-/// couples.
+/// The effective masses of a contact of balls along the normal and along the tangents (a body that is not
+/// free counts as a ball). The arms of balls lie along the normal, so that W is diagonal with equal tangents
+/// and nothing couples.
 struct BallMasses {
   double normal, tangent;  ///< kg
 };
@@ -123,7 +126,7 @@ SCREE_HD inline BallMasses ball_masses(double inverse_mass_i, double inverse_ine
   return {1.0 / normal, 1.0 / (normal + inverse_inertia_i * arm_square_i + inverse_inertia_j * arm_square_j)};
 }
 
-/// The same as make_row() for a contact of balls.
+/// Returns the row that make_row() would return, for a contact of balls.
 SCREE_HD inline ContactRow make_ball_row(const Vec3& arm_i, const Vec3& arm_j, double gap,
                                          const SolverBody& i, const SolverBody& j) {
   ContactRow row = row_at(arm_i, arm_j, gap);
@@ -134,8 +137,8 @@ SCREE_HD inline ContactRow make_ball_row(const Vec3& arm_i, const Vec3& arm_j, d
   return row;
 }
 
-/// Splits an impulse into Coulomb's cone: normal part at least 0, tangential part on the disc of radius mu *
-/// normal.
+/// Returns an impulse cut to Coulomb's cone: its normal part is at least 0, and its tangential part lies in
+/// the disc of radius mu * normal part.
 SCREE_HD inline Vec3 project_on_cone(const Vec3& impulse, const Vec3& normal, double friction) {
   const double pn = impulse.dot(normal);
   if (pn <= 0) return Vec3::Zero();
@@ -145,17 +148,18 @@ SCREE_HD inline Vec3 project_on_cone(const Vec3& impulse, const Vec3& normal, do
   return length <= radius ? impulse : Vec3(pn * normal + (radius / length) * pt);
 }
 
-/// The impulse with normal part pn >= 0 and the tangential part pt, cut to Coulomb's disc.
+/// Returns the impulse with the normal part pn >= 0 and the tangential part pt, which is cut to Coulomb's
+/// disc.
 SCREE_HD inline Vec3 on_disc(double pn, const Vec3& pt, const Vec3& normal, double friction) {
   const double radius = friction * pn;
   const double square = pt.squaredNorm();
   return pn * normal + (square <= radius * radius ? pt : Vec3((radius / sqrt(square)) * pt));
 }
 
-/// The impulse that the point should carry in place of row.impulse, given the relative velocity u that holds
-/// now. First the impulse that makes the point stick; if it leaves the cone, the normal impulse that reaches
-/// the target and one projected step of the tangential one. Its fixed points are the local solutions
-/// (Coulomb's disc, both tangents together).
+/// Returns the impulse that the point should carry in place of row.impulse, given its present relative
+/// velocity u. This is the impulse that makes the point stick. If that leaves the cone, it is the normal
+/// impulse that reaches the target, with one projected step of the tangential impulse. The fixed points are
+/// the local solutions (Coulomb's disc, both tangents together).
 SCREE_HD inline Vec3 coulomb_update(const ContactRow& row, const RowCoupling& coupling, const Vec3& normal,
                                     double friction, const Vec3& u) {
   const double pn_old = row.impulse.dot(normal);
@@ -171,9 +175,9 @@ SCREE_HD inline Vec3 coulomb_update(const ContactRow& row, const RowCoupling& co
   return on_disc(pn, row.impulse - pn_old * normal - row.tangent_mass * vt, normal, friction);
 }
 
-/// Where a projected step of the local masses' length takes row.impulse, given the relative velocity u that
-/// holds now. Impulses solve the contact problem where this natural map leaves all of them as they are. For a
-/// contact of balls it is the exact local solution.
+/// Returns the point to which a projected step, with the effective masses as its length, takes row.impulse,
+/// given the present relative velocity u. Impulses solve the contact problem if this natural map leaves all
+/// of them unchanged. For a contact of balls its value is the exact local solution.
 SCREE_HD inline Vec3 natural_map(const ContactRow& row, const Vec3& normal, double friction, const Vec3& u) {
   const double pn_old = row.impulse.dot(normal);
   const double un = u.dot(normal);
@@ -182,7 +186,7 @@ SCREE_HD inline Vec3 natural_map(const ContactRow& row, const Vec3& normal, doub
   return on_disc(pn, row.impulse - pn_old * normal - row.tangent_mass * (u - un * normal), normal, friction);
 }
 
-/// One Gauss-Seidel sweep over the rows of a contact, with its two bodies at hand.
+/// Does one Gauss-Seidel sweep over the rows of a contact, and updates its two bodies.
 SCREE_HD inline void sweep_rows(ContactRow* rows, const RowCoupling* couplings, int count, const Vec3& normal,
                                 double friction, SolverBody& i, SolverBody& j) {
   for (int k = 0; k < count; ++k) {

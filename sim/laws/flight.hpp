@@ -1,4 +1,5 @@
-// Flight inside a substep, as the search for impacts sees it, and the flight of a ball to the wall of a tube.
+// Flight inside a substep, and the times at which two balls meet and at which a ball meets the wall of a
+// tube.
 #pragma once
 
 #include "core/math.hpp"
@@ -8,29 +9,29 @@
 
 namespace scree {
 
-/// First s >= 0 at which gap + u s + a s^2 / 2 = 0, for gap > 0; 0 for gap <= 0; infinite if there is none.
-/// gap in m, u in m/s, a in m/s^2, s in s.
+/// Returns the first s >= 0 at which gap + u s + a s^2 / 2 = 0, for gap > 0; 0 for gap <= 0; infinite if
+/// there is none. gap in m, u in m/s, a in m/s^2, s in s.
 SCREE_HD inline double time_of_impact(double gap, double u, double a) {
   if (gap <= 0) return 0;
   const double discriminant = u * u - 2 * a * gap;
   if (discriminant < 0) return HUGE_VAL;
-  // Of the two forms of the root, the one without cancellation.
+  // The root has two forms; each case uses the one without cancellation.
   const double root = sqrt(discriminant);
   if (u > 0) return a < 0 ? (u + root) / -a : HUGE_VAL;
   return root > u ? 2 * gap / (root - u) : HUGE_VAL;
 }
 
-/// Where a body is at the time s into a substep.
+/// The path of a body; at() returns its position at the time s into a substep (s).
 struct Flight {
-  Vec3 position;      ///< at the midpoint
-  Vec3 acceleration;  ///< gravity, or 0 for bodies that are not free
+  Vec3 position;      ///< position at the midpoint, without the displacement by the acceleration (m)
+  Vec3 acceleration;  ///< acceleration by gravity and applied forces; 0 for bodies that are not free (m/s^2)
 
   SCREE_HD Vec3 at(const Vec3& velocity, double step, double s) const {
     return position + (s - 0.5 * step) * velocity + (0.5 * s * s) * acceleration;
   }
 };
 
-/// Two balls in flight: the second one relative to the first.
+/// The flight of the second of two balls relative to the first.
 struct FlightOfBalls {
   Flight flight;
   Vec3 velocity;
@@ -38,16 +39,16 @@ struct FlightOfBalls {
 };
 
 struct BallImpact {
-  double time = HUGE_VAL;  ///< into the substep (s)
-  Vec3 normal;             ///< unit, from the first centre to the second at that time
-  double speed;            ///< along it, negative (m/s)
+  double time = HUGE_VAL;  ///< time into the substep (s)
+  Vec3 normal;             ///< unit vector from the first centre to the second at that time
+  double speed;            ///< relative velocity along the normal, negative (m/s)
 };
 
-/// When two balls meet, at `earliest` or later; infinite if they do not, or part at first. The distance of
-/// balls in straight flight is convex in time, so Newton's method nears the first meeting from before, until
-/// nothing but rounding is left. Where both accelerate alike the squared distance is quadratic, and its root
-/// spares the way there. Time, normal and speed are of one instant: along the midpoint's normal an impulse
-/// would turn the balls.
+/// Finds when two balls meet, at `earliest` or later. The time is infinite if they do not meet, or if they
+/// separate at first. The distance of balls in straight flight is convex in time, so Newton's method
+/// approaches the first meeting from before, until only rounding is left. If both balls have the same
+/// acceleration, the squared distance is quadratic in time, and its root replaces the first step. Time,
+/// normal and speed belong to one instant: an impulse along the midpoint's normal would turn the balls.
 SCREE_HD inline BallImpact next_ball_impact(const FlightOfBalls& balls, double step, double earliest) {
   constexpr int most_iterations = 32;
   const bool is_straight = balls.flight.acceleration.isZero(0);
@@ -79,7 +80,7 @@ SCREE_HD inline BallImpact next_ball_impact(const FlightOfBalls& balls, double s
   return impact;
 }
 
-/// A ball's flight in a tube, projected along the axis: its centre relative to the axis.
+/// The flight of a ball in a tube, projected along the axis: its centre relative to the axis.
 struct FlightInTube {
   Flight flight;
   Vec3 velocity;
@@ -87,15 +88,16 @@ struct FlightInTube {
 };
 
 struct WallImpact {
-  double time = HUGE_VAL;  ///< into the substep (s)
-  Vec3 outward;            ///< unit, from the axis to where the ball touches
-  double speed = 0;        ///< at which it does (m/s)
+  double time = HUGE_VAL;  ///< time into the substep (s)
+  Vec3 outward;            ///< unit vector from the axis to where the ball touches
+  double speed = 0;        ///< speed at which the ball meets the wall (m/s)
 };
 
-/// When the centre leaves the circle of radius `reach`, at `earliest` or later; infinite if it does not. The
-/// normal there is not that at the midpoint, so the gap along that one would say nothing: a ball that slides
-/// by at the midpoint strikes farther on. From where the centre is at `earliest`, the squared distance is
-/// quadratic in time but for gravity's higher orders; these are left to Newton's method.
+/// Finds when the centre leaves the circle of radius `reach`, at `earliest` or later; the time is infinite if
+/// it does not. The normal there is not the one at the midpoint, and the gap along the latter is of no use: a
+/// ball that slides past the wall at the midpoint strikes it farther on. Seen from the centre's place at
+/// `earliest`, the squared distance is quadratic in time except for higher orders of gravity; these are left
+/// to Newton's method.
 SCREE_HD inline WallImpact next_wall_impact(const FlightInTube& ball, double step, double earliest) {
   WallImpact impact;
   if (ball.reach <= 0) return impact;

@@ -1,4 +1,4 @@
-// The energy that impulses move.
+// The energy accounting of impulses.
 #pragma once
 
 #include "core/math.hpp"
@@ -7,10 +7,10 @@
 
 namespace scree {
 
-/// Energy that a row's impulse p on j (and -p on i) moves, from the relative velocity before: dE = p.(u- +
-/// u+)/2 exactly, when u is taken at one configuration (Moreau's midpoint). Its normal part is restitution's,
-/// its tangential part friction's; what a body that is not free gives is work. `i` and `j` are as after the
-/// impulse.
+/// Returns the energy that a row's impulse p on j (and -p on i) moves, given the relative velocity `before`
+/// the impulse: dE = p.(u- + u+)/2 exactly, if u is taken at one configuration (Moreau's midpoint). The
+/// normal part of dE counts as restitution, the tangential part as friction, and what a body that is not free
+/// contributes as work. `i` and `j` are the bodies after the impulse.
 SCREE_HD inline Ledger account(const ContactRow& row, const Vec3& normal, const Vec3& before,
                                const SolverBody& i, const SolverBody& j) {
   const Vec3 mean = 0.5 * (before + row.relative_velocity(i, j));
@@ -24,15 +24,16 @@ SCREE_HD inline Ledger account(const ContactRow& row, const Vec3& normal, const 
   return ledger;
 }
 
-/// What impulses p move, as a parabola in their common scale s: linear s + square s^2 (J), where linear is
-/// p.u before (half of it from before a kick, half from after) and square is p.W p / 2.
+/// The energy that impulses p move, as a parabola in their common scale s: linear s + square s^2 (J).
+/// `linear` is p.u before the impulses (half of it with u before a kick, half with u after it), and `square`
+/// is p.W p / 2.
 struct Moved {
   double linear = 0;
   double square = 0;
 
-  /// `rounding`: of the square part.
+  /// Returns whether the impulses gain energy. `rounding`: share of the square part that counts as no gain.
   SCREE_HD bool gains(double rounding) const { return linear + square > rounding * square; }
-  /// The scale at which nothing is gained; momentum and the cone allow any from 0 to 1.
+  /// Returns the scale at which no energy is gained; momentum and the friction cone allow any from 0 to 1.
   SCREE_HD double scale_without_gain() const { return linear < 0 ? -linear / square : 0.0; }
   SCREE_HD friend Moved operator+(const Moved& a, const Moved& b) {
     return {a.linear + b.linear, a.square + b.square};

@@ -9,15 +9,15 @@
 
 namespace scree {
 
-/// How much a couple must be, at least, to change the spin with which two bodies roll (kg m^2); 0 where
-/// neither turns.
+/// Returns the smallest ratio of a couple to the change of the relative spin with which two bodies roll (kg
+/// m^2); 0 where neither body turns.
 SCREE_HD inline double rolling_mass(const SolverBody& i, const SolverBody& j, const Vec3& normal) {
   const double largest = largest_across(i.inverse_inertia + j.inverse_inertia, normal);
   return largest > 0 ? 1.0 / largest : 0.0;
 }
 
-/// Where a projected step of the length `mass` takes a couple on j (N m s), given the spin of j relative to i
-/// that holds now: across the normal, on the disc of radius `most`.
+/// Returns the value to which a projected step of the length `mass` takes a couple on j (N m s), given the
+/// present spin of j relative to i. It lies across the normal, in the disc of radius `most`.
 SCREE_HD inline Vec3 rolling_couple(const Vec3& couple, const Vec3& normal, double most, double mass,
                                     const Vec3& spin) {
   const Vec3 step = couple - mass * spin;
@@ -26,13 +26,14 @@ SCREE_HD inline Vec3 rolling_couple(const Vec3& couple, const Vec3& normal, doub
   return square <= most * most ? across : Vec3((most / sqrt(square)) * across);
 }
 
-/// Turns j by a couple, and i by the reverse.
+/// Applies a couple to the spin of j, and the opposite couple to that of i.
 SCREE_HD inline void turn(const Vec3& couple, SolverBody& i, SolverBody& j) {
   i.spin -= i.inverse_inertia * couple;
   j.spin += j.inverse_inertia * couple;
 }
 
-/// As account() of a couple, from the spin of j relative to i before.
+/// Returns the energy that a couple moves, as account() does for an impulse. `before`: the spin of j relative
+/// to i before the couple (rad/s).
 SCREE_HD inline Ledger account_couple(const Vec3& couple, const Vec3& before, const SolverBody& i,
                                       const SolverBody& j) {
   Ledger ledger;

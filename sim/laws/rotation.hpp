@@ -8,7 +8,7 @@
 
 namespace scree {
 
-/// Kinetic energy of rotation (J); 0 for a body without inertia (not free).
+/// Returns the kinetic energy of rotation (J); 0 for a body without inertia (not free).
 SCREE_HD inline double rotational_energy(const Quat& orientation, const Vec3& spin,
                                          const Vec3& inverse_inertia) {
   if (inverse_inertia.x() == 0) return 0;
@@ -16,14 +16,15 @@ SCREE_HD inline double rotational_energy(const Quat& orientation, const Vec3& sp
   return 0.5 * w.cwiseProduct(w).cwiseQuotient(inverse_inertia).sum();
 }
 
-/// Angular momentum about the centre of mass, world frame (kg m^2/s); 0 for a body that is not free.
+/// Returns the angular momentum about the centre of mass, world frame (kg m^2/s); 0 for a body that is not
+/// free.
 SCREE_HD inline Vec3 spin_momentum(const Quat& orientation, const Vec3& spin, const Vec3& inverse_inertia) {
   if (inverse_inertia.x() == 0) return Vec3::Zero();
   return orientation * (orientation.conjugate() * spin).cwiseQuotient(inverse_inertia);
 }
 
-/// Bound on the spin of a body in free rotation, at any time (rad/s), by its angular momentum in its own
-/// frame and by the energy that goes with it.
+/// Returns a bound on the spin of a body in free rotation at any time (rad/s), from its angular momentum in
+/// its own frame and the energy that belongs to it.
 SCREE_HD inline double fastest_spin(const Vec3& momentum, const Vec3& inverse_inertia) {
   const double largest = inverse_inertia.maxCoeff();
   const double twice_energy = momentum.cwiseProduct(momentum).dot(inverse_inertia);
@@ -34,7 +35,7 @@ SCREE_HD inline double fastest_spin(const Quat& orientation, const Vec3& spin, c
   return fastest_spin((orientation.conjugate() * spin).cwiseQuotient(inverse_inertia), inverse_inertia);
 }
 
-/// Arithmetic of one body.
+/// The arithmetic of one body, for the laws in simd/free_turn.hpp.
 struct Number {
   using V = double;
   SCREE_HD static double root(double a) { return sqrt(a); }
@@ -46,10 +47,10 @@ struct Number {
   }
 };
 
-/// The axes of a body by ascending moment.
+/// The axes of a body in the order of ascending moments.
 struct AxisOrder {
   int axis[3];
-  double side;  ///< -1 where the last one must be turned round, so that they are right-handed
+  double side;  ///< -1 where the last axis must be reversed to make them right-handed; else 1
 
   SCREE_HD explicit AxisOrder(const Vec3& inverse_inertia) {
     int smallest = 0;
@@ -64,9 +65,10 @@ struct AxisOrder {
     side = axis[1] == (smallest + 1) % 3 ? 1.0 : -1.0;
   }
 
-  /// The moments, or what else has no direction.
+  /// Returns the moments, or other values without direction, in this order.
   SCREE_HD Vec3 ordered(const Vec3& a) const { return {a[axis[0]], a[axis[1]], a[axis[2]]}; }
-  /// A vector, or that of a quaternion: all of a body's and the world's may be so renamed together.
+  /// Returns a vector, or the vector part of a quaternion, in these axes. All vectors of a body and of the
+  /// world may be renamed together in this way.
   SCREE_HD Vec3 renamed(const Vec3& a) const { return {a[axis[0]], a[axis[1]], side * a[axis[2]]}; }
   SCREE_HD Vec3 named_back(const Vec3& a) const {
     Vec3 back;
@@ -81,8 +83,7 @@ enum class RotationOrder { second, fourth };
 
 namespace detail {
 
-/// rotate_freely() of a body with different moments: called and not copied to where it is used, since it is
-/// long.
+/// Does rotate_freely() for a body with different moments. It is called and not inlined, since it is long.
 [[gnu::noinline]] SCREE_HD inline double rotate_unequal(Quat& orientation, Vec3& spin,
                                                         const Vec3& inverse_inertia, double dt,
                                                         RotationOrder order) {
@@ -112,14 +113,15 @@ namespace detail {
 
 }  // namespace detail
 
-/// Turns a free body for the time dt (s). Equal moments: exact. Otherwise the symmetric three-axis splitting
-/// of the body-frame equations (Touma and Wisdom 1994; Dullweber, Leimkuhler, McLachlan 1997, sec. 3): second
-/// order, world angular momentum kept to rounding; then a small turn restores the energy, also to rounding.
-/// What turns far goes in several such steps.
-/// Fourth order: Suzuki's composition of five such steps, of p, p, 1 - 4 p, p, p times the length, p = 1 / (4
-/// - 4^(1/3)) (Suzuki 1990, "Fractal decomposition of exponential operators"). What hardly turns does so
-/// about its mean spin (Magnus' second term is of third order, and rounding here), at a quarter of the cost.
-/// Returns the drift of the rotational energy (J); where it is but rounding by construction, 0.
+/// Turns a free body for the time dt (s). For equal moments this is exact. Otherwise it is the symmetric
+/// three-axis splitting of the body-frame equations (Touma and Wisdom 1994; Dullweber, Leimkuhler, McLachlan
+/// 1997, sec. 3): it is of second order and keeps the world angular momentum to rounding; then a small turn
+/// restores the energy, also to rounding. A body that turns far takes several such steps. Fourth order is
+/// Suzuki's composition of five such steps, of p, p, 1 - 4 p, p, p times the length, with p = 1 / (4 -
+/// 4^(1/3)) (Suzuki 1990, "Fractal decomposition of exponential operators"). A body that hardly turns is
+/// turned about its mean spin, at a quarter of the cost (the second term of Magnus' expansion is of third
+/// order, which is rounding here). Returns the drift of the rotational energy (J); 0 where the drift is only
+/// rounding by construction.
 SCREE_HD inline double rotate_freely(Quat& orientation, Vec3& spin, const Vec3& inverse_inertia, double dt,
                                      RotationOrder order = RotationOrder::second) {
   if (has_equal_moments(inverse_inertia)) {
@@ -129,7 +131,7 @@ SCREE_HD inline double rotate_freely(Quat& orientation, Vec3& spin, const Vec3& 
   return detail::rotate_unequal(orientation, spin, inverse_inertia, dt, order);
 }
 
-/// Inverse inertia tensor in the world frame.
+/// Returns the inverse inertia tensor in the world frame.
 SCREE_HD inline Mat3 world_inverse_inertia(const Quat& orientation, const Vec3& inverse_inertia) {
   if (has_equal_moments(inverse_inertia)) return inverse_inertia.x() * Mat3::Identity();
   return rotated_diagonal(orientation.toRotationMatrix(), inverse_inertia);

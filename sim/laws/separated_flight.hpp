@@ -1,4 +1,4 @@
-// Bodies in flight that a plane keeps apart, whichever way the normal of their contact points.
+// Bodies in flight that a plane separates, whatever the normal of their contact points.
 #pragma once
 
 #include "core/tolerances.hpp"
@@ -9,13 +9,14 @@
 
 namespace scree {
 
-/// The plane along a face of one of two bodies that separates them at `begin` (s), to within what counts as
-/// closed, and that their flights approach slowly, if at all, until `end`. Such two do not collide, whatever
-/// normal their nearest features have: what comes over the seam of two boxes that lie level does not run into
-/// the side of the second one. Accelerations are left out, since nothing holds in flight what rests; slow is
-/// what they add in twice a substep, as for bounces. Boundaries are not convex, and no plane separates them
-/// from what they hold; and of what turns far nothing is known in between. `seen_i`, `seen_j`: where the
-/// bodies are at an instant from `begin` to `end`.
+/// Finds the plane along a face of one of two bodies that separates them at `begin` (s), to within the gap
+/// that counts as closed, and that their flights approach slowly, or not at all, until `end`. Two such bodies
+/// do not collide, whatever normal their nearest features have: a body that passes over the seam of two level
+/// boxes does not run into the side of the second one. Accelerations are left out, since nothing holds a
+/// resting body in flight; slow is the speed that they add in two substeps, as for bounces. Boundaries have
+/// no such plane, since they are not convex and no plane separates them from the bodies inside. Neither has a
+/// body that turns far, since nothing is known of its flight in between. `seen_i`, `seen_j`: the bodies at an
+/// instant from `begin` to `end`.
 [[gnu::noinline]] SCREE_HD inline SeparatingFace separating_face(PairFlight pair, double begin, double end,
                                                                  const Solid& seen_i, const Solid& seen_j) {
   if (!have_edges(pair.i.shape, pair.j.shape)) return {};
@@ -37,8 +38,8 @@ namespace scree {
                               (end - begin) * slow);
 }
 
-/// Whether a plane separates them all the while that they are in flight, and so their meeting at the time
-/// given (s) is none.
+/// Returns whether a plane separates the bodies during their whole flight, so that their meeting at the given
+/// time (s) does not count.
 SCREE_HD inline bool pass_by(const PairFlight& pair, double begin, double meeting) {
   return separating_face(pair, begin, pair.until, instant_of(pair.i, meeting).solid,
                          instant_of(pair.j, meeting).solid)

@@ -1,24 +1,23 @@
 // Free rotation of a body with unequal moments of inertia: the law behind rotate_freely(), for one body or
-// for several side by side, as those of laws.hpp.
+// for several side by side, like the laws of wide_laws.hpp.
 //
-// Of the arithmetic A it also asks A::any(condition), whether it holds anywhere, and A::half_turn(square), a
-// HalfTurn.
+// The arithmetic A must also have A::half_turn(square), which returns a HalfTurn.
 #pragma once
 
 #include "sim/laws/simd/wide_laws.hpp"
 
 namespace scree::simd {
 
-/// Of half an angle x, by its square: sin(x) / x and cos(x).
+/// The values of sin(x) / x and cos(x) for half an angle x, as functions of its square.
 template <class A>
 struct HalfTurn {
   typename A::V sine_ratio, cosine;
 };
 
-/// The most that half_turn_series() is good for: half of split_turn.
+/// The largest half angle for which half_turn_series() is exact to rounding: half of split_turn.
 inline constexpr double most_half_turn = 0.5 * tolerance::split_turn;
 
-/// To rounding.
+/// Returns the HalfTurn for s = x^2 by Taylor series, to rounding.
 template <class A>
 SCREE_LAW HalfTurn<A> half_turn_series(const typename A::V& s) {
   constexpr double f3 = 6, f5 = 120, f7 = 5040, f9 = 362880, f11 = 39916800;
@@ -27,7 +26,7 @@ SCREE_LAW HalfTurn<A> half_turn_series(const typename A::V& s) {
           1.0 - s * (1 / f2 - s * (1 / f4 - s * (1 / f6 - s * (1 / f8 - s * (1 / f10 - s * (1 / f12))))))};
 }
 
-/// Unit.
+/// A unit quaternion.
 template <class A>
 struct Quaternion {
   typename A::V w;
@@ -42,7 +41,7 @@ struct Quaternion {
   }
 };
 
-/// Axes of a body in the world.
+/// The axes of a body in the world frame.
 template <class A>
 struct Axes {
   V3<A> x, y, z;
@@ -67,17 +66,17 @@ SCREE_LAW V3<A> times(const V3<A>& a, const V3<A>& b) {
   return {a.x * b.x, a.y * b.y, a.z * b.z};
 }
 
-/// A body that turns freely. Its axes are named by ascending moment: about a middle axis (accuracy of a
-/// tumbling box after 12 s) other orders of the splitting are up to 20 times worse.
+/// A body that turns freely. Its axes are in the order of ascending moments: for rotation about a middle
+/// axis, other orders of the splitting are up to 20 times less accurate (a tumbling box after 12 s).
 template <class A>
 struct Top {
   Quaternion<A> orientation;
   V3<A> spin;  ///< world frame (rad/s)
   V3<A> inertia, inverse_inertia;
 
-  /// With the angular momentum l (world frame): taken from the momentum, and once more for the difference,
-  /// because the rounding of a rotation there and back is biased and would add up over the steps (1e-11 in
-  /// 27,000, against 1e-13).
+  /// Sets the spin from the angular momentum l (world frame). The spin is computed from l and then corrected
+  /// once by what is left of l, because the rounding of a rotation there and back is biased and would add up
+  /// over the steps (1e-11 in 27,000, against 1e-13).
   SCREE_LAW void spin_by(const V3<A>& l) {
     const Axes<A> axes = axes_of(orientation);
     spin = axes.to_world(times(axes.to_body(l), inverse_inertia));
@@ -93,12 +92,12 @@ SCREE_LAW void choose(const Condition& yes, const Top<A>& other, Top<A>& top) {
   top.spin = where(yes, other.spin, top.spin);
 }
 
-/// What a body has before it turns.
+/// The state of a body before it turns.
 template <class A>
 struct TopStart {
-  V3<A> body_spin, momentum;  ///< body frame
+  V3<A> body_spin, momentum;  ///< spin and angular momentum in the body frame
   V3<A> world_momentum;
-  typename A::V fastest;  ///< fastest_spin()
+  typename A::V fastest;  ///< bound on the spin at any time, fastest_spin() (rad/s)
 };
 template <class A>
 SCREE_LAW TopStart<A> start_of(const Top<A>& top) {
@@ -113,7 +112,8 @@ SCREE_LAW TopStart<A> start_of(const Top<A>& top) {
           A::root(by_momentum < by_energy ? by_momentum : by_energy)};
 }
 
-/// Of what hardly turns: about its mean spin. Magnus' second term is of third order, and rounding here.
+/// Turns a body that turns by a very small angle, about its mean spin. The second term of Magnus' expansion
+/// is of third order, which is rounding here.
 template <class A>
 SCREE_LAW void turn_little(Top<A>& top, const TopStart<A>& start, double dt) {
   using V = typename A::V;
@@ -124,9 +124,9 @@ SCREE_LAW void turn_little(Top<A>& top, const TopStart<A>& start, double dt) {
   top.spin_by(start.world_momentum);
 }
 
-/// Exact flow of the kinetic energy of one principal axis, L^2 / (2 I), by the angular momentum L along it: a
-/// turn about that axis, against which the other two parts of the momentum turn back. In the order of the
-/// axes, `axis` is followed by `a`, then `b`.
+/// Applies the exact flow of the kinetic energy of one principal axis, L^2 / (2 I), with the angular momentum
+/// L along it: a turn about that axis, against which the other two components of the momentum turn back. In
+/// the order of the axes, `axis` is followed by `a`, then `b`.
 template <class A>
 SCREE_LAW void turn_about(const typename A::V& half_angle, typename A::V& w, typename A::V& axis,
                           typename A::V& a, typename A::V& b, typename A::V& momentum_a,
@@ -148,7 +148,7 @@ SCREE_LAW void turn_about(const typename A::V& half_angle, typename A::V& w, typ
   momentum_a = turned;
 }
 
-/// The symmetric three-axis splitting of the body-frame equations.
+/// Does one step of the symmetric three-axis splitting of the body-frame equations.
 template <class A>
 SCREE_LAW void split(Top<A>& top, V3<A>& momentum, double length) {
   using V = typename A::V;
@@ -164,9 +164,9 @@ SCREE_LAW void split(Top<A>& top, V3<A>& momentum, double length) {
   turn_about<A>(quarter * l.x * inverse.x, w, v.x, v.y, v.z, l.y, l.z);
 }
 
-/// Turns a body at constant angular momentum until its energy is the one given: about w x L, the direction in
-/// which the energy changes most. A splitting's energy oscillates, and impacts that sample the oscillation
-/// would make it a random walk.
+/// Turns a body at constant angular momentum until its energy is the given one. It turns about w x L, the
+/// direction in which the energy changes most. The energy of a splitting oscillates, and impacts that sample
+/// the oscillation would make it a random walk.
 template <class A>
 SCREE_LAW void restore_energy(Top<A>& top, const V3<A>& l, const typename A::V& energy) {
   using V = typename A::V;
@@ -192,7 +192,8 @@ SCREE_LAW void restore_energy(Top<A>& top, const V3<A>& l, const typename A::V& 
   }
 }
 
-/// By the splitting, in so many steps. Returns the drift of the rotational energy (J).
+/// Turns a body by the splitting, in the given number of steps. Returns the drift of the rotational energy
+/// (J).
 template <class A>
 SCREE_LAW typename A::V turn_by_splitting(Top<A>& top, const TopStart<A>& start, double dt, int steps,
                                           bool fourth_order) {

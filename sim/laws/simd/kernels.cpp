@@ -1,5 +1,6 @@
-// Compiled once for each instruction set; SCREE_SIMD names it. It calls nothing that other sources share, so
-// that no function of theirs is compiled for more than the program may use.
+// The kernels of bodies, compiled once for each instruction set, which SCREE_SIMD names. This file calls
+// nothing that other sources share, so that no function of theirs is compiled with instructions that the
+// program may not use.
 #include "sim/laws/simd/kernels/turning.hpp"
 #include "sim/laws/simd/simd.hpp"
 

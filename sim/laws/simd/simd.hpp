@@ -1,5 +1,5 @@
-// Bodies in lanes: eight side by side, so that one instruction works on all of them, and the kernels that do;
-// those of contacts are in sim/contacts/visit_kernels.hpp.
+// Bodies in SIMD lanes: eight side by side, so that one instruction works on all of them, and the kernels
+// that work on them. The kernels of contacts are in sim/contacts/visit_kernels.hpp.
 #pragma once
 
 #include "sim/laws/simd/wide_laws.hpp"
@@ -9,7 +9,7 @@
 
 namespace scree::simd {
 
-/// A number of each of eight bodies.
+/// One number of each of eight bodies.
 struct alignas(64) Lane {
   double at[width];
 };
@@ -17,30 +17,31 @@ struct LaneVec {
   Lane x, y, z;
 };
 
-/// Eight bodies that turn freely, as Top has them.
+/// Eight bodies that turn freely, with the members of Top.
 struct Tops {
   Lane w;
   LaneVec v, spin, inverse_inertia;
-  Lane drift;        ///< of the rotational energy (J)
-  std::int32_t far;  ///< a bit for each that would turn further than one step of the splitting may
+  Lane drift;        ///< drift of the rotational energy (J)
+  std::int32_t far;  ///< one bit for each body that would turn further than one splitting step may
 };
 
 struct Kernels {
-  /// Turns for a time (s) those that do not turn far.
+  /// Turns all bodies for a time (s), except those that turn far (Tops::far).
   void (*turn)(Tops&, double dt, bool fourth_order);
 };
 
-/// Those that this processor can run, the widest last. All give the same bits.
+/// The kernels of one instruction set, with its name.
 struct NamedKernels {
   const char* name;
   const Kernels* kernels;
 };
+/// Returns the kernels that this processor can run, the widest last. All of them give the same bits.
 std::vector<NamedKernels> supported_kernels();
 
-/// The widest of them.
+/// Returns the widest of the supported kernels.
 const Kernels& kernels();
 
-// One for each way in which kernels.cpp is compiled; not all exist on every processor.
+// Each way in which kernels.cpp is compiled defines one of these; not all exist on every processor.
 namespace baseline {
 extern const Kernels kernels;
 }

@@ -1,4 +1,4 @@
-// Which kernels a processor can run that scree knows nothing of.
+// The kernels for a processor of an architecture that scree does not know: only the baseline.
 #include "sim/laws/simd/simd.hpp"
 
 namespace scree::simd {

@@ -1,4 +1,4 @@
-// Which kernels an x86-64 processor can run.
+// The kernels that an x86-64 processor can run.
 #include "sim/laws/simd/simd.hpp"
 
 namespace scree::simd {

@@ -1,9 +1,9 @@
-// What one visit to a contact does, for one contact or for several side by side. No function here knows how
-// contacts and bodies lie in memory.
+// The laws of one visit to a contact, for one contact or for several side by side. No function here depends
+// on how contacts and bodies lie in memory.
 //
-// A: an arithmetic. A::V is a number, or one of each contact; A::root(V) its square roots, and
-// A::any(condition) whether one holds anywhere. Everything here is a template on it, so that code for
-// different instruction sets shares no function.
+// The template parameter A is an arithmetic. A::V is a number, or one number of each contact; A::root(V)
+// returns its square roots, and A::any(condition) whether a condition holds anywhere. Everything here is a
+// template on A, so that code for different instruction sets shares no function.
 #pragma once
 
 #include "core/space.hpp"
@@ -15,7 +15,7 @@
 
 namespace scree::simd {
 
-/// Contacts that one instruction of Host works on, in double precision.
+/// The number of contacts on which one instruction of Host works, in double precision.
 inline constexpr int width = 8;
 
 template <class A>
@@ -57,28 +57,28 @@ struct Symmetric {
   }
 };
 
-/// A body's centre: its velocity, or in the position correction its displacement.
+/// The centre of a body: its velocity, or its displacement in the position correction.
 template <class A>
 struct Centre {
   V3<A> velocity;
-  typename A::V inverse_mass;  ///< 0: not free
+  typename A::V inverse_mass;  ///< 0 for a body that is not free
 };
 
-/// A body: its velocities, or displacement and turn.
+/// A body: its velocities, or its displacement and turn in the position correction.
 template <class A>
 struct Moving {
   V3<A> velocity;
   typename A::V inverse_mass;
   V3<A> spin;
-  typename A::V inverse_inertia;  ///< of a ball
+  typename A::V inverse_inertia;  ///< inverse moment of inertia, of a ball
 };
 
-/// A contact of balls with balls, or with bodies that are not free and do not turn: of the lever arms only
-/// what is along the normal matters.
+/// A contact of balls with balls, or with bodies that are not free and do not turn. Only the part of the
+/// lever arms along the normal matters.
 template <class A>
 struct Balls {
   V3<A> normal;
-  typename A::V arm_i, arm_j;  ///< along the normal (m)
+  typename A::V arm_i, arm_j;  ///< lever arms along the normal (m)
   typename A::V friction, target, normal_mass, tangent_mass;
 };
 
@@ -89,12 +89,12 @@ struct Point {
 };
 template <class A>
 struct PointLaw {
-  Symmetric<A> stick;  ///< of RowCoupling
+  Symmetric<A> stick;  ///< RowCoupling::stick
   V3<A> coupling;      ///< RowCoupling::normal
   typename A::V target, normal_mass, tangent_mass;
 };
 
-/// Two directions in the plane across a normal: of tangent_of(), and at right angles to it.
+/// Two directions in the plane across a normal: t is that of tangent_of(), and b is at right angles to it.
 template <class A>
 struct Tangents {
   V3<A> t, b;
@@ -110,7 +110,7 @@ SCREE_LAW Tangents<A> tangents_of(const V3<A>& n) {
   return {t, cross(n, t)};
 }
 
-/// The largest eigenvalue of a matrix in the plane across a normal.
+/// Returns the largest eigenvalue of a matrix in the plane across a normal.
 template <class A>
 SCREE_LAW typename A::V largest_across(const Symmetric<A>& w, const V3<A>& n) {
   using V = typename A::V;
@@ -121,23 +121,23 @@ SCREE_LAW typename A::V largest_across(const Symmetric<A>& w, const V3<A>& n) {
   return 0.5 * (tt + bb) + A::root(half_difference * half_difference + tb * tb);
 }
 
-/// What a contact of balls is besides its law.
+/// A contact of balls at the midpoint: its law, its gap and its curvature.
 template <class A>
 struct BallContact {
   Balls<A> law;
-  typename A::V gap, curvature;  ///< the acceleration of the gap by the turning of the normal (m/s^2)
+  typename A::V gap, curvature;  ///< gap (m); acceleration of the gap by the turning of the normal (m/s^2)
 };
 
 /// A ball at the midpoint.
 template <class A>
 struct Round {
   typename A::V radius;
-  V3<A> velocity;  ///< before the substep's kick
+  V3<A> velocity;  ///< velocity before the substep's kick
   typename A::V inverse_mass, inverse_inertia;
 };
 
-/// A contact of two balls. `offset`: from the centre of i to that of j; `kick`: what the substep's forces add
-/// to the velocity of j relative to i.
+/// Returns the contact of two balls. `offset`: the vector from the centre of i to that of j; `kick`: the
+/// change that the substep's forces make to the velocity of j relative to i.
 template <class A>
 SCREE_LAW BallContact<A> contact_of(const V3<A>& offset, const typename A::V& friction, const Round<A>& i,
                                     const Round<A>& j, const V3<A>& kick, double step, double noise) {
@@ -145,7 +145,7 @@ SCREE_LAW BallContact<A> contact_of(const V3<A>& offset, const typename A::V& fr
   const V zero{};
   const V reach = i.radius + j.radius;
   const V distance = A::root(dot(offset, offset));
-  // Coincident centres have no direction of their own; any one does, if it is always the same.
+  // Coincident centres have no direction of their own; any one serves, if it is always the same.
   const V3<A> normal =
       where(distance > tolerance::coincident * reach, offset / distance, V3<A>{zero, zero, zero + 1.0});
   const V gap = distance - reach;
@@ -163,7 +163,8 @@ SCREE_LAW BallContact<A> contact_of(const V3<A>& offset, const typename A::V& fr
   return {{normal, arm_i, arm_j, friction, target, 1.0 / masses, 1.0 / (masses + turning)}, gap, curvature};
 }
 
-/// A vector cut to the disc of a radius, which may be 0: then it is 0, even where its square underflows.
+/// Returns a vector cut to the disc of a radius. If the radius is 0 the result is 0, even where the square of
+/// the vector underflows.
 template <class A>
 SCREE_LAW V3<A> cut_to_disc(const V3<A>& v, const typename A::V& radius) {
   using V = typename A::V;
@@ -172,14 +173,15 @@ SCREE_LAW V3<A> cut_to_disc(const V3<A>& v, const typename A::V& radius) {
   return where((radius > 0) & (square <= radius * radius), v, scale * v);
 }
 
-/// Impulse in Coulomb's cone: its normal part, and the tangential part cut to the disc.
+/// Returns an impulse in Coulomb's cone, from its normal part and its tangential part, which is cut to the
+/// disc.
 template <class A>
 SCREE_LAW V3<A> on_disc(const typename A::V& pn, const V3<A>& pt, const V3<A>& n,
                         const typename A::V& friction) {
   return pn * n + cut_to_disc(pt, friction * pn);
 }
 
-/// Body is Centre or Moving.
+/// Applies an impulse to the velocity of j, and its opposite to that of i. Body is Centre or Moving.
 template <class A, class Body>
 SCREE_LAW void push_centres(const V3<A>& p, Body& i, Body& j) {
   i.velocity = i.velocity - i.inverse_mass * p;
@@ -189,7 +191,8 @@ SCREE_LAW void push_centres(const V3<A>& p, Body& i, Body& j) {
 template <class A>
 SCREE_LAW void push(const Balls<A>& c, const V3<A>& p, Moving<A>& i, Moving<A>& j) {
   push_centres(p, i, j);
-  const V3<A> turn = where(c.friction > 0, cross(c.normal, p), V3<A>{});  // no rounding turns smooth balls
+  // Rounding must not turn smooth balls.
+  const V3<A> turn = where(c.friction > 0, cross(c.normal, p), V3<A>{});
   i.spin = i.spin - (i.inverse_inertia * c.arm_i) * turn;
   j.spin = j.spin + (j.inverse_inertia * c.arm_j) * turn;
 }
@@ -207,7 +210,7 @@ SCREE_LAW V3<A> velocity_at(const Balls<A>& c, const Moving<A>& i, const Moving<
   return j.velocity - i.velocity + cross(c.arm_j * j.spin - c.arm_i * i.spin, c.normal);
 }
 
-/// project_on_cone()
+/// Returns an impulse cut to Coulomb's cone, as project_on_cone() does.
 template <class A>
 SCREE_LAW V3<A> in_cone(const V3<A>& p, const V3<A>& n, const typename A::V& friction) {
   using V = typename A::V;
@@ -215,7 +218,7 @@ SCREE_LAW V3<A> in_cone(const V3<A>& p, const V3<A>& n, const typename A::V& fri
   return where(pn > 0, on_disc(pn, p - pn * n, n, friction), V3<A>{});
 }
 
-/// natural_map() of a contact that carries `last`; for balls it is the exact local solution.
+/// Returns natural_map() of a contact that carries `last`; for balls this is the exact local solution.
 template <class A>
 SCREE_LAW V3<A> impulse_of(const Balls<A>& c, const V3<A>& last, const Moving<A>& i, const Moving<A>& j) {
   using V = typename A::V;
@@ -233,8 +236,8 @@ SCREE_LAW V3<A> velocity_at(const Point<A>& at, const Moving<A>& i, const Moving
   return j.velocity + cross(j.spin, at.arm_j) - i.velocity - cross(i.spin, at.arm_i);
 }
 
-/// The parts of coulomb_update() of a point that carries p, given its relative velocity u: what would make it
-/// stick, and where that holds;
+/// The first part of coulomb_update() of a point that carries p, given its relative velocity u: the impulse
+/// that would make the point stick, and whether it does so within the cone.
 template <class A, class Condition>
 struct Sticking {
   V3<A> impulse;
@@ -251,13 +254,13 @@ SCREE_LAW auto sticking(const PointLaw<A>& law, const V3<A>& n, const typename A
   const auto holds = (friction > 0) & (pn >= 0) & (dot(pt, pt) <= radius * radius);
   return Sticking<A, std::remove_const_t<decltype(holds)>>{impulse, holds};
 }
-/// else the normal impulse,
+/// Returns the normal impulse of coulomb_update() for a point that does not stick.
 template <class A>
 SCREE_LAW typename A::V normal_impulse_of(const PointLaw<A>& law, const V3<A>& n, const V3<A>& p,
                                           const V3<A>& u) {
   return above_zero<A>(dot(p, n) - (dot(u, n) - law.target) * law.normal_mass);
 }
-/// and all of it.
+/// Returns the whole impulse of coulomb_update() for a point that slides with the normal impulse pn.
 template <class A>
 SCREE_LAW V3<A> sliding_impulse(const PointLaw<A>& law, const V3<A>& n, const typename A::V& friction,
                                 const V3<A>& p, const V3<A>& u, const typename A::V& pn) {
@@ -272,26 +275,26 @@ SCREE_LAW V3<A> impulse_of(const PointLaw<A>& law, const V3<A>& n, const typenam
   const auto stuck = sticking(law, n, friction, p, u);
   const auto pn = normal_impulse_of(law, n, p, u);
   const V3<A> impulse = where(stuck.holds, stuck.impulse, pn * n);
-  // Where nothing slides, which costs as much as all before.
+  // No point slides: the sliding part, which costs as much as everything before, is left out.
   if (!A::any((!stuck.holds) & (pn > 0))) return impulse;
   return where(stuck.holds, impulse, sliding_impulse(law, n, friction, p, u, pn));
 }
 
-/// How much a couple must be to change the spin with which two bodies roll, by their inverse inertia (kg
-/// m^2): of balls,
+/// Returns the ratio of a couple to the change of the spin with which two balls roll (kg m^2), from the sum
+/// of their inverse inertias; 0 where nothing turns.
 template <class A>
 SCREE_LAW typename A::V rolling_mass(const typename A::V& inverse_inertia) {
   return inverse_inertia > 0 ? 1.0 / inverse_inertia : typename A::V{};
 }
-/// and of any, at least. Where it is 0, nothing turns.
+/// Returns the smallest such ratio for any two bodies; 0 where nothing turns.
 template <class A>
 SCREE_LAW typename A::V rolling_mass(const Symmetric<A>& inverse_inertia, const V3<A>& n) {
   return rolling_mass<A>(largest_across(inverse_inertia, n));
 }
 
-/// The couple on j of a contact that carries `last`, against the spin of j relative to i with which they
-/// roll, and none about the normal: a projected step, on the disc of radius `most`. For balls it is the exact
-/// solution at this impulse.
+/// Returns the couple on j of a contact that carries the couple `last`. It acts against the spin of j
+/// relative to i with which they roll, and not about the normal. It is a projected step, in the disc of
+/// radius `most`; for balls it is the exact solution at this impulse.
 template <class A>
 SCREE_LAW V3<A> couple_of(const V3<A>& n, const typename A::V& most, const typename A::V& mass,
                           const V3<A>& last, const V3<A>& spin) {
@@ -299,9 +302,10 @@ SCREE_LAW V3<A> couple_of(const V3<A>& n, const typename A::V& most, const typen
   return cut_to_disc(step - dot(step, n) * n, most);
 }
 
-/// What more a point pushes that has pushed so much (kg m), to close in on a gap of 0 by a share. Where
-/// others have opened the gap since, it takes back what it did: so bodies part as little as they must.
-/// `pushed` becomes what it has pushed then.
+/// Returns how much more (kg m) a point pushes in the position correction, if it has pushed by `pushed` so
+/// far, to remove a share of its overlap, at most `cap` (m). If other contacts have opened the gap since, the
+/// point takes back its own push, so that bodies move apart no more than they must. Sets `pushed` to the new
+/// total.
 template <class A>
 SCREE_LAW typename A::V parting(const typename A::V& gap, const typename A::V& cap,
                                 const typename A::V& share, const typename A::V& normal_mass,

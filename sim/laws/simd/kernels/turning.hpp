@@ -1,4 +1,4 @@
-// Bodies that turn freely.
+// The kernel that turns eight bodies freely.
 #pragma once
 
 #include "sim/laws/simd/kernels/vectors.hpp"

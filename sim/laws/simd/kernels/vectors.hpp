@@ -1,5 +1,6 @@
-// Lanes as vectors of the instruction set, and what gathers them from bodies side by side in memory. A part
-// of kernels.cpp, as its neighbours: none of them stands alone.
+// SIMD lanes as vectors of the instruction set, and the transposition that gathers them from bodies side by
+// side in memory. This file is a part of kernels.cpp and of sim/contacts/visit_kernels.cpp, and cannot be
+// compiled by itself; neither can its neighbours.
 #pragma once
 
 #include "sim/laws/simd/free_turn.hpp"
@@ -30,8 +31,8 @@ struct Lanes {
   static HalfTurn<Lanes> half_turn(const V& square) { return half_turn_series<Lanes>(square); }
 };
 using V3 = simd::V3<Lanes>;
-/// Squares of `size` numbers, side by side, each turned about its diagonal: pairs, then fours, then halves
-/// change places.
+/// Transposes squares of `size` x `size` numbers that lie side by side: pairs, then fours, then halves change
+/// places.
 template <int size>
 [[gnu::always_inline]] inline void transpose(V* rows) {
   const auto exchange = [rows](int distance, auto low, auto high) {
@@ -56,7 +57,7 @@ template <int size>
   }
 }
 
-/// A bit for each lane in which a condition holds.
+/// Returns one bit for each lane in which a condition holds.
 [[gnu::always_inline]] inline std::uint32_t bits_of(const decltype(V{} > V{}) & condition) {
   std::uint32_t bits = 0;
   for (int l = 0; l < width; ++l) bits |= static_cast<std::uint32_t>(condition[l] & 1) << l;
