@@ -66,72 +66,99 @@ struct SeenContact {
   }
 };
 
-/// Calls visit(contact) for each contact in the order of their places, first for those of balls.
-template <class Real, class Visit>
-void for_each_contact(Inspection<Real>& seen, Visit visit) {
-  using B = BallContacts<Real>;
-  using P = PointContacts<Real>;
-  using R = RollingFields<Real>;
-  const auto number = [](Real value) { return static_cast<double>(value); };
-  const auto whole = [&](std::int32_t body, std::int32_t end) {
-    return end >= seen.first_wall_point ? end : body;
-  };
-  const auto set_rolling = [&](const RollingFields<Real>& rolling, std::int64_t c, SeenContact& contact) {
-    if (!seen.rolls) return;
-    contact.rolling_reach = number(rolling.fields.at(R::reach, c));
-    contact.couple = vec3(rolling.fields.vector(R::couple, c));
-  };
+/// A contact that has no points yet and does not roll.
+inline SeenContact no_contact() {
   SeenContact contact{};
   contact.couple.setZero();
   contact.inertia_i.setZero();
   contact.inertia_j.setZero();
+  return contact;
+}
+
+template <class Real>
+void set_rolling(bool rolls, const RollingFields<Real>& rolling, std::int64_t c, SeenContact& contact) {
+  using R = RollingFields<Real>;
+  if (!rolls) return;
+  contact.rolling_reach = static_cast<double>(rolling.fields.at(R::reach, c));
+  contact.couple = vec3(rolling.fields.vector(R::couple, c));
+}
+
+/// Returns contact c of those of balls.
+template <class Real>
+SeenContact ball_contact(Inspection<Real>& seen, const BallContacts<Real>& balls, std::int64_t c) {
+  using B = BallContacts<Real>;
+  const auto number = [](Real value) { return static_cast<double>(value); };
+  const auto whole = [&](std::int32_t body, std::int32_t end) {
+    return end >= seen.first_wall_point ? end : body;
+  };
+  const auto& f = balls.fields;
+  SeenContact contact = no_contact();
   contact.balls = true;
+  contact.slot = seen.places[balls.slot[c]];
+  contact.i = whole(contact.slot.i, contact.slot.end_i);
+  contact.j = whole(contact.slot.j, contact.slot.end_j);
+  contact.place = c;
+  contact.normal = vec3(f.vector(B::normal, c));
+  contact.friction = number(f.at(B::friction, c));
   contact.count = 1;
-  const B balls = seen.contacts->balls();
+  contact.points[0] = {number(f.at(B::arm_i, c)) * contact.normal, number(f.at(B::arm_j, c)) * contact.normal,
+                       number(f.at(B::target, c)), vec3(f.vector(B::impulse, c))};
+  set_rolling(seen.rolls, seen.ball_rolling, c, contact);
+  return contact;
+}
+
+/// Returns the inverse inertia of a body at contact c of those of points; its six numbers begin with field
+/// `first`. A part of a hub (`end`) has less mass than the body, which is the one returned.
+template <class Real>
+Mat3 inertia_at(Inspection<Real>& seen, const PointContacts<Real>& points, std::int64_t c, std::int32_t body,
+                std::int32_t end, int first) {
+  const auto at = [&](int e) { return static_cast<double>(points.fields.at(first + e, c)); };
+  Mat3 inertia;
+  inertia << at(0), at(3), at(4), at(3), at(1), at(5), at(4), at(5), at(2);
+  if (body == end || inertia.isZero(0)) return inertia;
+  const auto inverse_mass = [&](std::int32_t k) { return static_cast<double>(seen.free[k].inverse_mass); };
+  return Mat3(inverse_mass(body) / inverse_mass(end) * inertia);
+}
+
+/// Returns contact c of those that may have several points.
+template <class Real>
+SeenContact point_contact(Inspection<Real>& seen, const PointContacts<Real>& points, std::int64_t c) {
+  using P = PointContacts<Real>;
+  const auto number = [](Real value) { return static_cast<double>(value); };
+  const auto& f = points.point_fields;
+  SeenContact contact = no_contact();
+  contact.slot = seen.places[seen.first_place + points.slot[c]];
+  contact.i = contact.slot.i;
+  contact.j = contact.slot.j;
+  contact.place = c;
+  contact.normal = vec3(points.fields.vector(P::normal, c));
+  contact.friction = number(points.fields.at(P::friction, c));
+  contact.count = points.points[c];
+  for (int k = 0; k < contact.count; ++k) {
+    contact.points[k] = {
+        vec3(f.vector(P::at_point(k, P::arm_i), c)), vec3(f.vector(P::at_point(k, P::arm_j), c)),
+        number(f.at(P::at_point(k, P::target), c)), vec3(f.vector(P::at_point(k, P::impulse), c))};
+  }
+  contact.inertia_i = inertia_at(seen, points, c, contact.slot.i, contact.slot.end_i, P::inertia_i);
+  contact.inertia_j = inertia_at(seen, points, c, contact.slot.j, contact.slot.end_j, P::inertia_j);
+  set_rolling(seen.rolls, seen.point_rolling, c, contact);
+  return contact;
+}
+
+/// Calls visit(contact) for each contact in the order of their places, first for those of balls.
+template <class Real, class Visit>
+void for_each_contact(Inspection<Real>& seen, Visit visit) {
+  const BallContacts<Real> balls = seen.contacts->balls();
   for (std::int64_t c = 0; c < balls.slot.size(); ++c) {
     if (balls.slot[c] == Slot::empty) continue;
-    const auto& f = balls.fields;
-    contact.slot = seen.places[balls.slot[c]];
-    contact.i = whole(contact.slot.i, contact.slot.end_i);
-    contact.j = whole(contact.slot.j, contact.slot.end_j);
-    contact.place = c;
-    contact.normal = vec3(f.vector(B::normal, c));
-    contact.friction = number(f.at(B::friction, c));
-    contact.points[0] = {number(f.at(B::arm_i, c)) * contact.normal,
-                         number(f.at(B::arm_j, c)) * contact.normal, number(f.at(B::target, c)),
-                         vec3(f.vector(B::impulse, c))};
-    set_rolling(seen.ball_rolling, c, contact);
-    visit(std::as_const(contact));
+    const SeenContact contact = ball_contact(seen, balls, c);
+    visit(contact);
   }
-  contact.balls = false;
-  const P points = seen.contacts->points();
+  const PointContacts<Real> points = seen.contacts->points();
   for (std::int64_t c = 0; c < points.slot.size(); ++c) {
     if (points.slot[c] == Slot::empty) continue;
-    contact.slot = seen.places[seen.first_place + points.slot[c]];
-    contact.i = contact.slot.i;
-    contact.j = contact.slot.j;
-    contact.place = c;
-    contact.normal = vec3(points.fields.vector(P::normal, c));
-    contact.friction = number(points.fields.at(P::friction, c));
-    contact.count = points.points[c];
-    const auto& f = points.point_fields;
-    for (int k = 0; k < contact.count; ++k) {
-      contact.points[k] = {
-          vec3(f.vector(P::at_point(k, P::arm_i), c)), vec3(f.vector(P::at_point(k, P::arm_j), c)),
-          number(f.at(P::at_point(k, P::target), c)), vec3(f.vector(P::at_point(k, P::impulse), c))};
-    }
-    const auto whole_inertia = [&](std::int32_t body, std::int32_t end, int first) {
-      const auto at = [&](int e) { return number(points.fields.at(first + e, c)); };
-      Mat3 inertia;
-      inertia << at(0), at(3), at(4), at(3), at(1), at(5), at(4), at(5), at(2);
-      if (body == end || inertia.isZero(0)) return inertia;
-      const auto inverse_mass = [&](std::int32_t k) { return number(seen.free[k].inverse_mass); };
-      return Mat3(inverse_mass(body) / inverse_mass(end) * inertia);
-    };
-    contact.inertia_i = whole_inertia(contact.slot.i, contact.slot.end_i, P::inertia_i);
-    contact.inertia_j = whole_inertia(contact.slot.j, contact.slot.end_j, P::inertia_j);
-    set_rolling(seen.point_rolling, c, contact);
-    visit(std::as_const(contact));
+    const SeenContact contact = point_contact(seen, points, c);
+    visit(contact);
   }
 }
 

@@ -14,31 +14,45 @@ namespace scree::solver {
 
 template <class Real>
 ContactsOnHost<Real>::ContactsOnHost(Inspection<Real>& seen, const std::vector<Guide>& guides) : seen_(seen) {
-  const std::int64_t n = seen.free.size();
+  take_bodies(guides);
+  take_contacts(sort_contacts());
+  set_velocities();
+  islands_.find(std::as_const(contacts_).view(), std::as_const(bodies_).view());
+}
+
+/// Sorts the bodies by their numbers.
+template <class Real>
+void ContactsOnHost<Real>::take_bodies(const std::vector<Guide>& guides) {
+  const std::int64_t n = seen_.free.size();
   bodies_.resize(n);
   velocity_.resize(n);
   spin_.resize(n);
   index_.resize(static_cast<std::size_t>(n));
   std::iota(index_.begin(), index_.end(), 0);
-  for (std::int64_t k = 0; k < seen.number.size(); ++k)
-    index_[static_cast<std::size_t>(k)] = static_cast<std::int32_t>(seen.number[k]);
-  const auto index = [this](std::int32_t body) { return index_[static_cast<std::size_t>(body)]; };
+  for (std::int64_t k = 0; k < seen_.number.size(); ++k)
+    index_[static_cast<std::size_t>(k)] = static_cast<std::int32_t>(seen_.number[k]);
   copy(guides_, guides);
   for (Guide& guide : guides_.view()) guide.body = index(guide.body);
   for (std::int32_t k = 0; k < n; ++k) {
-    const BodyRecord<Real>& free = seen.free[k];
+    const BodyRecord<Real>& free = seen_.free[k];
     SolverBody& body = bodies_.view()[index(k)];
     body = {vec3(free.velocity), vec3(free.spin), static_cast<double>(free.inverse_mass),
             static_cast<double>(free.inverse_inertia) * Mat3::Identity()};
     velocity_.view()[index(k)] = body.velocity;
     spin_.view()[index(k)] = body.spin;
   }
+}
+
+/// Sorts the contacts by the numbers of their bodies, sets the first row of each, and the inertias of bodies
+/// that are no balls. Returns where each contact goes, in the order of for_each_contact().
+template <class Real>
+std::vector<std::int64_t> ContactsOnHost<Real>::sort_contacts() {
   struct Place {
     std::int32_t i, j, surface, count;  // i, j: numbers of the bodies
     std::int64_t nth;                   // rank in the order of for_each_contact()
   };
   std::vector<Place> order;
-  for_each_contact(seen, [&](const SeenContact& c) {
+  for_each_contact(seen_, [&](const SeenContact& c) {
     order.push_back({index(c.slot.i), index(c.slot.j), c.slot.surface, c.count, std::ssize(order)});
     if (c.balls) return;
     bodies_.view()[index(c.i)].inverse_inertia = c.inertia_i;
@@ -47,8 +61,6 @@ ContactsOnHost<Real>::ContactsOnHost(Inspection<Real>& seen, const std::vector<G
   std::ranges::sort(order, {}, [](const Place& at) { return std::tuple(at.i, at.j, at.surface); });
   std::vector<std::int64_t> to(order.size());
   contacts_.resize(std::ssize(order));
-  place_.resize(order.size());
-  couples_.resize(order.size());
   std::int64_t rows = 0;
   for (std::size_t k = 0; k < order.size(); ++k) {
     to[static_cast<std::size_t>(order[k].nth)] = static_cast<std::int64_t>(k);
@@ -56,8 +68,15 @@ ContactsOnHost<Real>::ContactsOnHost(Inspection<Real>& seen, const std::vector<G
     rows += order[k].count;
   }
   rows_.resize(rows);
+  return to;
+}
+
+template <class Real>
+void ContactsOnHost<Real>::take_contacts(const std::vector<std::int64_t>& to) {
+  place_.resize(to.size());
+  couples_.resize(to.size());
   std::size_t seen_so_far = 0;
-  for_each_contact(seen, [&](const SeenContact& c) {
+  for_each_contact(seen_, [&](const SeenContact& c) {
     const std::int64_t k = to[seen_so_far++];
     const SolverBody& i = bodies_.view()[index(c.i)];
     const SolverBody& j = bodies_.view()[index(c.j)];
@@ -82,8 +101,6 @@ ContactsOnHost<Real>::ContactsOnHost(Inspection<Real>& seen, const std::vector<G
       row.impulse = point.impulse;
     }
   });
-  set_velocities();
-  islands_.find(std::as_const(contacts_).view(), std::as_const(bodies_).view());
 }
 
 /// Computes the velocities anew from the impulses, so that the rounding errors of many sweeps do not remain.

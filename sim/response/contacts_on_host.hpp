@@ -32,7 +32,11 @@ class ContactsOnHost {
  private:
   bool rolls(std::int64_t island) const;
   ImpulseChange residual_of(const IslandProblem& problem) const;
+  void take_bodies(const std::vector<Guide>& guides);
+  std::vector<std::int64_t> sort_contacts();
+  void take_contacts(const std::vector<std::int64_t>& to);
   void set_velocities();
+  std::int32_t index(std::int32_t body) const { return index_[static_cast<std::size_t>(body)]; }
 
   Inspection<Real>& seen_;
   std::vector<std::int32_t> index_;  // index of each body of the solver in the arrays below

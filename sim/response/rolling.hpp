@@ -72,12 +72,12 @@ struct AccountRolling {
   }
 };
 
-/// Sums the energy that the impulses of a contact and its couple move. `Book` is AccountBalls or
+/// Sums the energy that the impulses of a contact and its couple move. `Account` is AccountBalls or
 /// AccountPoints.
-template <class Book, class Rolling>
+template <class Account, class Rolling>
 struct MovedBy {
   bool rolls;
-  Book account;
+  Account account;
   Rolling rolling;
   SCREE_HD Moved operator()(std::int64_t c) const {
     return rolls ? account(c).moved() + rolling(c).moved() : account(c).moved();
