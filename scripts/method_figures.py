@@ -62,14 +62,19 @@ class Figure:
         for tip, tail in ([(b, a), (a, b)] if both else [(b, a)]):
             foot = along(tip, tail, head / length)
             side = ((tail[1] - tip[1]) / length * 0.38 * head, (tip[0] - tail[0]) / length * 0.38 * head)
-            self.line(tip, (foot[0] + side[0], foot[1] + side[1]), (foot[0] - side[0], foot[1] - side[1]), closed=True, fill=stroke, stroke=None)
+            wings = [(foot[0] + sign * side[0], foot[1] + sign * side[1]) for sign in (1, -1)]
+            self.line(tip, *wings, closed=True, fill=stroke, stroke=None)
 
     def text(self, x, y, *rows, color=INK, size=13, anchor="start", bold=False, leading=17):
         """Rows of words, in which _m is a subscript and ^+ a superscript, or _{...} and ^{...}."""
-        style = f'font-size="{size}" fill="{color}"' + (f' text-anchor="{anchor}"' if anchor != "start" else "") + (' font-weight="bold"' if bold else "")
+        style = f'font-size="{size}" fill="{color}"'
+        style += (f' text-anchor="{anchor}"' if anchor != "start" else "") + (' font-weight="bold"' if bold else "")
         for k, row in enumerate(rows):
             row = row.replace("&", "&amp;").replace("<", "&lt;")
             self.parts.append(f'<text x="{number(x)}" y="{number(y + k * leading)}" {style}>{raised(row)}</text>')
+
+    def note(self, x, y, *rows, **style):
+        self.text(x, y, *rows, color=GREY, **style)
 
     def save(self):
         head = (f'<svg xmlns="http://www.w3.org/2000/svg" width="{WIDTH}" height="{self.height}" viewBox="0 0 {WIDTH} {self.height}" '
@@ -123,7 +128,8 @@ def time_stepping():
         fig.disc(*x_m, 4.5, fill=PAPER, stroke=INK)
         for end in (x, after):
             fig.disc(*end, 5)
-    fig.text(62, 338, "All places x lie on one parabola (grey).", "The two halves of a substep are its tangents at", "both ends, and they meet at x_m.", color=GREY)
+    fig.note(62, 338, "All places x lie on one parabola (grey).", "The two halves of a substep are its tangents at",
+             "both ends, and they meet at x_m.")
 
     fig.line((432, 20), (432, 376), stroke=EDGE, width=1)
     fig.text(448, 32, "A contact: impulses act at x_m", bold=True, size=14)
@@ -161,7 +167,7 @@ def time_stepping():
                                                  ("x^+ = x_m + (h/2) v^+", "half a flight to the end", GREEN))):
         middle = 128 + 232 * k
         fig.text(middle, 414, formula, anchor="middle", color=color, size=15)
-        fig.text(middle, 435, words, anchor="middle", color=GREY)
+        fig.note(middle, 435, words, anchor="middle")
     fig.save()
 
 
@@ -176,7 +182,7 @@ def rate_between(before, time_before, after, time_after):
 
 
 def keyframe_path(keys):
-    """The path as a function of time, cubic between keyframes (time, place); and the rates at these."""
+    """The place as a function of time: cubic between keyframes (time, place), at rest at the first and the last."""
     chord = [(b[1] - a[1]) / (b[0] - a[0]) for a, b in zip(keys, keys[1:])]
     length = [b[0] - a[0] for a, b in zip(keys, keys[1:])]
     rates = [0.0] + [rate_between(chord[k], length[k], chord[k + 1], length[k + 1]) for k in range(len(chord) - 1)] + [0.0]
@@ -199,8 +205,8 @@ def prescribed_paths():
     place = keyframe_path(keys)
     screen = lambda t, y: (48 + 56 * t, 190 - 76 * y)
     fig.line((48, 52), (48, 206), (342, 206), stroke=GREY, width=1)
-    fig.text(340, 222, "time", color=GREY, anchor="end")
-    fig.text(54, 62, "place", color=GREY)
+    fig.note(340, 222, "time", anchor="end")
+    fig.note(54, 62, "place")
     fig.line(*(screen(*key) for key in keys), stroke=GREY, dash="3 4", width=1)
     fig.line(*samples(lambda t: screen(t, place(t)), 0, 4.9999, 60), stroke=BLUE, width=2.5)
     for key in keys:
@@ -209,7 +215,7 @@ def prescribed_paths():
     fig.text(top[0], top[1] - 12, "rate 0 where it turns round", color=ORANGE, anchor="middle")
     fig.text(58, 222, "at rest", color=ORANGE)
     fig.text(screen(*keys[5])[0] + 8, screen(*keys[5])[1] + 22, "at rest", color=ORANGE, anchor="end")
-    fig.text(24, 250, "The path goes through all keyframes (dots), and", "between two of them goes beyond neither.", color=GREY)
+    fig.note(24, 250, "The path goes through all keyframes (dots), and", "between two of them goes beyond neither.")
 
     fig.text(376, 32, "In a substep: a straight line", bold=True, size=14)
     begin, h, bend = 396, 140, 0.0048
@@ -223,20 +229,21 @@ def prescribed_paths():
         ends = [(x, path(x_m)[1] + slope(x_m) * (x - x_m)) for x in (x_m - h / 2, x_m + h / 2)]
         fig.line(*ends, stroke=ORANGE, width=2)
         fig.disc(*path(x_m), 4.5, fill=PAPER, stroke=INK)
-        fig.text(x_m, 230, f"substep {k + 1}", color=GREY, anchor="middle")
+        fig.note(x_m, 230, f"substep {k + 1}", anchor="middle")
     joint, line_there = path(begin + h), (begin + h, path(begin + h)[1] + bend * h * h / 8)
     fig.arrow(joint, line_there, both=True, head=5, width=1.2)
     fig.text(joint[0] + 8, joint[1] + 22, "off by V' h^2 / 8")
     fig.text(404, 74, "path", color=BLUE)
     fig.text(404, 92, "line in the substep", color=ORANGE)
-    fig.text(376, 250, "Lines touch the path at midpoints (circles).", "Both are off by as much where they meet, so", "that nothing jumps.", color=GREY, leading=16)
+    fig.note(376, 250, "Lines touch the path at midpoints (circles).", "Both are off by as much where they meet, so",
+             "that nothing jumps.", leading=16)
 
     fig.text(24, 320, "Gravity that turns", bold=True, size=14)
     wave = lambda x: (x, 418 - 54 * math.sin(2 * math.pi * (x - 48) / 300))
     fig.line((48, 418), (348, 418), stroke=GREY, width=1)
     fig.line((48, 336), (48, 484), stroke=GREY, width=1)
-    fig.text(56, 344, "g along x", color=GREY)
-    fig.text(346, 410, "time", color=GREY, anchor="end")
+    fig.note(56, 344, "g along x")
+    fig.note(346, 410, "time", anchor="end")
     fig.line(*samples(wave, 48, 348, 48), stroke=BLUE, width=2)
     width = 300 / 8
     for k in range(8):
@@ -244,7 +251,7 @@ def prescribed_paths():
         fig.line((x - width / 2, y), (x + width / 2, y), stroke=ORANGE, width=2.5)
         fig.disc(x, y, 3.5, fill=PAPER, stroke=INK)
     fig.text(204, 346, "g(t + h/2), constant", "in each substep", color=ORANGE)
-    fig.text(24, 518, "Between two substeps U changes where bodies", "are: this is the work of what turns gravity.", color=GREY)
+    fig.note(24, 518, "Between two substeps U changes where bodies", "are: this is the work of what turns gravity.")
 
     fig.text(376, 320, "Servo: a free body on a line", bold=True, size=14)
     fig.line((424, 338), (424, 486), stroke=GREY, width=4)
@@ -255,16 +262,16 @@ def prescribed_paths():
     fig.line((430, 473), (514, 473), stroke=INK, width=2)
     fig.arrow((472, 342), (472, 382), stroke=RED, width=2.5)
     fig.text(480, 362, "F a", color=RED)
-    fig.text(416, 412, "guide", color=GREY, anchor="end")
+    fig.note(416, 412, "guide", anchor="end")
     at, v = (592, 350), (58, 84)
     fig.arrow(at, (at[0] + v[0], at[1] + v[1]), stroke=GREY)
     fig.arrow(at, (at[0], at[1] + v[1]), stroke=BLUE, width=2.5)
     fig.line((at[0] + 3, at[1] + v[1]), (at[0] + v[0], at[1] + v[1]), stroke=RED, dash="4 4")
     fig.disc(*at, 3.5)
-    fig.text(at[0] + 38, at[1] + 32, "v after", "a sweep", color=GREY)
+    fig.note(at[0] + 38, at[1] + 32, "v after", "a sweep")
     fig.text(at[0] - 8, at[1] + 50, "(a·v) a", color=BLUE, anchor="end")
     fig.text(at[0] + 30, at[1] + v[1] + 20, "the guide takes this", color=RED, anchor="middle")
-    fig.text(376, 518, "After each sweep only the velocity along the", "axis a is kept. The guide does no work.", color=GREY)
+    fig.note(376, 518, "After each sweep only the velocity along the", "axis a is kept. The guide does no work.")
     fig.save()
 
 
@@ -365,8 +372,8 @@ def rotation():
     for axis, (label, anchor, dx, dy) in enumerate((("axis 1", "middle", 0, 18), ("axis 2", "middle", 0, 18), ("axis 3", "middle", 0, -8))):
         x, y = screen([1.0 if k == axis else 0.0 for k in range(3)])
         fig.disc(x, y, 3, fill=GREY)
-        fig.text(x + dx, y + dy, label, color=GREY, anchor=anchor)
-    fig.text(centre[0], 374, "grey and green: curves of equal energy", color=GREY, anchor="middle")
+        fig.note(x + dx, y + dy, label, anchor=anchor)
+    fig.note(centre[0], 374, "grey and green: curves of equal energy", anchor="middle")
 
     step, momentum = 2.4, start
     colors, at = (BLUE, ORANGE, PURPLE, ORANGE, BLUE), (0.42, 0.5, 0.22, 0.5, 0.6)
@@ -384,7 +391,7 @@ def rotation():
     fig.text(inset(screen(back))[0] + 14, inset(screen(back))[1] - 12, "6: back to", "the energy", color=RED)
     fig.disc(*inset(screen(start)), 5)
     fig.disc(*inset(screen(back)), 5, fill=PAPER, stroke=INK, width=2)
-    fig.text(corner[0] + 8, corner[1] - 8, "one step, drawn far too long", color=GREY)
+    fig.note(corner[0] + 8, corner[1] - 8, "one step, drawn far too long")
 
     left, base, across, high = 414, 372, 280, 80
     fig.line((left, base - high - 10), (left, base + 12), stroke=GREY, width=1)
@@ -395,8 +402,8 @@ def rotation():
             momentum = split(momentum, moments, length)
             points.append((left + across * k * turn / 15, base - high * (rotational_energy(momentum, moments) / energy - 1) / 0.002))
         fig.line(*points, stroke=color, width=2)
-    fig.text(left + 4, base - high - 14, "without turn 6, steps of", color=GREY)
-    fig.text(left - 8, base - high + 4, "energy", color=GREY, anchor="end")
+    fig.note(left + 4, base - high - 14, "without turn 6, steps of")
+    fig.note(left - 8, base - high + 4, "energy", anchor="end")
     fig.text(left + 170, base - high - 14, "0.5 rad,", color=RED)
     fig.text(left + 226, base - high - 14, "0.25 rad", color=ORANGE)
     fig.text(left + across, base + 18, "with turn 6", color=GREEN, anchor="end")
@@ -406,8 +413,8 @@ def rotation():
                           (256, "Turns under 5e-6 rad", ("The body turns about its mean", "spin, as most in a heap do.")),
                           (488, "All other turns", ("Turns 1 to 6, in steps of half", "a radian at most."))):
         fig.text(x, 426, head, bold=True)
-        fig.text(x, 446, *rows, color=GREY)
-    fig.text(24, 488, "Axes are numbered by their moments of inertia, the least first.", color=GREY)
+        fig.note(x, 446, *rows)
+    fig.note(24, 488, "Axes are numbered by their moments of inertia, the least first.")
     fig.save()
 
 
@@ -443,11 +450,12 @@ def broad_phase():
         fig.rect(left, top, DOMAIN, DOMAIN, fill="#ffffff", stroke=None)
         column, row = int(x // cell), int(y // cell)
         if on_level:
-            cells = {(column, row): 1} | {(column + d, row + e): 1 for d, e in ((1, 0), (-1, 1), (0, 1), (1, 1))}
+            cells = [(column + d, row + e) for d, e in ((0, 0), (1, 0), (-1, 1), (0, 1), (1, 1))]
         else:
             reach = [int((boxes[looks][k] + (-0.5 if k < 2 else 0.5) * cell) // cell) for k in range(4)]
             last = DOMAIN // cell - 1
-            cells = {(c, r): 1 for c in range(max(reach[0], 0), min(reach[2], last) + 1) for r in range(max(reach[1], 0), min(reach[3], last) + 1)}
+            columns, rows = (range(max(reach[k], 0), min(reach[k + 2], last) + 1) for k in (0, 1))
+            cells = [(c, r) for c in columns for r in rows]
         for c, r in cells:
             fig.rect(left + c * cell, top + r * cell, cell, cell, fill=PALE[ORANGE])
         for k in range(DOMAIN // cell + 1):
@@ -463,7 +471,7 @@ def broad_phase():
             if mine or k == looks:
                 fig.rect(left + x0, top + y0, x1 - x0, y1 - y0, stroke=color, width=1)
                 fig.disc(left + bx, top + by, 1.8, fill=color)
-        found = [(i, j) for i, j in pairs if low[i] and low[j]] if on_level else [(i, j) for i, j in pairs if low[i] != low[j] or not low[i]]
+        found = [(i, j) for i, j in pairs if (low[i] and low[j]) == on_level]
         for k in {k for pair in found for k in pair if low[k] != on_level and k != looks}:
             x0, y0, x1, y1 = boxes[k]
             fig.rect(left + x0, top + y0, x1 - x0, y1 - y0, stroke=GREY, width=1)
@@ -479,8 +487,8 @@ def broad_phase():
     fig.arrow((cx, cy), (cx + 20, cy - 12), stroke=BLUE)
     fig.text(cx + 8, cy + 12, "v", color=BLUE, anchor="middle")
     fig.arrow((cx + r, cy), (cx + 60, cy), stroke=INK, both=True, head=6, width=1.2)
-    fig.text(20, 58, "It has room for the", "way in the step, and", "for a skin of 0.03 of", "the body's size.", color=GREY)
-    fig.text(20, 276, "The pairs are kept", "as long as bodies", "stay in their boxes.", color=GREY)
+    fig.note(20, 58, "It has room for the", "way in the step, and", "for a skin of 0.03 of", "the body's size.")
+    fig.note(20, 276, "The pairs are kept", "as long as bodies", "stay in their boxes.")
 
     fig.text(172, 32, "Low level: small cells", bold=True, size=14)
     draw(172, 46, FINE, True)
@@ -488,7 +496,8 @@ def broad_phase():
              "the other half others look at it.", color=GREY)
     fig.text(448, 32, "High level: wide cells", bold=True, size=14)
     draw(448, 46, COARSE, False)
-    fig.text(448, 318, "It also looks into the other levels:", "into the cells (orange) that may hold", "the centre of what overlaps it. Or", "the large objects look down.", color=GREY)
+    fig.note(448, 318, "It also looks into the other levels:", "into the cells (orange) that may hold", "the centre of what overlaps it. Or",
+             "the large objects look down.")
     fig.line((172, 406), (194, 406), stroke=RED, width=2.5)
     fig.text(202, 410, "PCS: pairs of boxes that overlap, each found once")
     fig.save()
@@ -553,7 +562,7 @@ def narrow_phase():
     fig.text(screen(*middle, 0)[0] + 10, screen(*middle, 116)[1] + 4, "n", color=RED)
     fig.text(34, 274, "i", color=BLUE, size=15)
     fig.text(screen(*face[3][:2], height)[0] + 10, screen(*face[3][:2], height)[1] + 10, "j", color=ORANGE, size=15)
-    fig.text(24, 372, "The normal n points from", "body i to body j. All points", "of the contact share it.", color=GREY)
+    fig.note(24, 372, "The normal n points from", "body i to body j. All points", "of the contact share it.")
 
     fig.line((260, 20), (260, 404), stroke=EDGE, width=1)
     fig.text(276, 32, "The face, clipped", bold=True, size=14)
@@ -566,13 +575,13 @@ def narrow_phase():
     for k, p in enumerate(kept):
         fig.disc(*plan(p), 9, fill=GREEN)
         fig.text(plan(p)[0], plan(p)[1] + 4.5, str(k + 1), color=PAPER, anchor="middle", bold=True)
-    fig.text(276, 58, "Seen along n", color=GREY)
+    fig.note(276, 58, "Seen along n")
     fig.text(288, 246, "face of i", color=BLUE)
     fig.text(420, 92, "face of j", color=ORANGE, anchor="middle")
     for k, words in enumerate(("the deepest point", "the farthest from it", "adds most area", "adds most area beyond")):
         fig.text(276, 290 + 19 * k, str(k + 1), color=GREEN, bold=True)
         fig.text(292, 290 + 19 * k, words)
-    fig.text(276, 372, "At most four points stay.", "Each has a name, by which", "its impulse is found again.", color=GREY)
+    fig.note(276, 372, "At most four points stay.", "Each has a name, by which", "its impulse is found again.")
 
     fig.line((478, 20), (478, 404), stroke=EDGE, width=1)
     fig.text(494, 32, "Gaps, seen from the side", bold=True, size=14)
@@ -591,7 +600,8 @@ def narrow_phase():
     fig.text(right - 30, top - 40, "gap > 0", anchor="end")
     fig.arrow((left + 92, top), (left + 92, top - 64), stroke=RED, width=2.5)
     fig.text(left + 100, top - 58, "n", color=RED)
-    fig.text(494, 304, "A point lies midway between", "the two surfaces. It is the same", "point for both bodies, so that", "angular momentum is kept.", color=GREY)
+    fig.note(494, 304, "A point lies midway between", "the two surfaces. It is the same", "point for both bodies, so that",
+             "angular momentum is kept.")
     fig.save()
 
 
@@ -600,7 +610,7 @@ def narrow_phase():
 RADIUS = 9
 
 
-class Line:
+class BallsOnLine:
     """Balls on a line that bounce with e = 1, without gravity; the substep lasts from 0 to 1. A ball of infinite mass is a wall."""
 
     def __init__(self, *balls):
@@ -608,7 +618,7 @@ class Line:
         self.place, self.velocity, self.mass = ([ball[k] for ball in balls] for k in range(3))
         self.clock = [0.0] * len(balls)
         self.ways = [[(0.0, ball[0])] for ball in balls]
-        self.impacts, self.waiting = [], []  # (round, time, place); (round, time, place, balls)
+        self.impacts, self.waiting = [], []  # round, time, place, and the first of the two balls
 
     def at(self, ball, time):
         return self.place[ball] + self.velocity[ball] * (time - self.clock[ball])
@@ -648,7 +658,7 @@ class Line:
                 if waits & set(two):
                     self.waiting.append((turn, time, self.at(i, time) + RADIUS, i))
                 else:
-                    self.impacts.append((turn, time, self.at(i, time) + RADIUS))
+                    self.impacts.append((turn, time, self.at(i, time) + RADIUS, i))
                     self.strike(i, time)
         for k, way in enumerate(self.ways):
             way.append((1.0, self.at(k, 1.0)))
@@ -667,13 +677,13 @@ def impacts():
     fig = Figure("impacts", 486, "Rounds of impacts in one substep")
     fig.text(24, 32, "Balls on a line: where they are during one substep", bold=True, size=14)
     left, across, colors = 64, 424, (None, BLUE, ORANGE, GREEN, PURPLE, RED)
-    groups = (Line((72, 190, 1), (132, 0, 1), (177, 0, 1), (244, -60, 2)), Line((338, 100, 1), (382, 0, 1), (426, 0, math.inf)))
-    names = (("A", "B", "C", "D"), ("E", "F", "wall"))
+    groups = (BallsOnLine((72, 190, 1), (132, 0, 1), (177, 0, 1), (244, -60, 2)), BallsOnLine((338, 100, 1), (382, 0, 1), (426, 0, math.inf)))
+    names, struck = (("A", "B", "C", "D"), ("E", "F", "wall")), {}
     x = lambda time: left + across * time
     for time, label in ((0, "0"), (0.5, "h/2"), (1, "h")):
         fig.line((x(time), 48), (x(time), 442), stroke=FAINT, width=1)
-        fig.text(x(time), 460, label, color=GREY, anchor="middle")
-    fig.text(x(0.25), 460, "time in the substep", color=GREY, anchor="middle")
+        fig.note(x(time), 460, label, anchor="middle")
+    fig.note(x(0.25), 460, "time in the substep", anchor="middle")
     for group, labels in zip(groups, names):
         start = [way[0][1] for way in group.ways]
         group.resolve()
@@ -682,34 +692,37 @@ def impacts():
                 side = RADIUS if ball == k else -RADIUS
                 fig.line((x(0), start[ball]), (x(time), place - side), stroke=GREY, dash="3 4", width=1.2)
             fig.disc(x(time), place, 9, fill=PAPER, stroke=GREY, dash="3 3")
-            fig.text(x(time) + 4, place + 26, "C–D waits", color=GREY)
+            fig.note(x(time) + 4, place + 26, f"{labels[k]}–{labels[k + 1]} waits")
         for way, label, mass in zip(group.ways, labels, group.mass):
             if mass == math.inf:
                 fig.rect(x(0), way[0][1] - RADIUS, across, 12, fill=FAINT)
                 fig.text(x(0) - 10, way[0][1] + 3, label, anchor="end")
                 continue
             for (t0, y0), (t1, y1) in zip(way, way[1:]):
-                fig.line((x(t0), y0 - RADIUS), (x(t1), y1 - RADIUS), (x(t1), y1 + RADIUS), (x(t0), y0 + RADIUS), closed=True, fill="#b9c7d6", stroke=None, opacity="0.55")
+                band = [(x(t), y + side) for side, ends in ((-RADIUS, ((t0, y0), (t1, y1))), (RADIUS, ((t1, y1), (t0, y0)))) for t, y in ends]
+                fig.line(*band, closed=True, fill="#b9c7d6", stroke=None, opacity="0.55")
                 fig.line((x(t0), y0), (x(t1), y1), stroke="#5d7288", width=1.2)
             fig.text(x(0) - 10, way[0][1] + 5, label, anchor="end")
-        for turn, time, place in group.impacts:
+        for turn, time, place, k in group.impacts:
+            struck.setdefault(turn, []).append(f"{labels[k]}–{labels[k + 1]}")
             fig.disc(x(time), place, 10, fill=colors[turn])
             fig.text(x(time), place + 4.5, str(turn), color="#ffffff", anchor="middle", bold=True)
-    fig.text(x(0) + 8, 276, "D has twice the mass of the others", color=GREY)
+    fig.note(x(0) + 8, 276, "D has twice the mass of the others")
     fig.line((24, 298), (496, 298), stroke=EDGE, width=1, dash="6 4")
-    fig.text(x(0.5) + 8, 318, "another place, far away", color=GREY)
+    fig.note(x(0.5) + 8, 318, "another place, far away")
     fig.line((506, 20), (506, 468), stroke=EDGE, width=1)
     fig.text(520, 32, "Rounds", bold=True, size=14)
-    fig.text(520, 58, "In each round all impacts", "are resolved that are the", "first in their neighbourhood.", color=GREY)
-    for k, words in enumerate(("A–B and E–F", "B–C and F–wall", "C–D and E–F", "B–C", "A–B")):
-        fig.disc(530, 118 + 27 * k, 10, fill=colors[k + 1])
-        fig.text(530, 122.5 + 27 * k, str(k + 1), color="#ffffff", anchor="middle", bold=True)
-        fig.text(548, 122.5 + 27 * k, words)
-    fig.text(520, 274, "Places apart do not wait", "for each other.", color=GREY)
+    fig.note(520, 58, "In each round all impacts", "are resolved that are the", "first in their neighbourhood.")
+    for turn, pairs in sorted(struck.items()):
+        y = 91 + 27 * turn
+        fig.disc(530, y, 10, fill=colors[turn])
+        fig.text(530, y + 4.5, str(turn), color="#ffffff", anchor="middle", bold=True)
+        fig.text(548, y + 4.5, " and ".join(pairs))
+    fig.note(520, 274, "Places apart do not wait", "for each other.")
     fig.disc(530, 319, 9, fill=PAPER, stroke=GREY, dash="3 3")
-    fig.text(548, 323.5, "C–D is foreseen in", color=GREY)
-    fig.text(520, 340.5, "round 1. It waits, since B", "may be driven into C before.", color=GREY)
-    fig.text(520, 392, "After an impact, the next", "meetings of its two bodies", "are computed anew, so that", "chains run through.", color=GREY)
+    fig.note(548, 323.5, "C–D is foreseen in")
+    fig.note(520, 340.5, "round 1. It waits, since B", "may be driven into C before.")
+    fig.note(520, 392, "After an impact, the next", "meetings of its two bodies", "are computed anew, so that", "chains run through.")
     fig.save()
 
 
@@ -750,12 +763,12 @@ def response():
     fig.text(x + 10, 104, "target 0:", "a closed contact", color=BLUE)
     fig.text(x - target, y + 20, "−gap/h", color=ORANGE, anchor="middle")
     fig.text(x + 10, 152, "an open one may", "close its gap", color=ORANGE)
-    fig.text(24, 244, "Either the contact does not", "push, or its normal velocity", "is at the target.", color=GREY)
+    fig.note(24, 244, "Either the contact does not", "push, or its normal velocity", "is at the target.")
 
     fig.line((244, 20), (244, 290), stroke=EDGE, width=1)
     fig.text(258, 32, "Across it: Coulomb's cone", bold=True, size=14)
     tip, axis, slope = (352, 216), 136, 0.62
-    rim = lambda angle, height=1.0: (tip[0] + height * slope * axis * math.cos(angle), tip[1] - height * axis + 0.28 * height * slope * axis * math.sin(angle))
+    rim = lambda angle: (tip[0] + slope * axis * math.cos(angle), tip[1] - axis + 0.28 * slope * axis * math.sin(angle))
     edge = math.asin(0.28 * slope)
     fig.line(rim(edge), tip, rim(math.pi - edge), stroke=BLUE, fill=PALE[BLUE], width=2)
     fig.line(*samples(rim, 0, 2 * math.pi, 40), stroke=BLUE, fill="#eaf2fa", width=2)
@@ -772,15 +785,16 @@ def response():
     ut = (centre[0] - 0.5 * (slides[0] - centre[0]), centre[1] - 0.5 * (slides[1] - centre[1]))
     fig.arrow(centre, ut, stroke=ORANGE)
     fig.text(ut[0] - 4, ut[1] - 4, "u_t", color=ORANGE, anchor="end")
-    fig.text(258, 244, "|p_t| is at most mu p_n. Where", "the contact slides, p_t is on the", "rim and opposite to u_t.", color=GREY)
+    fig.note(258, 244, "|p_t| is at most mu p_n. Where", "the contact slides, p_t is on the", "rim and opposite to u_t.")
 
     fig.line((484, 20), (484, 290), stroke=EDGE, width=1)
     fig.text(498, 32, "A visit to a contact", bold=True, size=14)
     for k, (rows, color) in enumerate(((("1  Try to stick: the impulse", "that gives u = target."), GREEN),
-                                       (("2  If it leaves the cone: p_n", "that reaches the target, then", "one step of friction, cut to", "the disc |p_t| = mu p_n."), RED),
+                                       (("2  If it leaves the cone: p_n", "that reaches the target, then", "one step of friction, cut to",
+                                         "the disc |p_t| = mu p_n."), RED),
                                        (("3  Give the change to both", "bodies at once."), BLUE))):
         fig.text(498, (62, 110, 192)[k], *rows, color=color)
-    fig.text(498, 244, "The next contact sees what", "this one has changed", "(Gauss-Seidel).", color=GREY)
+    fig.note(498, 244, "The next contact sees what", "this one has changed", "(Gauss-Seidel).")
 
     fig.line((16, 302), (704, 302), stroke=EDGE, width=1)
     colors = (BLUE, ORANGE, GREEN, PURPLE, RED)
@@ -794,7 +808,7 @@ def response():
         a = balls[i]
         b = balls[j] if j >= 0 else (a[0], 2 * 504 - a[1])
         fig.line(along(a, b, 0.36), along(a, b, 0.64) if j >= 0 else place, stroke=colors[color], width=6)
-    fig.text(24, 530, "The floor is not free, so its contacts may share a colour.", color=GREY)
+    fig.note(24, 530, "The floor is not free, so its contacts may share a colour.")
 
     fig.text(292, 328, "A sweep visits all contacts, colour by colour", bold=True, size=14)
     count = max(numbers) + 1
@@ -821,7 +835,7 @@ def response():
 # 7. Ledger
 
 def ledger():
-    """A ball that is dropped and bounces with e = 0.5: closed form, all bounces included. Units: E0 = m g H = 1, and the time of the fall is 1."""
+    """A ball that is dropped and bounces, in closed form, with all bounces. In units in which m g H and the time of the fall are 1."""
     fig = Figure("ledger", 536, "The energy of a bouncing ball, and where it went")
     e, left, base, across, high = 0.5, 60, 318, 392, 236
     end = (1 + e) / (1 - e)  # of the last of its endlessly many bounces
@@ -860,13 +874,13 @@ def ledger():
     fig.text(left - 8, base + 4, "0", anchor="end")
     for t, label in ((0, "t = 0"), (1, "1"), (2, "2"), (3, "3: at rest")):
         fig.line(screen(t, 0), (screen(t, 0)[0], base + 5), stroke=GREY, width=1)
-        fig.text(screen(t, 0)[0], base + 20, label, color=GREY, anchor="middle")
+        fig.note(screen(t, 0)[0], base + 20, label, anchor="middle")
     fig.text(left + 22, base - 150, "U", color=BLUE, size=15)
     fig.text(left + 78, base - 208, "K", color=GREEN, size=15)
     fig.text(screen(2.15, 0)[0], base - 160, "restitution", color=ORANGE, size=15, anchor="middle")
     fig.line(screen(1, 0.25), screen(1, 1), stroke=ORANGE, width=3)
     fig.text(screen(1, 0)[0] + 10, screen(1, 0.87)[1], "p (1 − e) u/2 = ¾ E_0", color=ORANGE)
-    fig.text(left, base + 42, "The three parts sum to E_0 at every instant. Time is in", "units of the first fall.", color=GREY)
+    fig.note(left, base + 42, "The three parts sum to E_0 at every instant. Time is in", "units of the first fall.")
 
     fig.text(480, 32, "The first bounce", bold=True, size=14)
     floor = 150
@@ -882,20 +896,23 @@ def ledger():
     fig.text(480, 176, "p = (1 + e) m u", color=RED)
     fig.text(480, 198, "It moves the energy by exactly")
     fig.text(480, 220, "p (u^- + u^+)/2 = −p (1 − e) u/2", color=ORANGE)
-    fig.text(480, 250, "u^- is the velocity before the", "kick of gravity: with it the sum", "is exact, and a body at rest", "loses nothing.", color=GREY)
+    fig.note(480, 250, "u^- is the velocity before the", "kick of gravity: with it the sum", "is exact, and a body at rest", "loses nothing.")
 
     fig.line((16, 384), (704, 384), stroke=EDGE, width=1)
     fig.text(24, 410, "The ledger", bold=True, size=14)
     fig.text(24, 438, "E − E_0  =")
-    for y, entries in ((438, (("", "exchange", BLUE, 88), ("+", "work", BLUE, 54), ("+", "integration", BLUE, 96))),
-                       (470, (("−", "restitution", ORANGE, 90), ("−", "friction", ORANGE, 70), ("−", "correction", ORANGE, 90), ("+", "unexplained", RED, 102)))):
+    for y, entries in ((438, ((None, "exchange", BLUE, 88), ("+", "work", BLUE, 54), ("+", "integration", BLUE, 96))),
+                       (470, (("−", "restitution", ORANGE, 90), ("−", "friction", ORANGE, 70), ("−", "correction", ORANGE, 90),
+                              ("+", "unexplained", RED, 102)))):
         x = 104
         for sign, word, color, width in entries:
-            fig.text(x - 11, y, sign, anchor="middle")
+            if sign:
+                fig.text(x - 11, y, sign, anchor="middle")
             fig.rect(x, y - 16, width, 23, rx=5, fill=PALE[color], stroke=color, width=1)
             fig.text(x + width / 2, y, word, color=color, anchor="middle")
             x += width + 22
-    fig.text(24, 502, "Each bucket is computed from its own definition. What they do not explain is unexplained; a step", "that leaves too much of it is taken again in smaller substeps.", color=GREY)
+    fig.note(24, 502, "Each bucket is computed from its own definition. What they do not explain is unexplained; a step",
+             "that leaves too much of it is taken again in smaller substeps.")
     fig.save()
 
 
@@ -907,28 +924,31 @@ def periodic_axes():
     period, low, top, bottom = 212, 254, 64, 214
     for image in (-1, 0, 1):
         fig.rect(low + image * period, top, period, bottom - top, fill="#ffffff" if image == 0 else PALE[GREY], stroke=None)
-    bodies = ((292, 146, 20, BLUE, "i"), (430, 112, 20, GREEN, "j"), (340, 188, 14, PURPLE, "k"))
+    bodies = ((292, 146, 20, BLUE, "i"), (430, 112, 20, GREEN, "j"), (372, 186, 14, PURPLE, "k"))
     for image in (-1, 1, 0):
         for x, y, r, color, label in bodies:
             fig.disc(x + image * period, y, r, fill=PALE[color], stroke=color, opacity="0.4" if image else None)
     for image in range(-1, 3):
-        fig.line((low + image * period, top), (low + image * period, bottom), stroke=GREY, width=2 if image in (0, 1) else 1, dash=None if image in (0, 1) else "4 4")
+        style = {"width": 2} if image in (0, 1) else {"width": 1, "dash": "4 4"}
+        fig.line((low + image * period, top), (low + image * period, bottom), stroke=GREY, **style)
     fig.text(low, top - 8, "low", anchor="middle")
     fig.text(low + period, top - 8, "high", anchor="middle")
     fig.arrow((low, bottom + 14), (low + period, bottom + 14), both=True, width=1.2, stroke=GREY)
-    fig.text(low + period / 2, bottom + 31, "L", color=GREY, anchor="middle")
+    fig.note(low + period + 12, bottom + 19, "L")
     i, j, k = bodies
     d = (j[0] - i[0], j[1] - i[1])
     near = d[0] - period * round(d[0] / period)
     fig.arrow(i[:2], j[:2], stroke=GREY, dash="5 4", width=1.5)
-    fig.text((i[0] + j[0]) / 2 + 4, (i[1] + j[1]) / 2 - 10, "d", color=GREY, anchor="middle")
+    fig.note((i[0] + j[0]) / 2 + 4, (i[1] + j[1]) / 2 - 10, "d", anchor="middle")
     fig.arrow(i[:2], (i[0] + near, i[1] + d[1]), stroke=RED, width=2.5)
     fig.text(low - 12, 168, "d − L round(d/L)", color=RED, anchor="end")
-    fig.text(i[0], i[1] + 5, "i", color=BLUE, anchor="middle", bold=True)
-    fig.text(j[0], j[1] + 5, "j", color=GREEN, anchor="middle", bold=True)
+    fig.text(i[0] + 24, i[1] + 18, "i", color=BLUE, bold=True)
+    fig.text(j[0] - 24, j[1] + 22, "j", color=GREEN, bold=True, anchor="end")
+    for x, y, *_ in (i, j):
+        fig.disc(x, y, 3)
     fig.arrow((k[0] + 16, k[1]), (k[0] + period - 16, k[1]), stroke=PURPLE)
-    fig.text(low + period + 12, k[1] - 14, "x counts on", color=PURPLE)
-    fig.text(60, 258, "A pair, or an arm, is seen along the way to the nearest image (red).", "Nothing happens to a body that goes through an end.", color=GREY)
+    fig.text(low + period + 12, k[1] + 17, "x counts on", color=PURPLE)
+    fig.note(24, 258, "A pair, or an arm, is seen along the way to the nearest image (red).", "Nothing happens to a body that goes through an end.")
 
     fig.line((16, 290), (704, 290), stroke=EDGE, width=1)
     fig.text(24, 316, "Images of boxes in the broad phase", bold=True, size=14)
@@ -938,7 +958,7 @@ def periodic_axes():
         fig.line((x, top), (x, bottom), stroke=GREY, width=2)
         fig.text(x, bottom + 17, label, anchor="middle")
     fig.line((highest, top), (highest, bottom), stroke=ORANGE, dash="4 3")
-    fig.text(highest + 34, bottom + 17, "highest end", color=ORANGE, anchor="middle")
+    fig.text(highest + 6, top - 2, "highest end", color=ORANGE)
     boxes = (("a", 44, 346, 42, 40, BLUE), ("b", 62, 374, 42, 40, GREEN), ("c", 314, 362, highest - 314, 42, PURPLE), ("e", 176, 362, 44, 44, GREY))
     for label, x, y, w, h, color in boxes:
         fig.rect(x, y, w, h, fill=PALE[color], stroke=color, opacity="0.85")
@@ -946,47 +966,48 @@ def periodic_axes():
         if x + period <= highest:
             fig.rect(x + period, y, w, h, stroke=color, dash="4 3", width=2)
             fig.text(x + period + w - 12, y + (14 if label == "a" else h - 8), label + "'", color=color, bold=True, anchor="middle")
-    fig.text(452, 342, "A box that, moved up by L, still", "meets the highest end of a box has", "an image there (dashed): a', b'.", color=GREY)
+    fig.note(452, 342, "A box that, moved up by L, still", "meets the highest end of a box has", "an image there (dashed): a', b'.")
     fig.text(452, 400, "(c, a'), (c, b'), (a, b): pairs", color=GREEN)
     fig.text(452, 420, "(a', b'): both moved, not counted", color=RED)
-    fig.text(452, 440, "So each pair is found once.", color=GREY)
+    fig.note(452, 440, "So each pair is found once.")
     fig.save()
 
 
 # 8. Model plan
 
 def model_plan():
-    fig = Figure("model_plan", 452, "What a scene switches on")
+    fig = Figure("model_plan", 466, "What a scene switches on")
     fig.text(24, 36, "What is computed", bold=True, size=14)
-    columns = ((436, ("smooth balls", "without bounce")), (540, ("rough balls", "that bounce")), (648, ("rolling balls", "and bricks")))
-    fig.text(228, 36, "where the scene has", bold=True, size=14)
+    columns = ((450, ("smooth balls", "of one size,", "no bounce")), (546, ("rough balls", "of one size,", "that bounce")),
+               (646, ("balls that roll,", "and bricks,", "of many sizes")))
+    fig.text(192, 36, "if the scene has", bold=True, size=14)
     for x, rows in columns:
-        fig.text(x, 28, *rows, bold=True, anchor="middle", leading=16)
+        fig.text(x, 28, *rows, anchor="middle", leading=16)
     rows = (("tangential impulses", "friction", (0, 1, 1)),
-            ("couples", "rolling friction of round bodies", (0, 0, 1)),
+            ("couples", "rolling friction, round bodies", (0, 0, 1)),
             ("impacts that bounce", "restitution", (0, 1, 1)),
             ("orientation of spheres", "spin, torque or friction", (0, 1, 1)),
-            ("gyroscopic term", "unequal moments, body by body", (0, 0, 1)),
-            ("continuous detection", "fast bodies, substep by substep", (0.5, 0.5, 0.5)),
-            ("several grids", "sizes over more than two octaves", (0, 0, 1)))
+            ("gyroscopic term", "bodies with unequal moments", (0, 0, 1)),
+            ("continuous detection", "fast bodies in the substep", (0.5, 0.5, 0.5)),
+            ("several grids", "sizes beyond an octave or two", (0, 0, 1)))
     for k, (feature, needs, states) in enumerate(rows):
-        y = 76 + 44 * k
+        y = 90 + 44 * k
         if k % 2 == 0:
             fig.rect(16, y - 14, 688, 44, rx=6, fill=PALE[GREY])
         fig.text(24, y + 13, feature)
-        fig.text(192, y + 13, needs, color=GREY)
+        fig.note(192, y + 13, needs)
         for (x, _), state in zip(columns, states):
             fig.disc(x, y + 8, 10, fill=GREEN if state == 1 else PAPER, stroke=GREEN if state else GREY)
             if state == 0.5:
                 fig.shape("path", {"d": f"M{number(x)},{number(y - 2)}a10,10 0 0,0 0,20z"}, fill=GREEN)
-    fig.disc(34, 408, 10, fill=GREEN, stroke=GREEN)
-    fig.text(50, 412.5, "computed")
-    fig.disc(154, 408, 10, fill=PAPER, stroke=GREEN)
-    fig.shape("path", {"d": "M154,398a10,10 0 0,0 0,20z"}, fill=GREEN)
-    fig.text(170, 412.5, "in substeps that need it")
-    fig.disc(370, 408, 10, fill=PAPER, stroke=GREY)
-    fig.text(386, 412.5, "left out: it could change no bit")
-    fig.text(24, 440, "scree plan SCENE shows this table for a scene, with the reasons.", color=GREY)
+    fig.disc(34, 420, 10, fill=GREEN, stroke=GREEN)
+    fig.text(50, 424.5, "computed")
+    fig.disc(154, 420, 10, fill=PAPER, stroke=GREEN)
+    fig.shape("path", {"d": "M154,410a10,10 0 0,0 0,20z"}, fill=GREEN)
+    fig.text(170, 424.5, "in substeps that need it")
+    fig.disc(370, 420, 10, fill=PAPER, stroke=GREY)
+    fig.text(386, 424.5, "left out, which changes no bit")
+    fig.note(24, 452, "scree plan SCENE shows what a scene needs, and why.")
     fig.save()
 
 

@@ -208,6 +208,33 @@ struct BucketRun {
   std::uint32_t place[2];  ///< index, among all records, of the first one in each chunk
 };
 
+/// Finds, for the `begin[b]` records of the block that go to bucket b, their places in the bucket, and takes
+/// the chunks whose first places are among them. All threads of the block call it.
+__device__ __forceinline__ void reserve_in_buckets(const BrickStore& store, const BucketStore& buckets,
+                                                   const std::uint32_t* begin, int count, BucketRun* run) {
+  for (int b = static_cast<int>(threadIdx.x); b < count; b += scatter_threads) {
+    const std::uint32_t n = begin[b];
+    if (n == 0) continue;
+    const std::uint32_t first = atomicAdd(&buckets.counts[b], n);
+    const std::uint32_t slot = static_cast<std::uint32_t>(b) * buckets.per_bucket + first / chunk_records;
+    const std::uint32_t room = chunk_records - first % chunk_records;
+    if (first % chunk_records == 0) take_chunk(store, buckets, slot);
+    if (n > room) take_chunk(store, buckets, slot + 1);
+    run[b].split = room;
+    run[b].place[0] = first % chunk_records;
+    run[b].place[1] = slot;
+  }
+  __syncthreads();
+  for (int b = static_cast<int>(threadIdx.x); b < count; b += scatter_threads) {
+    const std::uint32_t n = begin[b];
+    if (n == 0) continue;
+    const std::uint32_t slot = run[b].place[1];
+    run[b].place[0] += (load_when_set(buckets.chunk + slot) - 1) * chunk_records;
+    if (n > run[b].split) run[b].place[1] = (load_when_set(buckets.chunk + slot + 1) - 1) * chunk_records;
+  }
+  __syncthreads();
+}
+
 /// Distributes the objects of a tile to buckets. The records are sorted by bucket in shared memory, so that
 /// writes are contiguous.
 __global__ void __launch_bounds__(scatter_threads, 4)
@@ -249,28 +276,7 @@ __global__ void __launch_bounds__(scatter_threads, 4)
     rank[k] = atomicAdd(&begin[bucket], 1u) | bucket << 16;
   }
   __syncthreads();
-  for (int b = static_cast<int>(threadIdx.x); b < count; b += scatter_threads) {
-    const std::uint32_t n = begin[b];
-    if (n == 0) continue;
-    // This finds the places in the bucket, and takes the chunks whose first places are among them.
-    const std::uint32_t first = atomicAdd(&buckets.counts[b], n);
-    const std::uint32_t slot = static_cast<std::uint32_t>(b) * buckets.per_bucket + first / chunk_records;
-    const std::uint32_t room = chunk_records - first % chunk_records;
-    if (first % chunk_records == 0) take_chunk(store, buckets, slot);
-    if (n > room) take_chunk(store, buckets, slot + 1);
-    run[b].split = room;
-    run[b].place[0] = first % chunk_records;
-    run[b].place[1] = slot;
-  }
-  __syncthreads();
-  for (int b = static_cast<int>(threadIdx.x); b < count; b += scatter_threads) {
-    const std::uint32_t n = begin[b];
-    if (n == 0) continue;
-    const std::uint32_t slot = run[b].place[1];
-    run[b].place[0] += (load_when_set(buckets.chunk + slot) - 1) * chunk_records;
-    if (n > run[b].split) run[b].place[1] = (load_when_set(buckets.chunk + slot + 1) - 1) * chunk_records;
-  }
-  __syncthreads();
+  reserve_in_buckets(store, buckets, begin, count, run);
   const std::uint32_t staged = scan_in_block<scatter_threads>(begin, count, sums);
 #pragma unroll
   for (int k = 0; k < scatter_items; ++k) {
@@ -331,6 +337,48 @@ struct BucketBricks {
 inline constexpr int copies_of_thread = 5;
 inline constexpr std::uint32_t most_listed = copies_of_thread * scatter_threads;
 inline constexpr std::uint32_t most_ordered = chunk_records + most_listed;
+
+/// Lists the copies of record t, which go to all bricks that it overlaps but that of its lower corner. What
+/// the list has no room for goes to its brick at once.
+__device__ __forceinline__ void list_copies(const BrickStore& store, const BucketBricks& bricks,
+                                            std::uint32_t t, const StagedRecord sent, std::uint32_t* list,
+                                            std::uint32_t& listed) {
+  const LatticeBox box = sent.box();
+  for_each_brick(box, [&](std::int32_t x, std::int32_t y, std::int32_t z) {
+    if (x == box.lo[0] >> brick_bits && y == box.lo[1] >> brick_bits && z == box.lo[2] >> brick_bits) return;
+    const std::uint32_t local = bricks.local(x, y, z);
+    const std::uint32_t l = atomicAdd(&listed, 1u);
+    if (l < most_listed) {
+      list[l] = t | local << 16;
+    } else {
+      store.add(bricks.brick(store.plan.lattice, local), entry_in_brick(box, sent.tag, x, y, z));
+    }
+  });
+}
+
+/// Finds the places of the `begin[b]` entries of the block that go to local brick b, and makes begin[b] the
+/// index of the first of them in the order of the chunk. Returns the number of all entries. All threads of
+/// the block call it.
+__device__ __forceinline__ std::uint32_t reserve_in_bricks(const BrickStore& store,
+                                                           const BucketBricks& bricks, std::uint32_t* begin,
+                                                           int count, BrickRun* run, std::uint32_t* sums) {
+  for (int b = static_cast<int>(threadIdx.x); b < count; b += scatter_threads) {
+    const std::uint32_t n = begin[b];
+    if (n == 0) continue;
+    const std::uint32_t brick = bricks.brick(store.plan.lattice, static_cast<std::uint32_t>(b));
+    const std::uint32_t place = atomicAdd(&store.counts[brick], n);
+    run[b].end = place < brick_objects ? min(n, brick_objects - place) : 0;
+    if (run[b].end < n) store.state->over_full = 1;
+    run[b].to = brick * brick_objects + place;
+  }
+  const std::uint32_t entries = scan_in_block<scatter_threads>(begin, count, sums);
+  for (int b = static_cast<int>(threadIdx.x); b < count; b += scatter_threads) {
+    run[b].end += begin[b];
+    run[b].to -= begin[b];
+  }
+  return entries;
+}
+
 /// Distributes the objects of a chunk to the bricks that they overlap. Each object goes to the brick of its
 /// lower corner; its copies go to the other bricks by way of a list, so that no lanes wait for those whose
 /// objects have copies. The entries are put in order before they are written, so that writes to a brick are
@@ -388,19 +436,7 @@ __global__ void __launch_bounds__(scatter_threads, 5)
   __syncthreads();
   for (std::uint32_t w = threadIdx.x; w < wide; w += scatter_threads) {
     const std::uint32_t t = wider[w];
-    const StagedRecord sent = from[t];
-    const LatticeBox box = sent.box();
-    for_each_brick(box, [&](std::int32_t x, std::int32_t y, std::int32_t z) {
-      if (x == box.lo[0] >> brick_bits && y == box.lo[1] >> brick_bits && z == box.lo[2] >> brick_bits)
-        return;
-      const std::uint32_t local = bricks.local(x, y, z);
-      const std::uint32_t l = atomicAdd(&listed, 1u);
-      if (l < most_listed) {
-        list[l] = t | local << 16;
-      } else {
-        store.add(bricks.brick(store.plan.lattice, local), entry_in_brick(box, sent.tag, x, y, z));
-      }
-    });
+    list_copies(store, bricks, t, from[t], list, listed);
   }
   __syncthreads();
   const std::uint32_t in_list = min(listed, most_listed);
@@ -411,20 +447,7 @@ __global__ void __launch_bounds__(scatter_threads, 5)
     if (l < in_list) copy_rank[k] = atomicAdd(&begin[list[l] >> 16], 1u);
   }
   __syncthreads();
-  for (int b = static_cast<int>(threadIdx.x); b < count; b += scatter_threads) {
-    const std::uint32_t n = begin[b];
-    if (n == 0) continue;
-    const std::uint32_t brick = bricks.brick(store.plan.lattice, static_cast<std::uint32_t>(b));
-    const std::uint32_t place = atomicAdd(&store.counts[brick], n);
-    run[b].end = place < brick_objects ? min(n, brick_objects - place) : 0;
-    if (run[b].end < n) store.state->over_full = 1;
-    run[b].to = brick * brick_objects + place;
-  }
-  const std::uint32_t entries = scan_in_block<scatter_threads>(begin, count, sums);
-  for (int b = static_cast<int>(threadIdx.x); b < count; b += scatter_threads) {
-    run[b].end += begin[b];
-    run[b].to -= begin[b];
-  }
+  const std::uint32_t entries = reserve_in_bricks(store, bricks, begin, count, run, sums);
 #pragma unroll
   for (int k = 0; k < scatter_items; ++k) {
     const std::uint32_t t = static_cast<unsigned>(k) * scatter_threads + threadIdx.x;

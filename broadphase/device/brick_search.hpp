@@ -28,6 +28,39 @@ __device__ void ask_bounds(const SearchOutput& out, const bool (&ask)[n], const 
   }
 }
 
+inline constexpr std::uint32_t window = 32 * 32;  ///< tests that are marked at once
+
+/// Sets the bits of the tests with which the runs of a lane start, within a window of tests; `from`: the
+/// first test of the lane, from the start of the window on (negative: before the window). The last lane also
+/// marks the end, so that the remaining tests of the last words belong to no entry.
+template <int runs>
+__device__ __forceinline__ void mark_starts(const SlotRun (&run)[runs], const std::uint32_t (&used)[runs],
+                                            std::int32_t from, unsigned lane, SearchStage<runs>& stage) {
+  const std::int32_t first = from;
+  const std::int32_t word = from >> 5;
+  std::uint32_t bits[2] = {};  // bits of this word and the next one; runs hardly ever start further on
+  bool far = false;
+#pragma unroll
+  for (int r = 0; r <= runs; ++r) {
+    const std::uint32_t starts = r < runs ? used[r] : lane == 31 ? 1u : 0u;
+    const auto bit = static_cast<std::uint32_t>(from - 32 * word);
+    bits[0] |= __funnelshift_lc(0, starts, bit);
+    bits[1] |= __funnelshift_lc(0, starts, bit - 32);
+    far |= starts && bit >= 64;
+    if (r < runs) from += static_cast<std::int32_t>(run[r].length);
+  }
+  if (bits[0] && word >= 0 && word < 32) atomicOr(&stage.starts[word], bits[0]);
+  if (bits[1] && word >= -1 && word < 31) atomicOr(&stage.starts[word + 1], bits[1]);
+  if (!far) return;
+  from = first;
+  for (int r = 0; r <= runs; ++r) {
+    const bool starts = r < runs ? used[r] > 0 : lane == 31;
+    if (starts && from - 32 * word >= 64 && from >= 0 && from < static_cast<std::int32_t>(window))
+      atomicOr(&stage.starts[from / 32], 1u << (from % 32));
+    if (r < runs) from += static_cast<std::int32_t>(run[r].length);
+  }
+}
+
 /// Makes the tests of 32 entries, without those from `end` on. The tests are distributed over the lanes of a
 /// warp in the order of entries, runs and candidates. Calls sink(hits, pair) with the whole warp: `hits` has
 /// a bit for each lane, and `pair` holds the slots of the lane's pair in bytes of entries. Returns the number
@@ -37,7 +70,6 @@ __device__ std::uint32_t search_entries(const BrickSearch<method>& search, const
                                         SearchMemory<method>& memory, std::uint32_t first, std::uint32_t end,
                                         Sink& sink) {
   constexpr int runs = BrickSearch<method>::runs;
-  constexpr std::uint32_t window = 32 * 32;
   const unsigned lane = threadIdx.x % 32;
   SearchStage<runs>& stage = memory.stage[threadIdx.x / 32];
   const std::uint32_t slot = first + lane;
@@ -70,35 +102,7 @@ __device__ std::uint32_t search_entries(const BrickSearch<method>& search, const
     at += run[r].length;
   }
   if (lane == 31) stage.run[number] = ((0u - tests * 16) & 0xffffu) | (first + 32) << 20;
-  // mark() sets the bits of the tests with which runs start, within a window of tests. The last lane also
-  // marks the end, so that the remaining tests of the last words belong to no entry.
-  const auto mark = [&](std::uint32_t done) {
-    auto from = static_cast<std::int32_t>(first_test - done);  // negative: before the window
-    const std::int32_t word = from >> 5;
-    std::uint32_t bits[2] = {};  // bits of this word and the next one; runs hardly ever start further on
-    bool far = false;
-#pragma unroll
-    for (int r = 0; r <= runs; ++r) {
-      const std::uint32_t starts = r < runs ? used[r] : lane == 31 ? 1u : 0u;
-      const auto bit = static_cast<std::uint32_t>(from - 32 * word);
-      bits[0] |= __funnelshift_lc(0, starts, bit);
-      bits[1] |= __funnelshift_lc(0, starts, bit - 32);
-      far |= starts && bit >= 64;
-      if (r < runs) from += static_cast<std::int32_t>(run[r].length);
-    }
-    if (bits[0] && word >= 0 && word < 32) atomicOr(&stage.starts[word], bits[0]);
-    if (bits[1] && word >= -1 && word < 31) atomicOr(&stage.starts[word + 1], bits[1]);
-    if (far) {
-      from = static_cast<std::int32_t>(first_test - done);
-      for (int r = 0; r <= runs; ++r) {
-        const bool starts = r < runs ? used[r] > 0 : lane == 31;
-        if (starts && from - 32 * word >= 64 && from >= 0 && from < static_cast<std::int32_t>(window))
-          atomicOr(&stage.starts[from / 32], 1u << (from % 32));
-        if (r < runs) from += static_cast<std::int32_t>(run[r].length);
-      }
-    }
-  };
-  mark(0);
+  mark_starts(run, used, static_cast<std::int32_t>(first_test), lane, stage);
   const std::uint32_t up_to_lane = held((2u << lane) - 1);
   const std::uint32_t turned_from = held(shared_address(stage.turned) - first * 16);
   const std::uint32_t entries_from = held(shared_address(memory.entry));
@@ -107,7 +111,7 @@ __device__ std::uint32_t search_entries(const BrickSearch<method>& search, const
     if (done > 0) {
       stage.starts[lane] = 0;
       __syncwarp();
-      mark(done);
+      mark_starts(run, used, static_cast<std::int32_t>(first_test - done), lane, stage);
     }
     __syncwarp();
     const std::uint32_t words = held((min(tests - done, window) + 31) / 32);

@@ -242,6 +242,25 @@ SCREE_LAW double sum_of(const Vector& v) {
   return sum;
 }
 
+/// Sets the predicted gaps of the contacts from c on, with the normal velocities after the response (m/s).
+/// Returns the overlaps at the end, as shares of their caps.
+SCREE_LAW Vector predict_gaps(const AccountBlocks& by, std::int64_t c, const Vector& velocity,
+                              const VectorOfMasks& carries) {
+  using C = BallContacts<double>;
+  Vector gap = by.contacts.gaps.get<Lanes>(C::predicted_gap, c);
+  const Vector cap = by.contacts.gaps.get<Lanes>(C::cap, c);
+  const std::uint8_t* const flags = by.contacts.flags.data() + c;
+  Vector met{}, passes{};
+  for (int l = 0; l < width; ++l) {
+    met[l] = flags[l] == 0 ? 1 : 0;
+    passes[l] = (flags[l] & flag_flying) != 0 ? 1 : 0;
+  }
+  if (!by.again) gap = met > 0 ? gap + 0.5 * by.step * velocity : gap;
+  gap = ((passes > 0) & !carries) ? Lanes::all(HUGE_VAL) : gap;
+  by.contacts.gaps.put<Lanes>(C::predicted_gap, c, gap);
+  return met > 0 ? -gap / cap : Vector{};
+}
+
 BlockTotals account_balls(const AccountBlocks& given, Blocks blocks) {
   using C = BallContacts<double>;
   const AccountBlocks by = given;
@@ -280,21 +299,8 @@ BlockTotals account_balls(const AccountBlocks& given, Blocks blocks) {
     of_gaps = of_gaps + (carries ? (gap < 0 ? -gap : gap) : Vector{});
     loaded = loaded + (carries ? one : Vector{});
     ends = ends + ((carries & free_i) ? one : Vector{}) + ((carries & free_j) ? one : Vector{});
-    Vector predicted_gap = by.contacts.gaps.get<Lanes>(C::predicted_gap, c);
-    const Vector cap = by.contacts.gaps.get<Lanes>(C::cap, c);
-    const std::uint8_t* const flags = by.contacts.flags.data() + c;
-    Vector met{}, passes{};
-    for (int l = 0; l < width; ++l) {
-      met[l] = flags[l] == 0 ? 1 : 0;
-      passes[l] = (flags[l] & flag_flying) != 0 ? 1 : 0;
-    }
-    if (!by.again)
-      predicted_gap =
-          met > 0 ? predicted_gap + 0.5 * by.step * dot(balls.normal, after.j.velocity - after.i.velocity)
-                  : predicted_gap;
-    predicted_gap = ((passes > 0) & !carries) ? Lanes::all(HUGE_VAL) : predicted_gap;
-    by.contacts.gaps.put<Lanes>(C::predicted_gap, c, predicted_gap);
-    const Vector depth = met > 0 ? -predicted_gap / cap : Vector{};
+    const Vector velocity = dot(balls.normal, after.j.velocity - after.i.velocity);
+    const Vector depth = predict_gaps(by, c, velocity, carries);
     deepest = depth > deepest ? depth : deepest;
   }
   BlockTotals totals;

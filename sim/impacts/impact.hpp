@@ -304,6 +304,25 @@ SCREE_HD void add_other_walls(const FlightStage& stage, const SolvedImpact& of, 
   points.keep_widest(normal);
 }
 
+/// Makes the rows of the points that close, sets the velocities before the impact, and returns the largest
+/// closing speed (m/s).
+SCREE_HD inline double make_rows(const Vec3& normal, const StruckPoints& points, bool of_balls,
+                                 SolvedImpact& out, RowCoupling (&couplings)[Manifold::max_points]) {
+  double fastest = 0;
+  for (int k = 0; k < points.count; ++k) {
+    const Vec3& point = points.at[k];
+    const Vec3 arm_i = point - out.at_i.solid.position;
+    const Vec3 arm_j = point - out.at_j.solid.position;
+    out.rows[k] = of_balls ? make_ball_row(arm_i, arm_j, 0.0, out.after_i, out.after_j)
+                           : make_row(normal, arm_i, arm_j, 0.0, out.after_i, out.after_j, couplings[k]);
+    out.before[k] = out.rows[k].relative_velocity(out.after_i, out.after_j);
+    out.at[k] = point;
+    out.wall[k] = points.wall[k];
+    fastest = std::max(fastest, closing_speed(normal, point, out.at_i, out.at_j));
+  }
+  return fastest;
+}
+
 }  // namespace detail
 
 /// Solves an impact by Newton's law u+ = -e u- at all points that touch and close, with Coulomb friction.
@@ -349,19 +368,8 @@ SCREE_HD bool solve_impact(const FlightStage& stage, std::int32_t i, std::int32_
   if (points.count == 0) return false;
   detail::add_other_walls(stage, out, m.normal, other_walls, points);
   RowCoupling couplings[Manifold::max_points];
-  double fastest = 0;
-  int count = 0;
-  for (; count < points.count; ++count) {
-    const Vec3& point = points.at[count];
-    const Vec3 arm_i = point - out.at_i.solid.position;
-    const Vec3 arm_j = point - out.at_j.solid.position;
-    out.rows[count] = of_balls ? make_ball_row(arm_i, arm_j, 0.0, a, b)
-                               : make_row(m.normal, arm_i, arm_j, 0.0, a, b, couplings[count]);
-    out.before[count] = out.rows[count].relative_velocity(a, b);
-    out.at[count] = point;
-    out.wall[count] = points.wall[count];
-    fastest = std::max(fastest, closing_speed(m.normal, point, out.at_i, out.at_j));
-  }
+  const double fastest = detail::make_rows(m.normal, points, of_balls, out, couplings);
+  const int count = out.count = points.count;
   const double slowest =
       stage.slowest_bounce(i, j) + fabs(m.normal.dot(sinking_velocity(out.flight_i, out.flight_j)));
   const bool bounces = fastest > slowest && !loads.is_loaded(meeting.part) &&
@@ -375,7 +383,6 @@ SCREE_HD bool solve_impact(const FlightStage& stage, std::int32_t i, std::int32_
     detail::sweep_impact(out.rows, couplings, count, m.normal, friction, out.rolling, guides, a, b);
     detail::keep_from_gaining(out.rows, out.before, count, out.rolling, guides, a, b);
   }
-  out.count = count;
   return true;
 }
 

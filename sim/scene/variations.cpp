@@ -1,6 +1,7 @@
 #include "sim/scene/variations.hpp"
 
 #include "core/error.hpp"
+#include "sim/scene/text_lines.hpp"
 
 #include <fmt/format.h>
 
@@ -9,12 +10,6 @@
 namespace scree {
 
 namespace {
-
-std::string_view trimmed(std::string_view text) {
-  const std::size_t first = text.find_first_not_of(' ');
-  if (first == std::string_view::npos) return {};
-  return text.substr(first, text.find_last_not_of(' ') - first + 1);
-}
 
 /// At the commas that no bracket or brace encloses.
 std::vector<std::string> split(std::string_view text) {
