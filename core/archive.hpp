@@ -1,4 +1,4 @@
-// What must be remembered to go on as if one had never stopped. Each part names its fields once, in
+// The state that a run saves to go on later as if it had never stopped. Each part names its fields once, in
 // archive(), for saving and for loading.
 #pragma once
 
@@ -15,8 +15,8 @@
 
 namespace scree {
 
-/// What the bytes of a field are: rows of `columns` numbers, each `width` bytes wide. A record that is no
-/// number is as many bytes.
+/// The type of a field: rows of `columns` numbers, each `width` bytes wide. A record that is not a number
+/// counts as one column for each of its bytes.
 struct FieldType {
   enum class Kind : std::uint8_t { integer, natural, real, bytes };
 
@@ -24,7 +24,7 @@ struct FieldType {
   int width;
   int columns;
 
-  int row() const { return width * columns; }  ///< bytes
+  int row() const { return width * columns; }  ///< size of a row (bytes)
   friend bool operator==(const FieldType&, const FieldType&) = default;
 };
 
@@ -45,9 +45,9 @@ constexpr FieldType field_type_of() {
   }
 }
 
-/// One of them, on Host.
+/// One saved field, on Host.
 struct SavedField {
-  std::string name;  ///< of the parts that it is in, and its own: contacts/slots/color
+  std::string name;  ///< path through the parts that hold it, and its own name: contacts/slots/color
   FieldType type;
   Array<std::byte, Host> bytes;
 
@@ -57,20 +57,20 @@ struct SavedField {
 struct SavedState {
   std::vector<SavedField> fields;
 
-  /// Null if there is none of that name.
+  /// Returns null if there is no field with that name.
   const SavedField* find(std::string_view name) const;
   std::size_t bytes() const;
 };
 
-/// Goes through the fields of one part after the other, and saves them, or loads them. The names in a part
-/// are unique. Throws InputError where a state to be loaded lacks a field, or has it of another type.
+/// Visits the fields of one part after the other, and saves or loads them. The names within a part are
+/// unique. Throws InputError if a state to be loaded lacks a field, or has it with another type.
 class Archive {
  public:
   static Archive saving(SavedState& to) { return {&to, nullptr}; }
   static Archive loading(const SavedState& from) { return {nullptr, &from}; }
   bool is_loading() const { return from_ != nullptr; }
 
-  /// A number or record, which is copied as bytes.
+  /// Saves or loads a number or a record, which is copied as bytes.
   template <class T>
   void operator()(const char* name, T& value) {
     if (is_loading()) {
@@ -103,10 +103,10 @@ class Archive {
   }
   void operator()(const char* name, std::string& text);
 
-  /// Throws InputError, with the name of a field that was loaded, unless what it holds can be.
+  /// Throws InputError with the name of a loaded field unless the field's contents are valid (`holds`).
   void expect(bool holds, const char* name) const;
 
-  /// All that part.archive(*this, more...) names.
+  /// Saves or loads all fields that part.archive(*this, more...) names.
   template <class Part, class... More>
   void part(const char* name, Part& part, More&&... more) {
     const std::size_t outside = prefix_.size();
@@ -130,7 +130,7 @@ class Archive {
   static void load(T* data, const SavedField& field) {
     copy_bytes<Space, Host>(data, field.bytes.data(), static_cast<std::size_t>(field.bytes.size()));
   }
-  /// `rows`: how many it must have; -1: any number.
+  /// `rows` is the number of rows that the field must have; -1 allows any number.
   const SavedField& field_of(const char* name, const FieldType& type, std::int64_t rows) const;
 
   SavedState* to_;

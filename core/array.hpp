@@ -18,7 +18,7 @@ class View {
  public:
   View() = default;
   SCREE_HD View(T* data, std::int64_t size) : data_(data), size_(size) {}
-  /// What may be written may be read.
+  /// A view that may be written converts to one that may only be read.
   template <class U>
   requires std::is_same_v<const U, T> SCREE_HD View(const View<U>& other)
       : data_(other.data()), size_(other.size()) {}
@@ -38,7 +38,7 @@ template <class T>
 using ConstView = View<const T>;
 
 /// Uninitialised storage of `size` elements in a space. It grows geometrically and never shrinks its
-/// capacity, so the steady step does not allocate. Elements are moved as bytes.
+/// capacity, so that a step in the steady state does not allocate. Elements are moved as bytes.
 template <class T, class Space>
 class Array {
  public:
@@ -69,7 +69,7 @@ class Array {
   T* data() { return data_; }
   const T* data() const { return data_; }
   std::int64_t size() const { return size_; }
-  /// Elements that there is storage for.
+  /// Number of elements that there is storage for.
   std::int64_t capacity() const { return capacity_; }
   bool empty() const { return size_ == 0; }
   View<T> view() { return {data_, size_}; }
@@ -86,7 +86,7 @@ class Array {
   std::int64_t capacity_ = 0;
 };
 
-/// The named copies: the only way in which data moves between spaces. `to` takes the size of `from`.
+/// These named copies are the only way in which data moves between spaces. `to` takes the size of `from`.
 template <class T, class To, class From>
 void copy(Array<T, To>& to, const Array<T, From>& from) {
   to.resize(from.size());

@@ -1,4 +1,5 @@
-// A bound for tests: results must not hang on how many blocks of threads a GPU works on at once.
+// A bound on the number of thread blocks, for tests: results must not depend on how many blocks a GPU works
+// on at once.
 #pragma once
 
 #include <atomic>
@@ -6,7 +7,8 @@
 
 namespace scree::parallel {
 
-/// The most blocks of a launch of a program of phases (core/space_phases.hpp), to act as a smaller GPU.
+/// The largest number of blocks in a launch of a program of phases (core/space_phases.hpp). A test lowers it
+/// to act as a smaller GPU.
 inline std::atomic<int> block_limit{std::numeric_limits<int>::max()};
 
 }  // namespace scree::parallel

@@ -24,20 +24,21 @@ using HostVector = std::vector<T>;
 /// fields. The step may move bodies to other places (sim/bodies/body_order.hpp); their numbers stay.
 template <template <class> class Container>
 struct BodyFields {
-  Container<Vec3> position;         ///< centre of mass (m); of a plane, the point of it nearest the origin
-  Container<Quat> orientation;      ///< unit; body frame (principal axes) to world
-  Container<Vec3> velocity;         ///< of the centre of mass (m/s)
+  Container<Vec3> position;         ///< centre of mass (m); for a plane, its point nearest to the origin
+  Container<Quat> orientation;      ///< unit quaternion, from the body frame (principal axes) to the world
+  Container<Vec3> velocity;         ///< velocity of the centre of mass (m/s)
   Container<Vec3> spin;             ///< angular velocity (rad/s)
-  Container<Vec3> size;             ///< see Shape (m)
+  Container<Vec3> size;             ///< dimensions, see Shape (m)
   Container<double> inverse_mass;   ///< 1/kg; 0 for bodies that are not free
-  Container<Vec3> inverse_inertia;  ///< principal, 1/(kg m^2); 0 for bodies that are not free
+  Container<Vec3> inverse_inertia;  ///< inverse principal moments, 1/(kg m^2); 0 for bodies that are not free
   Container<Shape> shape;
   Container<Mobility> mobility;
   Container<std::int32_t> material;  ///< index into the scene's materials
   Container<BodyNumber> id;
 
-  Period period = {};  ///< of the space that they are in; no field of theirs
-  /// Place of each body, by its number. Empty where the place of each body is its number. No field of theirs.
+  Period period = {};  ///< period of the space; not a field of the bodies
+  /// The place of each body, by its number; empty if each place is equal to the number. Not a field of the
+  /// bodies.
   Container<std::int32_t> place_of = {};
 
   SCREE_HD std::int32_t place(BodyNumber number) const {
@@ -45,7 +46,7 @@ struct BodyFields {
     return place_of.size() == 0 ? k : place_of.data()[k];
   }
   std::int64_t count() const { return static_cast<std::int64_t>(position.size()); }
-  void archive(Archive& archive);  ///< of as many as there are
+  void archive(Archive& archive);  ///< the number of bodies must be the same as when they were saved
 };
 
 /// Calls f(name, field...) for each field of one or more BodyFields, in a fixed order.
@@ -75,7 +76,7 @@ void BodyFields<Container>::archive(Archive& archive) {
       *this);
 }
 
-/// Bodies on the host, in growable vectors: what scenes build and what is recorded and drawn.
+/// Bodies on the host, in growable vectors. Scenes are built as such tables, and they are recorded and drawn.
 using BodyTable = BodyFields<HostVector>;
 
 namespace detail {
@@ -84,17 +85,17 @@ struct ArrayIn {
   template <class T>
   using type = Array<T, Space>;
 };
-// ConstView in words that nvcc cannot mistake: as a template argument, it takes the alias of View<const T>
-// for View itself.
+// Another spelling of ConstView, for nvcc: as a template argument, it takes the alias of View<const T> for
+// View itself.
 template <class T>
 using ReadOnly = View<std::add_const_t<T>>;
 }  // namespace detail
 
-/// Bodies in a space: what the step works on.
+/// Bodies in a space; the step works on these.
 template <class Space>
 using Bodies = BodyFields<detail::ArrayIn<Space>::template type>;
 
-/// What kernels take: views of every field, read-write or read-only.
+/// Views of every field, read-write or read-only, as kernels take them.
 using BodyView = BodyFields<View>;
 using ConstBodyView = BodyFields<detail::ReadOnly>;
 
@@ -115,8 +116,7 @@ ConstBodyView view_of(const BodyFields<Container>& bodies) {
   return views;
 }
 
-/// Every field of `to` becomes that of `from`, and so do the period and the places; the two may live in
-/// different spaces.
+/// Copies every field, the period and the places from `from` to `to`; the two may live in different spaces.
 template <template <class> class To, template <class> class From>
 void copy_bodies(BodyFields<To>& to, const BodyFields<From>& from) {
   for_each_field([](const char*, auto& t, const auto& f) { copy(t, f); }, to, from);
@@ -127,10 +127,11 @@ void copy_bodies(BodyFields<To>& to, const BodyFields<From>& from) {
 /// Moves every field into the order given: element k becomes the old element order[k].
 void permute(BodyTable& bodies, const std::vector<std::int32_t>& order);
 
-/// 64-bit XXH3 over every field in the order of the list, of bodies that lie in the order of their numbers.
+/// Returns the 64-bit XXH3 over every field in the order of the list. The bodies must lie in the order of
+/// their numbers.
 std::uint64_t hash_of(const BodyTable& bodies);
 
-/// Radius of the smallest sphere around the centre that holds the body (m); infinite for a plane.
+/// Returns the radius of the smallest sphere around the centre that holds the body (m); infinite for a plane.
 SCREE_HD inline double bounding_radius(Shape shape, const Vec3& size) {
   if (shape == Shape::plane) return HUGE_VAL;
   switch (shape) {
@@ -147,28 +148,30 @@ SCREE_HD inline double bounding_radius(Shape shape, const Vec3& size) {
   }
 }
 
-/// True for shapes that other bodies are in, and that are never free.
+/// Returns true for shapes that have other bodies inside, and that are never free.
 SCREE_HD inline bool is_boundary(Shape shape) { return shape == Shape::plane || shape == Shape::tube; }
 
-/// True for shapes that are surfaces without an inside, and that are never free.
+/// Returns true for shapes that are surfaces without an inside of their own, and that are never free.
 SCREE_HD inline bool is_surface(Shape shape) { return is_boundary(shape) || shape == Shape::triangle; }
 
-/// True for the shapes that the closed forms and the 15 axes do not know. The step takes them on Host.
+/// Returns true for shapes that neither the closed forms nor the 15 separating axes of boxes cover. The step
+/// handles them on Host.
 SCREE_HD inline bool is_general(Shape shape) { return shape > Shape::tube; }
 
-/// The length to which a body's tolerances are relative: radius, or smallest half extent (m). Surfaces set
-/// none: the body that touches them does.
+/// Returns the length to which a body's tolerances are relative (m): its radius or its smallest half extent.
+/// It is infinite for surfaces, so that the body that touches them sets the length.
 SCREE_HD inline double smallest_size(Shape shape, const Vec3& size) {
   if (is_surface(shape)) return HUGE_VAL;
   return shape == Shape::sphere ? size.x() : size.minCoeff();
 }
 
-/// Radius on which a body rolls (m); infinite for flat faces, and for walls that others are in.
+/// Returns the radius on which a body rolls (m); infinite for flat faces, and for walls around other bodies.
 SCREE_HD inline double rolling_radius(Shape shape, const Vec3& size) {
   return shape == Shape::sphere || shape == Shape::capsule || shape == Shape::cylinder ? size.x() : HUGE_VAL;
 }
 
-/// Of a body that can be free (m^3); of a polyhedron, of the box around it: its own is Hull::volume.
+/// Returns the volume of a body that can be free (m^3). For a polyhedron it is that of the box around it; the
+/// polyhedron's own volume is Hull::volume.
 SCREE_HD inline double volume_of(Shape shape, const Vec3& size) {
   const double disc = pi * size.x() * size.x();
   switch (shape) {
@@ -183,7 +186,7 @@ SCREE_HD inline double volume_of(Shape shape, const Vec3& size) {
   }
 }
 
-/// True where all principal moments are equal (spheres, cubes): the spin is then constant in free flight
+/// Returns true if all principal moments are equal (spheres, cubes): the spin is then constant in free flight
 /// and there is no gyroscopic term.
 SCREE_HD inline bool has_equal_moments(const Vec3& inverse_inertia) {
   return inverse_inertia.x() == inverse_inertia.y() && inverse_inertia.y() == inverse_inertia.z();

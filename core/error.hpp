@@ -1,4 +1,5 @@
-// The errors belong to the interface; inside they go by this name.
+// The errors that scree throws. They belong to the public interface; the sources inside include them from
+// here.
 #pragma once
 
 #include "scree/error.hpp"

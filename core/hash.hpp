@@ -6,7 +6,7 @@
 
 namespace scree {
 
-/// 64-bit XXH3.
+/// Returns the 64-bit XXH3 of the bytes.
 std::uint64_t hash_of(const void* data, std::size_t bytes);
 
 }  // namespace scree

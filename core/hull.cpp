@@ -1,4 +1,4 @@
-// From the surface of a hull to its polygons, edges and mass; mass by tetrahedra.
+// Makes a hull from its surface: polygons, edges and mass. The mass is summed over tetrahedra.
 #include "core/error.hpp"
 #include "core/geometry.hpp"
 #include "core/hull_surface.hpp"
@@ -16,7 +16,7 @@ namespace scree {
 
 namespace {
 
-// Normals and mass of thin hulls take differences of products that are nearly equal.
+// Long double, because normals and mass of thin hulls are differences of products that are nearly equal.
 using Real = long double;
 using Fine = Eigen::Matrix<Real, 3, 1>;
 
@@ -33,7 +33,7 @@ void append_edges(Hull& hull) {
   }
 }
 
-/// In the frame of the points, with vertices in their order.
+/// Returns the hull in the frame of the points, with its vertices in the order of the points.
 Hull polyhedron_of(std::span<const Vec3> points) {
   const auto surface = hull_surface(points);
   std::map<int, int> number;
@@ -57,7 +57,7 @@ Hull polyhedron_of(std::span<const Vec3> points) {
   return hull;
 }
 
-/// Volume, centre and second moments, of tetrahedra over the faces.
+/// Volume, first and second moments, as sums over tetrahedra from the origin to the faces.
 struct Mass {
   Real volume = 0;
   Fine first = Fine::Zero();                         ///< integral of x
@@ -72,7 +72,7 @@ struct Mass {
   }
 };
 
-/// Relative to a point, so that what is far from the origin keeps its digits.
+/// Returns the moments relative to a point, so that hulls far from the origin keep their digits.
 Mass mass_of(const Hull& hull, const Vec3& origin) {
   Mass mass;
   for (const Hull::Face& face : hull.faces) {
@@ -85,8 +85,8 @@ Mass mass_of(const Hull& hull, const Vec3& origin) {
   return mass;
 }
 
-/// Principal moments, and the axes that they are about. Axes that are principal but for rounding stay as they
-/// are, and moments that are equal but for rounding are equal.
+/// Sets the principal moments of a hull, and the axes that they are about. Axes that are principal but for
+/// rounding stay as they are, and moments that are equal but for rounding are made equal.
 void diagonalize(const Mat3& inertia, Hull& hull) {
   const double largest = inertia.cwiseAbs().maxCoeff();
   const double rounding = tolerance::equal_moments * largest;

@@ -29,7 +29,8 @@ Vec3 extent_of(std::span<const Vec3> points) {
   return high - low;
 }
 
-/// About the first, and scaled to a longest extent of 1, wherever and however large they were.
+/// Returns the points relative to the first one, and scaled to a longest extent of 1, so that neither their
+/// place nor their size matters.
 std::vector<Vec3> scaled(std::span<const Vec3> points) {
   if (points.size() < 4) throw InputError("needs four points at least");
   if (!std::all_of(points.begin(), points.end(), [](const Vec3& p) { return p.allFinite(); }))
@@ -49,8 +50,9 @@ Vec3 farthest(const std::vector<Vec3>& points, Value value) {
                            [&](const Vec3& a, const Vec3& b) { return value(a) < value(b); });
 }
 
-/// The extent across the plane of two points that are far apart and the one farthest from their line: at
-/// least the least extent along any direction, and a few times that at most.
+/// Returns the extent at right angles to the plane through two points that are far apart and the point
+/// farthest from their line. It is at least the least extent along any direction, and at most a few times
+/// that.
 double thickness_of(const std::vector<Vec3>& points) {
   const Vec3 a = farthest(points, [](const Vec3& x) { return -x.x(); });
   const Vec3 b = farthest(points, [&](const Vec3& x) { return (x - a).squaredNorm(); });
@@ -64,7 +66,8 @@ double thickness_of(const std::vector<Vec3>& points) {
          height(farthest(points, [&](const Vec3& x) { return -height(x); }));
 }
 
-/// Finds the surface of points that have been scaled. Lengths are relative to their longest extent.
+/// Finds the surface of points that have been scaled. Lengths are relative to the longest extent of the
+/// points.
 class Surface {
  public:
   explicit Surface(std::vector<Vec3> points) : points_(std::move(points)) {
@@ -73,7 +76,8 @@ class Surface {
     width_ = tolerance::coplanar * std::min(1.0, tolerance::coplanar_thicknesses * thickness);
   }
 
-  /// Qhull fails, in rare cases, on points that are only just not equal, so these are taken as equal then.
+  /// Finds the faces. In rare cases Qhull fails on points that are nearly equal; such points then count as
+  /// one.
   std::vector<Polygon> find() {
     for (double apart = width_; !find_of_points(apart); apart *= 4)
       if (used_.size() <= 4)
@@ -87,7 +91,8 @@ class Surface {
  private:
   const Vec3& at(int p) const { return points_[static_cast<std::size_t>(p)]; }
 
-  /// Of points that are so far apart. False if there is none.
+  /// Finds the faces of points that are farther than `apart` from each other. Returns false if there are none
+  /// that pass the checks.
   bool find_of_points(double apart) {
     leave_out_nearer(apart);
     for (;;) {
@@ -98,9 +103,9 @@ class Surface {
     }
   }
 
-  /// Uses of points that are nearer to each other the first along a direction.
+  /// Among points that are nearer to each other than `apart`, uses only the first along a direction.
   void leave_out_nearer(double apart) {
-    // One in which few points of a lattice are alike.
+    // Along this direction, few points of a lattice have the same place.
     const Vec3 along(1, 0.618033988749895, 0.414213562373095);
     std::vector<std::pair<double, int>> order;
     for (int p = 0; p < static_cast<int>(points_.size()); ++p) order.emplace_back(along.dot(at(p)), p);
@@ -119,7 +124,8 @@ class Surface {
     std::sort(used_.begin(), used_.end());
   }
 
-  /// Of the points that are used, counterclockwise from outside; none if Qhull finds none.
+  /// Finds the faces of the hull of the points in use, counterclockwise from outside; none if Qhull finds
+  /// none.
   void find_faces() {
     std::vector<Vec3> given;
     for (const int p : used_) given.push_back(at(p));
@@ -138,8 +144,8 @@ class Surface {
     return at(face[(k + 1) % face.size()]) - at(face[k]);
   }
 
-  /// A corner of each face that is concave by more than the width: facets have been merged that bend by as
-  /// much as one of its sides is long. In the order of points.
+  /// Finds one corner of each face that is concave by more than the width. In such a face, facets have been
+  /// merged that bend by as much as one of its sides is long. The corners are in the order of the points.
   Polygon find_dents() const {
     Polygon dents;
     for (const Polygon& face : faces_)
@@ -158,7 +164,8 @@ class Surface {
     return false;
   }
 
-  /// Of the corners at which the border turns inward the one nearest to the line past it.
+  /// Among the corners at which the border turns inward, returns the one nearest to the line between its
+  /// neighbours.
   int least_dent(const Polygon& face) const {
     const Vec3 normal = normal_of(face);
     double least = HUGE_VAL;
@@ -174,8 +181,8 @@ class Surface {
     return dent;
   }
 
-  /// Whether there are faces, each edge has two and each corner three of them, and there is no hole (Euler's
-  /// formula).
+  /// Whether there are faces, each edge has two faces and each corner three or more, and there is no hole
+  /// (Euler's formula).
   bool is_closed() const {
     std::map<std::pair<int, int>, int> edges;
     std::map<int, int> corners;
@@ -193,11 +200,12 @@ class Surface {
            2 * (corners.size() + faces_.size()) == edges.size() + 4;
   }
 
-  /// The hull of so many faces has too many vertices and is refused, so that its accuracy does not matter.
+  /// Whether the hull has so many faces that it must have too many vertices: it is then refused, so that its
+  /// accuracy does not matter.
   bool has_too_many_faces() const { return faces_.size() > 2 * Hull::most_vertices; }
 
   /// Whether no point is far outside of a face, and no corner far from its face's plane. Qhull can merge
-  /// facets whose normals are noise, as those are between points that are only just not equal.
+  /// facets whose normals are noise, as the normals of facets between nearly equal points are.
   bool holds_points(double apart) const {
     const double most = tolerance::most_off_face * apart;
     return std::all_of(faces_.begin(), faces_.end(), [&](const Polygon& face) {
@@ -210,8 +218,8 @@ class Surface {
   }
 
   std::vector<Vec3> points_;
-  double width_;  ///< of what counts as nothing
-  Polygon used_;  ///< points, in their order
+  double width_;  ///< the distance that counts as none
+  Polygon used_;  ///< the points in use, in ascending order
   std::vector<Polygon> faces_;
 };
 

@@ -1,4 +1,4 @@
-// The triangles of a mesh as bodies, and what each must know of those around it.
+// Places the triangles of a mesh as bodies, and finds the neighbours of each.
 #include "core/geometry.hpp"
 #include "core/tolerances.hpp"
 
@@ -33,7 +33,7 @@ class Incidence {
       for (const int v : placed[t].corners) at_vertex_[next[static_cast<std::size_t>(v)]++] = t;
   }
 
-  /// Each beside the edge.
+  /// Returns all pairs of this edge and a triangle beside it.
   std::span<const std::pair<Edge, std::size_t>> at_edge(const Edge& edge) const {
     const auto first = std::ranges::lower_bound(at_edge_, edge, {}, &std::pair<Edge, std::size_t>::first);
     const auto end =
@@ -69,12 +69,12 @@ class Neighbours {
   static constexpr std::int64_t none = 0;
   const Incidence& incidence_;
   const std::vector<PlacedTriangle>& placed_;
-  std::vector<std::int64_t> seen_by_;  ///< the last asking that has met the vertex
+  std::vector<std::int64_t> seen_by_;  ///< number of the last call of of() that has met the vertex
   std::int64_t asked_ = none;
   std::vector<int> ends_;
 };
 
-/// At right angles to the edge a b, in the triangle, towards its third corner.
+/// Returns the unit vector in the triangle's plane at right angles to the edge, towards the third corner.
 Vec3 inward(const TriangleMesh& mesh, const PlacedTriangle& triangle, const Edge& edge) {
   const auto third =
       std::ranges::find_if(triangle.corners, [&](int c) { return c != edge.first && c != edge.second; });

@@ -1,6 +1,6 @@
-// Labelled parallel calls in either space: loops and sums (parallel_loops.hpp), scans, selections,
-// moves and sorts.
-// It and its own headers (space_*.hpp) reach Thrust: for parallel sources alone.
+// Labelled parallel calls in either space: loops and sums (parallel_loops.hpp), scans, selections, moves and
+// sorts. This header, and the headers space_*.hpp that it includes, use Thrust: only parallel sources may
+// include them.
 #pragma once
 
 #include "core/array.hpp"
@@ -55,8 +55,8 @@ struct IsNot {
 
 }  // namespace detail
 
-/// counts[b] = number of i, 0 <= i < n, with f(i) = b, for 0 <= b < bins; other values are not counted. f
-/// gives int; bins <= 256 is fastest.
+/// Sets counts[b] to the number of i, 0 <= i < n, with f(i) = b, for 0 <= b < bins; other values are not
+/// counted. f returns int; bins <= 256 is fastest.
 template <class Space, class F>
 void histogram(const char* label, std::int64_t n, F f, int bins, Array<std::uint32_t, Space>& counts) {
   const timing::Call<Space> call(label);
@@ -65,7 +65,7 @@ void histogram(const char* label, std::int64_t n, F f, int bins, Array<std::uint
   scree::detail::histogram(Space{}, first, n, bins, counts.data());
 }
 
-/// values[i] becomes the largest of values[0..i].
+/// Replaces values[i] by the largest of values[0..i].
 template <class Space, class T>
 void running_max(const char* label, Array<T, Space>& values) {
   const timing::Call<Space> call(label);
@@ -73,7 +73,8 @@ void running_max(const char* label, Array<T, Space>& values) {
                          values.data(), thrust::maximum<T>());
 }
 
-/// offsets[i] = counts[0] + ... + counts[i-1] for 0 <= i <= n, which nobody waits for. 64-bit throughout.
+/// Sets offsets[i] = counts[0] + ... + counts[i-1] for 0 <= i <= n, in 64 bits. The host does not wait for
+/// the result on Device.
 template <class Space, class T>
 void exclusive_scan_into(const char* label, const Array<T, Space>& counts,
                          Array<std::int64_t, Space>& offsets) {
@@ -86,7 +87,7 @@ void exclusive_scan_into(const char* label, const Array<T, Space>& counts,
   thrust::inclusive_scan(scree::detail::policy(Space{}), first, first + n, offsets.data() + 1);
 }
 
-/// The same; returns offsets[n].
+/// Does the same as exclusive_scan_into(), waits for it, and returns offsets[n].
 template <class Space, class T>
 std::int64_t exclusive_scan(const char* label, const Array<T, Space>& counts,
                             Array<std::int64_t, Space>& offsets) {
@@ -96,11 +97,12 @@ std::int64_t exclusive_scan(const char* label, const Array<T, Space>& counts,
   return total;
 }
 
-/// Those f(i), 0 <= i < n, that are not `none`, in their order. On Device f is asked more than once.
+/// Collects the f(i), 0 <= i < n, that are not `none`, in their order. On Device f is called more than once
+/// for each i.
 template <class Space, class T, class F>
 void select(const char* label, std::int64_t n, F f, T none, Array<T, Space>& found) {
   if constexpr (std::is_same_v<Space, Host>) {
-    // Block by block, so that f is asked once.
+    // The items are taken block by block, so that f is called once for each.
     constexpr std::int64_t block = 4096;
     std::vector<std::vector<T>> of_block(static_cast<std::size_t>((n + block - 1) / block));
     for_each<Host>(
@@ -126,7 +128,7 @@ void select(const char* label, std::int64_t n, F f, T none, Array<T, Space>& fou
   thrust::copy_if(scree::detail::policy(Space{}), first, first + n, found.data(), some);
 }
 
-/// to[k] = from[index[k]]; `to` takes the size of `index`.
+/// Sets to[k] = from[index[k]]; `to` takes the size of `index`.
 template <class Space, class T>
 void gather(const char* label, const Array<T, Space>& from, const Array<std::int32_t, Space>& index,
             Array<T, Space>& to) {
@@ -134,14 +136,14 @@ void gather(const char* label, const Array<T, Space>& from, const Array<std::int
   parallel::for_each<Space>(label, index.size(), detail::Gather<T>{from.data(), index.data(), to.data()});
 }
 
-/// to[index[k]] = from[k]; no two indices are the same.
+/// Sets to[index[k]] = from[k]; no two indices may be the same.
 template <class Space, class T>
 void scatter(const char* label, const Array<T, Space>& from, const Array<std::int32_t, Space>& index,
              Array<T, Space>& to) {
   parallel::for_each<Space>(label, index.size(), detail::Scatter<T>{from.data(), index.data(), to.data()});
 }
 
-/// Sorts unsigned keys that hold nothing above their lowest `bits` bits.
+/// Sorts unsigned keys in which all bits above the lowest `bits` are 0.
 template <class Space, class Key>
 void sort(const char* label, Array<Key, Space>& keys, int bits = 8 * sizeof(Key)) {
   const timing::Call<Space> call(label);
@@ -152,7 +154,7 @@ void sort(const char* label, Array<Key, Space>& keys, int bits = 8 * sizeof(Key)
   if (k != keys.data()) keys.swap(spare);
 }
 
-/// Stable sort of values by the lowest `bits` bits of their unsigned keys, which hold nothing above them.
+/// Sorts values stably by their unsigned keys, in which all bits above the lowest `bits` are 0.
 template <class Space, class Key, class Value>
 void sort_by_key(const char* label, Array<Key, Space>& keys, Array<Value, Space>& values,
                  int bits = 8 * sizeof(Key)) {

@@ -1,6 +1,6 @@
 // Labelled parallel loops and sums in either space. Sums have a fixed tree, so results do not depend on the
 // number of threads. On Host they need no Thrust: sources that run on Host alone include this header and stay
-// plain C++. A call on Device compiles where core/parallel.hpp is included as well, which brings
+// plain C++. A call on Device compiles only where core/parallel.hpp is included as well, which brings
 // launch_for_each and launch_reduce.
 #pragma once
 
@@ -16,15 +16,16 @@
 
 namespace scree::parallel {
 
-/// Under this many items the cost of sharing them out exceeds the work, on the host.
+/// Number of items below which, on the host, sharing them among threads costs more than the work.
 inline constexpr std::int64_t few = 256;
 
-/// Whether the host has but one thread to work with.
+/// Returns whether the host has only one thread to work with.
 inline bool is_alone() { return scree::detail::ThreadPool::most_threads() == 1; }
 
-/// Calls f(i) for 0 <= i < n, in any order and at once. f is a copyable function object over views; on
-/// Device the call returns before the work is done. `label` names the work to a profiler. `fewest`: items
-/// worth sharing out, on the host, where each is much work.
+/// Calls f(i) for 0 <= i < n, in any order and concurrently. f is a copyable function object over views; on
+/// Device the call returns before the work is done. `label` names the work for a profiler. `fewest` is the
+/// least number of items that is worth sharing among threads on the host; it is smaller where each item is
+/// much work.
 template <class Space, class F>
 void for_each(const char* label, std::int64_t n, F f, [[maybe_unused]] std::int64_t fewest = few) {
   const timing::Call<Space> call(label);
@@ -51,7 +52,7 @@ struct Set {
   SCREE_HD void operator()(std::int64_t i) const { values[i] = value; }
 };
 
-// Leaves of the sum's tree hold this many items; it fixes the grouping, so changing it changes the last bits.
+// Number of items in a leaf of the sum's tree. It fixes the grouping, so changing it changes the last bits.
 inline constexpr std::int64_t leaf = 256;
 
 template <class T, class F>
@@ -92,8 +93,8 @@ void fill(const char* label, Array<T, Space>& values, const T& value) {
   parallel::for_each<Space>(label, values.size(), detail::Set<T>{values.data(), value});
 }
 
-/// Sum of f(i) over 0 <= i < n, as T with an operator +; T{} for n = 0. The tree of the additions depends on
-/// n alone.
+/// Returns the sum of f(i) over 0 <= i < n, as T with an operator +; T{} for n = 0. The tree of the additions
+/// depends on n alone.
 template <class T, class Space, class F>
 T sum(const char* label, std::int64_t n, F f) {
   if (n <= 0) return T{};
@@ -122,8 +123,9 @@ T sum(const char* label, std::int64_t n, F f) {
   return total;
 }
 
-/// All of f(i) for 0 <= i < n joined by `join`, and `neutral` for n = 0. The grouping is free: `join` must be
-/// exact, associative and commutative (integers, minima, maxima), or the result would depend on it.
+/// Returns all f(i) for 0 <= i < n joined by `join`, and `neutral` for n = 0. The grouping is not fixed:
+/// `join` must be exact, associative and commutative (integers, minima, maxima), or the result would depend
+/// on it.
 template <class T, class Space, class F, class Join>
 T reduce(const char* label, std::int64_t n, F f, T neutral, Join join) {
   const timing::Call<Space> call(label);
@@ -148,13 +150,13 @@ T reduce(const char* label, std::int64_t n, F f, T neutral, Join join) {
   }
 }
 
-/// Largest f(i), and `lowest` for n = 0. Exact, whatever the grouping.
+/// Returns the largest f(i), and `lowest` for n = 0. It is exact, whatever the grouping.
 template <class T, class Space, class F>
 T max(const char* label, std::int64_t n, F f, T lowest) {
   return reduce<T, Space>(label, n, f, lowest, detail::Larger<T>());
 }
 
-/// Smallest f(i), and `highest` for n = 0. Exact, whatever the grouping.
+/// Returns the smallest f(i), and `highest` for n = 0. It is exact, whatever the grouping.
 template <class T, class Space, class F>
 T min(const char* label, std::int64_t n, F f, T highest) {
   return reduce<T, Space>(label, n, f, highest, detail::Smaller<T>());

@@ -8,9 +8,9 @@ namespace scree {
 
 namespace {
 
-constexpr std::size_t leaf = 8;  ///< points that are asked one by one
+constexpr std::size_t leaf = 8;  ///< number of points that are tested one by one
 
-/// Whether any of the segment is in the box; may say yes of what is just outside.
+/// Returns whether part of the segment is in the box; may return true for a segment that is just outside.
 bool may_cross(const Vec3& a, const Vec3& way, const Vec3& low, const Vec3& high) {
   double enter = 0, leave = 1;
   for (int k = 0; k < 3; ++k) {
@@ -58,7 +58,7 @@ void PointTree::build(std::size_t node, std::size_t first, std::size_t count) {
   (box.high - box.low).maxCoeff(&axis);
   const auto begin = number_.begin() + static_cast<std::ptrdiff_t>(first);
   const std::size_t half = count / 2;
-  // Equal places are told apart by their numbers, so that the halves are the same everywhere.
+  // Equal places are ordered by their numbers, so that the halves are the same on every machine.
   std::nth_element(begin, begin + static_cast<std::ptrdiff_t>(half),
                    begin + static_cast<std::ptrdiff_t>(count), [&](std::int32_t p, std::int32_t q) {
                      return at(p)[axis] != at(q)[axis] ? at(p)[axis] < at(q)[axis] : p < q;
@@ -74,7 +74,7 @@ void PointTree::near_segment(const Vec3& a, const Vec3& b, double reach,
   struct Range {
     std::size_t node, first, count;
   };
-  std::array<Range, 64> open;  // a branch for each halving at most
+  std::array<Range, 64> open;  // one branch for each halving at most
   std::size_t depth = 0;
   open[depth++] = {0, 0, point_.size()};
   const Vec3 way = b - a;

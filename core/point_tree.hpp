@@ -1,5 +1,5 @@
-// Points in a k-d tree (Bentley 1975), asked for those near a segment: what welding a mesh asks of its
-// corners.
+// A k-d tree of points (Bentley 1975) that finds those near a segment. The welding of meshes uses it for
+// their corners.
 #pragma once
 
 #include "core/math.hpp"
@@ -10,29 +10,29 @@
 
 namespace scree {
 
-/// Takes O(n log n) to build whatever the points are, equal ones and lone far ones included.
+/// A tree that takes O(n log n) to build for any points, including equal ones and single ones far away.
 class PointTree {
  public:
   explicit PointTree(std::span<const Vec3> points);
 
   /// Replaces `found` by the numbers of the points no farther than `reach` (m) from the segment a b, which
-  /// may be a point; in an order that depends on the points alone.
+  /// may be a point. Their order depends on the points alone.
   void near_segment(const Vec3& a, const Vec3& b, double reach, std::vector<std::int32_t>& found) const;
 
  private:
   struct Box {
     Vec3 low, high;
   };
-  /// Node k has the children 2 k + 1 and 2 k + 2, each with half of its points.
+  /// Builds node k, with the children 2 k + 1 and 2 k + 2, each with half of its points.
   void build(std::size_t node, std::size_t first, std::size_t count);
 
-  std::vector<std::int32_t> number_;  ///< of the points, as the leaves have them
-  std::vector<Vec3> point_;           ///< in the same order
-  std::vector<Box> box_;              ///< of each node
+  std::vector<std::int32_t> number_;  ///< numbers of the points, in the order of the leaves
+  std::vector<Vec3> point_;           ///< points in the same order
+  std::vector<Box> box_;              ///< bounding box of each node
 };
 
-/// The square of the distance (m^2) of a point from the segment a b, and the share of the way from a to b at
-/// which the segment is nearest.
+/// The square of the distance (m^2) of a point from the segment a b, and the nearest point of the segment as
+/// a share of the way from a to b.
 struct SegmentDistance {
   double square, share;
 };

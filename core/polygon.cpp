@@ -18,7 +18,7 @@ double turn(const Vec2& a, const Vec2& b, const Vec2& c) {
   return ab.x() * ac.y() - ab.y() * ac.x();
 }
 
-/// Twice the polygon's area along each axis, relative to the first corner.
+/// Returns twice the polygon's area along each axis, computed relative to the first corner.
 Vec3 newell(std::span<const Vec3> corners) {
   Vec3 sum = Vec3::Zero();
   for (std::size_t k = 1; k + 1 < corners.size(); ++k)
@@ -26,7 +26,7 @@ Vec3 newell(std::span<const Vec3> corners) {
   return sum;
 }
 
-/// The corners in the plane across the normal, counterclockwise.
+/// Returns the corners in the plane across the normal, counterclockwise.
 std::vector<Vec2> flattened(std::span<const Vec3> corners, const Vec3& normal) {
   const Vec3 x = tangent_of(normal), y = normal.cross(x);
   std::vector<Vec2> points;
@@ -45,7 +45,7 @@ class EarCutter {
   }
 
   bool cut() {
-    // Spikes first: beside one what is no ear looks like one.
+    // Spikes are removed first: beside a spike, a corner that is no ear looks like one.
     if (!visit([this](std::size_t k) { return is_spike(k); })) return true;
     return !visit([this](std::size_t k) {
       if (is_spike(k)) return true;
@@ -56,10 +56,11 @@ class EarCutter {
   }
 
  private:
-  /// Takes out corners of which `goes` is true until it is of none, or less than three are left: then false.
+  /// Removes corners for which `goes` is true until it is true for none. Returns false if less than three are
+  /// left.
   template <class Goes>
   bool visit(Goes&& goes) {
-    // One that stays may go when one beside it is gone.
+    // A corner that stays may be removable after a neighbour is removed.
     for (std::size_t in_vain = 0; left_ > 2 && in_vain < left_;) {
       const std::size_t before = previous_[at_], after = next_[at_];
       if (goes(at_)) {
@@ -78,7 +79,7 @@ class EarCutter {
 
   double turn_at(std::size_t k) const { return turn(points_[previous_[k]], points_[k], points_[next_[k]]); }
 
-  /// Twice there, or on the way back: it has no area to cut.
+  /// Returns whether the corner is equal to a neighbour or turns straight back: it has no area to cut.
   bool is_spike(std::size_t k) const {
     const Vec2 in = points_[k] - points_[previous_[k]], out = points_[next_[k]] - points_[k];
     return std::abs(turn_at(k)) <= least_ &&

@@ -16,7 +16,7 @@ namespace scree {
 
 namespace {
 
-/// A file in memory. A program that reads from one and writes to others cannot wait for who called it.
+/// A file in memory. A program that reads from one and writes to others never waits for its caller.
 class Stream {
  public:
   Stream() : descriptor_(memfd_create("scree", MFD_CLOEXEC)) {
@@ -38,7 +38,7 @@ class Stream {
     }
   }
 
-  /// All of it, or its last `most` bytes.
+  /// Returns the text, or its last `most` bytes if it is longer.
   std::string text(off_t most) const {
     const off_t size = lseek(descriptor_, 0, SEEK_END);
     const off_t from = size > most ? size - most : 0;
@@ -58,7 +58,8 @@ class Stream {
   int descriptor_;
 };
 
-/// Returns errno's value if it cannot start, and else its status, as waitpid gives it, in `status`.
+/// Runs the command and waits for it. Returns the value of errno if it cannot start; otherwise `status` is
+/// its status as waitpid gives it.
 int spawn(const std::vector<std::string>& command, const Stream& in, const Stream& out, const Stream& words,
           int& status) {
   std::vector<char*> arguments;
@@ -77,7 +78,7 @@ int spawn(const std::vector<std::string>& command, const Stream& in, const Strea
   return 0;
 }
 
-constexpr off_t last_words = 2000;  // bytes
+constexpr off_t last_words = 2000;  // length of the program's last messages that an error quotes (bytes)
 
 }  // namespace
 

@@ -17,7 +17,7 @@ namespace {
 
 using Edges = std::vector<std::pair<int, int>>;
 
-/// Where Qhull says what it has to say, to nobody: otherwise it would be on the user's screen.
+/// A stream in memory that takes the messages of Qhull, which would otherwise appear on the user's screen.
 class Unread {
  public:
   Unread() : file_(open_memstream(&text_, &size_)) {}
@@ -35,13 +35,15 @@ class Unread {
   FILE* file_;
 };
 
-/// Qhull's memory. An error of Qhull jumps back into qh_new_qhull(), which returns it; outside of that an
-/// error would end the program, so that what is here reads Qhull's lists and calls nothing that may fail.
+/// A run of Qhull and its memory. An error of Qhull jumps back into qh_new_qhull(), which returns it. Outside
+/// of that call an error would end the program, so the functions here only read Qhull's lists and call
+/// nothing that may fail.
 class Qhull {
  public:
   Qhull(const std::vector<Vec3>& points, double width) {
     if (!unread_.file()) return;
-    // C-: merges facets; Pp: says nothing of narrow hulls, which are not. Nothing is random without QR or QJ.
+    // C- merges facets; Pp suppresses the warning about narrow hulls, which are allowed. Without QR or QJ
+    // nothing is random.
     std::string command = fmt::format("qhull C-{} Pp", width);
     coordinates_.reserve(3 * points.size());
     for (const Vec3& p : points) coordinates_.insert(coordinates_.end(), {p.x(), p.y(), p.z()});
@@ -61,7 +63,7 @@ class Qhull {
 
   bool found() const { return found_; }
 
-  /// Of each face, in no order.
+  /// Returns the edges of each face, in no particular order.
   std::vector<Edges> edges() const {
     std::vector<Edges> all;
     for (const facetT* facet = state_.facet_list; facet && facet->next; facet = facet->next)
@@ -97,7 +99,8 @@ class Qhull {
   bool ready_ = false, found_ = false;
 };
 
-/// The corners of the polygon that edges are, from the first of its points on; empty if they are none.
+/// Returns the corners of the polygon that the edges form, beginning with the lowest number; empty if they
+/// form none.
 std::vector<int> polygon_of(const Edges& edges) {
   std::map<int, std::vector<int>> beside;
   for (const auto& [a, b] : edges) {

@@ -1,4 +1,4 @@
-// Qhull (Barber, Dobkin, Huhdanpaa 1996, "The Quickhull algorithm for convex hulls").
+// Convex hulls by Qhull (Barber, Dobkin, Huhdanpaa 1996, "The Quickhull algorithm for convex hulls").
 #pragma once
 
 #include "core/math.hpp"
@@ -7,10 +7,10 @@
 
 namespace scree {
 
-/// The faces of the hull of points, as the points at their corners, one after another, either way around.
-/// Facets that bend by less than `width` (m) are one face, whose corners may be out of its plane by some of
-/// it; points in it are no corners. The same points give the same faces. The points should reach equally far
-/// along every axis. Empty if Qhull finds no hull, or a face that is no polygon.
+/// Returns the faces of the hull of points. Each face lists the points at its corners one after another, in
+/// either sense of rotation. Facets that bend by less than `width` (m) are merged into one face, whose
+/// corners may be off its plane by a few times `width`; points within a face are not corners. The same points
+/// give the same faces. The result is empty if Qhull finds no hull, or a face that is not a polygon.
 std::vector<std::vector<int>> faces_by_qhull(const std::vector<Vec3>& points, double width);
 
 }  // namespace scree

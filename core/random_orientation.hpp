@@ -1,4 +1,4 @@
-// Orientations at random.
+// Random orientations.
 #pragma once
 
 #include "core/math.hpp"
@@ -6,7 +6,8 @@
 
 namespace scree {
 
-/// Uniform over all rotations (Shoemake 1992, "Uniform random rotations", Graphics Gems III).
+/// Returns an orientation with uniform distribution over all rotations (Shoemake 1992, "Uniform random
+/// rotations", Graphics Gems III).
 SCREE_HD inline Quat random_orientation(Random& random) {
   const double u = random.uniform();
   const double a = 2 * pi * random.uniform();

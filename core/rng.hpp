@@ -1,5 +1,5 @@
-// Counter-based random numbers: the stream of a body depends on the scene's seed and the body's number
-// alone, so neither order nor thread count can change a scene.
+// Counter-based random numbers: the stream of a body depends on the scene's seed and the body's number alone,
+// so neither the order of calls nor the number of threads can change a scene.
 #pragma once
 
 #include "core/space.hpp"
@@ -9,7 +9,8 @@
 
 namespace scree {
 
-/// Philox4x32-10 (Salmon, Moraes, Dror, Shaw 2011, "Parallel random numbers: as easy as 1, 2, 3", sec. 3.3).
+/// Computes Philox4x32-10 (Salmon, Moraes, Dror, Shaw 2011, "Parallel random numbers: as easy as 1, 2, 3",
+/// sec. 3.3).
 SCREE_HD inline std::array<std::uint32_t, 4> philox(std::array<std::uint32_t, 4> counter,
                                                     std::array<std::uint32_t, 2> key) {
   for (int round = 0; round < 10; ++round) {
@@ -29,14 +30,14 @@ class Random {
   SCREE_HD Random(std::uint64_t seed, std::uint64_t item)
       : key_{static_cast<std::uint32_t>(seed), static_cast<std::uint32_t>(seed >> 32)}, item_(item) {}
 
-  /// Uniform in [0, 1), 53 random bits.
+  /// Returns a number uniform in [0, 1), with 53 random bits.
   SCREE_HD double uniform() {
     const std::array<std::uint32_t, 4> bits = philox(
         {static_cast<std::uint32_t>(item_), static_cast<std::uint32_t>(item_ >> 32), draw_++, 0u}, key_);
     const std::uint64_t word = (static_cast<std::uint64_t>(bits[0]) << 32) | bits[1];
     return static_cast<double>(word >> 11) * 0x1p-53;
   }
-  /// Uniform in [low, high).
+  /// Returns a number uniform in [low, high).
   SCREE_HD double uniform(double low, double high) { return low + (high - low) * uniform(); }
 
  private:

@@ -1,4 +1,4 @@
-// What is to be known of a body's shape beyond what its size tells.
+// The data of a body's shape beyond its size.
 #pragma once
 
 namespace scree {
@@ -6,13 +6,13 @@ namespace scree {
 struct Hull;
 struct Surroundings;
 
-/// Of one body; null where it does not apply.
+/// The shape data of one body; a pointer is null where it does not apply.
 struct ShapeData {
-  const Hull* hull = nullptr;                  ///< of a polyhedron
-  const Surroundings* surroundings = nullptr;  ///< of a mesh's triangle
+  const Hull* hull = nullptr;                  ///< hull of a polyhedron
+  const Surroundings* surroundings = nullptr;  ///< neighbours of a mesh's triangle
 };
 
-/// Of two bodies; null for most.
+/// The shape data of two bodies; null for most.
 struct PairShapes {
   const ShapeData* a = nullptr;
   const ShapeData* b = nullptr;

@@ -1,4 +1,4 @@
-// One instant of a run, on the host: what is recorded, measured and drawn.
+// One instant of a run, on the host. Snapshots are recorded, measured and drawn.
 #pragma once
 
 #include "core/bodies.hpp"
@@ -8,8 +8,8 @@
 namespace scree {
 
 struct Snapshot {
-  double time = 0;        ///< s
-  std::int64_t step = 0;  ///< steps done
+  double time = 0;        ///< time (s)
+  std::int64_t step = 0;  ///< number of steps done
   BodyTable bodies;
 };
 

@@ -28,7 +28,8 @@ void Host::deallocate(void* memory) noexcept { std::free(memory); }
 
 namespace {
 
-/// The bytes in the line "key   123 kB" of one of the system's tables; `otherwise` if there is none.
+/// Returns the bytes in the line "key   123 kB" of one of the system's tables; `otherwise` if there is no
+/// such line.
 std::size_t bytes_in(const char* table, const std::string& key, std::size_t otherwise) {
   std::ifstream lines(table);
   for (std::string line; std::getline(lines, line);) {
@@ -48,7 +49,7 @@ MemoryUse Host::memory_use() {
 }
 
 void Host::forget_peak() {
-  malloc_trim(0);  // or what is free, but resident still, would hide what is taken next
+  malloc_trim(0);  // free memory that is still resident would hide what is taken next
   std::ofstream("/proc/self/clear_refs") << 5;
 }
 
@@ -76,7 +77,7 @@ namespace {
 
 void check(cudaError_t status, const char* what, std::size_t bytes = 0) {
   if (status == cudaSuccess) return;
-  cudaGetLastError();  // forgets it, or the next Thrust call would report it as its own
+  cudaGetLastError();  // clears the error, or the next Thrust call would report it as its own
   std::string message = std::string("CUDA: ") + what;
   if (bytes > 0) message += " (" + std::to_string(bytes) + " bytes)";
   throw RunError(message + ": " + cudaGetErrorString(status));
@@ -96,7 +97,7 @@ std::size_t pool_bytes(cudaMemPoolAttr attribute) {
   return bytes;
 }
 
-// Freed blocks stay in the pool: the steady step then never reaches the driver's allocator.
+// Freed blocks stay in the pool, so that a step in the steady state never reaches the driver's allocator.
 void keep_pool() {
   static const bool done = [] {
     std::uint64_t never = ~std::uint64_t{0};
@@ -118,7 +119,7 @@ void* Device::allocate(std::size_t bytes) {
   void* memory = nullptr;
   const cudaError_t status = cudaMallocAsync(&memory, bytes, cudaStream_t{});
   if (status == cudaErrorMemoryAllocation) {
-    cudaGetLastError();  // forgets it
+    cudaGetLastError();  // clears the error
     throw std::bad_alloc();
   }
   check(status, "cannot take memory", bytes);
@@ -166,7 +167,7 @@ void copy_bytes<Device, Device>(void* to, const void* from, std::size_t bytes) {
 
 namespace {
 
-/// "12.4", of a number as the runtime gives it.
+/// Returns a version such as "12.4" from a number as the runtime gives it.
 std::string version_words(int version) {
   return std::to_string(version / 1000) + '.' + std::to_string(version % 1000 / 10);
 }

@@ -1,4 +1,4 @@
-// What threads of one parallel call say to each other, in either space.
+// Atomic operations, by which the threads of one parallel call communicate, in either space.
 #pragma once
 
 #include "core/space.hpp"
@@ -11,15 +11,16 @@ namespace scree {
 
 namespace detail {
 
-/// What CUDA calls the integers of T's size: of two types of 64 bits it knows one.
+/// The type that CUDA's atomic functions take for integers of T's size; of the two 64-bit types they take
+/// only one.
 template <class T>
 using CudaWord = std::conditional_t<sizeof(T) == 8, unsigned long long,
                                     std::conditional_t<std::is_unsigned_v<T>, unsigned, int>>;
 
 }  // namespace detail
 
-/// Puts `value` in its place and returns what was there, at one stroke. All that a thread has written before
-/// can be read by the thread that gets its value.
+/// Stores `value` in a place and returns the previous value, atomically. The thread that gets the value can
+/// read all that the thread which stored it has written before.
 template <class T>
 SCREE_HD T exchange(T* place, T value) {
 #if defined(__CUDA_ARCH__)
@@ -33,7 +34,7 @@ SCREE_HD T exchange(T* place, T value) {
 #endif
 }
 
-/// Puts `value` in its place, where several threads may put the same one.
+/// Stores `value` in a place where several threads may store the same value.
 template <class T>
 SCREE_HD void put(T* place, T value) {
 #if defined(__CUDA_ARCH__)
@@ -43,8 +44,8 @@ SCREE_HD void put(T* place, T value) {
 #endif
 }
 
-/// Lowers what is in a place to `value`, if that is smaller: exact, whatever the order of the threads. True
-/// for the thread that did.
+/// Lowers the value in a place to `value`, if that is smaller. The result is exact, whatever the order of the
+/// threads. Returns true in the thread that lowered it.
 template <class T>
 SCREE_HD bool lower(T* place, T value) {
 #if defined(__CUDA_ARCH__)
@@ -61,7 +62,7 @@ SCREE_HD bool lower(T* place, T value) {
 #endif
 }
 
-/// Raises it, if `value` is larger.
+/// Raises the value in a place to `value`, if that is larger. Returns true in the thread that raised it.
 template <class T>
 SCREE_HD bool raise(T* place, T value) {
 #if defined(__CUDA_ARCH__)
@@ -78,7 +79,7 @@ SCREE_HD bool raise(T* place, T value) {
 #endif
 }
 
-/// Adds to an integer; the sum does not hang on the order of threads.
+/// Adds to an integer and returns its previous value; the sum does not depend on the order of threads.
 template <class T>
 SCREE_HD T add(T* place, T value) {
 #if defined(__CUDA_ARCH__)
@@ -89,11 +90,11 @@ SCREE_HD T add(T* place, T value) {
 #endif
 }
 
-/// Adds one to a count and returns what it was: a place in a list, whose order hangs on the threads.
+/// Adds one to a count and returns its previous value: a place in a list, whose order depends on the threads.
 SCREE_HD inline std::uint64_t count_up(std::uint64_t* count) { return add(count, std::uint64_t{1}); }
 
-/// The same for a list that grows fast: the threads that run side by side, which must all count up the same
-/// count, do so at one stroke.
+/// Does the same as count_up() for a list that grows fast: the active threads of a warp, which must all count
+/// up the same count, share one atomic addition.
 SCREE_HD inline std::uint64_t count_up_together(std::uint64_t* count) {
 #if defined(__CUDA_ARCH__)
   const unsigned active = __activemask();
@@ -108,7 +109,7 @@ SCREE_HD inline std::uint64_t count_up_together(std::uint64_t* count) {
 #endif
 }
 
-/// Sets the bits of `value`.
+/// Sets the bits of `value` in a place.
 template <class T>
 SCREE_HD void set_bits(T* place, T value) {
 #if defined(__CUDA_ARCH__)

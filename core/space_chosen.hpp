@@ -1,4 +1,4 @@
-// A space that is chosen when the program runs. For sources that name every space of the build
+// Runs code in a space that is chosen when the program runs. For sources that name every space of the build
 // (scree_space_sources in cmake/ScreeCompiler.cmake).
 #pragma once
 
@@ -8,8 +8,8 @@
 namespace scree {
 
 #if defined(SCREE_WITH_CUDA)
-/// act(Device{}) if it is asked for, otherwise act(Host{}); both give the same type. Throws InputError if it
-/// is asked for and there is no GPU to run on, as in builds that do not have it.
+/// Returns act(Device{}) if `on_device`, otherwise act(Host{}); both must have the same type. Throws
+/// InputError if `on_device` and there is no GPU to run on, or the build has no Device.
 template <class Act>
 auto in_chosen_space(bool on_device, const Act& act) {
   if (!on_device) return act(Host{});

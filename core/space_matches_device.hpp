@@ -1,5 +1,5 @@
-// Matches on Device: warps deal the tests of 32 items to their lanes, and blocks learn from those before them
-// where what they find belongs. For parallel sources alone.
+// Matches on Device: the lanes of a warp share the tests of 32 items, and each block learns from the blocks
+// before it where its matches belong. For parallel sources alone.
 #pragma once
 
 #include "core/array.hpp"
@@ -16,40 +16,42 @@ namespace scree {
 
 namespace detail {
 
-/// Where the blocks of a search put what they find: a tile of items each, with a decoupled look-back.
+/// The output of a search. Each block searches a tile of items, and finds the place of its matches with a
+/// decoupled look-back.
 template <class Match>
 struct MatchOutput {
   Match* matches;
-  Word room;     ///< what lies beyond is counted and not written
-  Word* total;   ///< before this search, and after it
-  Word* ticket;  ///< the next tile: tiles start in their order, so that none waits for one that cannot start
-  Word* tests;   ///< test_counters sums
-  Word* tiles;   ///< state of each
+  Word room;     ///< number of matches that fit; those beyond are counted and not written
+  Word* total;   ///< number of matches before this search, and after it
+  Word* ticket;  ///< number of the next tile: tiles start in order, so none waits for one that cannot start
+  Word* tests;   ///< numbers of tests, in test_counters parts
+  Word* tiles;   ///< look-back state of each tile
 };
 
-inline constexpr int match_warps = 4;       // of a block
-inline constexpr int test_counters = 64;    // so that blocks do not queue for one
-inline constexpr std::uint32_t kept = 256;  // matches that a warp keeps until it knows their place
-inline constexpr std::uint32_t words = 32;  // of 32 tasks: those whose runs are found at once
+inline constexpr int match_warps = 4;       // warps of a block
+inline constexpr int test_counters = 64;    // several, so that blocks do not queue for one
+inline constexpr std::uint32_t kept = 256;  // matches that a warp keeps until their place is known
+inline constexpr std::uint32_t words = 32;  // words of 32 tasks whose runs are found at once
 
-/// A run that is not empty, among the tasks of a warp.
+/// A run that is not empty, among the tasks of a warp. A task is the test of one candidate of a run.
 struct alignas(8) TaskRun {
-  std::uint32_t shift;  ///< from its tasks to its candidates
-  std::uint32_t owner;  ///< lane of its item, and 32 times its number
+  std::uint32_t shift;  ///< number of a candidate less that of its task (modulo 2^32)
+  std::uint32_t owner;  ///< lane of the item, plus 32 times the number of the run
 };
 
-/// What a warp shares.
+/// Shared memory of a warp.
 template <class Object, class Match>
 struct MatchStage {
   Object object[32];
   TaskRun run[32 * runs_at_once];
-  std::uint32_t starts[words];  ///< bit for each task: a run starts
-  std::uint32_t before[words];  ///< runs that start before the word, less one
+  std::uint32_t starts[words];  ///< one bit for each task: whether a run starts there
+  std::uint32_t before[words];  ///< number of runs that start before the word, less one
   Match match[kept];
 };
 
-/// items, runs and candidates. Calls sink(hit, match), which the whole warp enters. `mine`: whether those of
-/// this lane are to be done. `first_run`: number of the first of `run`.
+/// Tests the candidates of the runs of 32 items, one item for each lane. Calls sink(hit, match), which the
+/// whole warp enters. `mine` says whether the runs of this lane are to be tested, and `first_run` is the
+/// number of the first of `run`.
 template <class Search, class Stage, class Sink>
 __device__ void do_tasks(const Search& search, int first_run, const Run (&run)[runs_at_once], bool mine,
                          Stage& stage, Sink& sink) {
@@ -79,7 +81,7 @@ __device__ void do_tasks(const Search& search, int first_run, const Run (&run)[r
     const std::uint32_t left = min(tasks - done, 32 * words);
     stage.starts[lane] = 0;
     __syncwarp();
-    at = begin - done;  // of an earlier window: large
+    at = begin - done;  // large if the tasks belong to an earlier window
 #pragma unroll
     for (int u = 0; u < runs_at_once; ++u) {
       if (lengths[u] > 0 && at < left) atomicOr(&stage.starts[at / 32], 1u << (at % 32));
@@ -93,7 +95,7 @@ __device__ void do_tasks(const Search& search, int first_run, const Run (&run)[r
     __syncwarp();
     sink.begin();
     for (std::uint32_t word = 0; 32 * word < left; word += 2) {
-      // Two tasks of a lane at once, so that the loads of both are under way.
+      // Each lane does two tasks at once, so that the loads of both are under way.
       typename Search::Candidate candidate[2];
       TaskRun of[2];
       bool active[2];
@@ -118,7 +120,7 @@ __device__ void do_tasks(const Search& search, int first_run, const Run (&run)[r
   }
 }
 
-/// All tests of 32 items; returns their number for this lane's.
+/// Does all tests of 32 items; returns the number of tests of this lane's item.
 template <class Search, class Stage, class Sink>
 __device__ Word search_items(const Search& search, std::int64_t first, Stage& stage, Sink& sink) {
   const unsigned lane = threadIdx.x % 32;
@@ -129,14 +131,15 @@ __device__ Word search_items(const Search& search, std::int64_t first, Stage& st
   Word tests = 0;
   for (int part = 0; part < search.parts; ++part) {
     Run run[runs_at_once];
-    std::uint32_t length = 0;  // runs do not share candidates, so that a lane's tasks are fewer than 2^32
+    std::uint32_t length = 0;  // runs do not share candidates, so that a lane has fewer than 2^32 tasks
 #pragma unroll
     for (int u = 0; u < runs_at_once; ++u) {
       run[u] = here ? search.run(item, part, u) : Run{};
       length += run[u].end - run[u].begin;
     }
     tests += length;
-    // Those of all 32 lanes are too, unless one has over 2^26: then the lanes take turns.
+    // All 32 lanes together have fewer than 2^32 tasks, too, unless one has over 2^26: then the lanes take
+    // turns.
     const bool in_turns = __any_sync(all_lanes, length > (1u << 26));
     for (unsigned turn = 0; turn < (in_turns ? 32u : 1u); ++turn)
       do_tasks(search, part * runs_at_once, run, !in_turns || turn == lane, stage, sink);
@@ -144,13 +147,13 @@ __device__ Word search_items(const Search& search, std::int64_t first, Stage& st
   return tests;
 }
 
-/// Puts matches where they belong in the order of the lanes, up to the room that there is.
+/// Writes matches in the order of the lanes, as far as there is room.
 template <class Match>
 struct MatchSink {
   Match* to;
   Word room;
   Word count = 0;
-  // Since begin(), for the tasks of one window.
+  // The state since begin(), for the tasks of one window.
   Match* next = nullptr;
   std::uint32_t left = 0;
   std::uint32_t fresh = 0;
@@ -221,12 +224,13 @@ __global__ void __launch_bounds__(32 * match_warps, 8)
 template <class Match>
 class MatchFinder<Device, Match> {
  public:
-  /// As on Host. Where `out` has too little room, the searches are done again.
+  /// Does the same as on Host: calls reserve(n) before `out` is made to hold n matches. If `out` has too
+  /// little room, the searches are done again.
   template <class Reserve, class... Search>
   MatchTotals find(Array<Match, Device>& out, const Reserve& reserve, const Search&... searches) {
     using detail::Word;
     constexpr std::int64_t count = sizeof...(Search);
-    // In the order of totals, tickets, tests and tiles.
+    // The state holds the totals, the tickets, the numbers of tests and the tiles, in this order.
     constexpr std::int64_t head = count + 1 + count + detail::test_counters;
     const std::int64_t tiles = (tiles_of(searches) + ... + std::int64_t{0});
     state_.resize(head + tiles);

@@ -1,4 +1,4 @@
-// Matches on Host: threads search chunks of items at once, and put what they find in its place.
+// Matches on Host: threads search chunks of items concurrently, and put the matches of each in their place.
 // For parallel sources alone.
 #pragma once
 
@@ -22,7 +22,7 @@ namespace scree {
 
 namespace detail {
 
-/// What some items find: written as far as there is room, all counted.
+/// The matches of some items: they are written as far as there is room, and all are counted.
 template <class Match>
 struct FoundMatches {
   Match* to;
@@ -31,7 +31,7 @@ struct FoundMatches {
   std::int64_t tests = 0;
 };
 
-/// Candidates that a search tests at once.
+/// Returns the number of candidates that a search tests at once.
 template <class Search>
 constexpr std::uint32_t lanes_of() {
   if constexpr (requires { Search::lanes; }) {
@@ -41,20 +41,21 @@ constexpr std::uint32_t lanes_of() {
   }
 }
 
-/// The tests of a block of items, in order, each task a block of candidates that are tested at once, and
-/// whose they are. Runs have few candidates, and any number: a loop over each would end unforeseen, which
-/// costs a processor as much as several tests. So tasks are written down `stride` at a time, which most runs
-/// are not longer than, and tested in a loop without branches, whose outcome is a bit for each candidate.
+/// The tests of a block of items, in order. Each task is a block of candidates that are tested at once, with
+/// its item and run. Runs have few candidates, and any number: the end of a loop over each would be
+/// mispredicted, which costs a processor as much as several tests. Therefore tasks are written down `stride`
+/// at a time, which most runs do not exceed, and then tested in a loop without branches, whose result is a
+/// bit for each candidate.
 template <class Search>
 class HostTasks {
  public:
   explicit HostTasks(const Search& search) : search_(search) {}
 
-  /// Of items from `first` to before `end`, items_at_once at most.
+  /// Searches for the items from `first` to before `end`, items_at_once at most.
   template <class Match>
   void search(std::int64_t first, std::int64_t end, FoundMatches<Match>& found) {
     const auto items = static_cast<std::uint32_t>(end - first);
-    // Made in place, since items can be large.
+    // Items are constructed in place, since they can be large.
     new (&item_[0]) Item(search_.item(first));
     for (std::uint32_t i = 1; i < items; ++i) new (&item_[i]) Item(item_after(item_[i - 1], first + i));
     for (int part = 0; part < search_.parts; ++part) {
@@ -69,14 +70,14 @@ class HostTasks {
   static constexpr std::uint32_t lanes = lanes_of<Search>();
   static constexpr std::uint32_t stride = lanes > 1 ? 2 : 8;
   static constexpr std::uint32_t most = 1024;
-  static constexpr std::uint32_t in_word = 64 / lanes;  // tasks
+  static constexpr std::uint32_t in_word = 64 / lanes;  // tasks whose bits fit in a word
 
   using Item = typename Search::Item;
 
-  /// Candidates lanes * block and those that follow it, as far as `those` has a bit for them.
+  /// Candidate lanes * block and those that follow it, if `those` has a bit for them.
   struct Task {
     std::uint32_t block;
-    std::uint16_t owner;  ///< item, and items_at_once times the run's number
+    std::uint16_t owner;  ///< number of the item, plus items_at_once times that of the run
     std::uint16_t those;
   };
 
@@ -88,13 +89,14 @@ class HostTasks {
     }
   }
 
-  /// Each with its own number in the code, so that what they have in common is done once.
+  /// Finds the runs of a part. Each call has its run's number as a constant, so that the compiler shares
+  /// their common work.
   void find_runs(const Item& item, int part, Run (&to)[runs_at_once]) const {
     [&]<int... r>(std::integer_sequence<int, r...>) { ((to[r] = search_.run(item, part, r)), ...); }
     (std::make_integer_sequence<int, runs_at_once>());
   }
 
-  /// The tasks of a part of the items' runs, the first of which has this number.
+  /// Writes down the tasks of one part of the items' runs; `first_run` is the number of the first run in it.
   template <class Match>
   void write_down(std::uint32_t items, std::uint32_t first_run, FoundMatches<Match>& found) {
     std::int64_t tests = 0;
@@ -130,7 +132,7 @@ class HostTasks {
     found.tests += tests;
   }
 
-  /// Does all tasks.
+  /// Does all tasks that are written down.
   template <class Match>
   [[gnu::noinline]] void test(std::uint32_t count, FoundMatches<Match>& found) {
     for (std::uint32_t first = 0; first < count; first += in_word) {
@@ -148,7 +150,7 @@ class HostTasks {
     }
   }
 
-  /// A bit for each of its candidates.
+  /// Returns a bit for each candidate of the task: whether it meets the object.
   std::uint32_t meeting(const Task& task) const {
     const int run = task.owner / items_at_once;
     if constexpr (lanes > 1) {
@@ -172,8 +174,8 @@ class HostTasks {
 template <class Match>
 class MatchFinder<Host, Match> {
  public:
-  /// Calls `reserve(n)` before `out` is made to hold n matches: no memory is asked for that it refuses. Where
-  /// `out` has too little room, the searches are done again.
+  /// Lists the matches of the searches in `out`. Calls reserve(n) before `out` is made to hold n matches, and
+  /// allocates nothing if that throws. If `out` has too little room, the searches are done again.
   template <class Reserve, class... Search>
   MatchTotals find(Array<Match, Host>& out, const Reserve& reserve, const Search&... searches) {
     for (;;) {
@@ -188,14 +190,14 @@ class MatchFinder<Host, Match> {
 
  private:
   static constexpr std::int64_t chunk_items = 1024;
-  static constexpr std::int64_t kept = 32 * chunk_items;  // matches of a chunk until their place is known
+  static constexpr std::int64_t kept = 32 * chunk_items;  // matches that a chunk keeps until placed
 
-  /// Items that are searched by one thread.
+  /// Items that one thread searches.
   struct Chunk {
     std::int64_t first;
     Array<Match, Host> matches;
     detail::FoundMatches<Match> found;
-    std::int64_t place;  ///< of its first match
+    std::int64_t place;  ///< place of its first match in the list
   };
 
   template <class Search>
@@ -204,13 +206,13 @@ class MatchFinder<Host, Match> {
     if (search.items > chunk_items) return run_chunks(search, out, totals);
     detail::FoundMatches<Match> found{};
     if (totals.matches < out.size()) found = {out.data() + totals.matches, out.size() - totals.matches};
-    search_chunk(search, 0, found);  // without waking a thread
+    search_chunk(search, 0, found);  // on this thread: waking another would take longer
     totals.matches += found.count;
     totals.tests += found.tests;
   }
 
-  /// Chunks are searched at once, get their places in order, and are copied there at once. What a chunk finds
-  /// beyond `kept` it searches again.
+  /// Searches chunks concurrently, assigns their places in order, and copies them there concurrently. A chunk
+  /// with more than `kept` matches is searched again.
   template <class Search>
   void run_chunks(const Search& search, View<Match> out, MatchTotals& totals) {
     tbb::concurrent_queue<Chunk*> idle;
@@ -224,7 +226,7 @@ class MatchFinder<Host, Match> {
         flow.stop();
         return chunk;
       }
-      while (!idle.try_pop(chunk)) continue;  // one is idle: as many may be under way as there are
+      while (!idle.try_pop(chunk)) continue;  // one is idle: no more are under way than there are
       chunk->first = next;
       next += chunk_items;
       return chunk;
@@ -270,7 +272,7 @@ class MatchFinder<Host, Match> {
       tasks.search(first, std::min(first + items_at_once, end), found);
   }
 
-  std::deque<Chunk> chunks_;  // which stay where they are
+  std::deque<Chunk> chunks_;  // a deque, since chunks must not move in memory
 };
 
 }  // namespace scree

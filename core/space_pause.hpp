@@ -1,11 +1,11 @@
-// Waiting without sleeping.
+// Waits without sleeping.
 #pragma once
 
 #include <thread>
 
 namespace scree {
 
-/// Leaves the processor to whoever shares it, for a moment.
+/// Yields the processor for a moment to another thread that shares it.
 inline void pause() {
 #if defined(__x86_64__)
   __builtin_ia32_pause();

@@ -1,4 +1,4 @@
-// How Thrust is asked to run in each space, and the primitives that Thrust cannot say. For parallel sources
+// Thrust's execution policy in each space, and the primitives that Thrust does not have. For parallel sources
 // alone: include parallel.hpp instead.
 #pragma once
 
@@ -34,10 +34,9 @@ inline auto policy(Host) {
   return thrust::tbb::par;
 }
 
-/// Stable radix sort of n unsigned keys by their lowest `bits` bits, from the lowest digit: each block of
-/// keys counts its digits, and thus knows where its keys go. A stable order is the only one there is, however
-/// many blocks there are. `along.move(from, to)` moves what belongs to a key, and `along.swap()` follows each
-/// pass.
+/// Sorts n unsigned keys stably by their lowest `bits` bits, from the lowest digit: each block of keys counts
+/// its digits, and thus knows where its keys go. The stable order is unique, so the number of blocks does not
+/// matter. `along.move(from, to)` moves the data of a key, and `along.swap()` is called after each pass.
 template <class Key, class Along>
 void sort_by_digits(Key*& keys, Key*& spare_keys, std::int64_t n, int bits, const Along& along) {
   const int most_bits = n < 16384 ? 8 : 11;  // more buckets than keys, or than a cache has lines, are slower
@@ -83,21 +82,22 @@ struct KeysAlone {
   void swap() const {}
 };
 
-/// Stable sort of n pairs by the lowest `bits` bits of their unsigned keys. The sorted pairs are left in
-/// keys and values; the spare arrays are overwritten.
+/// Sorts n pairs stably by the lowest `bits` bits of their unsigned keys. The sorted pairs are left in keys
+/// and values; the spare arrays are overwritten.
 template <class Key, class Value>
 void sort_pairs(Host, Key*& keys, Value*& values, Key*& spare_keys, Value*& spare_values, std::int64_t n,
                 int bits) {
   sort_by_digits(keys, spare_keys, n, bits, WithValues<Value>{values, spare_values});
 }
 
-/// The same without values.
+/// Sorts n unsigned keys by their lowest `bits` bits. The sorted keys are left in keys; the spare array is
+/// overwritten.
 template <class Key>
 void sort_keys(Host, Key*& keys, Key*& spare_keys, std::int64_t n, int bits) {
   sort_by_digits(keys, spare_keys, n, bits, KeysAlone{});
 }
 
-/// counts[b] = how often b occurs among n samples, for 0 <= b < bins.
+/// Sets counts[b] to the number of times that b occurs among n samples, for 0 <= b < bins.
 template <class Samples>
 void histogram(Host, Samples samples, std::int64_t n, int bins, std::uint32_t* counts) {
   using Counts = std::vector<std::uint32_t>;
@@ -106,7 +106,7 @@ void histogram(Host, Samples samples, std::int64_t n, int bins, std::uint32_t* c
       tbb::blocked_range<std::int64_t>(0, n, 4096), Counts(static_cast<std::size_t>(bins)),
       [samples](const tbb::blocked_range<std::int64_t>& range, Counts sum) {
         for (std::int64_t i = range.begin(); i < range.end(); ++i) {
-          const auto bin = static_cast<std::size_t>(samples[i]);  // a negative one becomes too large
+          const auto bin = static_cast<std::size_t>(samples[i]);  // a negative sample becomes too large
           if (bin < sum.size()) ++sum[bin];
         }
         return sum;
@@ -120,18 +120,20 @@ void histogram(Host, Samples samples, std::int64_t n, int bins, std::uint32_t* c
 
 #if SCREE_WITH_CUDA
 
-/// Sets memory of Device to zero, in the order of what is launched.
+/// Sets memory of Device to zero, in the order of the work launched.
 inline void clear_bytes(void* memory, std::size_t bytes) {
   if (cudaMemsetAsync(memory, 0, bytes) != cudaSuccess) throw RunError("CUDA: could not clear memory");
 }
 
-/// Throws if the last kernel could not be started, which would otherwise pass for one that found nothing.
+/// Throws if the last kernel could not be started, which would otherwise look like a kernel that found
+/// nothing.
 inline void require_launched(const char* kernel) {
   if (const cudaError_t error = cudaGetLastError(); error != cudaSuccess)
     throw RunError(std::string("CUDA: ") + kernel + " could not be started: " + cudaGetErrorString(error));
 }
 
-/// Scratch memory of Thrust's algorithms, from the same stream-ordered pool as the arrays.
+/// An allocator for the scratch memory of Thrust's algorithms, from the same stream-ordered pool as the
+/// arrays.
 struct PoolAllocator {
   using value_type = char;
   char* allocate(std::ptrdiff_t bytes) {
@@ -162,9 +164,9 @@ __global__ void __launch_bounds__(threads_of_loop, F::blocks_at_once)
 
 }  // namespace detail
 
-/// What loops and reductions (core/parallel_loops.hpp) do on Device, where they find it by their argument.
-/// F::blocks_at_once: how many blocks share a processor at least, for work that would take too many
-/// registers.
+/// Runs a loop on Device. core/parallel_loops.hpp finds this function and launch_reduce() by
+/// argument-dependent lookup. F::blocks_at_once is the least number of blocks that share a multiprocessor,
+/// for work that would take too many registers.
 template <class F>
 void launch_for_each(Device, std::int64_t n, const F& f) {
   if constexpr (requires { F::blocks_at_once; }) {
@@ -214,8 +216,8 @@ void sort_keys(Device, Key*& keys, Key*& spare_keys, std::int64_t n, int bits) {
   spare_keys = buffer.Alternate();
 }
 
-/// Each block counts in shared memory; lanes with the same sample add once, since often all samples are
-/// alike.
+/// Counts samples in shared memory of each block; lanes with the same sample add once, since often all
+/// samples are alike.
 template <class Samples>
 __global__ void __launch_bounds__(256)
     count_samples(Samples samples, std::int64_t n, int bins, std::uint32_t* counts) {

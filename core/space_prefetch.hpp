@@ -1,11 +1,11 @@
-// A hint to the processor's caches, for work that runs in either space.
+// A prefetch hint to the processor's caches, for work that runs in either space.
 #pragma once
 
 #include "core/space.hpp"
 
 namespace scree {
 
-/// On Host, memory that is soon read from an address that cannot be foreseen begins to come.
+/// On Host, starts to load memory that is soon read from an address that the processor cannot predict.
 #if defined(__CUDACC__)
 #pragma nv_exec_check_disable
 #endif

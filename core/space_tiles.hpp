@@ -1,5 +1,5 @@
-// Work in tiles of consecutive items: what a tile finds is put side by side at its front, and sums over many
-// tiles are found without waiting for the host. For parallel sources alone.
+// Work in tiles of consecutive items: the results of a tile are stored side by side at its front, and sums
+// over many tiles are computed without waiting for the host. For parallel sources alone.
 #pragma once
 
 #include "core/array.hpp"
@@ -12,14 +12,14 @@
 
 namespace scree::parallel {
 
-/// Items of a tile. On Device a tile is a block's.
+/// Number of items of a tile. On Device one thread block works on one tile.
 inline constexpr int tile = 256;
 
 inline std::int64_t tiles_of(std::int64_t items) { return (items + tile - 1) / tile; }
 
 namespace detail {
 
-/// One tile on Host.
+/// The work on one tile on Host.
 template <class F>
 struct CompactTile {
   F f;
@@ -56,7 +56,8 @@ void add_up(Host, const char* label, std::int64_t n, const F& f, Array<T, Host>&
 
 #if SCREE_WITH_CUDA
 
-/// Blocks that share a processor at least: a program may say so, if it would take too many registers.
+/// Returns the least number of blocks that share a multiprocessor; a program may set it if it would take too
+/// many registers.
 template <class F>
 constexpr int blocks_at_once() {
   if constexpr (requires { F::blocks_at_once; }) return F::blocks_at_once;
@@ -69,8 +70,8 @@ constexpr bool has_kinds() {
   return false;
 }
 
-/// Which item of its tile a thread looks at, or -1. Those of one kind are side by side, so that the threads
-/// of a warp do the same work, and those of none leave whole warps free.
+/// Returns the item of its tile that a thread works on, or -1. Items of one kind are side by side, so that
+/// the threads of a warp do the same work, and items of no kind leave whole warps free.
 template <class F>
 __device__ int item_of_thread(const F& f, std::int64_t first) {
   __shared__ std::uint32_t sums[F::kinds][tile / 32];
@@ -88,7 +89,8 @@ __device__ int item_of_thread(const F& f, std::int64_t first) {
   return threadIdx.x < start ? items[threadIdx.x] : -1;
 }
 
-/// How many items before its own were found, for a thread that has found one.
+/// Returns how many items of the tile before `item` were found, in a thread that has found one; `total`
+/// becomes the number of all.
 __device__ inline std::uint32_t found_before(int item, bool found, std::uint32_t& total) {
   __shared__ std::uint32_t sums[tile / 32];
   __shared__ std::uint32_t of_item[tile];
@@ -121,8 +123,9 @@ __global__ void __launch_bounds__(tile, blocks_at_once<F>())
   if (threadIdx.x == 0) counts[blockIdx.x] = static_cast<std::int32_t>(total);
 }
 
-/// Sum over the threads of a block, for its first thread: a tree of fixed shape, in which halves are added to
-/// one another. `memory` has room for one T of each thread, and is free again after the next barrier.
+/// Returns the sum over the threads of a block, in its first thread: a tree of fixed shape, in which halves
+/// are added to one another. `memory` has room for one T of each thread, and is free again after the next
+/// barrier.
 template <int threads, class T>
 __device__ T sum_over_block(const T& mine, T* memory) {
   memory[threadIdx.x] = mine;
@@ -133,14 +136,14 @@ __device__ T sum_over_block(const T& mine, T* memory) {
   return memory[0];
 }
 
-/// Room for one T of each thread of a block, without calling its constructor.
+/// Memory for one T of each thread of a block, without a call of T's constructor.
 template <class T, int threads>
 struct BlockRoom {
   alignas(alignof(T)) unsigned char bytes[threads * sizeof(T)];
   __device__ T* data() { return reinterpret_cast<T*>(bytes); }
 };
 
-/// Each block adds up the tiles b, b + blocks, ...; sums[b] is its part.
+/// Adds up tiles b, b + blocks, ... in block b; sums[b] is the sum of these.
 template <class T, class F>
 __global__ void __launch_bounds__(tile, blocks_at_once<F>())
     sum_strided(const __grid_constant__ F f, std::int64_t n, T* sums) {
@@ -173,7 +176,7 @@ void compact(Device, const char* label, std::int64_t tiles, const F& f, std::int
 }
 template <class T, class F>
 void add_up(Device, const char* label, std::int64_t n, const F& f, Array<T, Device>& scratch, T* out) {
-  constexpr std::int64_t most_blocks = 1024;  // that a GPU is busy with, and that one block adds up quickly
+  constexpr std::int64_t most_blocks = 1024;  // keeps a GPU busy, and one block adds up so many quickly
   const timing::Call<Device> call(label);
   const std::int64_t blocks = std::clamp<std::int64_t>(tiles_of(n), 1, most_blocks);
   scratch.resize(blocks);
@@ -186,32 +189,34 @@ void add_up(Device, const char* label, std::int64_t n, const F& f, Array<T, Devi
 
 }  // namespace detail
 
-/// For each item of so many tiles: f.find(item, record), which says whether there is something; what is found
-/// is stored by f.store(place, item, record), in the order of the items, from the front of its tile on. Where
-/// f.is_end(item), there is nothing from there to the end of its tile.
-/// counts[t] becomes how much tile t has found. F has a type Record. On Device the call returns before the
-/// work is done. If F has a number of `kinds`, f.kind(item) tells there which an item is of, from 0 on, or -1
-/// where find() would return false, all of which it does then: find() is called kind by kind.
+/// Calls f.find(item, record) for each item of `tiles` tiles, which returns whether there is a result.
+/// Results are stored by f.store(place, item, record), in the order of the items, from the front of their
+/// tile on. Where f.is_end(item) is true, there is no result from there to the end of the tile. counts[t]
+/// becomes the number of results of tile t. F has a type Record. On Device the call returns before the work
+/// is done.
+/// If F has a number of `kinds`, then on Device f.kind(item) returns the kind of an item, from 0 on, or -1 if
+/// find() would do nothing but return false. find() is then called kind by kind, and not for kind -1.
 template <class Space, class F>
 void compact_tiles(const char* label, std::int64_t tiles, const F& f, std::int32_t* counts) {
   if (tiles > 0) detail::compact(Space{}, label, tiles, f, counts);
 }
 
-/// f(t, k) for 0 <= k < counts[t] (at most `tile`), for each of so many tiles.
+/// Calls f(t, k) for 0 <= k < counts[t] (at most `tile`), for each of `tiles` tiles.
 template <class Space, class F>
 void for_each_found(const char* label, std::int64_t tiles, const std::int32_t* counts, const F& f) {
   if (tiles > 0) detail::visit_found(Space{}, label, tiles, counts, f);
 }
 
-/// *out = sum of f(i) over 0 <= i < n, as T with an operator +, T{} for n = 0; out is in the space, and so
-/// nobody waits for it. The tree of the additions depends on n and the space alone. f may write what belongs
-/// to its item. `scratch` keeps its storage from call to call.
+/// Sets *out to the sum of f(i) over 0 <= i < n, as T with an operator +; T{} for n = 0. `out` is in the
+/// space, so that the host does not wait for the sum. The tree of the additions depends on n and the space
+/// alone. f may write the data of its item. `scratch` keeps its storage from call to call.
 template <class T, class Space, class F>
 void sum_into(const char* label, std::int64_t n, const F& f, Array<T, Space>& scratch, T* out) {
   detail::add_up(Space{}, label, n, f, scratch, out);
 }
 
-/// The same, brought to the host: on Device faster than sum(), and on Host the same.
+/// Returns the same sum as sum_into(), on the host. On Device it is faster than sum(), and on Host it is the
+/// same.
 template <class T, class Space, class F>
 T sum_by_tiles(const char* label, std::int64_t n, const F& f) {
   Array<T, Space> scratch, out(1);

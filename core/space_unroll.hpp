@@ -1,8 +1,8 @@
-// Loops that a GPU takes apart.
+// Loops that are unrolled on a GPU.
 #pragma once
 
-/// SCREE_UNROLL stands before a loop of a fixed number of turns. On a GPU it is unrolled, so that what is
-/// listed by its index is in registers.
+/// SCREE_UNROLL is put before a loop with a fixed number of turns. On a GPU the loop is unrolled, so that
+/// arrays that are indexed in it can be in registers.
 #ifdef __CUDA_ARCH__
 #define SCREE_UNROLL _Pragma("unroll")
 #else
@@ -11,8 +11,8 @@
 
 namespace scree {
 
-/// Whether what is compiled runs on a GPU. Its threads wait long for memory, and so they ask for all that
-/// they need before they use the first of it; a processor would only have to put it aside.
+/// Whether the code that is compiled runs on a GPU. The threads of a GPU wait long for memory, so they load
+/// all that they need before they use the first of it; a processor would only have to spill it.
 #ifdef __CUDA_ARCH__
 inline constexpr bool is_gpu_code = true;
 #else

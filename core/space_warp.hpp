@@ -1,5 +1,5 @@
-// What the lanes of a warp, the warps of a block and the blocks of a launch sum up, on Device.
-// For parallel sources alone.
+// Sums over the lanes of a warp, the warps of a block and the blocks of a launch, on Device. For parallel
+// sources alone.
 #pragma once
 
 #include "core/space.hpp"
@@ -14,7 +14,7 @@ using Word = unsigned long long;
 
 inline constexpr unsigned all_lanes = 0xffffffffu;
 
-/// Sum of the values of the lanes before; `total`: of all.
+/// Returns the sum of the values of the lanes before this one; `total` becomes the sum of all lanes.
 template <class T>
 __device__ T sum_before(T value, T& total) {
   const unsigned lane = threadIdx.x % 32;
@@ -27,8 +27,9 @@ __device__ T sum_before(T value, T& total) {
   return sum - value;
 }
 
-/// Sum of the values of the threads before, entered by all of a block; `total`: of all. `sums`: shared
-/// memory, a word for each warp, which must not be in use still.
+/// Returns the sum of the values of the threads before this one; `total` becomes the sum of all threads. All
+/// threads of a block must call it. `sums` is shared memory, one word for each warp, which must not be in use
+/// any more.
 template <int threads>
 __device__ std::uint32_t sum_before_in_block(std::uint32_t value, std::uint32_t* sums, std::uint32_t& total) {
   std::uint32_t of_warp;
@@ -45,8 +46,8 @@ __device__ std::uint32_t sum_before_in_block(std::uint32_t value, std::uint32_t*
 }
 
 // Decoupled look-back (Merrill and Garland 2016, "Single-pass Parallel Prefix Scan with Decoupled
-// Look-back"): each tile of a launch publishes how much it has found, as soon as it knows, and then how much
-// it and all before it have. A tile that others wait for must have started.
+// Look-back"): each tile of a launch publishes its own number of results as soon as it is known, and then the
+// number of results of itself and all tiles before it. A tile that others wait for must have started.
 
 inline constexpr Word tile_known = Word{1} << 62;
 inline constexpr Word tile_summed = Word{2} << 62;
@@ -61,8 +62,8 @@ __device__ inline void store_state(Word* state, Word value) {
   asm volatile("st.relaxed.gpu.global.u64 [%0], %1;" ::"l"(state), "l"(value) : "memory");
 }
 
-/// Tells the tiles after this one what it has found, and returns what those before it have found; entered by
-/// one warp, which looks at 256 of them at once.
+/// Publishes the number of results that a tile has found, and returns the number of all tiles before it. One
+/// warp calls it, and reads the states of 256 tiles at once.
 __device__ inline Word found_before(Word* states, std::int64_t tile, Word found) {
   constexpr int at_once = 8;
   const int lane = static_cast<int>(threadIdx.x % 32);

@@ -29,11 +29,11 @@ class Accounts {
  private:
   std::vector<Entry> entries_;
   std::unordered_map<std::string, std::size_t> by_text_;
-  // Labels are string literals: their address finds the account without hashing the text.
+  // Labels are string literals: the account is found by their address, without hashing the text.
   std::unordered_map<const char*, std::size_t> by_address_;
 };
 
-// Each thread that drives steps has its own.
+// Each thread that drives steps has its own accounts.
 thread_local Accounts stage_accounts;
 thread_local Accounts call_accounts;
 std::atomic<bool> timed_calls = false;

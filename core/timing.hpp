@@ -1,5 +1,5 @@
-// Wall times by name: of the stages of the step always, of every labelled parallel call when asked for. Each
-// thread that drives steps has accounts of its own.
+// Wall times by label: those of the stages of the step always, those of every labelled parallel call on
+// request. Each thread that drives steps has accounts of its own.
 #pragma once
 
 #include <chrono>
@@ -17,20 +17,21 @@ struct Entry {
 
 /// Adds `seconds` to the account of a stage. Only a thread that drives steps calls it.
 void add(const char* label, double seconds);
-/// Accounts of the stages in the order in which their labels first appeared.
+/// Returns the accounts of the stages in the order in which their labels first appeared.
 const std::vector<Entry>& entries();
-/// Seconds so far under a stage's label; 0 if it never ran.
+/// Returns the seconds so far under a stage's label; 0 if the stage never ran.
 double seconds(const std::string& label);
 void reset();
 
-/// Whether parallel calls are timed one by one (off at first: on Device each call then waits for its end).
+/// Sets whether parallel calls are timed one by one. It is off at first: on Device each timed call waits for
+/// its end.
 void time_calls(bool on);
 bool calls_are_timed();
 void add_call(const char* label, double seconds);
-/// Accounts of the parallel calls, likewise.
+/// Returns the accounts of the parallel calls in the order in which their labels first appeared.
 const std::vector<Entry>& calls();
 
-/// Times its own lifetime under a label.
+/// Measures its own lifetime and adds it to the account of a stage.
 class Region {
  public:
   explicit Region(const char* label) : label_(label), start_(Clock::now()) {}
@@ -44,7 +45,7 @@ class Region {
   Clock::time_point start_;
 };
 
-/// Times one parallel call under its label, if calls are timed.
+/// Measures one parallel call and adds the time to the account of its label, if calls are timed.
 template <class Space>
 class Call {
  public:

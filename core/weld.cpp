@@ -42,14 +42,15 @@ class Welder {
     find_reaches();
     join_corners();
     room_ = most_for_each * (used_.size() + mesh_.triangles.size());
-    // What was split may have corners on its new edges: those that were on edges of it as well as in it.
+    // Triangles that were split may have corners on their new edges: corners that were on edges of the
+    // triangle as well as in its interior.
     constexpr int most_rounds = 4;
     for (int round = 0; round < most_rounds && split_edges(); ++round) continue;
   }
 
  private:
-  /// A surface has few corners near its edges, and parts to be cut, for each corner and triangle that there
-  /// is.
+  /// The largest number of corners near edges, and of parts of triangles, for each corner and triangle of the
+  /// mesh. A surface has far fewer.
   static constexpr std::size_t most_for_each = 100;
 
   static std::vector<int> vertices_of(const std::vector<Corners>& triangles) {
@@ -71,7 +72,7 @@ class Welder {
         std::max(least(), std::min(tolerance::weld_size * size_, tolerance::weld_edge * edge)));
   }
 
-  /// How near another corner counts as the same.
+  /// Finds for each corner the distance within which another one counts as the same.
   void find_reaches() {
     std::vector<double> shortest(mesh_.vertices.size(), HUGE_VAL);
     for (const Corners& t : mesh_.triangles) {
@@ -87,8 +88,8 @@ class Welder {
     std::ranges::transform(shortest, reach_.begin(), [this](double edge) { return reach_beside(edge); });
   }
 
-  /// In the order of their places each corner that is still its own takes in those in reach: so none moves
-  /// farther than its reach, however many lie in a row.
+  /// Visits corners in the order of their places. Each one that is not joined yet takes in the corners within
+  /// reach: therefore none moves farther than its reach, however many lie in a row.
   void join_corners() {
     std::vector<Vec3> places;
     places.reserve(used_.size());
@@ -118,7 +119,7 @@ class Welder {
     used_ = vertices_of(mesh_.triangles);
   }
 
-  /// Makes the corners one: the one with the lowest number, at their mean.
+  /// Joins the corners to one: to the one with the lowest number, at their mean.
   void join(std::vector<std::int32_t>& group, const std::vector<Vec3>& places, std::vector<int>& joined) {
     const auto place = [&](std::int32_t k) -> const Vec3& { return places[static_cast<std::size_t>(k)]; };
     const int kept = used_[static_cast<std::size_t>(std::ranges::min(group))];
@@ -137,7 +138,7 @@ class Welder {
       report_.farthest = std::max(report_.farthest, (place(k) - at(kept)).norm());
   }
 
-  /// One round: true if a triangle was split.
+  /// Does one round of splitting. Returns true if there are corners on edges.
   bool split_edges() {
     report_.left_out += static_cast<std::int64_t>(
         std::erase_if(mesh_.triangles, [](const Corners& t) { return !has_area(t); }));
@@ -172,7 +173,7 @@ class Welder {
       for (const std::int32_t k : near) {
         const int v = used_[static_cast<std::size_t>(k)];
         const auto [square, share] = distance_from_segment(at(v), at(a), at(b));
-        // The parts are shorter than the whole, so that splitting ends.
+        // Only corners are used that make the parts shorter than the whole edge, so that splitting ends.
         if (v != a && v != b && square <= reach(v) * reach(v) && share > 0 && share < 1 &&
             length(a, v) < edge && length(v, b) < edge)
           between.emplace_back(share, v);
@@ -186,8 +187,8 @@ class Welder {
     }
   }
 
-  /// The triangle, or the parts of it between the corners on those of its edges that are whole. Triangles
-  /// beside an edge take the same corners, so that they still share what they have of it.
+  /// Appends the triangle, or its parts between the corners on its edges. Only edges with `is_whole` are cut.
+  /// Triangles on both sides of an edge use the same corners, so that they still share the parts of the edge.
   void cut(const Corners& t, const std::array<bool, 3>& is_whole, std::vector<Corners>& out) {
     if (!has_area(t)) return;
     if (room_-- == 0) fail();
@@ -218,10 +219,10 @@ class Welder {
   std::optional<double> given_;
   MeshReport& report_;
   std::vector<int> used_;  ///< vertices of triangles, ascending
-  double size_ = 0;        ///< m
-  std::size_t room_ = 0;   ///< for corners near edges and parts of triangles, of all rounds
+  double size_ = 0;        ///< diagonal of the mesh's box (m)
+  std::size_t room_ = 0;   ///< corners near edges and parts of triangles that are still allowed in all rounds
   std::vector<double> reach_;
-  std::map<std::pair<int, int>, std::vector<int>> on_edge_;  ///< from its lower to its higher vertex
+  std::map<std::pair<int, int>, std::vector<int>> on_edge_;  ///< corners on each edge, from its lower vertex
 };
 
 }  // namespace
