@@ -121,7 +121,7 @@ def time_stepping():
             straight = (x[0] + v[0], x[1] + v[1])
             fig.line(x_m, straight, stroke=BLUE, dash="4 4")
             fig.arrow(straight, along(straight, after, 0.93), stroke=ORANGE)
-            fig.text(straight[0] + 8, straight[1] + 6, "(h/2) h g", color=ORANGE)
+            fig.text(straight[0] + 8, straight[1] + 6, "(h/2) h a", color=ORANGE)
             fig.text(x[0] - 8, x[1] - 6, "x", anchor="end")
             fig.text(x_m[0], x_m[1] - 12, "x_m", anchor="middle")
             fig.text(after[0] - 8, after[1] + 18, "x^+", anchor="end")
@@ -157,13 +157,13 @@ def time_stepping():
     fig.arrow(kicked, sum_end, stroke=RED)
     fig.arrow(at, sum_end, stroke=GREEN)
     fig.text(at[0] + 20, at[1] + 66, "v", color=BLUE, anchor="middle")
-    fig.text(v_end[0] + 8, v_end[1] + 24, "h g", color=ORANGE)
+    fig.text(v_end[0] + 8, v_end[1] + 24, "h a", color=ORANGE)
     fig.text(sum_end[0] + 16, sum_end[1] + 50, "M^{-1} Σ p", color=RED)
     fig.text(sum_end[0] + 8, sum_end[1] + 1, "v^+ along the floor", color=GREEN)
 
     fig.line((16, 390), (704, 390), stroke=EDGE, width=1)
     for k, (formula, words, color) in enumerate((("x_m = x + (h/2) v", "half a flight to the midpoint", BLUE),
-                                                 ("v^+ = v + h g + M^{-1} Σ p", "gravity and impulses at x_m", RED),
+                                                 ("v^+ = v + h a + M^{-1} Σ p", "gravity and impulses at x_m", RED),
                                                  ("x^+ = x_m + (h/2) v^+", "half a flight to the end", GREEN))):
         middle = 128 + 232 * k
         fig.text(middle, 414, formula, anchor="middle", color=color, size=15)
@@ -261,7 +261,7 @@ def prescribed_paths():
         fig.disc(x, 451, 20.5, fill=PALE[GREY], stroke=GREY)
     fig.line((430, 473), (514, 473), stroke=INK, width=2)
     fig.arrow((472, 342), (472, 382), stroke=RED, width=2.5)
-    fig.text(480, 362, "F a", color=RED)
+    fig.text(480, 362, "F s", color=RED)
     fig.note(416, 412, "guide", anchor="end")
     at, v = (592, 350), (58, 84)
     fig.arrow(at, (at[0] + v[0], at[1] + v[1]), stroke=GREY)
@@ -269,9 +269,9 @@ def prescribed_paths():
     fig.line((at[0] + 3, at[1] + v[1]), (at[0] + v[0], at[1] + v[1]), stroke=RED, dash="4 4")
     fig.disc(*at, 3.5)
     fig.note(at[0] + 38, at[1] + 32, "v after", "a sweep")
-    fig.text(at[0] - 8, at[1] + 50, "(a·v) a", color=BLUE, anchor="end")
+    fig.text(at[0] - 8, at[1] + 50, "(s·v) s", color=BLUE, anchor="end")
     fig.text(at[0] + 30, at[1] + v[1] + 20, "the guide takes this", color=RED, anchor="middle")
-    fig.note(376, 518, "After each sweep only the velocity along the", "axis a is kept. The guide does no work.")
+    fig.note(376, 518, "After each sweep only the velocity along the", "axis s is kept. The guide does no work.")
     fig.save()
 
 
@@ -632,7 +632,7 @@ class BallsOnLine:
         return time + gap / closing if closing > 1e-9 and gap / closing <= 1 - time else None
 
     def resolve(self):
-        """Round after round: of the meetings foreseen those that are first for both balls, unless one of them waits for a neighbour."""
+        """Round after round: of the predicted meetings those that are first for both balls, unless one of them waits for a neighbour."""
         turn = 0
         while True:
             turn += 1
@@ -720,7 +720,7 @@ def impacts():
         fig.text(548, y + 4.5, " and ".join(pairs))
     fig.note(520, 274, "Places apart do not wait", "for each other.")
     fig.disc(530, 319, 9, fill=PAPER, stroke=GREY, dash="3 3")
-    fig.note(548, 323.5, "C–D is foreseen in")
+    fig.note(548, 323.5, "C–D is predicted in")
     fig.note(520, 340.5, "round 1. It waits, since B", "may be driven into C before.")
     fig.note(520, 392, "After an impact, the next", "meetings of its two bodies", "are computed anew, so that", "chains run through.")
     fig.save()
