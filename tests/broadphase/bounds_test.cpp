@@ -1,4 +1,5 @@
-// bounds_of against long double: never inside the exact box, and never more than rounding outside of it.
+// Tests of bounds_of() against long double: bounds are never inside the exact box, and never outside of it by
+// more than rounding.
 #include "broadphase/bounds.hpp"
 
 #include "core/rng.hpp"
@@ -48,7 +49,8 @@ TEST(Rounding, IsOutwardAndTight) {
 
 using Real = long double;
 
-// |R| h in long double from the normalised quaternion, as the rotation matrix's entries by their definition.
+// Computes |R| h in long double from the normalised quaternion, with the entries of the rotation matrix by
+// their definition.
 void exact_half_extents(const BodyGeometry& body, Real extent[3]) {
   Real w = body.orientation.w(), x = body.orientation.x(), y = body.orientation.y(), z = body.orientation.z();
   const Real norm = std::sqrt(w * w + x * x + y * y + z * z);
@@ -60,7 +62,8 @@ void exact_half_extents(const BodyGeometry& body, Real extent[3]) {
     extent[a] = body.shape == Shape::sphere ? Real{body.size.x()} : Real{0};
     for (int b = 0; b < 3 && body.shape == Shape::box; ++b)
       extent[a] += std::abs(rotation[a][b]) * body.size[b];
-    // The support of a tube's end, cos(t) x + sin(t) y, is largest where the tangent vanishes.
+    // The support of a tube's end along an axis, cos(t) x + sin(t) y, is largest where its derivative
+    // vanishes.
     if (body.shape == Shape::tube) {
       const Real t = std::atan2(rotation[a][1], rotation[a][0]);
       extent[a] = (std::cos(t) * rotation[a][0] + std::sin(t) * rotation[a][1]) * body.size[0] +
@@ -83,7 +86,7 @@ BodyGeometry random_body(Random& random) {
   }
   if (body.shape == Shape::tube) {
     body.size.y() = body.size.x();
-    // Aligned, as most tubes are, or nearly.
+    // Half of the tubes are aligned, as most are, or nearly so.
     if (random.uniform() < 0.5)
       body.orientation = Quat(1, random.uniform() < 0.5 ? 0 : random.uniform(0, 1e-8), 0, 0).normalized();
   }

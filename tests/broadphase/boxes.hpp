@@ -1,4 +1,4 @@
-// Box sets for the tests of the broad phase, and the PCS by a plain double loop.
+// Sets of boxes for the tests of the broad phase, and the PCS by a plain double loop.
 #pragma once
 
 #include "broadphase/aabb.hpp"
@@ -28,7 +28,8 @@ inline Aabb box(double x, double y, double z, double hx, double hy, double hz) {
 }
 inline Aabb ball(double x, double y, double z, double r) { return box(x, y, z, r, r, r); }
 
-/// n balls in a cube of the given side around the origin; `radius` is called with each ball's random numbers.
+/// Returns n balls in a cube of the given side around the origin; `radius` is called with each ball's random
+/// numbers.
 template <class Radius>
 Boxes cloud(int n, double side, std::uint64_t seed, Radius radius) {
   Boxes boxes;
@@ -44,7 +45,7 @@ Boxes cloud(int n, double side, std::uint64_t seed, Radius radius) {
 inline Boxes equal_cloud(int n, double side, double r, std::uint64_t seed = 1) {
   return cloud(n, side, seed, [r](Random&) { return r; });
 }
-/// Radii log-uniform from lo to hi.
+/// Returns a cloud of balls whose radii are log-uniform from lo to hi.
 inline Boxes log_cloud(int n, double side, double lo, double hi, std::uint64_t seed = 2) {
   return cloud(n, side, seed, [lo, hi](Random& random) { return lo * std::pow(hi / lo, random.uniform()); });
 }
@@ -53,7 +54,7 @@ inline std::vector<Mobility> all_free(const Boxes& boxes) {
   return std::vector<Mobility>(boxes.size(), Mobility::free);
 }
 
-/// The definition: closed overlap of boxes that are not absent, not both fixed.
+/// Returns the pairs by their definition: closed boxes that overlap, neither absent nor both fixed.
 inline PairSet by_definition(const Boxes& boxes, const std::vector<Mobility>& mobility) {
   PairSet pairs;
   for (std::size_t i = 0; i < boxes.size(); ++i) {
@@ -68,7 +69,7 @@ inline PairSet by_definition(const Boxes& boxes, const std::vector<Mobility>& mo
   return pairs;
 }
 
-/// Pairs in a space, in their order.
+/// Returns the pairs that a view in a space holds, in their order.
 template <class Space>
 PairSet set_of(ConstView<Pair> view) {
   std::vector<Pair> pairs(static_cast<std::size_t>(view.size()));
@@ -78,7 +79,7 @@ PairSet set_of(ConstView<Pair> view) {
   return set;
 }
 
-/// The pairs that a broad phase finds, in its order.
+/// Returns the pairs that a broad phase finds, in its order.
 template <class Space>
 PairSet found(BroadPhase<Space>& broad_phase, const Boxes& boxes, const std::vector<Mobility>& mobility) {
   Array<Aabb, Space> bounds;
@@ -97,7 +98,8 @@ inline PairSet sorted(PairSet pairs) {
   return pairs;
 }
 
-/// Sorted sets as text, short enough to read: sizes, and the first pair in which they differ.
+/// Compares sorted sets of pairs. The text is short enough to read: the sizes, and the first pair in which
+/// they differ.
 inline ::testing::AssertionResult same_pairs(const PairSet& expected, const PairSet& actual) {
   if (expected == actual) return ::testing::AssertionSuccess();
   const auto differ = std::mismatch(expected.begin(), expected.end(), actual.begin(), actual.end());
@@ -111,7 +113,7 @@ inline ::testing::AssertionResult same_pairs(const PairSet& expected, const Pair
   return text;
 }
 
-/// All methods and level counts that have to agree with the definition.
+/// Returns all methods and numbers of levels that have to agree with the definition.
 inline std::vector<std::pair<std::string, BroadPhaseSettings>> every_method() {
   std::vector<std::pair<std::string, BroadPhaseSettings>> all = {
       {"brute force", {.method = BroadPhaseMethod::brute_force}},

@@ -1,5 +1,5 @@
-// What bricks rest on: numbers that never part what overlaps, one owner for each pair, plans that fit; and
-// that Device uses them and finds the same pairs.
+// Tests of what bricks depend on: lattice numbers that never separate overlapping boxes, one owner for each
+// pair, and plans that fit; and that Device uses bricks and finds the same pairs.
 #include "broadphase/bounds.hpp"
 #include "broadphase/brick_plan.hpp"
 #include "core/space_tiles.hpp"
@@ -15,7 +15,7 @@ namespace {
 
 using namespace test;
 
-/// Numbers coarse enough that many are equal.
+/// Returns a lattice so coarse that many numbers are equal.
 BrickLattice coarse_lattice() { return {{-3, -3, -3}, {9000, 7000, 5000}, {4, 3, 2}}; }
 
 LatticeBox in_numbers(const BrickLattice& lattice, const Aabb& box) {
@@ -27,7 +27,7 @@ LatticeBox in_numbers(const BrickLattice& lattice, const Aabb& box) {
   return numbers;
 }
 
-/// Entries of a box in all bricks that it overlaps, by brick.
+/// Returns the entries of a box in all bricks that it overlaps, with their bricks.
 std::vector<std::pair<std::uint32_t, Entry>> entries_of(const BrickLattice& lattice, const Aabb& box) {
   const LatticeBox numbers = in_numbers(lattice, box);
   std::vector<std::pair<std::uint32_t, Entry>> entries;
@@ -61,7 +61,7 @@ TEST(BrickLattice, NumbersAreMonotoneAndWithinTheLattice) {
   }
 }
 
-// Small and large boxes, inside and outside of the lattice, some on the same numbers.
+// The boxes are small and large, inside and outside of the lattice, and some are on the same numbers.
 TEST(BrickLattice, EachPairHasOneOwnerWhichNeverErrs) {
   const BrickLattice lattice = coarse_lattice();
   int asked = 0;
@@ -80,7 +80,7 @@ TEST(BrickLattice, EachPairHasOneOwnerWhichNeverErrs) {
     };
     const Aabb first = any();
     Aabb second = any();
-    for (int a = 0; a < 3 && random.uniform() < 0.5; ++a) {  // touching, or nearly
+    for (int a = 0; a < 3 && random.uniform() < 0.5; ++a) {  // touching boxes, or nearly touching ones
       const float size = second.hi[a] - second.lo[a];
       second.lo[a] = random.uniform() < 0.5 ? first.hi[a] : next_above(first.hi[a]);
       second.hi[a] = second.lo[a] + size;
@@ -117,7 +117,7 @@ TEST(BrickLattice, TwoFixedObjectsAreNobodysPair) {
   EXPECT_EQ(free.body(), 8u);
 }
 
-// --- plans
+// --- Plans
 
 std::unique_ptr<BrickSample> sample_of(const Boxes& boxes) {
   auto sample = std::make_unique<BrickSample>();
@@ -157,7 +157,7 @@ std::optional<BrickPlan> plan_of(const Boxes& boxes) {
   return plan_bricks(*sample_of(boxes), static_cast<std::int64_t>(boxes.size()));
 }
 
-/// Objects that overlap the fullest brick.
+/// Returns the number of objects that overlap the fullest brick.
 std::int64_t fullest(const BrickPlan& plan, const Boxes& boxes) {
   std::vector<std::int64_t> counts(static_cast<std::size_t>(plan.lattice.total()));
   for (const Aabb& box : boxes)
@@ -204,7 +204,7 @@ TEST(BrickPlan, MixedSizesHaveRows) {
   EXPECT_LE(plan->cells.total(), most_cells(plan->method));
 }
 
-// Whether the sample shows it or not.
+// This holds whether the sample contains the giant or not.
 TEST(BrickPlan, OneGiantIsNoReasonForOtherBricks) {
   Boxes boxes = equal_cloud(400000, 74, 0.5);
   const auto plan = plan_of(boxes);
@@ -213,7 +213,7 @@ TEST(BrickPlan, OneGiantIsNoReasonForOtherBricks) {
   const auto with_giant = plan_of(boxes);
   ASSERT_TRUE(with_giant);
   EXPECT_EQ(with_giant->method, BrickMethod::stencil);
-  // The stencil reaches as far as the class of the other sizes does, an eighth farther at most.
+  // The stencil reaches as far as the class of the other sizes does, or at most an eighth farther.
   EXPECT_NEAR(static_cast<double>(with_giant->lattice.total()), static_cast<double>(plan->lattice.total()),
               0.15 * static_cast<double>(plan->lattice.total()));
 }
@@ -239,7 +239,8 @@ TEST(BrickPlan, CellsHoldTheirNumbers) {
   }
 }
 
-// Where all objects are on a line, the lattice has one row of bricks: its points must not run out of numbers.
+// Where all objects are on a line, the lattice has one row of bricks, whose points must not run out of
+// numbers.
 TEST(BrickPlan, ARowOfBricksIsNotTooLong) {
   Boxes line;
   for (int k = 0; k < 60000; ++k) line.push_back(ball(1e-3 * k, 0, 0, 1e-7));
@@ -266,15 +267,15 @@ TEST(BrickPlan, FlatScenesHaveFullBricks) {
 }
 
 TEST(BrickPlan, DeclinesWhatDoesNotSuit) {
-  EXPECT_FALSE(plan_of(Boxes(5000, ball(3, -2, 1, 0.5))));  // all at one point
-  EXPECT_FALSE(plan_of(equal_cloud(5000, 10, 0)));          // points
-  EXPECT_FALSE(plan_of(equal_cloud(20000, 2, 0.5)));        // all over each other
+  EXPECT_FALSE(plan_of(Boxes(5000, ball(3, -2, 1, 0.5))));  // all objects at one point
+  EXPECT_FALSE(plan_of(equal_cloud(5000, 10, 0)));          // points without extent
+  EXPECT_FALSE(plan_of(equal_cloud(20000, 2, 0.5)));        // all objects overlap one another
   Boxes cluster = equal_cloud(50000, 1, 0.001);
   for (const Aabb& far : equal_cloud(50000, 10000, 0.001, 5)) cluster.push_back(far);
-  EXPECT_FALSE(plan_of(cluster));  // nearly all in one place, the others anywhere
+  EXPECT_FALSE(plan_of(cluster));  // nearly all objects in one place, and the others anywhere
 }
 
-// --- on the GPU
+// --- On the GPU
 
 template <class Space>
 class Bricked : public test::InSpace<Space> {};
@@ -289,7 +290,7 @@ void expect_bricks(const Boxes& boxes, const char* what) {
     EXPECT_GT(grid->stats().bricks, 0) << what;
   }
   EXPECT_TRUE(same_pairs(first, found(*grid, boxes, mobility))) << what;
-  // The grid, which is held to the definition where there are few (find_test.cpp).
+  // The grid is compared with the definition in find_test.cpp, where objects are few.
   EXPECT_TRUE(same_pairs(sorted(found<Space>({.levels = 4}, boxes, mobility)), sorted(first))) << what;
 }
 
@@ -324,15 +325,16 @@ void expect_pairs_of_the_uniform_grid(const Boxes& boxes, bool in_bricks) {
   }
 }
 
-// More pairs than a warp keeps in its memory: it searches again.
+// There are more pairs than a warp keeps in its memory, so that it searches again.
 TYPED_TEST(Bricked, ManyPairsToAnObject) {
   const Boxes boxes = equal_cloud(30000, 20, 0.5);
   ASSERT_TRUE(plan_of(boxes));
   expect_pairs_of_the_uniform_grid<TypeParam>(boxes, true);
 }
 
-/// What would pass for entries that meet all others, those of their kind too: numbers of 16 bits, all flags.
-/// A block of threads that adds such up on Device leaves them behind in its memory.
+/// A value whose bytes would pass for entries that meet all others, also those of their own kind: numbers of
+/// 16 bits with all flags. A block of threads that adds up such values on Device leaves them behind in its
+/// memory.
 struct alignas(16) MeetsAll {
   static constexpr int entries = 12;
   Entry entry[entries];
@@ -345,7 +347,7 @@ struct MakeMeetsAll {
   SCREE_HD MeetsAll operator()(std::int64_t) const { return {}; }
 };
 
-/// Dense below and sparse above, so that many bricks hold less than 64 of them.
+/// Returns a cloud that is dense below and sparse above, so that many bricks hold fewer than 64 objects.
 Boxes thinning_cloud(int n, double side) {
   Boxes boxes = equal_cloud(n, side, 0.5);
   for (Aabb& box : boxes) {
@@ -357,7 +359,8 @@ Boxes thinning_cloud(int n, double side) {
   return boxes;
 }
 
-// Bricks with few entries read further than these: two decades of radii found pairs with bodies that are not.
+// Bricks with few entries read memory beyond them: once, scenes with two decades of radii found pairs with
+// bodies that do not exist.
 TYPED_TEST(Bricked, PairsDoNotHangOnWhatTheMemoryHeld) {
   const Boxes boxes = thinning_cloud(100000, 100);
   const auto plan = plan_of(boxes);
@@ -370,7 +373,7 @@ TYPED_TEST(Bricked, PairsDoNotHangOnWhatTheMemoryHeld) {
   expect_pairs_of_the_uniform_grid<TypeParam>(boxes, true);
 }
 
-// The sample does not see the crowd, and the grid does what bricks cannot.
+// The sample does not contain the crowd, and the grid does what bricks cannot.
 TYPED_TEST(Bricked, AHiddenCrowdIsLeftToTheGrid) {
   Boxes boxes = equal_cloud(400000, 74, 0.5);
   std::vector<bool> seen(boxes.size());

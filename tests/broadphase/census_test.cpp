@@ -1,4 +1,4 @@
-// The census and the size histogram against serial loops.
+// Tests of the census and of the histogram of sizes, against serial loops.
 #include "broadphase/census.hpp"
 
 #include "tests/broadphase/boxes.hpp"

@@ -1,4 +1,5 @@
-// The scale of the centres and their Z-order: in order, as fine as said, and even where outliers are.
+// Tests of the scale of the centres and of their Z-order: it keeps the order, and is as fine as stated, even
+// where there are outliers.
 #include "broadphase/centre_scale.hpp"
 
 #include "tests/broadphase/boxes.hpp"

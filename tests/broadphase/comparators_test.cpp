@@ -1,4 +1,4 @@
-// What the comparators promise beyond the right pairs: their order, and the work that they do.
+// Tests of what the comparators promise beyond the right pairs: their order, and the work that they do.
 #include "core/error.hpp"
 #include "tests/broadphase/boxes.hpp"
 #include "tests/core/spaces.hpp"
@@ -65,13 +65,14 @@ TYPED_TEST(Comparators, TheSweepGoesAlongTheLine) {
     for (int k = -5000; k < 5000; ++k)
       boxes.push_back(ball(axis == 0 ? k : 7, axis == 1 ? k : 7, axis == 2 ? k : 7, 0.6));
     EXPECT_LE(tests_per_body<TypeParam>(BroadPhaseMethod::sweep_and_prune, boxes), 2);
-    // Nor does a lone outlier turn it.
+    // A single outlier does not turn the sweep either.
     boxes.push_back(ball(axis == 0 ? 7 : 1e7, axis == 0 ? 1e7 : 7, 7, 1));
     EXPECT_LE(tests_per_body<TypeParam>(BroadPhaseMethod::sweep_and_prune, boxes), 2);
   }
 }
 
-// Each pair in up to eight cells, but small objects against each other in the cells of their own level alone.
+// Each pair may be in up to eight cells, but small objects are tested against each other only in the cells of
+// their own level.
 TYPED_TEST(Comparators, TheAlternativeGridTestsFewBoxes) {
   constexpr int n = 20000;
   const auto tests = [](const Boxes& boxes) {
@@ -85,14 +86,14 @@ TYPED_TEST(Comparators, TheAlternativeGridTestsFewBoxes) {
   Boxes giant = plain;
   giant.push_back(ball(0, 0, 0, 1e5));
   EXPECT_LT(tests(giant), 45);
-  // Cells 2^19 apart have one key.
+  // Cells that are 2^19 apart have one key.
   Boxes clusters = plain;
   for (const Aabb& b : plain)
     clusters.push_back({{b.lo[0] + 524296, b.lo[1], b.lo[2]}, {b.hi[0] + 524296, b.hi[1], b.hi[2]}});
   EXPECT_LT(tests(clusters), 70);
 }
 
-// --- the hierarchy
+// --- The hierarchy
 
 TYPED_TEST(Comparators, TheHierarchyTestsFewNodes) {
   constexpr int n = 20000;
@@ -117,7 +118,7 @@ TYPED_TEST(Comparators, TheHierarchyTestsFewNodes) {
   EXPECT_LT(tests(Boxes(2000, ball(1, 2, 3, 0.5))), 20);
 }
 
-// One split for each bit of the codes along one path, and below it leaves with equal codes.
+// Along one path there is one split for each bit of the codes, and below it are leaves with equal codes.
 TYPED_TEST(Comparators, ADeepHierarchy) {
   Boxes boxes;
   for (int power = 0; power < 40; ++power) {
@@ -129,8 +130,8 @@ TYPED_TEST(Comparators, ADeepHierarchy) {
   expect_definition<TypeParam>(boxes);
 }
 
-// 499,999,500,000 pairs of a million bodies at one point, 4 TB: counted by nodes, since tests would take an
-// hour.
+// A million bodies at one point have 499,999,500,000 pairs, which take 4 TB. They are counted by nodes, since
+// tests of single pairs would take an hour.
 TYPED_TEST(Comparators, TheHierarchyRefusesMorePairsThanThereIsMemoryFor) {
   const Boxes boxes(1000000, ball(3, -2, 1, 0.5));
   try {

@@ -1,5 +1,5 @@
-// Every method, at every number of levels, in every space, finds the pairs of the definition: over the sizes,
-// places and shapes at which broad phases are known to fail.
+// Tests that every method, at every number of levels and in every space, finds the pairs of the definition:
+// for sizes, places and shapes at which broad phases are known to fail.
 #include "broadphase/bounds.hpp"
 #include "core/error.hpp"
 #include "tests/broadphase/boxes.hpp"
@@ -18,7 +18,7 @@ template <class Space>
 class Find : public test::InSpace<Space> {};
 TYPED_TEST_SUITE(Find, test::Spaces, test::SpaceName);
 
-// --- output sizes
+// --- Output sizes
 
 TYPED_TEST(Find, FewBodies) {
   for (const int n : {0, 1, 2, 3, 31, 32, 33}) {
@@ -43,7 +43,7 @@ TYPED_TEST(Find, AllInOneCell) { expect_definition<TypeParam>(equal_cloud(2000, 
 
 TYPED_TEST(Find, AllAtOnePoint) { expect_definition<TypeParam>(Boxes(700, ball(3, -2, 1, 0.5))); }
 
-// --- sizes
+// --- Sizes
 
 TYPED_TEST(Find, EqualSizes) { expect_definition<TypeParam>(equal_cloud(3000, 14.6, 0.5)); }
 
@@ -52,7 +52,7 @@ TYPED_TEST(Find, ThreeDecadesLogUniform) { expect_definition<TypeParam>(log_clou
 TYPED_TEST(Find, ThreeDecadesInverseCube) {
   expect_definition<TypeParam>(cloud(3000, 2, 3, [](Random& random) {
     const double u = random.uniform();
-    return 0.003 / std::sqrt(1 - u * (1 - 1e-6));  // density r^-3 from 0.003 to 3
+    return 0.003 / std::sqrt(1 - u * (1 - 1e-6));  // the density is r^-3 from 0.003 to 3
   }));
 }
 
@@ -69,8 +69,8 @@ TYPED_TEST(Find, GiantsAmongMany) {
   }
 }
 
-// Large bodies that each touch some of the small ones: what is searched from above, row by row, dense, dense
-// with wider cells, and hashed.
+// Each of the large bodies touches some of the small ones. The search from the large bodies down goes row by
+// row through the table of the small ones, which is dense, dense with wider cells, or hashed.
 TYPED_TEST(Find, FiftyToOne) {
   for (const double side : {25.0, 40.0, 4000.0}) {
     Boxes boxes = equal_cloud(4000, side, 0.5);
@@ -110,7 +110,7 @@ TYPED_TEST(Find, SizesAtPowersOfTwo) {
   expect_definition<TypeParam>(boxes);
 }
 
-// --- places
+// --- Places
 
 TYPED_TEST(Find, LatticeWithSpacingOfTheCell) {
   for (const float spacing : {1.0f, 0.1f, 1.0f / 3}) {
@@ -140,7 +140,7 @@ TYPED_TEST(Find, TwoFarClusters) {
   expect_definition<TypeParam>(boxes);
 }
 
-// A Plummer sphere: dense in the middle, with far outliers.
+// A Plummer sphere is dense in the middle and has far outliers.
 TYPED_TEST(Find, PlummerCluster) {
   Boxes boxes;
   for (int k = 0; k < 2500; ++k) {
@@ -173,7 +173,7 @@ TYPED_TEST(Find, FarFromTheOrigin) {
     Boxes boxes;
     for (int k = 0; k < 1500; ++k) {
       Random random(15, static_cast<std::uint64_t>(k));
-      // As rounded outward to float: at 1e9 the neighbours of a body are 64 m away.
+      // The bounds are rounded outward to float: at 1e9 the neighbouring floats are 64 m away.
       Aabb one;
       for (int a = 0; a < 3; ++a) {
         const double x = offset + random.uniform(-600, 600);
@@ -213,7 +213,7 @@ TYPED_TEST(Find, NegativeZero) {
                                 {{-0.0f, 0, -0.0f}, {0, -0.0f, 0}}});
 }
 
-// --- shapes
+// --- Shapes
 
 TYPED_TEST(Find, RodsAndPlates) {
   const auto thin = [](int axis, bool plate) {
@@ -252,8 +252,8 @@ TYPED_TEST(Find, ZeroThickness) {
   expect_definition<TypeParam>(boxes);
 }
 
-// Pairs whose boxes meet in exactly one plane, or miss by one float, at cell borders of every kind: what a
-// grid in float arithmetic gets wrong.
+// The boxes of a pair meet in exactly one plane, or miss one another by one float, at cell borders of every
+// kind: a grid in float arithmetic gets such pairs wrong.
 TYPED_TEST(Find, TouchingWithinOneFloat) {
   Boxes boxes;
   for (int k = 0; k < 1000; ++k) {
@@ -269,7 +269,7 @@ TYPED_TEST(Find, TouchingWithinOneFloat) {
   expect_definition<TypeParam>(boxes);
 }
 
-// --- who takes part
+// --- Which bodies take part
 
 TYPED_TEST(Find, FixedBodiesDoNotMeetEachOther) {
   const Boxes boxes = log_cloud(1500, 8, 0.02, 2);

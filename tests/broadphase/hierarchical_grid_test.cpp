@@ -1,5 +1,5 @@
-// What the hierarchical grid promises beyond the right pairs: their order, that no way to write the same
-// scene changes them, and the shape of its plan.
+// Tests of what the hierarchical grid promises beyond the right pairs: their order, that the scene may be
+// written in any way, and the shape of the plan.
 #include "broadphase/grid_plan.hpp"
 #include "tests/broadphase/boxes.hpp"
 #include "tests/core/spaces.hpp"
@@ -26,7 +26,7 @@ PairSet grid_pairs(const Boxes& boxes, int levels = 0) {
                       all_free(boxes));
 }
 
-/// Small and large, dense and sparse: every search has work.
+/// Returns small and large boxes, dense and sparse, so that every search has work.
 Boxes mixed_scene() {
   Boxes boxes = log_cloud(8000, 22, 0.05, 2);
   for (const Aabb& large : equal_cloud(5, 22, 9, 6)) boxes.push_back(large);
@@ -43,7 +43,7 @@ TYPED_TEST(HierarchicalGrid, AgreesWithTheUniformGridAtSize) {
   }
 }
 
-// Bricks, which only a GPU has and levels that are forced keep off, have an order of their own.
+// Bricks have an order of their own. Only a GPU has them, and a forced number of levels excludes them.
 TYPED_TEST(HierarchicalGrid, TheOrderIsThatOfTheHostWithOneThread) {
   const Boxes boxes = mixed_scene();
   for (const int levels : {0, 1, 4}) {
@@ -69,7 +69,7 @@ TYPED_TEST(HierarchicalGrid, TheOrderDoesNotDependOnThreadsOrHistory) {
   }
 }
 
-/// The pairs of boxes that were renumbered: body k is the old order[k].
+/// Returns the pairs of renumbered boxes by their old numbers: body k is the old body order[k].
 PairSet renumbered(const PairSet& pairs, const std::vector<std::int32_t>& order) {
   PairSet old;
   for (const auto& [i, j] : pairs) {
@@ -111,7 +111,7 @@ TYPED_TEST(HierarchicalGrid, ReflectionScalingAndExchangeOfAxesKeepThePairs) {
 }
 
 TYPED_TEST(HierarchicalGrid, ShiftKeepsThePairs) {
-  // Multiples of 2^-10 within 2^13, so that shifts are exact.
+  // Coordinates are multiples of 2^-10 within 2^13, so that shifts are exact.
   Boxes boxes;
   for (int k = 0; k < 5000; ++k) {
     Random random(22, static_cast<std::uint64_t>(k));
@@ -135,7 +135,7 @@ TYPED_TEST(HierarchicalGrid, ShiftKeepsThePairs) {
   }
 }
 
-// --- work: what must not blow up, counted in box tests so that no clock is needed
+// --- Work that must not blow up, counted in box tests so that no clock is needed
 
 template <class Space>
 std::int64_t tests_per_body(const Boxes& boxes) {
@@ -165,7 +165,7 @@ TYPED_TEST(HierarchicalGrid, WorkStaysBounded) {
   EXPECT_LT(tests_per_body<TypeParam>(clusters), 40);
 }
 
-// --- the plan
+// --- The plan
 
 GridPlan plan_of(const Boxes& boxes, int levels = 0) {
   Array<Aabb, Host> bounds;

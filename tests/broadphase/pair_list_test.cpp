@@ -1,4 +1,5 @@
-// What must be refused before memory is asked for cannot be tried out at full size: the rule is tested alone.
+// Tests of the rule that refuses too many pairs before memory is allocated. It is tested alone, since it
+// cannot be tried at full size.
 #include "broadphase/pair_list.hpp"
 
 #include <gtest/gtest.h>

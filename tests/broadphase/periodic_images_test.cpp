@@ -1,4 +1,5 @@
-// Through images, every method finds the pairs of a periodic space: those of the definition, over all images.
+// Tests that every method finds the pairs of a periodic space through images: those of the definition, over
+// all images.
 #include "broadphase/periodic_images.hpp"
 
 #include "tests/broadphase/boxes.hpp"
@@ -15,13 +16,13 @@ template <class Space>
 class PeriodicImagesTest : public test::InSpace<Space> {};
 TYPED_TEST_SUITE(PeriodicImagesTest, test::Spaces, test::SpaceName);
 
-/// All places and sizes are in units of this, so that moving by a period rounds nothing (m).
+/// The unit of all places and sizes (m), so that moving by a period rounds nothing.
 constexpr double unit = 1.0 / 1024;
 
 double whole(double x) { return unit * std::round(x / unit); }
 
-/// Boxes with their centres in the cell, their half extents up to `largest` shares of the period, or up to
-/// as much of 1 m where there is none.
+/// Returns boxes with their centres in the cell. Their half extents are from `least` to `largest` shares of
+/// the period, or of 1 m along axes without a period.
 Boxes boxes_in(const Period& period, int n, double least, double largest, std::uint64_t seed) {
   Boxes boxes;
   for (int i = 0; i < n; ++i) {
@@ -37,7 +38,8 @@ Boxes boxes_in(const Period& period, int n, double least, double largest, std::u
   return boxes;
 }
 
-/// In double, which holds all these numbers exactly: pairs of which some image of one meets the other.
+/// Returns the pairs of which some image of one box meets the other, by double arithmetic, which holds all
+/// these numbers exactly.
 PairSet by_definition_in(const Period& period, const Boxes& boxes, const std::vector<Mobility>& mobility) {
   const auto meet = [&](const Aabb& p, const Aabb& q) {
     for (int a = 0; a < 3; ++a) {
@@ -71,7 +73,7 @@ PairSet found_in(const Period& period, const BroadPhaseSettings& settings, const
   return set_of<Space>(images.pairs_of(broad_phase->find(images.bounds().view(), images.mobility().view())));
 }
 
-/// Also that some pairs are there by their images alone.
+/// Expects every method to find the pairs of the definition; some of them must exist only through images.
 template <class Space>
 void expect_images(const Period& period, const Boxes& boxes, const std::vector<Mobility>& mobility) {
   const PairSet expected = by_definition_in(period, boxes, mobility);
@@ -83,7 +85,7 @@ void expect_images(const Period& period, const Boxes& boxes, const std::vector<M
   }
 }
 
-/// Periods along one, two and three axes, cubic and not.
+/// Returns periods along one, two and three axes, cubic and not.
 std::vector<Period> periods() {
   return {period_of(Vec3(-0.25, 0, 0), Vec3(1, 0, 0)),   period_of(Vec3(0, 3, 0), Vec3(0, 0.5, 0)),
           period_of(Vec3(0, 0, -7), Vec3(0, 0, 2)),      period_of(Vec3(1, 0, 0.5), Vec3(1, 0, 0.75)),
@@ -98,7 +100,8 @@ TYPED_TEST(PeriodicImagesTest, SmallBoxes) {
   }
 }
 
-// Up to half extents of a quarter of the period, the most that is let in: many reach through several ends.
+// Half extents go up to a quarter of the period, the most that is allowed, so that many boxes reach through
+// several ends.
 TYPED_TEST(PeriodicImagesTest, LargeBoxesAmongSmallOnes) {
   for (const Period& period : periods()) {
     Boxes boxes = boxes_in(period, 150, 0.001, 0.01, 2);
@@ -117,7 +120,7 @@ TYPED_TEST(PeriodicImagesTest, FixedBoxesHaveImagesAndNoPairsOfTheirOwn) {
   }
 }
 
-// At the ends of the cell themselves, and just touching through them: closed boxes meet.
+// The boxes are at the ends of the cell, or just touch through them: closed boxes meet.
 TYPED_TEST(PeriodicImagesTest, BoxesThatTouchThroughTheEnds) {
   const Period period = period_of(Vec3(0, 0, 0), Vec3(1, 1, 1));
   const double r = 8 * unit;

@@ -1,5 +1,5 @@
-// More pairs than 2^32, and than there is memory for, are refused with their number by every method. Most
-// methods count them one by one, which takes some seconds each.
+// Tests that every method refuses more pairs than 2^32, and than there is memory for, and names their number.
+// Most methods count them one by one, which takes some seconds each.
 #include "core/error.hpp"
 #include "tests/broadphase/boxes.hpp"
 
@@ -14,7 +14,7 @@ TEST(Refusal, NamesTheNumberOfPairsOfManyBodiesAtOnePoint) {
   constexpr std::int64_t n = 100000;
   constexpr std::int64_t pairs = n * (n - 1) / 2;
   if (Host::free_memory() >= pairs * sizeof(Pair)) GTEST_SKIP() << "there is memory for all pairs";
-  // In one cell: in the alternative grid each pair is tested once, and not in eight cells.
+  // All bodies are in one cell: the alternative grid tests each pair once, and not in eight cells.
   const Boxes boxes(n, ball(0.5, 0.5, 0.5, 0.5));
   for (const auto& [name, settings] : every_method()) {
     if (settings.levels > 0) continue;  // bodies of one size have one level

@@ -1,4 +1,4 @@
-// Owned arrays and the copies between spaces.
+// Tests of owned arrays and of the copies between spaces.
 #include "core/array.hpp"
 
 #include "tests/core/spaces.hpp"
@@ -49,7 +49,7 @@ TYPED_TEST(ArrayTest, GrowsGeometrically) {
     array.resize(n);
     if (array.data() != before) ++moves;
   }
-  // log_1.5(100000) = 28.4, and some more while the halves still round to nothing.
+  // The bound: log_1.5(100000) = 28.4, and some more moves while half of the size still rounds to nothing.
   EXPECT_LT(moves, 35);
 }
 

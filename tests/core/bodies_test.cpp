@@ -1,4 +1,4 @@
-// The one list of fields: complete, and followed by everything that goes through it.
+// Tests of the one list of body fields: it is complete, and all functions over fields follow it.
 #include "core/bodies.hpp"
 
 #include "core/rng.hpp"
@@ -59,8 +59,8 @@ TEST(BodyFields, ListNamesEveryMemberOnce) {
   BodyTable bodies;
   // This stops compiling when the struct gains or loses a member.
   auto& [a, b, c, d, e, f, g, h, i, j, k, period, place_of] = bodies;
-  EXPECT_FALSE(period.exists);    // no field: there is one of all bodies
-  EXPECT_TRUE(place_of.empty());  // no field: it is by number
+  EXPECT_FALSE(period.exists);    // not a field: all bodies share one period
+  EXPECT_TRUE(place_of.empty());  // not a field: it is indexed by number
   const std::set<const void*> members = {&a, &b, &c, &d, &e, &f, &g, &h, &i, &j, &k};
   std::set<const void*> visited;
   std::set<std::string> names;
@@ -74,7 +74,7 @@ TEST(BodyFields, ListNamesEveryMemberOnce) {
   EXPECT_EQ(names.size(), members.size());
 }
 
-// nvcc once took both for the same type.
+// These two fail where nvcc takes View<Vec3> and View<const Vec3> for the same type, as it once did.
 static_assert(std::is_same_v<decltype(BodyView::position), View<Vec3>>);
 static_assert(std::is_same_v<decltype(ConstBodyView::position), View<const Vec3>>);
 

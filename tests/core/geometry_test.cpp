@@ -1,4 +1,5 @@
-// Hulls and their mass, against closed forms and Monte Carlo; meshes and what surrounds their triangles.
+// Tests of hulls and their masses, against closed forms and Monte Carlo sums, and of meshes and the
+// surroundings of their triangles.
 #include "core/geometry.hpp"
 
 #include "core/error.hpp"
@@ -22,7 +23,7 @@ std::vector<Vec3> box_points(const Vec3& half, const Quat& turn, const Vec3& at)
 }
 
 void expect_closed(const Hull& hull) {
-  // Euler's formula, and every vertex behind every face.
+  // The hull obeys Euler's formula, and every vertex is behind every face.
   EXPECT_EQ(hull.vertices.size() + hull.faces.size(), hull.edges.size() + 2);
   for (const Hull::Face& face : hull.faces) {
     const double offset = face.normal.dot(hull.vertices[static_cast<std::size_t>(hull.corners_of(face)[0])]);
@@ -37,7 +38,7 @@ TEST(Hull, ABoxAnywhereHasSixFacesAndItsMoments) {
     const Vec3 at(random.uniform(-9, 9), random.uniform(-9, 9), random.uniform(-9, 9));
     const Quat turn = n == 0 ? Quat::Identity() : random_orientation(random);
     std::vector<Vec3> points = box_points(half, turn, at);
-    points.push_back(at);                                // inside
+    points.push_back(at);                                // inside the box
     points.push_back(at + turn * Vec3(half.x(), 0, 0));  // within a face
     points.push_back(0.5 * (points[0] + points[1]));     // within an edge
     const Hull hull = make_hull(points);
@@ -54,7 +55,7 @@ TEST(Hull, ABoxAnywhereHasSixFacesAndItsMoments) {
     std::sort(expected.begin(), expected.end());
     std::sort(found.begin(), found.end());
     for (std::size_t k = 0; k < 3; ++k) EXPECT_NEAR(found[k], expected[k], 1e-12);
-    // The vertices are where they were given.
+    // The vertices of the hull are where the points were given.
     for (const Vec3& v : hull.vertices) {
       double nearest = HUGE_VAL;
       for (const Vec3& p : points) nearest = std::min(nearest, (hull.centre + hull.axes * v - p).norm());
@@ -71,13 +72,14 @@ TEST(Hull, ACubesFrameIsThatOfItsPoints) {
 }
 
 TEST(Hull, ATetrahedronsMassIsTheClosedForm) {
-  // Legs a, b, c along the axes (Tonon 2004): centre at a quarter of each, V = a b c / 6.
+  // A tetrahedron with legs a, b, c along the axes (Tonon 2004) has its centre at a quarter of each leg and
+  // the volume a b c / 6.
   const double a = 0.3, b = 0.5, c = 0.7;
   const std::vector<Vec3> points = {{0, 0, 0}, {a, 0, 0}, {0, b, 0}, {0, 0, c}};
   const Hull hull = make_hull(points);
   EXPECT_NEAR(hull.volume, a * b * c / 6, 1e-16);
   EXPECT_NEAR((hull.centre - Vec3(a, b, c) / 4).norm(), 0, 1e-15);
-  const double trace = 3.0 / 40 * (a * a + b * b + c * c);  // half of that of the inertia
+  const double trace = 3.0 / 40 * (a * a + b * b + c * c);  // half of the trace of the inertia
   EXPECT_NEAR(hull.moments.sum(), trace, 1e-15);
   EXPECT_EQ(hull.faces.size(), 4u);
 }

@@ -1,5 +1,5 @@
-// Hulls of points that are nearly equal, nearly in a plane, thin, small, large and far away: a few sets of
-// each family of the campaign (bench/hulls), and what must come of points that can be named.
+// Tests of hulls of points that are nearly equal, nearly in a plane, thin, small, large and far away: a few
+// sets of each family of the campaign (bench/hulls), and points whose hull is known.
 #include "bench/hulls/judge.hpp"
 #include "core/error.hpp"
 #include "core/geometry.hpp"
@@ -20,7 +20,7 @@ namespace {
 
 using oracle::HullFamily;
 
-/// A cube of 1 m of (steps + 1)^3 points.
+/// Returns a cube of 1 m as a lattice of (steps + 1)^3 points.
 std::vector<Vec3> lattice(int steps, const Quat& turn) {
   std::vector<Vec3> points;
   for (int x = 0; x <= steps; ++x)
@@ -48,7 +48,7 @@ TEST(AwkwardHulls, SetsOfEachFamilyAreAsTheirExactHulls) {
 
 TEST(AwkwardHulls, ATurnedLatticeOfFewDigitsIsACube) {
   Random random(7, 0);
-  for (const double digit : {1e-6, 1e-7, 1e-8, 1e-12, 0.0})  // 0: single precision
+  for (const double digit : {1e-6, 1e-7, 1e-8, 1e-12, 0.0})  // 0 stands for single precision
     for (const int steps : {1, 2, 4, 8}) {
       std::vector<Vec3> points = lattice(steps, random_orientation(random));
       for (Vec3& p : points)
@@ -61,7 +61,7 @@ TEST(AwkwardHulls, ATurnedLatticeOfFewDigitsIsACube) {
 }
 
 TEST(AwkwardHulls, PointsInFacesAndEdgesAreNoVertices) {
-  // As many vertices as a hull may have, and more points than that.
+  // The prism has as many vertices as a hull may have, and more points than that.
   std::vector<Vec3> points;
   for (const double z : {-0.5, 0.0, 0.5})
     for (int k = 0; k < 64; ++k) points.emplace_back(std::cos(2 * pi * k / 64), std::sin(2 * pi * k / 64), z);
@@ -92,7 +92,7 @@ TEST(AwkwardHulls, SizePlaceAndThinnessDoNotMatter) {
   for (const double size : {1e-150, 1e-6, 1.0, 1e6, 1e90})
     for (const double thin : {1.0, 1e-3, 1e-6})
       for (const double away : {0.0, 1e3, 1e6}) {
-        if (thin < 1e-9 * away) continue;  // its thickness is lost in the places' digits
+        if (thin < 1e-9 * away) continue;  // the thickness is lost in the rounding of the coordinates
         const Quat turn = random_orientation(random);
         std::vector<Vec3> points = lattice(2, Quat::Identity());
         for (Vec3& p : points) p = size * (Vec3(away, away, -away) + turn * Vec3(p.x(), p.y(), thin * p.z()));
@@ -155,7 +155,7 @@ TEST(AwkwardHulls, ThreadsMakeTheSameBits) {
 }
 
 TEST(AwkwardHulls, QhullSaysNothingToTheUser) {
-  // A set on which Qhull fails at first, with a page of text.
+  // At first Qhull fails on this set, with a page of text.
   const auto set = oracle::make_points(HullFamily::clusters, 1530);
   testing::internal::CaptureStderr();
   testing::internal::CaptureStdout();

@@ -1,5 +1,5 @@
-// What searches find, in their order, against serial loops: with empty runs, runs of thousands of candidates,
-// items that find more than a warp keeps, and too little room.
+// Tests of the matches that searches find, in their order, against serial loops: with empty runs, runs of
+// thousands of candidates, items that find more than a warp keeps, and too little room.
 #include "core/parallel.hpp"
 #include "tests/core/spaces.hpp"
 
@@ -22,7 +22,8 @@ struct Match {
   friend bool operator==(const Match&, const Match&) = default;
 };
 
-/// Run r of item i has candidates that depend on both in no simple way; every `keeps`-th is found.
+/// A toy search: the candidates of run r of item i depend on both in no simple way, and every `keeps`-th of
+/// them matches.
 struct Toy {
   static constexpr const char* label = "toy";
   using Candidate = std::uint32_t;
@@ -53,7 +54,7 @@ struct Toy {
   SCREE_HD Match match(const Object& o, Candidate k) const { return {o.item, k}; }
 };
 
-/// Tests four candidates at once, on Host.
+/// A toy search that tests four candidates at once, on Host.
 struct ToyOfFour : Toy {
   static constexpr int lanes = 4;
 

@@ -1,4 +1,4 @@
-// Rotations against long double, and the tangent frame by its definition.
+// Tests of rotations against long double, and of the tangent frame by its definition.
 #include "core/math.hpp"
 
 #include "core/rng.hpp"
@@ -24,7 +24,8 @@ Vec3 random_direction(std::uint64_t item) {
 
 TEST(RotationOf, AgreesWithLongDouble) {
   using Vec3l = Eigen::Matrix<long double, 3, 1>;
-  // Either side of the switch to the series (a half angle of 1e-4), and far beyond one turn.
+  // The angles lie on either side of the switch to the series (a half angle of 1e-4), and go far beyond one
+  // turn.
   for (const double angle :
        {1e-300, 1e-20, 1e-9, 1e-5, 1.99e-4, 2.01e-4, 1e-3, 0.1, 1.0, 3.0, pi, 6.0, 50.0}) {
     for (std::uint64_t item = 0; item < 50; ++item) {
@@ -33,7 +34,7 @@ TEST(RotationOf, AgreesWithLongDouble) {
       const long double norm = exact.norm();
       const Vec3l imaginary = std::sin(norm / 2) * exact / norm;
       const Quat q = rotation_of(v);
-      // The rounding of the angle itself is amplified by its size.
+      // The rounding error of the angle itself grows with its size.
       const double bound = 4 * epsilon * std::max(1.0, angle);
       EXPECT_NEAR(q.w(), static_cast<double>(std::cos(norm / 2)), bound) << angle;
       for (int k = 0; k < 3; ++k) {
@@ -59,7 +60,8 @@ TEST(TangentOf, IsUnitAndAtRightAngles) {
     normals.push_back(Vec3::Unit(axis));
     normals.push_back(-Vec3::Unit(axis));
   }
-  // Close to the pole where the simpler formula of Frisvad (2012) breaks down, and across the equator.
+  // These normals are close to the pole where the simpler formula of Frisvad (2012) breaks down, or on either
+  // side of the equator.
   for (const double tilt : {1e-3, 1e-8, 1e-15}) {
     normals.push_back(Vec3(tilt, -tilt, -1).normalized());
     normals.push_back(Vec3(0.6, 0.8, tilt).normalized());

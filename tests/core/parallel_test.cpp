@@ -1,5 +1,5 @@
-// The parallel calls against serial loops, the sum against long double, and all of them for the same bits
-// whatever the number of threads.
+// Tests of the parallel calls against serial loops, and of the sum against long double. All of them must give
+// the same bits whatever the number of threads.
 #include "core/parallel.hpp"
 
 #include "core/rng.hpp"
@@ -26,7 +26,7 @@ template <class Space>
 class ParallelTest : public test::InSpace<Space> {};
 TYPED_TEST_SUITE(ParallelTest, test::Spaces, test::SpaceName);
 
-// Around the serial threshold, the leaf of the sum, and the square of the leaf.
+// Sizes around the serial threshold, the leaf of the sum, and the square of the leaf.
 constexpr std::int64_t sizes[] = {0, 1, 2, 255, 256, 257, 1000, 65535, 65536, 65537, 300000};
 
 struct Square {
@@ -34,7 +34,7 @@ struct Square {
   SCREE_HD void operator()(std::int64_t i) const { squares[i] = i * i; }
 };
 
-// Values over many magnitudes and of both signs, so that any change of grouping shows in the last bits.
+// Values of many magnitudes and of both signs, so that any change of grouping shows in the last bits.
 struct Wild {
   SCREE_HD double operator()(std::int64_t i) const {
     Random random(11, static_cast<std::uint64_t>(i));
@@ -49,9 +49,9 @@ struct Load {
   SCREE_HD std::int64_t operator()(std::int64_t i) const { return values[i]; }
 };
 
-// Two threads meet at each place; the second reads what the first has written.
+// Two threads meet at each place, and the second one reads what the first one has written.
 struct Meet {
-  std::int32_t* places;  // -1 at first
+  std::int32_t* places;  // initially -1
   std::int64_t* written;
   std::int64_t* sums;
   std::int64_t count;
@@ -63,21 +63,21 @@ struct Meet {
   }
 };
 
-// What many threads say of one place.
+// Many threads update the same minimum, maximum, counter and list.
 struct Tell {
   std::uint64_t* least;
   std::uint32_t* most;
   std::uint64_t* count;
   std::int64_t* list;
   SCREE_HD void operator()(std::int64_t i) const {
-    const std::int64_t value = i * 7919 % 100003;  // a prime: each value under it once
+    const std::int64_t value = i * 7919 % 100003;  // 100003 is prime, so that each value below it comes once
     lower(least, static_cast<std::uint64_t>(value + 5));
     raise(most, static_cast<std::uint32_t>(value));
     list[count_up(count)] = value;
   }
 };
 
-// Runs f with exactly this many threads allowed, on machines with fewer cores too.
+// Runs f with exactly `threads` threads allowed, also on machines with fewer cores.
 template <class F>
 auto with_threads(int threads, F f) {
   const tbb::global_control limit(tbb::global_control::max_allowed_parallelism,
@@ -147,7 +147,7 @@ TYPED_TEST(ParallelTest, SumAgreesWithLongDouble) {
       magnitude += std::fabs(static_cast<long double>(Wild{}(i)));
     }
     const double sum = parallel::sum<double, TypeParam>("test.sum", n, Wild{});
-    // Depth of the tree: at most 256 additions on each of at most three levels.
+    // The depth of the tree is at most 256 additions on each of at most three levels.
     const double bound = 3 * 256 * std::numeric_limits<double>::epsilon() * static_cast<double>(magnitude);
     EXPECT_NEAR(sum, static_cast<double>(exact), bound) << "n = " << n;
   }
@@ -247,7 +247,7 @@ TYPED_TEST(ParallelTest, ExclusiveScanCountsBeyond32Bits) {
   EXPECT_EQ(to_vector(offsets)[2], 2 * std::int64_t{large});
 }
 
-// Sorts n pairs with keys of `bits` random bits and values that remember the order.
+// Sorts n pairs whose keys have `bits` random bits and whose values hold the initial order.
 template <class Space, class Key>
 void check_sort(std::int64_t n, int bits) {
   std::vector<Key> keys(static_cast<std::size_t>(n));

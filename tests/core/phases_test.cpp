@@ -1,4 +1,4 @@
-// Rounds of phases, against the same loops on one thread.
+// Tests of programs of phases, against the same loops on one thread.
 #include "core/space_phases.hpp"
 #include "tests/core/spaces.hpp"
 
@@ -14,8 +14,8 @@ template <class Space>
 class RoundsTest : public test::InSpace<Space> {};
 TYPED_TEST_SUITE(RoundsTest, test::Spaces, test::SpaceName);
 
-/// Each number becomes the sum of its neighbours on a ring, modulo a prime, again and again: every phase
-/// reads what others have written in the one before.
+/// Each number becomes the sum of its neighbours on a ring, modulo a prime, in every phase: each phase reads
+/// what other threads have written in the phase before.
 struct Ring {
   using Sum = std::int64_t;
   struct State {

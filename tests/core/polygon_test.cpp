@@ -1,4 +1,5 @@
-// Polygons cut into triangles: of any form, they have the polygon's area and turn as it does.
+// Tests of polygons cut into triangles: for any form, the triangles have the area of the polygon and its
+// sense of turning.
 #include "core/polygon.hpp"
 
 #include "core/random_orientation.hpp"
@@ -23,7 +24,8 @@ double signed_area(const std::vector<Vec3>& corners) {
   return sum;
 }
 
-/// In the plane z = 0, counterclockwise; then turned in space.
+/// Expects a polygon, given counterclockwise in the plane z = 0 and then turned in space, to be cut into
+/// `triangles` triangles.
 void expect_cut(const std::vector<Vec3>& flat, Random& random, std::size_t triangles) {
   const Quat turn = random_orientation(random);
   std::vector<Vec3> corners;
@@ -85,7 +87,8 @@ TEST(Polygon, CombsAndSpiralsKeepTheirArea) {
 
 TEST(Polygon, CornersInEdgesAreKept) {
   Random random(3, 0);
-  // Of a square, from each corner on: the fan about the first one would leave some out.
+  // The corners go round a square, starting at each corner in turn: the fan about the first corner would
+  // leave some out.
   for (std::size_t first = 0; first < 8; ++first) {
     const std::vector<Vec3> around = {{0, 0, 0}, {0.3, 0, 0}, {1, 0, 0}, {1, 0.6, 0},
                                       {1, 1, 0}, {0.2, 1, 0}, {0, 1, 0}, {0, 0.5, 0}};

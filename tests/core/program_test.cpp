@@ -20,7 +20,7 @@ std::string message_of(const std::vector<std::string>& command) {
 
 TEST(RunProgram, ReturnsWhatItWrites) { EXPECT_EQ(run_program({"printf", "a%sc", "b"}), "abc"); }
 
-// More than a pipe holds, both ways at once.
+// The text is more than a pipe holds, in both directions at once.
 TEST(RunProgram, GivesAndTakesMuch) {
   std::string text;
   for (int k = 0; k < 400000; ++k) text += std::to_string(k) + '\n';

@@ -1,4 +1,4 @@
-// Philox against the vectors published with it, and the stream's moments.
+// Tests of Philox against the vectors published with it, and of the moments of the stream.
 #include "core/rng.hpp"
 
 #include <gtest/gtest.h>
@@ -12,7 +12,7 @@ namespace {
 
 using Words = std::array<std::uint32_t, 4>;
 
-// The known answers distributed with Random123: zeros, ones, and the digits of pi.
+// The known answers come with Random123: zeros, ones, and the digits of pi.
 TEST(Philox, KnownAnswers) {
   EXPECT_EQ(philox({0, 0, 0, 0}, {0, 0}), (Words{0x6627e8d5, 0xe169c58d, 0xbc57ac4c, 0x9b00dbd8}));
   const std::uint32_t ones = 0xffffffff;
@@ -23,7 +23,7 @@ TEST(Philox, KnownAnswers) {
 }
 
 TEST(Random, FirstDrawIsThePhiloxWord) {
-  // 53 bits of the first two words of philox(0, 0).
+  // The first draw has 53 bits of the first two words of philox(0, 0).
   EXPECT_EQ(Random(0, 0).uniform(), static_cast<double>(0x6627e8d5e169c58dull >> 11) * 0x1p-53);
 }
 
@@ -36,12 +36,13 @@ TEST(Random, StreamsDependOnAllOfSeedAndItem) {
   EXPECT_NE(Random(1, 2 + (1ull << 32)).uniform(), first);
 }
 
-// Moments of n draws; bounds are five standard deviations of each estimate.
+// Checks the moments of n draws; the bounds are five standard deviations of each estimate.
 void expect_uniform(const std::array<double, 3>& sums, double lag_product, double n) {
   EXPECT_NEAR(sums[0] / n, 1.0 / 2, 5 * std::sqrt(1.0 / 12 / n));
   EXPECT_NEAR(sums[1] / n, 1.0 / 3, 5 * std::sqrt(4.0 / 45 / n));
   EXPECT_NEAR(sums[2] / n, 1.0 / 4, 5 * std::sqrt(9.0 / 112 / n));
-  // Products of neighbours share factors: variance 7/144 plus twice the covariance 1/48 of adjacent products.
+  // Products of neighbours share factors: their variance is 7/144 plus twice the covariance 1/48 of adjacent
+  // products.
   EXPECT_NEAR(lag_product / n, 1.0 / 4, 5 * std::sqrt((7.0 / 144 + 2.0 / 48) / n));
 }
 

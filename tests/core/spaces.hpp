@@ -1,4 +1,4 @@
-// Tests over spaces: one text, run for each space that the build has.
+// Typed tests over spaces: one text, which runs for each space of the build.
 #pragma once
 
 #include "core/space.hpp"
@@ -12,7 +12,7 @@ namespace scree::test {
 
 using Spaces = ::testing::Types<SCREE_SPACES>;
 
-/// Names the space in the test's name: ParallelTest/host.
+/// Names the space in the name of the test: ParallelTest/host.
 struct SpaceName {
   template <class Space>
   static std::string GetName(int) {
@@ -20,7 +20,7 @@ struct SpaceName {
   }
 };
 
-/// Skips, saying why, where the space is built but the machine has nothing to run it on.
+/// A test fixture that skips with a reason where the space is built but the machine cannot run it.
 template <class Space>
 class InSpace : public ::testing::Test {
  protected:

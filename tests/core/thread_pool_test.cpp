@@ -1,5 +1,5 @@
-// Work that is shared out: all of it once, phase after phase, with as many threads as are allowed and no
-// more, and what it throws.
+// Tests of shared work: all of it is done once, phase after phase, with as many threads as are allowed and no
+// more, and exceptions come through.
 #include "core/thread_pool.hpp"
 
 #include <gtest/gtest.h>
@@ -48,7 +48,7 @@ TEST(ThreadPool, DoesEveryItemOnce) {
   }
 }
 
-// Each phase reads what the last one has written elsewhere.
+// Each phase reads what the last phase has written at other items.
 TEST(ThreadPool, APhaseWaitsForTheLastOne) {
   constexpr int phases = 200;
   for (const int threads : {1, 2, 5}) {
@@ -70,7 +70,8 @@ TEST(ThreadPool, APhaseWaitsForTheLastOne) {
   }
 }
 
-/// Threads that have worked, once several have, or after a second: a helper that has no processor comes late.
+/// Returns the threads that have worked, once there are several, or after a second: a helper thread without a
+/// free processor comes late.
 std::set<std::thread::id> threads_that_came() {
   using Clock = std::chrono::steady_clock;
   std::mutex mutex;

@@ -1,4 +1,4 @@
-// Work in tiles, against loops over the same items.
+// Tests of work in tiles, against loops over the same items.
 #include "core/space_tiles.hpp"
 #include "tests/core/spaces.hpp"
 
@@ -26,7 +26,7 @@ struct EveryThird {
   }
 };
 
-/// The same, kind by kind; what is not found is of none, or of one.
+/// Finds every third item kind by kind; an item that is not found may have no kind, or have one.
 struct EveryThirdByKind : EveryThird {
   static constexpr int kinds = 2;
   SCREE_HD int kind(std::int64_t item) const {

@@ -1,4 +1,4 @@
-// The accounts of wall time.
+// Tests of the accounts of wall time.
 #include "core/timing.hpp"
 
 #include "core/space.hpp"
@@ -31,7 +31,7 @@ TEST_F(TimingTest, AddsUpByLabelInOrderOfAppearance) {
   EXPECT_EQ(timing::seconds("never ran"), 0.0);
 }
 
-// The same literal has an address in each library that holds it.
+// One literal has a different address in each library that contains it.
 TEST_F(TimingTest, EqualTextAtTwoAddressesIsOneAccount) {
   const std::string first = "label", second = "label";
   timing::add(first.c_str(), 1);

@@ -1,4 +1,5 @@
-// Welding: meshes that were torn apart are whole again, and what was meant to be apart stays so.
+// Tests of welding: meshes that were torn apart become whole again, and parts that are meant to be separate
+// stay separate.
 #include "core/error.hpp"
 #include "core/geometry.hpp"
 #include "core/random_orientation.hpp"
@@ -20,7 +21,7 @@ using Corners = std::array<int, 3>;
 
 const Vec3& at(const TriangleMesh& mesh, int v) { return mesh.vertices[static_cast<std::size_t>(v)]; }
 
-/// A wavy sheet of n x n squares, 1 m wide.
+/// Returns a wavy sheet of n x n squares, 1 m wide.
 TriangleMesh sheet(int n, double height) {
   TriangleMesh mesh;
   for (int i = 0; i <= n; ++i)
@@ -45,7 +46,8 @@ TriangleMesh cube() {
   return mesh;
 }
 
-/// Each triangle has corners of its own, each off by up to `noise` along each axis; in another order.
+/// Returns the mesh with its triangles in another order, each with corners of its own that are off by up to
+/// `noise` along each axis.
 TriangleMesh torn(const TriangleMesh& mesh, double noise, Random& random) {
   TriangleMesh apart;
   std::vector<Corners> triangles = mesh.triangles;
@@ -67,7 +69,8 @@ void place(TriangleMesh& mesh, double size, const Quat& turn, const Vec3& by) {
   for (Vec3& v : mesh.vertices) v = size * (turn * v + by);
 }
 
-/// The triangles by the vertices of another mesh that are nearest to their corners; each from its lowest.
+/// Returns the triangles, named by the vertices of `known` that are nearest to their corners; each begins at
+/// its lowest vertex.
 std::multiset<Corners> triangles_as_of(const TriangleMesh& mesh, const TriangleMesh& known) {
   std::multiset<Corners> all;
   for (const Corners& t : mesh.triangles) {
@@ -144,14 +147,14 @@ TEST(Weld, TornMeshesAreWholeAgain) {
         EXPECT_EQ(count_used(mesh), int(known.vertices.size()));
         EXPECT_EQ(open_edges(mesh), open_edges(known));
         EXPECT_EQ(report.split, 0);
-        // Two copies are 2 sqrt(3) noise apart at most, and rounding.
+        // Two copies of a vertex are at most 2 sqrt(3) noise apart, and rounding adds to this.
         EXPECT_LE(report.farthest, size * (2 * std::sqrt(3.0) * noise + 1e-13));
       }
     }
   }
 }
 
-/// A square of two triangles, and above it a row of `parts` squares that meet its edge.
+/// Returns a square of two triangles, and above it a row of `parts` squares that meet its edge.
 TriangleMesh junction(int parts) {
   TriangleMesh mesh;
   mesh.vertices = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}};
@@ -189,7 +192,7 @@ TEST(Weld, TrianglesAreSplitAtCornersOnTheirEdges) {
 }
 
 TEST(Weld, CornersOnAllEdgesOfATriangleSplitIt) {
-  // A triangle among six smaller ones, and one more within each of these.
+  // The triangle is surrounded by smaller ones, `each` + 1 along each edge.
   for (int each = 1; each <= 5; ++each) {
     TriangleMesh mesh;
     mesh.vertices = {{0, 0, 0}, {1, 0, 0}, {0.3, 0.8, 0}};
@@ -219,7 +222,7 @@ TEST(Weld, TrianglesWithoutAreaThatFillAJunctionGo) {
   Random random(4, 0);
   for (const double noise : {0.0, 1e-14, 1e-10, 1e-7, 1e-5}) {
     TriangleMesh mesh = junction(2);
-    // Over the edge of the square: its two ends and the corner between them.
+    // This triangle lies on the edge of the square: its corners are the two ends and the corner between them.
     mesh.triangles.push_back({3, 2, 6});
     TriangleMesh apart = torn(mesh, noise, random);
     const MeshReport report = welded(apart);
@@ -232,7 +235,7 @@ TEST(Weld, TrianglesWithoutAreaThatFillAJunctionGo) {
 }
 
 TEST(Weld, WhatIsMeantToBeApartStaysSo) {
-  // A slit, a gap between two sheets, and a slab, each thinner than it is wide by `width`.
+  // The parts are two sheets with a gap of `width` between them, and a slab of small thickness.
   for (const double width : {1e-2, 1e-3, 2e-4}) {
     TriangleMesh two = sheet(4, 0);
     const int half = int(two.vertices.size());
@@ -264,7 +267,7 @@ TEST(Weld, TheSceneMaySayHow) {
   EXPECT_EQ(open_edges(mesh), 16);
   mesh = apart;
   EXPECT_EQ(welded(mesh, {.on = true, .length = 1e-6}).welded, 0);
-  // Nothing is left of a mesh that is shorter than that, and nothing breaks.
+  // Nothing is left of a mesh that is smaller than the length, and nothing breaks.
   mesh = apart;
   EXPECT_EQ(welded(mesh, {.on = true, .length = 10}).left_out, 32);
 }
@@ -307,7 +310,7 @@ TEST(Weld, AnyTrianglesAtAllGiveWholeOnes) {
           welded(mesh, {.on = true, .length = n % 5 == 0 ? std::optional(1.2) : std::nullopt});
       EXPECT_TRUE(std::isfinite(report.farthest));
     } catch (const InputError&) {
-      continue;  // of overlapping triangles without end
+      continue;  // triangles that overlap without end are refused
     }
     for (const auto& [a, b, c] : mesh.triangles) EXPECT_TRUE(a != b && b != c && c != a);
   }

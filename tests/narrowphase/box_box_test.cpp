@@ -1,4 +1,4 @@
-// Two boxes against the 15 axes and the closest points in long double (bench/narrowphase).
+// Tests of two boxes against the 15 axes and the closest points in long double (bench/narrowphase).
 #include "narrowphase/box_box.hpp"
 
 #include "bench/narrowphase/families.hpp"
@@ -30,8 +30,8 @@ TEST_P(BoxBoxFamilies, DepthIsThatOfLongDouble) {
     const double slack = 1e-12 * p.length;
     ASSERT_LE(found, expected + slack) << "draw " << n;
     ASSERT_GE(found, std::min(expected, 0.0) - slack) << "draw " << n;
-    // Of boxes that are apart it is only a bound: where edges are parallel but for 1e-6 rad, their axis is
-    // left out, and the distance is found by the edges themselves.
+    // For boxes that are apart, the depth is only a bound: where edges are parallel to within 1e-6 rad, their
+    // axis is left out, and the distance is found by the edges themselves.
   }
 }
 
@@ -92,8 +92,8 @@ TEST_P(BoxBoxFamilies, SwapTurnsTheNormal) {
     ASSERT_EQ(found, box_box(p.b, p.a, 0.05 * smallest, ba)) << "draw " << n;
     if (!found) continue;
     ++compared;
-    // Where the two faces are equally good the first body's is taken, so that the normals may differ by as
-    // much as the faces; else the result is the same.
+    // Where the two faces are equally good, that of the first body is taken, so that the normals may differ
+    // by as much as the faces; otherwise the result is the same.
     if ((ab.normal + ba.normal).norm() > 1e-13) continue;
     ++steady;
     ASSERT_EQ(ab.count, ba.count) << "draw " << n;
@@ -113,7 +113,7 @@ TEST_P(BoxBoxFamilies, SwapTurnsTheNormal) {
   }
 }
 
-// Random pairs alone: degenerate ones choose among equals by rounding.
+// This tests only random pairs: degenerate ones choose among equals by rounding.
 TEST(BoxBox, MovesWithTheFrame) {
   Random random(5, 0);
   for (std::uint64_t n = 0; n < 3000; ++n) {
@@ -138,7 +138,7 @@ TEST(BoxBox, MovesWithTheFrame) {
   }
 }
 
-/// The 24 turns of a cube onto itself.
+/// Returns the 24 rotations of a cube onto itself.
 std::vector<Mat3> cube_turns() {
   std::vector<Mat3> turns;
   for (int x = 0; x < 3; ++x) {
@@ -156,12 +156,13 @@ std::vector<Mat3> cube_turns() {
   return turns;
 }
 
-/// The same box, with its axes named otherwise.
+/// Returns the same box with its axes named otherwise.
 Solid relabelled(const Solid& box, const Mat3& turn) {
   return {box.position, (box.orientation * Quat(turn)).normalized(), turn.cwiseAbs().transpose() * box.size};
 }
 
-/// A turned box seen in a mirror at x = 0 is a turned box again: its axes can be mirrored in themselves.
+/// Returns the mirror image of a turned box at x = 0, which is a turned box again, since a box is its own
+/// mirror image along its axes.
 Solid mirrored(const Solid& s) {
   return {Vec3(-s.position.x(), s.position.y(), s.position.z()),
           Quat(s.orientation.w(), s.orientation.x(), -s.orientation.y(), -s.orientation.z()), s.size};
@@ -175,7 +176,7 @@ std::vector<Vec3> sorted_positions(const Manifold& m) {
   return all;
 }
 
-// Random pairs alone, here too.
+// This, too, tests only random pairs.
 TEST(BoxBox, NamesOfAxesAndMirrorsDoNotMatter) {
   const std::vector<Mat3> turns = cube_turns();
   ASSERT_EQ(turns.size(), 24u);
@@ -209,8 +210,8 @@ TEST(BoxBox, NamesOfAxesAndMirrorsDoNotMatter) {
   EXPECT_GT(compared, 48 * 1000);
 }
 
-// The depth is that of the axis which parts them best, though its edges are too near to parallel to be a
-// choice beside faces.
+// The depth is that along the axis that separates the boxes best, though the edges of this axis are too
+// nearly parallel for it to be chosen beside faces.
 TEST(BoxBox, NearlyParallelEdgesThatTouchAreNoDeepContact) {
   const std::pair<Family, std::uint64_t> found[] = {{Family::tilted, 343326},
                                                     {Family::parallel_edges, 207920},
@@ -225,8 +226,8 @@ TEST(BoxBox, NearlyParallelEdgesThatTouchAreNoDeepContact) {
   }
 }
 
-/// A box that lies nearly flat on another one touches it at one point, and turns about that. Where it meets
-/// the other one next is told by the points of the contact: not only the one at which they touch.
+/// A box that lies nearly flat on another one touches it at one point and turns about that point. The points
+/// of the contact, and not only the one at which they touch, predict where the boxes meet next.
 TEST(BoxBox, WhatLiesNearlyFlatHasPointsWhereItMayMeet) {
   double worst = 0;
   int at_edges = 0;
@@ -239,7 +240,7 @@ TEST(BoxBox, WhatLiesNearlyFlatHasPointsWhereItMayMeet) {
     const double tilt_x = random.uniform(-0.05, 0.05), tilt_y = random.uniform(-0.05, 0.05);
     b.orientation =
         turn(tilt_x, Vec3::UnitX()) * turn(tilt_y, Vec3::UnitY()) * turn(random.uniform(0, 3), Vec3::UnitZ());
-    double low = 0, high = 2;  // they touch in between
+    double low = 0, high = 2;  // the boxes touch between these heights
     Manifold touching;
     for (int k = 0; k < 50; ++k) {
       b.position.z() = 0.5 * (low + high);
@@ -249,7 +250,7 @@ TEST(BoxBox, WhatLiesNearlyFlatHasPointsWhereItMayMeet) {
     b.position.z() = high;
     Manifold m;
     ASSERT_TRUE(box_box(a, b, 0.4, m)) << item;
-    if (m.normal.z() < 0.95) continue;  // one beside the other
+    if (m.normal.z() < 0.95) continue;  // the boxes are beside one another
     at_edges += m.at_edge ? 0 : 1;
     int pivot = 0;
     for (int k = 1; k < m.count; ++k)
@@ -269,14 +270,14 @@ TEST(BoxBox, WhatLiesNearlyFlatHasPointsWhereItMayMeet) {
     worst = std::max(worst, depth - foretold);
   }
   EXPECT_GT(at_edges, 100);
-  EXPECT_LT(worst, 0.05);  // the turn goes up to 0.1 rad, about boxes of some 2 m: without these points 0.15
+  EXPECT_LT(worst, 0.05);  // boxes of some 2 m turn by up to 0.1 rad; without these points it would be 0.15
 }
 
 TEST_P(BoxBoxFamilies, UnitsDoNotMatter) {
   for (std::uint64_t n = 0; n < draws / 4; ++n) {
     const SolidPair p = oracle::make_pair(GetParam(), n);
     const double margin = 0.05 * p.smallest;
-    for (const double unit : {0x1p-20, 0x1p10}) {  // powers of 2: the same bits
+    for (const double unit : {0x1p-20, 0x1p10}) {  // powers of 2 keep the bits
       const auto scaled = [unit](const Solid& s) {
         return Solid{unit * s.position, s.orientation, unit * s.size};
       };
@@ -296,7 +297,8 @@ TEST_P(BoxBoxFamilies, UnitsDoNotMatter) {
 }
 
 double polygon_area(const Manifold& m, Vec3& centroid) {
-  // The 4 points of a manifold are in the order of their features; around the centre they make the polygon.
+  // The 4 points of a manifold are in the order of their features; sorted around the centre they make the
+  // polygon.
   centroid = Vec3::Zero();
   for (int k = 0; k < m.count; ++k) centroid += m.points[k].position / m.count;
   const Vec3 u = tangent_of(m.normal), w = m.normal.cross(u);
@@ -334,7 +336,8 @@ TEST(BoxBox, AlignedFacesShareTheirRectangle) {
 }
 
 TEST(BoxBox, AStackKeepsItsManifoldUnderNoise) {
-  // Cubes with equal or offset footprints, and turned by 45 degrees, so that 8 points are reduced to 4.
+  // The cubes have equal or offset footprints, or are turned by 45 degrees, so that 8 points are reduced to
+  // 4.
   const Vec3 cube = Vec3::Constant(0.5);
   for (const double yaw : {0.0, pi / 4, 0.3}) {
     for (const Vec3& offset : {Vec3(0, 0, 1), Vec3(0.2, 0.1, 1), Vec3(0.25, 0, 1)}) {
@@ -386,11 +389,12 @@ TEST(BoxBox, DepthIsContinuousAlongASlide) {
   }
   EXPECT_GT(changes, 2);
   EXPECT_LT(changes, 40);
-  EXPECT_LT(flips, 6);  // the first contact, then onto the face, off it, and edges between
+  EXPECT_LT(flips, 6);  // at the first contact, onto the face, off it, and at edges between
 }
 
 TEST(BoxBox, BoxesBesideEachOtherDoNotBlock) {
-  // Diagonally above: the nearest features are two parallel edges, and the normal is the line between them.
+  // The second cube is diagonally above the first one: the nearest features are two parallel edges, and the
+  // normal is the line between them.
   const Vec3 cube = Vec3::Constant(0.5);
   Manifold m;
   ASSERT_TRUE(

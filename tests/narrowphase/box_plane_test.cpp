@@ -43,7 +43,7 @@ TEST(BoxPlane, PointsAreTheCornersWithinTheMargin) {
     for (int k = 0; k < m.count; ++k) {
       features.insert(m.points[k].feature);
       deepest = std::min(deepest, m.points[k].gap);
-      // Half the gap above or below the point is a corner with that gap.
+      // There is a corner with this gap half the gap above or below the point.
       const Vec3 corner = m.points[k].position + 0.5 * m.points[k].gap * up;
       double nearest = HUGE_VAL;
       for (int c = 0; c < 8; ++c) {

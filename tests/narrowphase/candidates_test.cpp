@@ -1,4 +1,4 @@
-// The candidates against a double loop, in each space.
+// Tests of the candidates against a double loop, in each space.
 #include "narrowphase/candidates.hpp"
 
 #include "core/parallel_loops.hpp"
@@ -19,7 +19,7 @@ TYPED_TEST_SUITE(CandidatesTest, test::Spaces, test::SpaceName);
 
 constexpr std::int32_t count = 120;
 
-/// Balls of all mobilities, with planes first, in the middle and last.
+/// Returns balls of all mobilities, with planes at the first, a middle and the last number.
 Bodies<Host> random_bodies() {
   BodyTable table;
   for (std::int32_t k = 0; k < count; ++k) {
@@ -47,7 +47,7 @@ Bodies<Host> random_bodies() {
   return bodies;
 }
 
-/// Twice, since what is kept from the first time must not show.
+/// Expects the candidates twice, since what is kept from the first time must not show in the second.
 template <class Space>
 void expect_listed(const Bodies<Host>& bodies, const std::vector<Pair>& pcs,
                    const Array<double, Host>& margin,
@@ -75,7 +75,7 @@ TYPED_TEST(CandidatesTest, AreThePcsAndThePlanesInOrder) {
   const ConstBodyView b = view_of(bodies);
   Array<double, Host> margin(count);
   parallel::fill("margin", margin, 0.02);
-  // A PCS that knows planes too, in an order of its own, fixed pairs included.
+  // The PCS here contains planes too, in an order of its own, and pairs of fixed bodies.
   std::vector<Pair> pcs;
   for (std::int32_t d = count - 1; d > 0; --d) {
     for (std::int32_t i = 0; i + d < count; ++i) {
@@ -112,7 +112,7 @@ TYPED_TEST(CandidatesTest, AreThePcsAndThePlanesInOrder) {
   expect_listed<TypeParam>(bodies, pcs, margin, expected);
 }
 
-/// Balls within a tilted tube, and some without: those near its wall or its caps are candidates.
+/// Some balls are inside a tilted tube and some outside: those near its wall or its caps are candidates.
 TYPED_TEST(CandidatesTest, OfATubeAreThoseNearItsSurface) {
   BodyTable table = {};
   Bodies<Host> bodies = random_bodies();

@@ -1,4 +1,4 @@
-// libccd behind its wall: whatever it answers, the manifold is as good as that of the 15 axes.
+// Tests of libccd for boxes: whatever it answers, the manifold is as good as that of the 15 axes.
 #include "bench/narrowphase/families.hpp"
 #include "bench/narrowphase/oracle.hpp"
 #include "narrowphase/box_box_crosscheck.hpp"
@@ -51,12 +51,12 @@ TEST_P(CcdMethods, NothingIsMissedAndTheDepthIsRight) {
                     static_cast<double>(std::max<std::int64_t>(1, stats.ccd_calls)));
     EXPECT_GT(stats.ccd_calls, 0);
     if (family == Family::shallow) {
-      EXPECT_LT(stats.ccd_rejected, stats.ccd_calls / 100);  // else libccd is not asked properly
+      EXPECT_LT(stats.ccd_rejected, stats.ccd_calls / 100);  // otherwise the calls of libccd are wrong
     }
   }
 }
 
-// MPR is right for most shallow contacts, and the 15 axes are never the worse of the two.
+// MPR is right for most shallow contacts, and the 15 axes are never worse than MPR.
 TEST(Crosscheck, AgreesWithPortalRefinementOnShallowPairs) {
   CrosscheckStats stats;
   for (std::uint64_t n = 0; n < 40000; ++n) {
@@ -71,7 +71,7 @@ TEST(Crosscheck, AgreesWithPortalRefinementOnShallowPairs) {
 }
 
 TEST_P(CcdMethods, ACertificateRefusesAWrongDirection) {
-  // Deep overlap is where MPR's portal ray is far from the shortest way out.
+  // In deep overlaps the portal ray of MPR is far from the shortest way out.
   NarrowPhaseStats stats;
   for (std::uint64_t n = 0; n < 3000; ++n) {
     SolidPair p = oracle::make_pair(Family::any, n);
@@ -90,7 +90,7 @@ TEST_P(CcdMethods, ACertificateRefusesAWrongDirection) {
 }
 
 TEST_P(CcdMethods, EveryCallEnds) {
-  // The families in which EPA runs for ever without the support budget: thin floors under small boxes.
+  // EPA runs for ever without the support budget in these families: thin floors under small boxes.
   Random random(4, 0);
   double worst = 0;
   for (int n = 0; n < 20000; ++n) {
@@ -103,19 +103,19 @@ TEST_P(CcdMethods, EveryCallEnds) {
     boxes.offset = Vec3(random.uniform(-wide, wide), random.uniform(-wide, wide),
                         random.uniform(0, boxes.half[0].z() + boxes.half[1].z()));
     if (n % 7 == 0) boxes.offset.setZero();
-    // With the budget that is used, and with budgets that run out in every phase of the search.
+    // The search gets the budget that is used, and budgets that run out in each of its phases.
     for (const int budget : {ccd::support_budget, n % 40}) {
       const auto start = std::chrono::steady_clock::now();
       const ccd::Answer answer = ccd::parting_direction(boxes, GetParam(), budget);
       worst =
           std::max(worst, std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
-      ASSERT_LE(answer.supports, budget + 16);  // the first that lies ends each loop that is under way
+      ASSERT_LE(answer.supports, budget + 16);  // a false support point ends each running loop
       if (answer.direction) {
         ASSERT_NEAR(answer.direction->norm(), 1.0, 1e-12);
       }
     }
   }
-  EXPECT_LT(worst, 1.0);  // s
+  EXPECT_LT(worst, 1.0);  // (s)
 }
 
 }  // namespace

@@ -1,4 +1,5 @@
-// Convex particles by libccd: whatever it answers, the contact is as deep as by axes, and as the bodies are.
+// Tests of libccd for convex particles: whatever it answers, the contact is as deep as by axes, and as deep
+// as the bodies are.
 #include "narrowphase/convex_ccd.hpp"
 
 #include "bench/narrowphase/convex_families.hpp"
@@ -18,7 +19,7 @@ namespace {
 using oracle::ConvexFamily;
 using oracle::ConvexPair;
 
-constexpr double rounding = 1e-12;  // of the length
+constexpr double rounding = 1e-12;  // share of the length
 
 std::vector<ConvexFamily> all_convex_families() {
   std::vector<ConvexFamily> all;
@@ -32,7 +33,7 @@ double least_gap(const Manifold& m) {
   return least;
 }
 
-/// About the first one's place, as the narrow phase has them.
+/// The pair in long double, about the place of its first body, as the narrow phase has it.
 struct Exact {
   oracle::Convex a, b;
   explicit Exact(const ConvexPair& p)
@@ -78,7 +79,8 @@ TEST(ConvexOracle, KnowsASphereInACylinderAndAPointInABox) {
 
 // ---- The axes ----
 
-// With a sphere's centre on the axis of a cylinder, all radii lead out alike and none is told by the offset.
+// With a sphere's centre on the axis of a cylinder, all radii lead out equally, and the offset of the centres
+// singles out none.
 TEST(ConvexAxes, ACylinderLetsWhatIsOnItsAxisOutSideways) {
   const ShapedSolid cylinder{Shape::cylinder, {Vec3::Zero(), Quat::Identity(), {0.2, 0.2, 1}}};
   const ShapedSolid sphere{Shape::sphere, {Vec3::Zero(), Quat::Identity(), Vec3::Constant(0.1)}};
@@ -89,7 +91,8 @@ TEST(ConvexAxes, ACylinderLetsWhatIsOnItsAxisOutSideways) {
   EXPECT_NEAR(m.normal.z(), 0, 1e-12);
 }
 
-// A climb from the best face and edge ended 1e-3 of the size inside, though the bodies are 1e-4 of it apart.
+// A climb from the best face and the best edge ended 1e-3 of the size inside, though the bodies are apart by
+// 1e-4 of the size.
 TEST(ConvexAxes, ABoxNextToApartFromACylinderIsApart) {
   const ShapedSolid box{
       Shape::box,
@@ -130,7 +133,8 @@ TEST_P(ConvexByCcd, NothingIsMissedAndTheDepthIsRight) {
       for (int k = 0; k < by_ccd.count; ++k)
         ASSERT_TRUE(by_ccd.points[k].position.allFinite() && std::isfinite(by_ccd.points[k].gap));
 
-      // The oracle's samples may be short of the best, and no direction is better than it.
+      // The samples of the oracle may fall short of the largest separation, and no direction shows more than
+      // that: the largest of the three is the best estimate.
       const Exact exact(p);
       const double truth =
           std::max({exact.separation(), exact.along(by_ccd.normal), exact.along(by_axes.normal)});
@@ -148,7 +152,7 @@ TEST_P(ConvexByCcd, NothingIsMissedAndTheDepthIsRight) {
     }
     EXPECT_GT(stats.ccd_calls, 100) << oracle::name_of(family);
     if (GetParam() == ccd::Method::gjk && (family == ConvexFamily::shallow || family == ConvexFamily::far)) {
-      EXPECT_LT(stats.ccd_rejected, stats.ccd_calls / 50);  // else libccd is not asked properly
+      EXPECT_LT(stats.ccd_rejected, stats.ccd_calls / 50);  // otherwise the calls of libccd are wrong
     }
   }
 }
@@ -186,7 +190,8 @@ TEST_P(ConvexByCcd, ACertificateRefusesAWrongDirection) {
       ASSERT_TRUE(best_axes(a, b, HUGE_VAL, p.smallest, axes));
       const auto axis = detail::certified_axis(a, b, axes, p.smallest, GetParam(), stats);
       if (!axis) continue;
-      // What it says of the direction is so, and the direction is no worse than the axes'.
+      // The separation of the axis is that along its direction, and the direction is no worse than that of
+      // the axes.
       const double along = Exact(p).along(axis->normal);
       ASSERT_NEAR(axis->separation, along, rounding * p.length) << oracle::name_of(family) << " " << n;
       ASSERT_GE(along, axes.best.separation - tolerance::ccd_excess * p.smallest - rounding * p.length);
@@ -202,20 +207,20 @@ TEST_P(ConvexByCcd, EveryCallEnds) {
     for (std::uint64_t n = 0; n < 55; ++n) {
       const ConvexPair p = oracle::make_pair(family, n);
       const ConvexBody a(p.a, &p.data_a, p.a.solid.position), b(p.b, &p.data_b, p.a.solid.position);
-      // With the budget that is used, and with budgets that run out in every phase of the search.
+      // The search gets the budget that is used, and budgets that run out in each of its phases.
       for (const int budget : {detail::support_budget_of(a, b), static_cast<int>(n % 40)}) {
         const auto start = std::chrono::steady_clock::now();
         const ccd::Answer answer = detail::ask_ccd(a, b, GetParam(), budget);
         worst =
             std::max(worst, std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
-        ASSERT_LE(answer.supports, budget + 16);  // the first that lies ends each loop that is under way
+        ASSERT_LE(answer.supports, budget + 16);  // a false support point ends each running loop
         if (answer.direction) {
           ASSERT_NEAR(answer.direction->norm(), 1.0, 1e-12);
         }
       }
     }
   }
-  EXPECT_LT(worst, 1.0);  // s
+  EXPECT_LT(worst, 1.0);  // (s)
 }
 
 TEST(ConvexCrosscheck, AgreesOnShallowPairsAndFindsLibccdAtFaultElsewhere) {
@@ -238,7 +243,7 @@ TEST(ConvexPairs, AreThoseThatLibccdCanBeAskedAbout) {
   const auto both = [](Shape a, Shape b) { return is_convex_pair(a, b) && is_convex_pair(b, a); };
   for (const Shape general : {capsule, cylinder, polyhedron}) {
     for (const Shape other : {box, capsule, cylinder, polyhedron}) EXPECT_TRUE(both(general, other));
-    EXPECT_EQ(both(general, sphere), general != capsule);  // which has a closed form
+    EXPECT_EQ(both(general, sphere), general != capsule);  // capsule and sphere have a closed form
     for (const Shape surface : {plane, tube, triangle})
       EXPECT_FALSE(is_convex_pair(general, surface) || is_convex_pair(surface, general));
   }

@@ -1,4 +1,4 @@
-// The families of box pairs, as parameters of tests.
+// The families of box pairs as parameters of tests.
 #pragma once
 
 #include "bench/narrowphase/families.hpp"

@@ -1,5 +1,6 @@
-// Contacts of general shapes against independent oracles: boxes as hulls against the 15 axes in long double,
-// round bodies against sampled directions, meshes against sampled points of all their triangles.
+// Tests of the contacts of general shapes against independent oracles: boxes as hulls against the 15 axes in
+// long double, round bodies against sampled directions, and meshes against sampled points of all their
+// triangles.
 #include "narrowphase/general_contacts.hpp"
 
 #include "bench/narrowphase/families.hpp"
@@ -41,8 +42,8 @@ double least_gap(const Manifold& m) {
 class HullFamilies : public testing::TestWithParam<Family> {};
 INSTANTIATE_TEST_SUITE_P(Each, HullFamilies, testing::ValuesIn(all_families()), test_name);
 
-// Shallow and deep, aligned, parallel edges, coincident centres, 1:1000, tiny and huge: all that libccd fails
-// in.
+// The families hold all cases in which libccd fails: shallow and deep pairs, aligned ones, parallel edges,
+// coincident centres, sizes of 1:1000, tiny and huge ones.
 TEST_P(HullFamilies, BoxesAsHullsMeetAsBoxesDo) {
   for (std::uint64_t n = 0; n < 2000; ++n) {
     const SolidPair p = oracle::make_pair(GetParam(), n);
@@ -68,7 +69,7 @@ TEST_P(HullFamilies, BoxesAsHullsMeetAsBoxesDo) {
     ASSERT_LE(m.count, Manifold::max_points);
     ASSERT_LE(std::abs(least_gap(m) - gap), given_away + slack)
         << "draw " << n << " gap " << gap / p.smallest;
-    // What the normal says holds of the bodies, not of the points alone.
+    // The separation along the normal holds for the bodies, and not for the points alone.
     const ConvexBody a({Shape::polyhedron, p.a}, &data[0], p.a.position),
         b({Shape::polyhedron, p.b}, &data[1], p.a.position);
     ASSERT_GE(separation_along(a, b, m.normal), std::min(gap, 0.0) - given_away - slack) << "draw " << n;
@@ -90,8 +91,8 @@ Vec3 random_direction(Random& random) {
   return d.normalized();
 }
 
-/// Steps uphill from the best of many directions: an oracle that shares nothing with the search but the
-/// supports.
+/// Climbs in small random steps from the best of many directions: an oracle that has only the support
+/// functions in common with the search.
 double sampled_separation(const ConvexBody& a, const ConvexBody& b, Random& random) {
   Vec3 best = Vec3::UnitX();
   double most = -HUGE_VAL;
@@ -162,7 +163,7 @@ TEST(GeneralContacts, RoundBodiesPartAlongTheirBestDirection) {
     const ConvexBody a(body[0], data[0], origin), b(body[1], data[1], origin);
     const double sampled = sampled_separation(a, b, random);
     const double given_away = oracle::most_given_away(sampled, 1.0);
-    // The sampled one may itself be short of the best: the search must not be.
+    // The sampled direction may itself fall short of the best one, but the search must not fall short of it.
     ASSERT_GE(separation_along(a, b, m.normal), sampled - given_away - 1e-9)
         << n << " " << kinds[0] << kinds[1];
     ASSERT_GE(least_gap(m), sampled - given_away - 1e-9) << n << " " << kinds[0] << kinds[1];
@@ -170,7 +171,8 @@ TEST(GeneralContacts, RoundBodiesPartAlongTheirBestDirection) {
     ASSERT_TRUE(best_axes(a, b, HUGE_VAL, std::min(a.size(), b.size()), axes));
     ASSERT_GE(axes.best.separation, sampled - 1e-6) << n << " " << kinds[0] << kinds[1];
     if (sampled > 1e-3) {
-      // No two points are farther apart than the best direction says: these are not.
+      // The best direction separates the bodies by the distance of their closest points; no direction can
+      // show more.
       const ClosestPoints near = closest_points(a, b, Vec3::Zero(), 1e-12);
       ASSERT_NEAR((near.on_b - near.on_a).norm() - a.radius() - b.radius(), axes.best.separation, 1e-9) << n;
     }
@@ -201,7 +203,7 @@ TEST(GeneralContacts, RigidMotionAndScaleChangeNothing) {
   }
 }
 
-/// A mesh whose triangles are asked one by one.
+/// A mesh whose triangles are tested one by one.
 struct Mesh {
   TriangleMesh mesh;
   std::vector<PlacedTriangle> placed;
@@ -235,7 +237,7 @@ struct Mesh {
       const Vec3 &a = mesh.vertices[static_cast<std::size_t>(t[0])],
                  &b = mesh.vertices[static_cast<std::size_t>(t[1])],
                  &c = mesh.vertices[static_cast<std::size_t>(t[2])];
-      // Refined around the best of a grid: convex in the weights.
+      // A search with halved steps finds the nearest point, since the distance is convex in the weights.
       Eigen::Vector2d best(0.33, 0.33);
       double at_best = HUGE_VAL;
       for (double step = 0.25; step > 1e-10; step *= 0.5)
@@ -287,7 +289,7 @@ TEST(MeshContacts, ASphereOnAFlatMeshHasOneContactWhereverItIs) {
   Random random(7, 0);
   for (int n = 0; n < 2000; ++n) {
     Vec3 at(random.uniform(1, 5), random.uniform(1, 5), random.uniform(0.1, 0.6));
-    // Over a vertex, and over the middle of an edge, as well.
+    // Some spheres are over a vertex, and some over the middle of an edge.
     const auto& t = mesh.mesh.triangles[static_cast<std::size_t>(n) % mesh.mesh.triangles.size()];
     const Vec3 &a = mesh.mesh.vertices[static_cast<std::size_t>(t[0])],
                &b = mesh.mesh.vertices[static_cast<std::size_t>(t[1])];
@@ -343,7 +345,7 @@ TEST(MeshContacts, ABoxLyingOnAFlatMeshTouchesWithItsCornersAlone) {
   }
 }
 
-// Slid over the mesh in small steps: no point ever has another normal, however deep the box is.
+// A box slides over the mesh in small steps: no point ever has another normal, however deep the box is.
 TEST(MeshContacts, ABoxSlidingOverAFlatMeshMeetsNoEdge) {
   const Mesh mesh(uneven(0, 2));
   for (const double depth : {1e-9, 1e-6, 1e-4, 1e-3}) {
@@ -367,7 +369,7 @@ TEST(MeshContacts, ConvexBodiesOverAMeshAreNeverCloserThanTheirContactsSay) {
                            {{random.uniform(1.5, 4.5), random.uniform(1.5, 4.5), random.uniform(0.2, 1.0)},
                             random_orientation(random),
                             {0.25, 0.25, 0.4}}};
-    double distance = HUGE_VAL;  // to all triangles, whatever the mesh says
+    double distance = HUGE_VAL;  // distance to all triangles, whatever the mesh finds
     const ConvexBody a(body, nullptr, Vec3::Zero());
     for (const PlacedTriangle& t : mesh.placed) {
       const ConvexBody b({Shape::triangle, {t.position, t.orientation, t.size}}, nullptr, Vec3::Zero());

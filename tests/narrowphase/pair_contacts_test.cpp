@@ -1,4 +1,5 @@
-// The contacts of pairs of all shapes, by cases, by the search along axes and by libccd.
+// Tests of the contacts of pairs of all shapes, against a loop over cases, by the search along axes and by
+// libccd.
 #include "core/geometry.hpp"
 #include "core/parallel_loops.hpp"
 #include "core/rng.hpp"
@@ -43,8 +44,8 @@ void add(BodyTable& table, Shape shape, Mobility mobility, const Vec3& at, const
   table.id.push_back(BodyNumber{static_cast<std::int32_t>(table.id.size())});
 }
 
-/// Spheres and boxes of three mobilities in a crowd, with planes and tubes at both ends and in the middle of
-/// the numbers.
+/// Returns a crowd of spheres and boxes of three mobilities, with planes and tubes at both ends and in the
+/// middle of the numbers.
 Scene crowd(int count) {
   BodyTable table;
   const double extent = std::cbrt(static_cast<double>(count));
@@ -81,7 +82,7 @@ Scene crowd(int count) {
   return scene;
 }
 
-/// Every pair i < j that has a free body, in order.
+/// Returns every pair i < j that has a free body, in order.
 std::vector<Pair> all_pairs(const Bodies<Host>& bodies) {
   const ConstView<Mobility> mobility = bodies.mobility.view();
   std::vector<Pair> pairs;
@@ -97,7 +98,7 @@ ConstView<Pair> view_of(const std::vector<Pair>& pairs) {
   return {pairs.data(), static_cast<std::int64_t>(pairs.size())};
 }
 
-/// All contacts of some pairs, one pair after the other.
+/// Finds all contacts of some pairs, one pair after the other.
 class PairContacts {
  public:
   explicit PairContacts(const NarrowPhaseSettings& settings, ConstView<ShapeData> shapes = {})
@@ -128,7 +129,7 @@ class PairContacts {
     stats_ = libccd_.take_stats();
     return all;
   }
-  /// Of the last search.
+  /// Returns the statistics of the last search.
   const NarrowPhaseStats& stats() const { return stats_; }
 
  private:
@@ -137,7 +138,7 @@ class PairContacts {
   NarrowPhaseStats stats_;
 };
 
-/// The contacts of two bodies, by cases.
+/// Returns the contacts of two bodies, by cases of their shapes.
 std::vector<Manifold> contacts(const ConstBodyView& b, std::int64_t i, std::int64_t j, double margin) {
   const auto solid = [&b](std::int64_t k) { return Solid{b.position[k], b.orientation[k], b.size[k]}; };
   if (b.mobility[i] != Mobility::free && b.mobility[j] != Mobility::free) return {};
@@ -196,7 +197,7 @@ TEST(PairContacts, FindsWhatADoubleLoopFindsInOrder) {
   EXPECT_GT(in_tubes, 10);
 }
 
-// As many manifolds as there can be from every pair, then pairs with one each in their places.
+// Each of the first pairs has as many manifolds as a pair can have, and each of the pairs after them has one.
 TEST(PairContacts, HoldsPairsFullOfManifolds) {
   Scene scene;
   BodyTable table;
@@ -242,7 +243,7 @@ TEST(PairContacts, EveryMethodFindsTheSamePairs) {
   }
 }
 
-/// Every shape but surfaces, in a crowd.
+/// A crowd with every shape except surfaces.
 struct Particles {
   Scene scene;
   Hull hull;
@@ -310,7 +311,8 @@ TEST(PairContacts, ACrosscheckAsksAboutConvexParticlesTooAndChangesNothing) {
   const auto found = checked.find(view_of(scene.bodies), view_of(pairs), scene.margin.view());
   ASSERT_EQ(found.size(), expected.size());
   for (std::size_t k = 0; k < found.size(); ++k) expect_same(found[k], expected[k]);
-  // All but spheres with spheres, boxes and capsules, which are closed forms.
+  // The crosscheck tests all pairs except those of a sphere with a sphere, box or capsule, which have closed
+  // forms.
   const ConstBodyView b = view_of(scene.bodies);
   const auto asked = std::count_if(pairs.begin(), pairs.end(), [&](const Pair& pair) {
     const auto [low, high] = std::minmax(b.shape[pair.i], b.shape[pair.j]);
@@ -343,7 +345,7 @@ TEST(PairContacts, ACrosscheckAsksTheShareAndChangesNothing) {
     const std::int64_t asked = narrow.stats().crosscheck.asked;
     EXPECT_NEAR(static_cast<double>(asked), 0.01 * static_cast<double>(box_pairs),
                 5 * std::sqrt(0.01 * static_cast<double>(box_pairs)));
-    EXPECT_NE(asked, last);  // another choice in the next search
+    EXPECT_NE(asked, last);  // the next search chooses other pairs
     last = asked;
   }
 }

@@ -1,5 +1,5 @@
-// Planes that separate bodies in motion: they must never hide a collision, which boxes and balls in long
-// double tell.
+// Tests of planes that separate bodies in motion: they must never hide a collision. The oracle is the overlap
+// of boxes and balls in long double.
 #include "narrowphase/separating_face.hpp"
 
 #include "core/geometry.hpp"
@@ -18,7 +18,7 @@ using Long = long double;
 using LongVec = Eigen::Matrix<Long, 3, 1>;
 using LongMat = Eigen::Matrix<Long, 3, 3>;
 
-/// Where a body is at a share of a straight way.
+/// A body that moves along a straight line.
 struct Moving {
   Shape shape;
   Solid solid;
@@ -44,7 +44,7 @@ struct LongBox {
         half(box.size.cast<Long>()) {}
 };
 
-/// How deep two boxes overlap: the least over the 15 axes; 0 or less if they do not.
+/// Returns how deep two boxes overlap: the least overlap over the 15 axes, which is 0 or less if they do not.
 Long overlap(const LongBox& a, const LongBox& b) {
   Long least = HUGE_VALL;
   const auto look = [&](LongVec axis) {
@@ -62,7 +62,7 @@ Long overlap(const LongBox& a, const LongBox& b) {
   return least;
 }
 
-/// How deep a ball is in a box's surface, from outside; 0 or less if it is not.
+/// Returns how deep a ball is below the surface of a box, from outside; 0 or less if it does not touch it.
 Long overlap(const LongVec& centre, Long radius, const LongBox& box) {
   const LongVec local = box.axes.transpose() * (centre - box.centre);
   const LongVec beyond = (local.cwiseAbs() - box.half).cwiseMax(0);
@@ -76,8 +76,8 @@ Long overlap(const Moving& a, const Moving& b, double share) {
   return overlap(of_a.position.cast<Long>(), of_a.size.x(), LongBox(of_b));
 }
 
-/// What comes over a box, at its edges, level with its top or a little off, and what flies at it from
-/// anywhere.
+/// Draws bodies that come over a box, at its edges, level with its top or a little off, and bodies that fly
+/// at it from anywhere.
 class Encounters {
  public:
   explicit Encounters(std::uint64_t item) : random_(7, item) {}
@@ -128,14 +128,15 @@ TEST(SeparatingFace, HidesNoCollision) {
     collided += deepest > 2 * slack;
     if (!face.exists()) continue;
     ++separated;
-    // At the beginning by the slack, and by as much more on the way.
+    // Bodies with a separating face overlap by the slack at most at the beginning, and by as much again on
+    // their way.
     ASSERT_LE(deepest, 2 * slack * 1.001L) << item;
   }
   EXPECT_GT(separated, 3000);
   EXPECT_GT(collided, 3000);
 }
 
-/// A step up is one if it is higher than the slack; a step down is none.
+/// A step up counts as one if it is higher than the slack; a step down never does.
 TEST(SeparatingFace, TellsAStepUpFromALevelSeam) {
   Random random(11, 0);
   for (int k = 0; k < 20000; ++k) {

@@ -1,4 +1,4 @@
-// Spheres against spheres, planes and boxes, in long double by definition.
+// Tests of spheres against spheres, planes and boxes, by their definition in long double.
 #include "bench/narrowphase/families.hpp"
 #include "bench/narrowphase/oracle.hpp"
 #include "narrowphase/sphere_box.hpp"
@@ -14,8 +14,8 @@ constexpr int draws = 20000;
 
 Solid sphere(const Vec3& at, double radius) { return {at, Quat::Identity(), Vec3::Constant(radius)}; }
 
-/// What any single contact must satisfy: the point is midway between the surfaces, on the normal through the
-/// sphere.
+/// Expects what any single contact must satisfy: its point is midway between the surfaces, on the normal
+/// through the centre of the sphere.
 void expect_midway(const Solid& ball, const Vec3& outward, const Manifold& m, double tolerance) {
   ASSERT_EQ(m.count, 1);
   EXPECT_NEAR(m.normal.norm(), 1.0, 1e-14);

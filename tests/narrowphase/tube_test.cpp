@@ -1,5 +1,5 @@
-// Spheres and boxes in tubes, against distances in long double by another formula, and against samples of the
-// whole box.
+// Tests of spheres and boxes in tubes, against distances in long double by another formula, and against
+// samples of the whole box.
 #include "bench/narrowphase/families.hpp"
 #include "bench/narrowphase/oracle.hpp"
 #include "narrowphase/box_tube.hpp"
@@ -23,7 +23,7 @@ struct Case {
   double scale;
 };
 
-/// A tube from mm to km, anywhere and turned at random, and a body with its centre in or near it.
+/// Draws a tube of mm to km, anywhere and turned at random, and a body with its centre in or near it.
 Case draw_case(std::uint64_t stream, int n) {
   Random random(stream, static_cast<std::uint64_t>(n));
   Case c;
@@ -79,7 +79,7 @@ TEST(SphereTube, WallAndCapsAreExactAndNoneIsMissed) {
       if (k > 0) {
         ASSERT_GT(m[k].part, m[k - 1].part);
       }
-      // Near the axis the direction is rounding noise: the gap stays exact.
+      // Near the axis the direction is rounding noise, but the gap stays exact.
       if (m[k].part == tube_wall && tube.distance(tube_wall, centre) > tube.radius * (1 - 1e-2L)) continue;
       const Vec on_ball = centre + c.body.size.x() * tube.outward(m[k].part, centre);
       expect_contact(m[k], m[k].points[0], tube, on_ball, 10 * c.scale);
@@ -93,7 +93,7 @@ TEST(SphereTube, OnTheAxisTheNormalIsAcrossItAndAlwaysTheSame) {
   for (const double scale : {1e-6, 1.0, 1e6}) {
     Random random(2, 0);
     const Solid tube{scale * Vec3(3, -2, 7), oracle::random_turn(random), scale * Vec3(1, 1, 4)};
-    // Just fitting, and wider than the tube.
+    // One ball just fits, and the other is wider than the tube.
     for (const double radius : {0.999, 1.5}) {
       const Solid ball{tube.position, Quat::Identity(), Vec3::Constant(radius * scale)};
       Manifold m[max_pair_manifolds];
@@ -105,7 +105,7 @@ TEST(SphereTube, OnTheAxisTheNormalIsAcrossItAndAlwaysTheSame) {
   }
 }
 
-/// The smallest distance to a surface over a box's corners, edges, faces and inside.
+/// Returns the smallest distance to a surface over the corners, edges, faces and inside of a box.
 Real sampled_distance(const Tube& tube, int part, const Solid& box) {
   const oracle::Box exact(box);
   constexpr int steps = 8;

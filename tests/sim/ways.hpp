@@ -1,4 +1,4 @@
-// The ways to take a step, for tests that hold in each: in which space, how precisely.
+// The ways to take a step, for tests that hold in each of them: the space, the mode and the precision.
 #pragma once
 
 #include "tests/sim/step/simulations.hpp"
@@ -13,7 +13,7 @@ namespace scree {
 struct Way {
   const char* name;
   SimulationOptions options;
-  const char* settings;  ///< lines of the scene
+  const char* settings;  ///< lines to add to the scene
 };
 
 class WayTest : public testing::TestWithParam<Way> {

@@ -1,4 +1,4 @@
-// Places of bodies, in each space, against sorting by a curve that is made bit by bit.
+// Tests of the places of bodies, in each space, against sorting along a curve that is computed bit by bit.
 #include "sim/bodies/body_order.hpp"
 
 #include "tests/core/spaces.hpp"
@@ -20,7 +20,7 @@ template <class Space>
 class BodyOrderTest : public test::InSpace<Space> {};
 TYPED_TEST_SUITE(BodyOrderTest, test::Spaces, test::SpaceName);
 
-/// Bits of the coordinates of the cell in turn, that of x first.
+/// Returns the place on the Z-order curve: the bits of the cell's coordinates in turn, that of x first.
 std::uint64_t on_curve(const Vec3& x, double cell) {
   std::uint64_t code = 0;
   for (int bit = 20; bit >= 0; --bit)

@@ -1,4 +1,4 @@
-// Bodies that come and go, in each space, against loops.
+// Tests of bodies that come and go, in each space, against loops.
 #include "sim/bodies/coming_and_going.hpp"
 
 #include "sim/bodies/body_order.hpp"
@@ -22,7 +22,7 @@ TYPED_TEST_SUITE(ComingAndGoing, test::Spaces, test::SpaceName);
 TYPED_TEST(ComingAndGoing, FreeBodiesBeyondTheWorldAreFoundInOrder) {
   BodyTable table = random_bodies();
   const World world{.from = {-3, -4, -2}, .to = {4, 3, 5}};
-  table.position[0] = world.to;  // the world is closed
+  table.position[0] = world.to;  // the world is a closed box
   std::vector<BodyNumber> beyond;
   for (std::size_t k = 0; k < table.position.size(); ++k) {
     bool inside = true;
@@ -62,7 +62,7 @@ TYPED_TEST(ComingAndGoing, ThoseTakenOutAreReturnedAsTheyWere) {
 TYPED_TEST(ComingAndGoing, FreeBodiesInARegionAreFoundInOrder) {
   BodyTable table = random_bodies();
   const Region region{.name = "", .from = {-3, -4, -2}, .to = {4, 3, 5}};
-  table.position[0] = region.from;  // it is closed
+  table.position[0] = region.from;  // the region is a closed box
   std::vector<BodyNumber> inside;
   for (std::size_t k = 0; k < table.position.size(); ++k) {
     const Vec3& x = table.position[k];

@@ -1,4 +1,4 @@
-// Emitters and the regions where bodies end, in each way to take a step.
+// Tests of emitters and of the regions that remove bodies, in each way to take a step.
 #include "tests/sim/step/simulations.hpp"
 
 #include <gtest/gtest.h>
@@ -26,7 +26,7 @@ class EmissionTest : public testing::TestWithParam<SimulationOptions> {
 };
 
 TEST_P(EmissionTest, ABodyThatFindsNoRoomWaitsAndIsNotLost) {
-  // The first one rests where it appears.
+  // The first body rests where it appears, so that no other one can follow.
   Simulation run = simulate(R"(
 time: {end: 1, step: 0.01}
 bodies:
@@ -56,7 +56,7 @@ bodies:
   EXPECT_TRUE(std::isnan(run.body(1).position.x()));
   run.step();
   EXPECT_EQ(run.observe().emitted, 1);
-  // A ball leaves room behind it once it has fallen by 0.2 m: 0.2 s.
+  // A ball leaves room for the next one once it has fallen by 0.2 m, which takes 0.2 s.
   while (run.steps() < 69) run.step();
   EXPECT_EQ(run.observe().emitted, 1);
   while (run.steps() < 71) run.step();
@@ -66,7 +66,7 @@ bodies:
   EXPECT_LT(run.observe().unexplained, 1e-12);
 }
 
-/// Of all sizes, more than the box can hold.
+/// A scene of emitted bodies of all sizes, more than the box can hold.
 const std::string pouring = R"(
 time: {end: 1.8, step: 0.005}
 regions:
@@ -93,7 +93,7 @@ TEST_P(EmissionTest, NoneAppearsInAnother) {
     for (std::size_t k = 1; k < 201; ++k) {
       if (is_there(k) && !there[k]) {
         ++appeared;
-        // Its own gap to every other one, from the spheres in them; it has not moved yet.
+        // The new body has not moved yet. Its gap to every other body is tested by their inscribed spheres.
         for (std::size_t other = 1; other < 201; ++other) {
           if (other == k || !is_there(other)) continue;
           ASSERT_GE((all.bodies.position[other] - all.bodies.position[k]).norm(), size(k) + size(other)) << k;

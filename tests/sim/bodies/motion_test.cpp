@@ -1,4 +1,5 @@
-// Free and prescribed motion and what is summed over bodies, in each space, against loops and closed forms.
+// Tests of free and prescribed motion and of the sums over bodies, in each space, against loops and closed
+// forms.
 #include "sim/bodies/motion.hpp"
 
 #include "core/rng.hpp"
@@ -91,7 +92,7 @@ TYPED_TEST(MotionTest, BodiesWithANumberThatIsNotFiniteAreCounted) {
   table.velocity[34].x() = -std::numeric_limits<double>::infinity();
   table.orientation[32].w() = std::numeric_limits<double>::quiet_NaN();
   EXPECT_EQ(count_of(table), 4);
-  table.velocity[34].x() = 1e308;  // too fast for its energy, but a number
+  table.velocity[34].x() = 1e308;  // the speed is too large for its energy, but it is a number
   EXPECT_EQ(count_of(table), 3);
 }
 

@@ -1,4 +1,4 @@
-// Prescribed motion against its closed form.
+// Tests of prescribed motion against its closed form.
 #include "sim/bodies/prescribed.hpp"
 
 #include "sim/bodies/motion.hpp"
@@ -18,7 +18,8 @@ namespace {
 
 const std::string materials = "materials: {a: {density: 1000, friction: 0.5}}\n";
 
-// A turn about z: x = p + V t + r (cos, sin), 1000 turns in 7000 steps that divide no turn.
+// A turn about z has the closed form x = p + V t + r (cos, sin); here 1000 turns take 7000 steps, which
+// divide no turn.
 TEST(Prescribed, ABodyTurnsAboutAPointForThousandsOfStepsWithoutDrift) {
   Simulation simulation = simulation_of(materials + R"(
 time: {end: 1000, step: 0.143, substeps: 3}
@@ -29,7 +30,7 @@ bodies:
     material: a
 )");
   const double w = 2 * pi;
-  // Angles of up to 6283 rad are rounded by 1e-12.
+  // The rounding error of angles of up to 6283 rad is 1e-12.
   while (!simulation.finished()) {
     simulation.step();
     const double t = simulation.time();
@@ -62,8 +63,9 @@ bodies:
   EXPECT_NEAR(simulation.body(0).velocity.x(), -6 * std::sin(0.3), 1e-14);
 }
 
-// A smooth wall on a long arm strikes a ball that rests in its way, at the top speed of its turn: the contact
-// is solved at the midpoint with the wall's velocity there, and the work it does is booked to rounding.
+// At the top speed of its turn, a smooth wall on a long arm strikes a ball that rests in its way. The contact
+// is solved at the midpoint with the wall's velocity there, and the work that it does is accounted to
+// rounding.
 TEST(Prescribed, APaddleOnAnArmDrivesABallAtItsOwnSpeed) {
   Simulation simulation = simulation_of(materials + R"(
 time: {end: 0.3, step: 0.002}
@@ -83,7 +85,7 @@ bodies:
   EXPECT_GT(simulation.observe().ledger.work, 0);
 }
 
-/// Where the paths of a scene are at a time, by the text of its bodies.
+/// Returns where the prescribed motions of a scene are at a time, by the text of its bodies.
 BodyTable placed(const Scene& scene, double time) {
   Bodies<Host> bodies;
   copy_bodies(bodies, scene.bodies);
@@ -93,7 +95,7 @@ BodyTable placed(const Scene& scene, double time) {
   return table;
 }
 
-/// Holds velocities and spins to differences of places and orientations at times as near.
+/// Compares velocities and spins with the differences of places and orientations at two near times.
 void expect_derivatives(const Scene& scene, double from, double to) {
   constexpr double h = 1e-5;
   const double bound = 1e-7;
@@ -129,7 +131,8 @@ bodies:
   expect_derivatives(scene, 0, 3);
 }
 
-/// Keys in no regular order, one of which goes on, one turns round, one stays, with turns about other axes.
+/// The keys are at irregular times: at one the motion goes on, at one it turns round, at one it stays; the
+/// turns are about different axes.
 TEST(Prescribed, KeyframesArePassedSmoothlyAndNeverOvershot) {
   const Scene scene = scene_of(materials + R"(
 time: {end: 1, step: 0.1}
@@ -149,7 +152,7 @@ bodies:
     const BodyTable at = placed(scene, key.at);
     EXPECT_LT((at.position[0] - key.position).norm(), 1e-14);
     EXPECT_LT(at.orientation[0].angularDistance(*key.orientation), 1e-7);
-    // Not faster after than before.
+    // The velocity and the spin are continuous at the key.
     EXPECT_LT((placed(scene, key.at + 1e-9).velocity[0] - placed(scene, key.at - 1e-9).velocity[0]).norm(),
               1e-5);
     EXPECT_LT((placed(scene, key.at + 1e-9).spin[0] - placed(scene, key.at - 1e-9).spin[0]).norm(), 1e-5);
@@ -173,7 +176,7 @@ bodies:
   }
 }
 
-/// About one axis the turns are Hermite's cubic of the angle, with the rates of the harmonic mean.
+/// Turns about one axis follow Hermite's cubic of the angle, whose rates at the keys are harmonic means.
 TEST(Prescribed, TurnsAboutOneAxisFollowTheCubicOfTheirAngle) {
   const Scene scene = scene_of(materials + R"(
 time: {end: 1, step: 0.1}
@@ -184,7 +187,8 @@ bodies:
                          {at: 3, position: [120, 0, 0], rotate: {axis: [0, 0, 1], degrees: 120}}]}
     material: a
 )");
-  // w = 1 + 2 . 2 over 3 . 3 of the rate after it, and the rest of that before, harmonically.
+  // The rate at the key is the harmonic mean with weight (1 + 2 . 2) / (3 . 3) for the rate before it, and
+  // the rest for the rate after it.
   EXPECT_NEAR(placed(scene, 1).velocity[0].x(), 1 / ((5.0 / 9) / 90 + (4.0 / 9) / 15), 1e-12);
   for (const double t : {0.3, 0.8, 1.0, 1.7, 2.9}) {
     const BodyTable at = placed(scene, t);
@@ -194,7 +198,7 @@ bodies:
   }
 }
 
-/// The margins of prescribed bodies hold what they travel in a step, from rest too.
+/// The margins of prescribed bodies hold their travel in a step, also from rest.
 TEST(Prescribed, MarginsKnowHowFastTheyGetFaster) {
   const Scene scene = scene_of(materials + R"(
 time: {end: 1, step: 0.02}

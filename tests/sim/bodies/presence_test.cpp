@@ -1,4 +1,4 @@
-// Bodies that come and go, against closed forms and the books.
+// Tests of bodies that come and go, against closed forms and the energy accounts.
 #include "tests/sim/step/simulations.hpp"
 
 #include <gtest/gtest.h>
@@ -64,13 +64,13 @@ bodies:
     ASSERT_NEAR(o.total(), first + energy, 1e-11);
     ASSERT_LT((o.exchange.momentum - 2 * Vec3(3, 0, 4)).norm(), 1e-14);
   }
-  // It took as much as it brought, but for the momentum that gravity gave.
+  // The body took away as much as it had brought, except the momentum that gravity gave it.
   EXPECT_NEAR(simulation.observe().exchange.energy, 0, 1e-12);
   EXPECT_LT((simulation.observe().exchange.momentum - Vec3(0, 0, 2 * 10 * 0.3)).norm(), 1e-12);
 }
 
 TEST(Presence, AbsentBodiesTouchNothing) {
-  // A wall, a plane and a ball in the ball's way that come too late or went too early.
+  // The wall, the plane and the second ball in the way of the ball come too late.
   Simulation simulation = run(R"(
 time: {end: 1, step: 0.01}
 bodies:
@@ -138,7 +138,7 @@ bodies:
 }
 
 TEST(Presence, LayersThatComeOneAfterTheOtherMayShareTheirPlace) {
-  // Each layer fills its region so far that a second one beside it would not fit.
+  // Each layer fills its region so far that a second one would not fit beside it.
   const Scene scene = scene_of(head + R"(
 time: {end: 1, step: 0.01}
 bodies:

@@ -1,4 +1,4 @@
-// Bodies at random, of all mobilities.
+// Random bodies of all mobilities.
 #pragma once
 
 #include "core/bodies.hpp"
@@ -12,7 +12,7 @@
 
 namespace scree {
 
-inline constexpr std::size_t count = 1000;  // more than a leaf of the sums
+inline constexpr std::size_t count = 1000;  // more than one leaf of the sums
 
 inline Vec3 vector_in(Random& random, double reach) {
   const double x = random.uniform(-reach, reach);
@@ -20,7 +20,7 @@ inline Vec3 vector_in(Random& random, double reach) {
   return {x, y, random.uniform(-reach, reach)};
 }
 
-/// Balls and cubes of all mobilities.
+/// Returns balls and cubes of all mobilities.
 inline BodyTable random_bodies() {
   BodyTable table;
   for (std::size_t k = 0; k < count; ++k) {
@@ -51,7 +51,7 @@ inline std::vector<BodyNumber> numbers(const std::vector<std::int32_t>& list) {
   return numbers;
 }
 
-/// The same bodies at other places.
+/// Returns the same bodies at other places.
 inline BodyTable shuffled(BodyTable table) {
   std::vector<std::int32_t> order(table.id.size());
   std::iota(order.begin(), order.end(), 0);

@@ -1,4 +1,4 @@
-// Regions against a count of every body by hand.
+// Tests of regions against a count of every body by hand.
 #include "tests/sim/step/simulations.hpp"
 
 #include <gtest/gtest.h>
@@ -54,7 +54,7 @@ regions:
       ASSERT_NEAR(o.regions[r].fraction, expected.fraction, 1e-14);
       const double flux =
           o.step > 0 ? (mass - before[r]) / (o.step < simulation.steps_total() ? 0.003 : 0.002) : 0;
-      // Rounding of masses of some kg, over a step.
+      // The tolerance is the rounding of masses of some kg, over a step.
       ASSERT_NEAR(o.regions[r].flux, flux, 1e-10) << r << " at " << o.time;
       if (o.step == 0) first[r] = mass;
       before[r] = mass;

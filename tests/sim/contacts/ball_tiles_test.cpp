@@ -1,4 +1,5 @@
-// Contacts of balls as the kernels find and account them, beside those found and booked one by one.
+// Tests of contacts of balls as the kernels find and account them, against those found and accounted one by
+// one.
 #include "sim/contacts/ball_tiles.hpp"
 
 #include "core/rng.hpp"
@@ -20,7 +21,7 @@ constexpr std::int64_t tile = parallel::tile;
 constexpr double rounding = 1e-12;
 
 /// Pairs of balls about to touch, some with a plane and some with a body that is not free, in slots that
-/// share no body; and what contacts are made from.
+/// share no body, and the data from which their contacts are made.
 class Crowd {
  public:
   static constexpr int pairs = 600;
@@ -46,7 +47,7 @@ class Crowd {
                    at + (r + other + random.uniform(-0.01, 0.04)) * way + Vec3(image, 0, 0),
                    vector_in(random, 1), k % 11 != 5);
       }
-      // The last tile is not full.
+      // The slots do not fill the last tile.
       slots[static_cast<std::size_t>(k)] = {
           .i = 2 * k, .j = 2 * k + 1, .end_i = 2 * k, .end_j = 2 * k + 1, .candidate = k, .surface = 0};
       if (k % 2 == 0) memory[static_cast<std::size_t>(k)].impulse = v3<double>(random.uniform(0, 1) * way);
@@ -91,7 +92,7 @@ class Crowd {
             .any_late_impact = false};
   }
 
-  /// What is found, and what is left in the memory.
+  /// The contacts that were found, and the memory that is left.
   struct Found {
     ContactStore<Host, double> store;
     Array<BallMemory<double>, Host> memory;
@@ -116,7 +117,7 @@ class Crowd {
                                     slots.counts());
     }
     slots.join();
-    // They share no body.
+    // The contacts share no body, so that one colour holds them.
     ColorRanges one_color;
     one_color.add(slots.all().size());
     found.store.take_balls(one_color);

@@ -1,4 +1,4 @@
-// Colours of contacts: those of a colour share no free body, and most stay as they were.
+// Tests of the colours of contacts: contacts of one colour share no free body, and most keep their colour.
 #include "sim/contacts/contact_colors.hpp"
 
 #include "core/parallel.hpp"
@@ -23,7 +23,7 @@ TYPED_TEST_SUITE(ContactColorsTest, test::Spaces, test::SpaceName);
 
 constexpr std::int32_t bodies = 400, plane = 0, hub = 1, first_part = bodies + 1, parts = 40;
 
-/// Slots between random balls, on a plane, and on parts of a hub, of which some have a contact.
+/// Slots between random balls, on a plane, and on the parts of a hub; some of the slots have a contact.
 template <class Space>
 class Crowd {
  public:
@@ -61,7 +61,8 @@ class Crowd {
     parallel::fill("test", remembered_, no_color);
   }
 
-  /// Of the slots that have a contact, one in so many gets or loses it.
+  /// Gives 60 % of the slots a contact at first. Later, about one slot in `one_in` gets a contact or loses
+  /// its own.
   void change(int one_in) {
     if (found_.empty()) {
       for (std::size_t s = 0; s < slots_.size(); ++s)
@@ -82,7 +83,7 @@ class Crowd {
   }
   void regain_first() { found_.insert(found_.begin(), lost_); }
 
-  /// The slot of each contact, with empty ones at the end of each colour.
+  /// Returns the slot of each contact, with empty ones at the end of each colour.
   std::vector<std::int32_t> color() {
     Array<std::int32_t, Space> found, slot;
     copy(found, found_);
@@ -93,7 +94,7 @@ class Crowd {
     return to_vector(slot);
   }
 
-  /// The colour of each slot with a contact; tries what colours promise.
+  /// Returns the colour of each slot with a contact, and tests what colours promise.
   std::map<std::int32_t, int> expect_colors(const std::vector<std::int32_t>& slot) const {
     const ColorRanges& ranges = colors_.ranges();
     std::map<std::int32_t, int> color_of;
@@ -135,7 +136,7 @@ class Crowd {
   ContactColors<Space> colors_;
 };
 
-/// Colours by what is remembered.
+/// Returns the colours that are remembered.
 std::map<std::int32_t, int> kept(const std::vector<std::uint8_t>& remembered) {
   std::map<std::int32_t, int> colors;
   for (std::size_t s = 0; s < remembered.size(); ++s)
@@ -170,7 +171,8 @@ TYPED_TEST(ContactColorsTest, MostKeepTheirs) {
   EXPECT_LT(persisting, crowd.found().size());
 }
 
-/// Colours that are kept leave gaps: all are coloured anew before there are many more than were needed.
+/// Colours that are kept leave gaps: all contacts are coloured anew before there are many more colours than
+/// are needed.
 TYPED_TEST(ContactColorsTest, TheirNumberDoesNotGrow) {
   Crowd<TypeParam> crowd(5);
   crowd.change(1);
@@ -193,7 +195,7 @@ TYPED_TEST(ContactColorsTest, TheSameContactsStayWhereTheyAre) {
   EXPECT_FALSE(crowd.are_same());
   EXPECT_EQ(crowd.color(), slot);
   EXPECT_TRUE(crowd.are_same());
-  // One goes and none comes, then it comes again: neither is the same.
+  // One contact goes and none comes, then it comes again: both times the contacts are not the same.
   crowd.lose_first();
   crowd.expect_colors(crowd.color());
   EXPECT_FALSE(crowd.are_same());

@@ -1,5 +1,5 @@
-// What impacts mean for contacts and bodies, in any space: the same after rounds of impacts as after those in
-// the order of their times.
+// Tests of what impacts mean for contacts and bodies, in any space: after rounds of impacts it is the same as
+// after impacts in the order of their times.
 #include "sim/contacts/contact_flight.hpp"
 
 #include "core/parallel.hpp"
@@ -16,7 +16,7 @@
 namespace scree {
 namespace {
 
-/// The contact of a pair, as one kernel finds it.
+/// The contact of a pair as one kernel finds it.
 struct Seen {
   int points;
   ContactFlight flight;
@@ -72,7 +72,7 @@ template <class Space>
 class ContactFlights : public test::InSpace<Space> {};
 TYPED_TEST_SUITE(ContactFlights, test::Spaces, test::SpaceName);
 
-/// Balls and boxes over a plane, some of which fall on it in the substep and some of which meet.
+/// Returns balls and boxes over a plane: in the substep some fall on it and some meet one another.
 FlightScene falling_crowd() {
   FlightScene scene;
   scene.law = {.restitution = 0.5, .friction = 0.3};
@@ -90,8 +90,8 @@ FlightScene falling_crowd() {
   return scene;
 }
 
-/// What a contact in each pair knows of its flight, and how the bodies are shifted by impulses that it might
-/// have, once the impacts of a flight are over.
+/// The state after the impacts of a flight: what a contact of each pair knows of its flight, and how impulses
+/// that it might have shift the bodies.
 template <class Space>
 struct AfterImpacts {
   std::vector<Seen> seen;

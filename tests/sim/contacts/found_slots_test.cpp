@@ -1,4 +1,4 @@
-// Slots that have a contact: brought together tile by tile.
+// Tests of the slots that have a contact, which are brought together tile by tile.
 #include "sim/contacts/found_slots.hpp"
 
 #include "tests/core/spaces.hpp"
@@ -17,7 +17,7 @@ template <class Space>
 class FoundSlotsTest : public test::InSpace<Space> {};
 TYPED_TEST_SUITE(FoundSlotsTest, test::Spaces, test::SpaceName);
 
-/// Of tiles that have found these.
+/// Returns the joined list of tiles that have found these slots.
 template <class Space>
 std::vector<std::int32_t> join(const std::vector<std::vector<std::int32_t>>& tiles) {
   FoundSlots<Space> found;

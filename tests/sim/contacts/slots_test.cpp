@@ -1,4 +1,4 @@
-// Slots: every candidate has its places, memory outlives the candidates.
+// Tests of slots: every candidate has its places, and the memory outlives the candidates.
 #include "sim/contacts/slots.hpp"
 
 #include "core/parallel.hpp"
@@ -23,7 +23,7 @@ template <class Space>
 class SlotsTest : public test::InSpace<Space> {};
 TYPED_TEST_SUITE(SlotsTest, test::Spaces, test::SpaceName);
 
-/// Balls; number 0 is a plane, and number 1 is one of a drum that turns if asked for.
+/// Returns balls; number 0 is a plane, and if `drum` is set, number 1 is a drum (a tube) that turns.
 BodyTable balls(std::size_t n, bool drum) {
   BodyTable bodies;
   bodies.position.assign(n, Vec3::Zero());
@@ -146,7 +146,7 @@ TYPED_TEST(SlotsTest, ATubeHasASlotForEachSurfaceAndOneThatTurnsAPointForEach) {
                          {1, 0}, {1, 1}, {1, 2}, {2, 0}, {2, 1}, {2, 2}}));
 }
 
-/// A ball that touches a thousand is many parts, each with few slots.
+/// A ball that touches a thousand others is split into many parts, each with few slots.
 TYPED_TEST(SlotsTest, AHubIsSplit) {
   const BodyTable bodies = balls(1002, false);
   std::vector<Pair> pairs;
@@ -165,8 +165,8 @@ TYPED_TEST(SlotsTest, AHubIsSplit) {
   }
 }
 
-/// A ball that lies on a plane and two heavy balls, with a thousand light ones around it: what carries it is
-/// on one part.
+/// A ball lies on a plane and two heavy balls, with a thousand light ones around it: the contacts that carry
+/// it are on one part.
 TYPED_TEST(SlotsTest, TheHeaviestNeighboursOfAHubShareAPart) {
   BodyTable bodies = balls(1005, false);
   std::vector<Pair> pairs = {{0, 1}};
@@ -188,7 +188,8 @@ TYPED_TEST(SlotsTest, TheHeaviestNeighboursOfAHubShareAPart) {
     if (slot.i == Slot::empty || (slot.i != 0 && slot.j != 500 && slot.j != 900)) continue;
     EXPECT_EQ(slot.i == 0 ? slot.end_j : slot.end_i, built.slots.solver_bodies().first_part());
   }
-  // Half of it by weight: 1,000 for the plane, 500 for each ball, 9 light ones, of 3,001; the rest alike.
+  // Half of the share goes by weight: 1,000 for the plane, 500 for each heavy ball, and 9 for light ones, of
+  // 3,001 in all. The other half is divided equally.
   EXPECT_NEAR(share[0], 0.5 * (2009.0 / 3001 + 1.0 / static_cast<double>(share.size())), 1e-3);
   EXPECT_LT(share[1], 0.01);
 }
@@ -248,7 +249,7 @@ TYPED_TEST(SlotsTest, MemoryOutlivesMovesOfTheBodies) {
       "test", built.slots.places().size(),
       Remember<double>{built.slots.places(), built.slots.ball_memory(), built.slots.couples()});
 
-  // To any other places, and the pairs in their order there.
+  // The bodies move to any other places, and the pairs are in their order there.
   std::vector<std::int32_t> place_before(count), place_now(count);
   for (std::int32_t k = 0; k < count; ++k) {
     place_before[static_cast<std::size_t>(k)] = (37 * k + 5) % count;

@@ -1,5 +1,5 @@
-// Visits to eight contacts side by side beside the same visits to one after the other: bit by bit, for each
-// instruction set that the processor has.
+// Tests of visits to eight contacts side by side, against the same visits to one after the other: they agree
+// bit by bit, for each instruction set that the processor has.
 #include "sim/contacts/visit_kernels.hpp"
 
 #include "core/rng.hpp"
@@ -16,14 +16,14 @@
 namespace scree::solver {
 namespace {
 
-constexpr double float_sums = 1e-6;  // of some numbers that are added up as floats, in whatever order
+constexpr double float_sums = 1e-6;  // for sums of some numbers as floats, in any order
 using Balls = BallContacts<double>;
 using Points = PointContacts<double>;
 using Rolling = RollingFields<double>;
 
-/// One colour of contacts of balls and one of others, each contact between two bodies of its own, of which
-/// some are not free. So many contacts that those side by side are not all there, and differ in their number
-/// of points.
+/// One colour of ball contacts and one of point contacts. Each contact is between two bodies of its own, of
+/// which some are not free. Their number is such that some lanes are empty, and that contacts side by side
+/// differ in their number of points.
 class Problem {
  public:
   static constexpr int balls_found = 29, points_found = 43;
@@ -37,7 +37,7 @@ class Problem {
     store_.take_points(of_points);
     ball_rolling_.resize(decltype(Rolling::fields)::size(of_balls.places()));
     point_rolling_.resize(decltype(Rolling::fields)::size(of_points.places()));
-    // What no contact wrote must not matter.
+    // Memory that no contact has written must not matter.
     for (const auto& [data, size] : memory()) std::memset(data, 0xff, size);
     const auto number_slots = [](View<std::int32_t> slots, std::int32_t found) {
       for (std::int32_t c = 0; c < slots.size(); ++c) slots[c] = c < found ? c : Slot::empty;
@@ -138,7 +138,7 @@ class Problem {
   Rolling ball_rolling() { return {decltype(Rolling::fields)(ball_rolling_.data())}; }
   Rolling point_rolling() { return {decltype(Rolling::fields)(point_rolling_.data())}; }
 
-  /// All numbers of the contacts that were found, then the bodies.
+  /// Returns all numbers of the contacts that were found, followed by those of the bodies.
   std::vector<double> numbers() {
     std::vector<double> all;
     const Balls b = balls();
@@ -194,8 +194,8 @@ class Problem {
   Array<double, Host> ball_rolling_, point_rolling_;
 };
 
-/// All visits to all contacts of a problem, each by `over(visit, found, more...)`, which returns what it adds
-/// up.
+/// Makes all visits to all contacts of a problem, each by `over(visit, found, more...)`, which returns the
+/// sum of the results.
 template <class Over>
 std::vector<double> visit_all(Problem& problem, const Over& over) {
   constexpr double beta = 0.7, share = 0.4;
@@ -227,7 +227,7 @@ std::vector<double> visit_all(Problem& problem, const Over& over) {
   return sums;
 }
 
-/// One contact after the other.
+/// Visits one contact after the other.
 struct OneByOne {
   template <class Visit, class... More>
   auto operator()(const Visit& visit, int found, More... more) const {
@@ -269,7 +269,7 @@ TEST_P(VisitKernelsTest, VisitsToSeveralAreVisitsToEach) {
   const std::vector<double> expected = each.numbers(), found = several.numbers();
   ASSERT_EQ(expected.size(), found.size());
   for (std::size_t k = 0; k < expected.size(); ++k) ASSERT_EQ(expected[k], found[k]) << k;
-  // Sums are added up in another order.
+  // The sums are added up in another order.
   ASSERT_EQ(sums.size(), sums_of_several.size());
   for (std::size_t k = 0; k < sums.size(); ++k)
     EXPECT_NEAR(sums[k], sums_of_several[k], float_sums * (1 + sums[k])) << k;

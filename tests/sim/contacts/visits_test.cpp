@@ -1,5 +1,5 @@
-// Visits to one contact beside the scalar reference: the rows of sim/laws/contact_row.hpp, swept one
-// after the other, and the couples of rolling.hpp.
+// Tests of visits to one contact, against the scalar reference: the rows of sim/laws/contact_row.hpp, swept
+// one after the other, and the couples of rolling.hpp.
 #include "core/rng.hpp"
 #include "sim/contacts/contact_store.hpp"
 #include "sim/contacts/rolling_visits.hpp"
@@ -14,14 +14,14 @@
 namespace scree::solver {
 namespace {
 
-constexpr double rounding = 1e-12;  // of velocities of some m/s, and of impulses of some N s
+constexpr double rounding = 1e-12;  // for velocities of some m/s and impulses of some N s
 
 Vec3 vector_in(Random& random, double size) {
   const double x = random.uniform(-size, size), y = random.uniform(-size, size);
   return {x, y, random.uniform(-size, size)};
 }
 
-/// A contact between two bodies, of which the first is not free at each fifth.
+/// A contact between two bodies; in every fifth one the first body is not free.
 struct Reference {
   SolverBody i, j;
   Vec3 normal;
@@ -56,7 +56,7 @@ struct Reference {
                                   : make_row(normal, arm * normal + vector_in(random, 0.5),
                                              vector_in(random, 0.5) - other * normal, 0, i, j, coupling));
       if (balls) {
-        // Nothing couples: W is diagonal.
+        // W is diagonal, so that nothing is coupled.
         const Mat3 along = normal * normal.transpose();
         coupling.stick = row.normal_mass * along + row.tangent_mass * (Mat3::Identity() - along);
         coupling.normal = normal / row.normal_mass;
@@ -83,7 +83,7 @@ void expect_moves(const BodyRecord<double>& record, const SolverBody& body, std:
   EXPECT_LT((vec3(record.spin) - body.spin).norm(), rounding) << item;
 }
 
-/// One contact of each kind in its store.
+/// A store with one contact of each kind, its rolling couple and its two bodies.
 template <class Contacts>
 struct Stored {
   ContactStore<Host, double> store;
@@ -192,7 +192,7 @@ TEST(Visits, SweepPointsAsTheScalarReference) {
   }
 }
 
-/// Pushes and couples: what impulses give, and a couple as rolling_couple() has it.
+/// Expects a visit to give the couple that rolling_couple() gives, and to turn the bodies by it.
 template <class Contacts, class Turn, class StoredContact>
 void expect_rolls(bool balls) {
   for (std::uint64_t item = 0; item < 300; ++item) {

@@ -1,4 +1,4 @@
-// The pairs of each body beside those that are found by going through all.
+// Tests of the pairs of each body, against those that a loop over all pairs finds.
 #include "sim/impacts/adjacency.hpp"
 
 #include "core/rng.hpp"
@@ -29,7 +29,7 @@ std::vector<T> to_host(ConstView<T> list) {
   return on_host;
 }
 
-/// Body 0 is not free; bodies 1 and 2 are hubs, which are candidates of all others.
+/// Body 0 is not free; bodies 1 and 2 are hubs, which are candidates with all others.
 TYPED_TEST(AdjacencyTest, OfRandomPairs) {
   constexpr std::int32_t bodies = 1000;
   std::vector<Mobility> mobility(bodies, Mobility::free);

@@ -1,4 +1,4 @@
-// The next meeting of two balls, beside stepping and bisection in long double.
+// Tests of the next meeting of two balls, against stepping and bisection in long double.
 #include "core/rng.hpp"
 #include "tests/sim/impacts/flight_oracle.hpp"
 
@@ -11,7 +11,7 @@ RealVec3 offset_at(const FlightOfBalls& balls, double step, Real s) {
   return place_at(balls.flight, balls.velocity, step, s);
 }
 
-// Of flights over some metres at some 30 m/s; no drawn pair grazes, which would cost half the digits.
+// The flights go over some metres at some 30 m/s. No drawn pair grazes, which would cost half of the digits.
 constexpr double rounding = 1e-13;
 
 Vec3 draw(Random& random, double size) {
@@ -54,8 +54,8 @@ TEST(BallImpact, IsTheFirstTouchAndItsNormalAndSpeedAreOfThatInstant) {
   EXPECT_GT(passed_by, 100);
 }
 
-/// A ball passes another one at a share of their touching distance, and a little nearer or farther each time:
-/// a graze is a double root, which costs half the digits, and no more.
+/// A ball passes another one at their touching distance, less or more a small share of it. A graze is a
+/// double root, which costs half of the digits and no more.
 TEST(BallImpact, GrazesAreFoundAsWellAsTheirRootsAreKnown) {
   constexpr double step = 0.001;
   constexpr Real speed = 3, touching = 0.02, start = 0.001;

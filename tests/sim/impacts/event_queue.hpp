@@ -1,5 +1,5 @@
-// All impacts of a flight on Host in the order of their times, each one's outcome before the next: the oracle
-// beside ImpactRounds.
+// An event queue that resolves all impacts of a flight on Host in the order of their times, each one with the
+// outcome of those before it: the oracle for ImpactRounds.
 #pragma once
 
 #include "core/tolerances.hpp"
@@ -14,10 +14,10 @@
 
 namespace scree::test {
 
-/// Bodies have no loads, and nothing is foreseen faster than by a look at every pair.
+/// A queue for bodies without loads, which predicts meetings by a search for every pair.
 class EventQueue {
  public:
-  /// As ImpactRounds::resolve(). Of candidates among which are all that may meet.
+  /// Resolves impacts as ImpactRounds::resolve() does. The candidates must contain all pairs that may meet.
   Ledger resolve(ConstView<Pair> pairs, const FlightTerms& terms, const ResponseParameters& parameters,
                  BodyView bodies) {
     const std::int64_t n = bodies.count();
@@ -60,11 +60,11 @@ class EventQueue {
   }
 
  private:
-  /// A meeting, as foreseen.
+  /// A predicted meeting.
   struct Event {
     Meeting meeting;
     std::int32_t i, j;
-    std::int32_t version_i, version_j;  // of the bodies' flights when it was foreseen
+    std::int32_t version_i, version_j;  // versions of the bodies' flights at the prediction
 
     friend bool operator>(const Event& a, const Event& b) {
       return std::tuple(a.meeting.time, a.i, a.j, a.meeting.part) >
@@ -87,7 +87,8 @@ class EventQueue {
 
   Ledger resolve(const FlightStage& stage, const Event& event) {
     const auto [meeting, i, j, version_i, version_j] = event;
-    // What is not free and meets the free body of the pair, besides that of the pair.
+    // Visits each wall (a body that is not free) that the free body of the pair meets, except one that is in
+    // the pair.
     const auto other_walls = [&](const auto& then) {
       const std::int32_t body = stage.is_free(i) ? i : j;
       for (const std::int32_t wall : partners_[at(body)]) {
@@ -113,8 +114,8 @@ class EventQueue {
   }
 
   FlightLog<Host> log_;
-  std::vector<Event> events_;          // a heap, the earliest first
-  std::vector<std::int32_t> version_;  // of each body's flight: how many impacts led to it
+  std::vector<Event> events_;          // a heap with the earliest event first
+  std::vector<std::int32_t> version_;  // version of each body's flight: the number of impacts that led to it
   std::vector<std::vector<std::int32_t>> partners_;
   std::vector<std::uint8_t> struck_;
   std::vector<Impact> impacts_;

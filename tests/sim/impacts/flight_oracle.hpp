@@ -1,5 +1,5 @@
-// Flights in long double, and when they first come to a place: by stepping and bisection, which share nothing
-// with the closed forms and Newton steps that they are compared with.
+// Flights in long double and the first time at which they come to a place, by stepping and bisection, which
+// have nothing in common with the closed forms and Newton steps that are compared with them.
 #pragma once
 
 #include "sim/laws/flight.hpp"
@@ -11,14 +11,14 @@ namespace scree {
 using Real = long double;
 using RealVec3 = Eigen::Matrix<Real, 3, 1>;
 
-/// Where the flight is at the time s into a substep (m).
+/// Returns where the flight is at the time s into a substep (m).
 inline RealVec3 place_at(const Flight& flight, const Vec3& velocity, double step, Real s) {
   return flight.position.cast<Real>() + (s - 0.5L * step) * velocity.cast<Real>() +
          0.5L * s * s * flight.acceleration.cast<Real>();
 }
 
-/// The first s from `earliest` to `horizon` at which `there(s)`; infinite if there is none. It may miss a
-/// visit that is shorter than one of its 20,000 cells.
+/// Returns the first s from `earliest` to `horizon` at which `there(s)` holds; infinite if there is none. It
+/// may miss a visit that is shorter than one of its 20,000 cells.
 template <class There>
 Real first_time(Real earliest, Real horizon, There&& there) {
   constexpr int cells = 20000;

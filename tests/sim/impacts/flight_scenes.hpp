@@ -1,4 +1,4 @@
-// Bodies of one material in flight, in any space.
+// Scenes of bodies of one material in flight, in any space.
 #pragma once
 
 #include "core/rng.hpp"
@@ -9,7 +9,7 @@
 
 namespace scree {
 
-/// Bodies of one material, and how they fly.
+/// Bodies of one material and the parameters of their flight.
 struct FlightScene {
   BodyTable bodies;
   PairLaw law{.restitution = 1, .friction = 0};
@@ -35,7 +35,7 @@ struct FlightScene {
   void add_ball(double radius, const Vec3& position, const Vec3& velocity) {
     add(Shape::sphere, Vec3::Constant(radius), position, velocity);
   }
-  /// Makes a body, of 1 kg until then, weigh so much (kg).
+  /// Gives a body, which had 1 kg until then, the mass `mass` (kg).
   void weigh(std::int32_t body, double mass) {
     bodies.inverse_mass[static_cast<std::size_t>(body)] /= mass;
     bodies.inverse_inertia[static_cast<std::size_t>(body)] /= mass;
@@ -52,7 +52,7 @@ struct FlightScene {
     return bodies.mobility[static_cast<std::size_t>(k)] == Mobility::free;
   }
 
-  /// All that come as near as `reach` (m).
+  /// Returns all pairs that come as near as `reach` (m).
   std::vector<Pair> pairs(double reach) const {
     std::vector<Pair> found;
     for (std::int32_t i = 0; i < count(); ++i) {
@@ -105,7 +105,7 @@ inline Vec3 vector_in(Random& random, double size) {
   return {x, y, random.uniform(-size, size)};
 }
 
-/// 1000 balls in a box of 1 m, of which they fill the share given.
+/// Returns a gas of 1000 balls in a box of 1 m, of which they fill the share `fill`.
 inline FlightScene gas(double fill) {
   constexpr int along = 10;
   FlightScene scene;

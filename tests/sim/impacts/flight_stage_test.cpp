@@ -1,4 +1,5 @@
-// Bodies too slow for an impact are passed over by two numbers: the whole search finds none of theirs either.
+// Tests that pairs whose top speeds sum to less than the least impact speed, which are passed over, have no
+// impact in the whole search either.
 #include "sim/impacts/flight_stage.hpp"
 
 #include "core/rng.hpp"
@@ -10,7 +11,7 @@ namespace {
 
 constexpr std::int32_t count = 60;
 
-/// Balls and boxes that nearly touch, and a plane; at 0.1 mm/s to 3 m/s.
+/// Returns a plane, and balls and boxes that nearly touch, at 0.1 mm/s to 3 m/s.
 BodyTable crowd(std::uint64_t seed) {
   BodyTable table;
   for (std::int32_t k = 0; k < count; ++k) {
@@ -38,7 +39,7 @@ BodyTable crowd(std::uint64_t seed) {
   return table;
 }
 
-class LeastImpactSpeed : public testing::TestWithParam<double> {};  // the step (s)
+class LeastImpactSpeed : public testing::TestWithParam<double> {};  // the parameter is the step (s)
 
 TEST_P(LeastImpactSpeed, TwoSlowBodiesHaveNoImpact) {
   std::int64_t passed_over = 0;

@@ -1,5 +1,5 @@
-// Many light bodies strike a heavy one in one round: what is kept, and how far that is from the order of
-// times.
+// Tests of many light bodies that strike a heavy one in one round: what is conserved, and how far the result
+// is from that in the order of times.
 #include "sim/impacts/impact_group.hpp"
 
 #include "tests/core/spaces.hpp"
@@ -37,7 +37,7 @@ Conserved conserved_by(const BodyTable& bodies, const Vec3& gravity) {
   return sum;
 }
 
-/// A thousand light balls around a heavy body of 0.5 m, all on their way to it.
+/// Returns a thousand light balls around a heavy body of 0.5 m, all on their way to it.
 FlightScene under_fire(Shape shape, double ratio) {
   FlightScene scene;
   scene.add(shape, Vec3(0.5, 0.4, 0.3), Vec3::Zero(), Vec3(0.3, 0.2, -0.1));
@@ -83,7 +83,8 @@ TYPED_TEST(ImpactGroups, ManyStrikeAHeavyBodyAtOnce) {
       EXPECT_NEAR(after.energy, explained, 1e-13 * before.energy);
       EXPECT_GE(rounds.moved.restitution, -1e-12);
       EXPECT_GE(rounds.moved.friction, 0);
-      // Each sees the heavy body without what those of its round have done: 1000 kg m/s of 1e5 kg.
+      // Each impact sees the heavy body without the other impacts of its round, which together give 1000 kg
+      // m/s to a mass of 1e5 kg.
       EXPECT_LE((rounds.bodies.velocity[0] - order.bodies.velocity[0]).norm(), 2e-5);
       EXPECT_NEAR(rounds.moved.restitution, order.moved.restitution, 1e-2 * (1 + order.moved.restitution));
       EXPECT_NEAR(rounds.moved.friction, order.moved.friction, 1e-2 * (1 + order.moved.friction));
@@ -128,14 +129,14 @@ TYPED_TEST(ImpactGroups, OneLightBallOnAHeavyOneIsAsInTheOrderOfTimes) {
     if (pair.i != 0) continue;
     const Outcome order = in_time_order(scene, {pair});
     const Outcome rounds = in_rounds<TypeParam>(scene, {pair});
-    // The heavy body turns with some 1e5 J: their rounding.
+    // The heavy body turns with some 1e5 J, which the tolerance allows to be rounded.
     ASSERT_NO_FATAL_FAILURE(expect_same(rounds, order, 1e-9)) << pair.j;
     impacts += order.impacts.size();
   }
   EXPECT_GT(impacts, 500u);
 }
 
-/// Not so dense that a light ball would meet the bound of its bounces between two heavy ones.
+/// The gas is not so dense that a light ball would use up its impact budget between two heavy ones.
 TYPED_TEST(ImpactGroups, HeavyBodiesInAGasKeepItsEnergy) {
   FlightScene scene = gas(0.2);
   scene.parameters.rotation = false;

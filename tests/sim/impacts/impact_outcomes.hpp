@@ -1,4 +1,4 @@
-// What impacts make of bodies: in rounds, in any space, and in the order of their times.
+// The outcomes of impacts: in rounds, in any space, and in the order of their times.
 #pragma once
 
 #include "sim/impacts/impact_rounds.hpp"
@@ -40,7 +40,8 @@ std::vector<Impact> impacts_of(const ImpactRounds<Space>& rounds) {
   return impacts;
 }
 
-/// The pairs in another order than the queue's. `one_by_one`: strictly in the order of times.
+/// Resolves the impacts of a scene in rounds. The pairs are in another order than in the queue. `one_by_one`
+/// means strictly in the order of times.
 template <class Space>
 Outcome in_rounds(const FlightScene& scene, std::vector<Pair> pairs, bool one_by_one = false) {
   World<Space> world(scene);
@@ -58,7 +59,7 @@ Outcome in_rounds(const FlightScene& scene, std::vector<Pair> pairs, bool one_by
   return outcome;
 }
 
-/// The impacts of each body, in their order.
+/// Returns the impacts of each body, in their order.
 inline std::vector<std::vector<Impact>> by_body(const Outcome& outcome) {
   std::vector<std::vector<Impact>> of_body(static_cast<std::size_t>(outcome.bodies.count()));
   for (const Impact& impact : outcome.impacts) {

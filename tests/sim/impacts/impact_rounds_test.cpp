@@ -1,4 +1,5 @@
-// Impacts in rounds beside those in the order of their times: the same for every body, to rounding.
+// Tests of impacts in rounds, against impacts in the order of their times: they are the same for every body,
+// to rounding.
 #include "tests/core/spaces.hpp"
 #include "tests/sim/impacts/impact_outcomes.hpp"
 
@@ -43,7 +44,8 @@ TYPED_TEST(Rounds, ManyAtOnceAreMoreThanThereIsRoomForAtFirst) {
   EXPECT_EQ(rounds.rounds, 1);
   ASSERT_EQ(rounds.impacts.size(), static_cast<std::size_t>(lanes));
   for (std::size_t k = 0; k < lanes; ++k) {
-    ASSERT_EQ(rounds.impacts[k].i, 2 * (lanes - 1 - static_cast<std::int32_t>(k)));  // as the pairs came
+    // The impacts are in the order of the pairs.
+    ASSERT_EQ(rounds.impacts[k].i, 2 * (lanes - 1 - static_cast<std::int32_t>(k)));
     ASSERT_NEAR(rounds.bodies.velocity[2 * k].x(), -1, 1e-15);
     ASSERT_NEAR(rounds.bodies.velocity[2 * k + 1].x(), 1, 1e-15);
   }
@@ -83,7 +85,7 @@ TYPED_TEST(Rounds, OfAGasAreTheSame) {
   EXPECT_LT(rounds, 400);
 }
 
-/// The balls whose impacts come in another order than by their times.
+/// Returns the number of balls whose impacts come in another order than that of their times.
 std::size_t count_differences(const Outcome& rounds, const Outcome& order) {
   const auto pair_of = [](const Impact& impact) { return std::pair(impact.i, impact.j); };
   const auto got = by_body(rounds);
@@ -111,7 +113,7 @@ TYPED_TEST(Rounds, OfADenseGasHardlyDiffer) {
   }
   EXPECT_NEAR(scene.kinetic_energy(), energy, 1e-12 * energy);
   EXPECT_GT(impacts, 20000u);
-  EXPECT_LE(differ, 10u);  // of 60,000
+  EXPECT_LE(differ, 10u);  // (of 60,000)
 }
 
 TYPED_TEST(Rounds, OfADenseGasAreThoseOfTheQueueOneByOne) {
@@ -190,8 +192,8 @@ TYPED_TEST(Rounds, SlowBodiesHaveNone) {
   EXPECT_FALSE(rounds.late);
 }
 
-/// Of each four the first strikes the second, which may then strike two more: there are more to_search in the
-/// second round than there is room for, while the first round's meetings are to be kept.
+/// Of each four balls the first strikes the second, which may then strike two more. In the second round there
+/// are more pairs to search than there is room for, while the meetings of the first round must be kept.
 TYPED_TEST(Rounds, RoomMayBeLackingInALaterRound) {
   constexpr std::int32_t lanes = 3000;
   FlightScene scene;
@@ -211,8 +213,8 @@ TYPED_TEST(Rounds, RoomMayBeLackingInALaterRound) {
   expect_same(rounds, in_time_order(scene, pairs), 1e-11);
 }
 
-/// The first of four drives the second into the third, before that meets the fourth: the third waits. Each is
-/// a candidate of very many others, none of which it meets.
+/// The first of four hubs drives the second into the third before the third meets the fourth, so that the
+/// third waits. Each hub is a candidate with very many other bodies, none of which it meets.
 TYPED_TEST(Rounds, HubsWaitForOneAnother) {
   constexpr std::int32_t hubs = 4, others = 300;
   static_assert(others > AdjacencyView::most_of_few);
@@ -229,7 +231,7 @@ TYPED_TEST(Rounds, HubsWaitForOneAnother) {
   expect_same(rounds, in_time_order(scene, pairs), 1e-12);
 }
 
-/// All touch at the start, where each closes with the next one; the last is heavy to the first.
+/// All three balls touch at the start, and each closes with the next one; the last one is heavy to the first.
 TYPED_TEST(Rounds, NobodyWaitsInACircle) {
   FlightScene scene;
   const double apart = 0.2 - 1e-6;
@@ -270,8 +272,8 @@ TYPED_TEST(Rounds, WhatWasLoadedDoesNotBounce) {
   EXPECT_EQ(impacts[0].i, 2);
 }
 
-/// Balls 0 and 1 rest on others, 4 and 5; ball 2 on the fixed 6, and ball 3 on none. All pairs of one row
-/// meet.
+/// Balls 0 and 1 rest on balls 4 and 5, ball 2 rests on the fixed ball 6, and ball 3 on none. All pairs
+/// within the row of 0 to 3 meet.
 TYPED_TEST(Rounds, TwoThatBearLoadInACrowdAreLeftToItsContacts) {
   FlightScene scene;
   scene.law.restitution = 0.5;
@@ -328,7 +330,7 @@ TYPED_TEST(Rounds, UndoneAreAsIfTheyHadNotBeen) {
 
 TYPED_TEST(Rounds, TheSecondHalfGoesOnFromTheFirst) {
   FlightScene scene = gas(0.02);
-  scene.step = 1.0 / 60;  // some go deep
+  scene.step = 1.0 / 60;  // some approaches are deep
   for (Vec3& velocity : scene.bodies.velocity) velocity *= 2;
   const std::vector<Pair> pairs = scene.pairs(0.3);
   World<TypeParam> world(scene);
@@ -349,7 +351,7 @@ TYPED_TEST(Rounds, TheSecondHalfGoesOnFromTheFirst) {
     copy_bodies(order.bodies, host.bodies);
     ASSERT_NO_FATAL_FAILURE(expect_same(outcome, order, 1e-11)) << "from " << from;
     ASSERT_GT(outcome.impacts.size(), 10u);
-    // What the response might do.
+    // The response might change the velocities in this way.
     if (from > 0) continue;
     BodyTable turned = order.bodies;
     for (Vec3& velocity : turned.velocity) velocity = Vec3(velocity.y(), velocity.z(), velocity.x());

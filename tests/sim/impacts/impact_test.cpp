@@ -1,4 +1,4 @@
-// Time of impact beside bisection in long double, and what the sweeps of one impact leave.
+// Tests of the time of impact, against bisection in long double, and of what the sweeps of one impact leave.
 #include "sim/impacts/impact.hpp"
 
 #include "core/rng.hpp"
@@ -15,7 +15,7 @@ long double gap_at(long double gap, long double u, long double a, long double s)
   return gap + u * s + 0.5L * a * s * s;
 }
 
-/// First sign change on a fine grid, then bisection; infinite beyond `horizon`.
+/// Finds the first sign change on a fine grid, then bisects; returns infinity beyond `horizon`.
 long double first_root(double gap, double u, double a, double horizon) {
   const int cells = 4000;
   for (int k = 0; k < cells; ++k) {
@@ -41,7 +41,7 @@ TEST(TimeOfImpact, AgreesWithBisection) {
     const double s = time_of_impact(gap, u, a);
     const long double oracle = first_root(gap, u, a, horizon);
     const double depth = u * u - 2 * a * gap;
-    if (std::abs(depth) < 1e-2) continue;  // grazing: the grid of the oracle may step over a double root
+    if (std::abs(depth) < 1e-2) continue;  // a graze: the grid of the oracle may step over a double root
     if (oracle == HUGE_VALL) {
       ASSERT_GT(s, horizon * (1 - 1e-9)) << gap << " " << u << " " << a;
     } else {
@@ -54,8 +54,8 @@ TEST(TimeOfImpact, OverlapIsNow) { EXPECT_EQ(time_of_impact(-0.1, -1, 0), 0.0); 
 TEST(TimeOfImpact, PartingBodiesNeverMeet) { EXPECT_EQ(time_of_impact(0.1, 1, 0), HUGE_VAL); }
 TEST(TimeOfImpact, RestingAtADistanceNeverMeets) { EXPECT_EQ(time_of_impact(0.1, 0, 0), HUGE_VAL); }
 
-/// Bodies of any inertia that strike at points of one plane, with friction. At one point the law has one
-/// solution, and the impulses are it to rounding; at several, they are one of many.
+/// Bodies of any inertia strike at points of one plane, with friction. At one point the law has one solution,
+/// and the impulses are that solution to rounding; at several points they are one of many solutions.
 TEST(SweepImpact, ImpulsesMeetTheLawToRounding) {
   int left = 0, impacts = 0;
   for (std::uint64_t item = 0; item < 2000; ++item) {
@@ -94,7 +94,7 @@ TEST(SweepImpact, ImpulsesMeetTheLawToRounding) {
       ++left;
     }
   }
-  EXPECT_LT(left, impacts / 50);  // the bound of sweeps ends these
+  EXPECT_LT(left, impacts / 50);  // these sweeps end at their limit, before they converge
 }
 
 }  // namespace

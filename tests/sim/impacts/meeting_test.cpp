@@ -1,5 +1,6 @@
-// When bodies in flight meet, beside sampling: at the time found they touch and close, and before it they are
-// apart at every sample. The samples share the narrow phase with the search, but none of its steps.
+// Tests of the instants at which bodies in flight meet, against sampling: at the time found they touch and
+// close, and before it they are apart at every sample. The samples use the narrow phase as the search does,
+// but none of its steps.
 #include "sim/impacts/meeting.hpp"
 
 #include "core/rng.hpp"
@@ -25,7 +26,7 @@ Quat turn_of(Random& random) {
       .normalized();
 }
 
-/// A body whose flight leads past the origin within a step or two, at up to `speed` (m/s).
+/// Draws a body whose flight leads past the origin within a step or two, at up to `speed` (m/s).
 BodyFlight flight_of(Shape shape, Random& random, double speed) {
   BodyFlight f{.shape = shape,
                .size = Vec3(random.uniform(0.02, 0.2), random.uniform(0.02, 0.2), random.uniform(0.02, 0.2)),
@@ -99,7 +100,8 @@ TEST_P(Meetings, AreTheFirst) {
       ++met;
       ASSERT_NEAR(gap_at(p, meeting.time), 0, 1e-9 * size) << item;
     }
-    // A graze may be shorter than a step of the search near the surface, and is then this shallow.
+    // A graze may be shorter than a step of the search near the surface, and is then as shallow as this
+    // bound.
     const double end = std::min(meeting.time, step);
     for (int k = 0; k < samples; ++k)
       ASSERT_GT(gap_at(p, end * k / samples), -0.05 * size) << item << " " << k;
@@ -129,12 +131,13 @@ TEST_P(Meetings, WhatMeetsMayTouch) {
 }
 
 TEST_P(Meetings, NothingPassesThroughAtAnySpeed) {
-  // Each is aimed at the other's centre, so that they must meet, however thin they are against their travel.
+  // Each body is aimed at the other's centre, so that they must meet, however thin they are beside their
+  // travel.
   for (std::uint64_t item = 0; item < 200; ++item) {
     PairFlight p = pair(item, 5.0);
     BodyFlight& flyer = p.i.shape == Shape::plane || p.i.shape == Shape::tube ? p.j : p.i;
     BodyFlight& target = &flyer == &p.i ? p.j : p.i;
-    if (target.shape == Shape::tube) continue;  // it has one side, and bodies start inside
+    if (target.shape == Shape::tube) continue;  // a tube has one side, and bodies start inside it
     Random random(23, item);
     const Vec3 from =
         target.position + (target.shape == Shape::plane ? Vec3(target.orientation * Vec3(0, 0, 4.0))
@@ -150,7 +153,7 @@ TEST_P(Meetings, NothingPassesThroughAtAnySpeed) {
   }
 }
 
-/// What is searched for ends within the gap that counts as touching, wherever gaps bend and leap.
+/// A search ends within the gap that counts as touching, wherever gaps are curved or discontinuous in time.
 TEST_P(Meetings, EndWithinWhatTouches) {
   for (std::uint64_t item = 0; item < 1000; ++item) {
     const PairFlight p = pair(item, item % 2 == 0 ? 2.0 : 20.0);
@@ -177,7 +180,7 @@ constexpr std::pair<Shape, Shape> kinds[] = {{Shape::sphere, Shape::sphere}, {Sh
                                              {Shape::plane, Shape::box},     {Shape::tube, Shape::sphere}};
 INSTANTIATE_TEST_SUITE_P(Shapes, Meetings, testing::ValuesIn(kinds));
 
-/// A rod that turns fast about its middle sweeps a ball that it would miss at every end of a step.
+/// A rod that turns fast about its middle strikes a ball that it misses at both ends of the step.
 TEST(Meetings, TurningCounts) {
   const Vec3 rod_size(0.5, 0.01, 0.01);
   PairFlight p{.i = {.shape = Shape::box,
@@ -203,8 +206,8 @@ TEST(Meetings, TurningCounts) {
   ASSERT_GT(gap_at(p, 0), 0.3);
   ASSERT_GT(gap_at(p, step), 0.3);
   const Meeting meeting = next_meeting(p, 0);
-  // A quarter turn, less the angle at which the rod's side is a radius and half its thickness away: at the
-  // start the rod has half a turn to go to where it is at the midpoint.
+  // The rod goes a quarter turn, less the angle at which its side is the ball's radius and half its own
+  // thickness away: at the start the rod has half a turn to go to where it is at the midpoint.
   const double angle = pi / 2 - std::asin(0.02 / 0.4);
   EXPECT_NEAR(meeting.time, angle / (2 * pi / step), 1e-9 * step);
 }

@@ -1,4 +1,4 @@
-// Of the points that a body strikes at once the widest are kept.
+// Tests that of the points that a body strikes at once the widest are kept.
 #include "sim/impacts/struck_walls.hpp"
 
 #include "core/random_orientation.hpp"
@@ -12,12 +12,12 @@
 namespace scree {
 namespace {
 
-/// Twice the area of the triangle or quadrangle of points in a plane, in any order.
+/// Returns twice the area of the triangle or quadrangle of points in a plane, in any order.
 double doubled_area(const StruckPoints& points, const Vec3& normal) {
   const auto of = [&](int a, int b, int c) {
     return std::abs(normal.dot((points.at[b] - points.at[a]).cross(points.at[c] - points.at[a])));
   };
-  // Of the four triangles each half of the quadrangle is counted twice.
+  // The four triangles count each half of the quadrangle twice.
   return 0.5 * (of(0, 1, 2) + of(1, 2, 3) + of(2, 3, 0) + of(3, 0, 1));
 }
 
@@ -30,7 +30,7 @@ TEST(StruckPoints, KeepTheCornersOfARectangleWhateverIsBetween) {
     std::vector<Vec3> flat;
     for (const double x : {0.0, length})
       for (const double y : {0.0, width}) flat.emplace_back(x, y, 0);
-    // As many as a manifold holds of them, and more.
+    // There are up to as many points between the corners as a manifold holds, and more.
     const int between = run % 40;
     for (int k = 0; k < between; ++k)
       flat.emplace_back(length * random.uniform(0.01, 0.99), k % 2 ? 0 : width * random.uniform(0.01, 0.99),

@@ -1,4 +1,4 @@
-// A ball's next impact on a tube's wall, beside stepping and bisection in long double.
+// Tests of a ball's next impact on a tube's wall, against stepping and bisection in long double.
 #include "core/rng.hpp"
 #include "tests/sim/impacts/flight_oracle.hpp"
 
@@ -11,7 +11,7 @@ RealVec3 place_of(const FlightInTube& ball, double step, Real s) {
   return place_at(ball.flight, ball.velocity, step, s);
 }
 
-// Of flights over some metres and a second.
+// for flights over some metres and a second
 constexpr double rounding = 1e-13;
 
 FlightInTube draw_flight(Random& random) {
@@ -48,10 +48,10 @@ TEST(WallImpact, IsWhereTheCentreLeavesItsCircle) {
 }
 
 TEST(WallImpact, AfterABounceIsAtTheEndOfTheChord) {
-  // At 45 degrees the chord is sqrt(2) radii long; rounding puts the ball a little within or beyond the wall.
+  // At 45 degrees the chord is sqrt(2) radii long. Rounding puts the ball a little inside or beyond the wall.
   for (const double beyond : {-1e-16, 0.0, 1e-16}) {
     const Vec3 velocity(-1, 1, 0);
-    // At the wall half a step before the midpoint, that is at the beginning of the step.
+    // The ball is at the wall half a step before the midpoint, which is the beginning of the step.
     const FlightInTube ball{
         .flight = {Vec3(2 + beyond, 0, 0) + 0.5 * velocity, Vec3::Zero()}, .velocity = velocity, .reach = 2};
     const WallImpact impact = next_wall_impact(ball, 1.0, 0.0);

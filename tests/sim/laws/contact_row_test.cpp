@@ -1,4 +1,5 @@
-// The local Coulomb problem beside its own conditions: a solution is one that satisfies them, however found.
+// Tests of the local Coulomb problem against its own conditions: a solution is any state that satisfies them,
+// however it is found.
 #include "sim/laws/contact_row.hpp"
 
 #include "core/rng.hpp"
@@ -11,10 +12,10 @@
 namespace scree {
 namespace {
 
-// Of velocities of some m/s. Where the disc of friction is small beside the impulse that is cut to it, a
-// thousand times what one operation rounds.
+// The rounding error of velocities of some m/s. Where the disc of friction is small beside the impulse that
+// is cut to it, this is a thousand times that of one operation.
 constexpr double rounding = 1e-12;
-constexpr double still = 1e-9;  // m/s; slower slip has no direction that friction could oppose
+constexpr double still = 1e-9;  // (m/s); slower slip has no direction that friction could oppose
 
 Vec3 random_vector(Random& random, double size) {
   return Vec3(random.uniform(-size, size), random.uniform(-size, size), random.uniform(-size, size));
@@ -54,7 +55,7 @@ Problem random_problem(std::uint64_t item, bool spheres) {
   return p;
 }
 
-/// How far the state after the solve is from Signorini's and Coulomb's conditions (m/s).
+/// Returns how far the state after the solve is from Signorini's and Coulomb's conditions (m/s).
 double violation(const Problem& p) {
   const Vec3 u = p.row.relative_velocity(p.i, p.j);
   const Vec3& n = p.normal;
@@ -67,7 +68,7 @@ double violation(const Problem& p) {
   EXPECT_GE(pn, 0.0);
   EXPECT_LE(pt.norm(), radius * (1 + rounding));
   if (pn > 0 && pt.norm() < radius * (1 - rounding)) worst = std::max(worst, ut.norm());  // sticks
-  if (pn > 0 && radius > 0 && ut.norm() > still) {  // slides: friction opposes it, at full strength
+  if (pn > 0 && radius > 0 && ut.norm() > still) {  // slides: friction opposes it at full strength
     worst = std::max(worst, (pt / radius + ut / ut.norm()).norm() * ut.norm());
   }
   return worst;
@@ -82,7 +83,7 @@ TEST(ContactRow, OneSweepSolvesSpheresExactly) {
   }
 }
 
-/// A free ball against a free one, or against a body that never moves.
+/// Each pair is a free ball with a free ball, or with a body that never moves.
 TEST(ContactRow, TheNaturalMapOfBallsIsTheLocalSolution) {
   for (std::uint64_t item = 0; item < 20000; ++item) {
     Problem p = random_problem(item, true);

@@ -1,4 +1,4 @@
-// Free rotation beside Euler's equations integrated by RK4 in long double with tiny steps.
+// Tests of free rotation, against Euler's equations integrated by RK4 in long double with tiny steps.
 #include "sim/laws/rotation.hpp"
 
 #include "core/rng.hpp"
@@ -13,7 +13,7 @@ namespace {
 
 using Long3 = std::array<long double, 3>;
 
-/// Body-frame spin after time t: I w' = (I w) x w.
+/// Returns the spin in the body frame after time t: I w' = (I w) x w.
 Long3 euler_rk4(Long3 w, const Long3& inertia, long double t, int steps) {
   const auto rate = [&inertia](const Long3& s) {
     return Long3{(inertia[1] - inertia[2]) * s[1] * s[2] / inertia[0],
@@ -45,7 +45,8 @@ Vec3 body_spin_after(double t, int steps, RotationOrder order) {
   return q.conjugate() * spin;
 }
 
-/// What a cube is spared: the splitting of a body a hair from one converges to the turn at constant spin.
+/// The splitting, which a cube does not need: for a body a hair from a cube it converges to the turn at
+/// constant spin.
 TEST(Rotation, OfACubeIsWhatTheSplittingConvergesTo) {
   const Vec3 cube = Vec3::Constant(240);
   const Vec3 hair = cube.cwiseProduct(Vec3(1, 1 + 1e-15, 1 - 1e-15));
@@ -97,7 +98,7 @@ TEST(Rotation, EqualMomentsKeepTheSpinBitForBit) {
   const Vec3 inverse(7, 7, 7);
   for (int k = 0; k < 1000; ++k) rotate_freely(q, spin, inverse, 0.01);
   EXPECT_EQ(spin, Vec3(3, -4, 5));
-  // 10 s of |spin| about a fixed axis.
+  // The turn is that of 10 s at |spin| about a fixed axis.
   const Quat exact(Eigen::AngleAxisd(10 * spin.norm(), spin.normalized()));
   EXPECT_NEAR(std::abs(q.dot(exact)), 1.0, 1e-13);
 }
@@ -108,7 +109,7 @@ TEST(Rotation, EnergyAndMomentumVanishForBodiesThatAreNotFree) {
 }
 
 TEST(Rotation, KeepsEnergyAndMomentumHoweverThinAndFast) {
-  // Thin rods that tumble hardly spin at first, and a hundred times faster when their axis comes round.
+  // Thin rods that tumble hardly spin at first, and spin a hundred times faster when their axis comes round.
   for (std::uint64_t item = 0; item < 50000; ++item) {
     Random random(29, item);
     const Vec3 half(random.uniform(0.02, 1), random.uniform(0.02, 1), random.uniform(0.02, 1));
@@ -124,13 +125,13 @@ TEST(Rotation, KeepsEnergyAndMomentumHoweverThinAndFast) {
     const Vec3 momentum = spin_momentum(q, spin, inverse);
     rotate_freely(q, spin, inverse, random.uniform(-0.01, 0.01));
     ASSERT_NEAR(rotational_energy(q, spin, inverse), energy, 1e-13 * energy) << item;
-    // Measured: 1.1e-13, where the moments are as far apart as they come.
+    // The largest measured change is 1.1e-13, where the moments differ the most.
     ASSERT_LT((spin_momentum(q, spin, inverse) - momentum).norm(), 2e-13 * momentum.norm()) << item;
   }
 }
 
 TEST(Rotation, ManySmallTurnsAreOneFarTurn) {
-  // 0.2 rad in turns about the mean spin, beside the splitting of fourth order.
+  // The body turns by 0.2 rad in turns about the mean spin, beside the splitting of fourth order.
   const double end = 0.05;
   const auto turn = [end](int steps) {
     struct State {
@@ -149,7 +150,7 @@ TEST(Rotation, ManySmallTurnsAreOneFarTurn) {
   const auto far = turn(800);
   EXPECT_LT(small.q.angularDistance(far.q), 1e-12);  // measured: 9e-14
   EXPECT_LT((small.spin - far.spin).norm(), 2e-11);  // measured: 5e-12
-  EXPECT_EQ(small.drift, 0.0);                       // none takes the splitting
+  EXPECT_EQ(small.drift, 0.0);                       // no turn takes the splitting
   const double energy = rotational_energy(far.q, far.spin, inertia.cwiseInverse());
   EXPECT_NEAR(rotational_energy(small.q, small.spin, inertia.cwiseInverse()), energy, 1e-11 * energy);
 }

@@ -1,4 +1,5 @@
-// The kernels that turn bodies beside the scalar law, lane by lane, and beside one another, bit by bit.
+// Tests of the kernels that turn bodies: against the scalar law lane by lane, and against one another bit by
+// bit.
 #include "sim/laws/simd/simd.hpp"
 
 #include "core/rng.hpp"
@@ -21,7 +22,8 @@ Vec3 random_vector(Random& random, double size) {
   return Vec3(x, y, random.uniform(-size, size));
 }
 
-/// Boxes of all proportions, slow and fast, two of them beyond one step of the splitting.
+/// The boxes have all proportions and turn slowly and fast; two of them turn farther than one step of the
+/// splitting.
 TEST(Lanes, TurnsAsOneBodyAloneDoes) {
   constexpr int far[] = {2, 5};
   for (const bool fourth_order : {false, true}) {

@@ -1,4 +1,5 @@
-// Only what a scene needs: each feature is off where it cannot matter, and computing it there changes no bit.
+// Tests that a run computes only what its scene needs: each feature is off where it cannot matter, and
+// computing it there changes no bit.
 #include "sim/model/model.hpp"
 
 #include "sim/step/step_failure.hpp"
@@ -11,7 +12,7 @@
 namespace scree {
 namespace {
 
-/// Everything lands on everything within the time given.
+/// A scene in which everything lands on everything within the time given.
 const std::string smooth_spheres = R"(
 gravity: [0, 0, -9.81]
 time: {end: 0.4, step: 0.005}
@@ -40,7 +41,7 @@ bodies:
   - {sphere: {radius: 0.05}, at: [0, 0, 0.5], repeat: {count: [3, 3, 2], spacing: [0.12, 0.12, 0.12], jitter: 0.004}, material: a}
 )";
 
-/// With a coefficient that nothing of it is round for.
+/// A scene with a coefficient of rolling friction, but without a round body of that material.
 const std::string rough_flat_boxes = R"(
 gravity: [0, 0, -9.81]
 time: {end: 0.4, step: 0.005}
@@ -80,15 +81,15 @@ TEST_P(Model, WhatCannotMatterIsOffAndChangesNoBit) {
   EXPECT_EQ(hash_at_end(lean), hash_at_end(full));
 }
 
-/// Whether it is seen that the first scene leaves something out: by other bits than the second's, or by the
-/// guards.
+/// Returns whether the outcome shows that the first scene leaves something out: its bits differ from those of
+/// the second scene, or the guards stop it.
 bool is_seen(const Scene& lean, const Scene& full) try {
   return hash_at_end(lean) != hash_at_end(full);
 } catch (const StepFailure&) {
   return true;
 }
 
-/// The oracle can fail: where a feature matters, leaving it out is seen.
+/// This shows that the oracle can fail: where a feature matters, leaving it out is seen.
 TEST_P(Model, WhatMattersIsOnAndChangesBits) {
   static const std::string rough_bodies = R"(
 gravity: [0, 0, -9.81]
@@ -119,7 +120,7 @@ INSTANTIATE_TEST_SUITE_P(Features, Model,
                                          Case{"restitution", smooth_inelastic_spheres},
                                          Case{"restitution", rough_cubes_and_balls}));
 
-/// Continuous detection is chosen substep by substep: where nobody is fast, forbidding it changes nothing.
+/// Continuous detection is chosen substep by substep: where no body is fast, forbidding it changes nothing.
 TEST(ModelPlan, ContinuousDetectionLeavesSlowScenesAsTheyAre) {
   const std::string slow = R"(
 gravity: [0, 0, -9.81]
@@ -133,7 +134,7 @@ bodies:
   EXPECT_EQ(hash_at_end(scene_of(slow)), hash_at_end(scene_of(slow + "model: {continuous: off}\n")));
 }
 
-/// It is chosen body by body (rotation_test.cpp has the equivalence).
+/// The gyroscopic term is chosen body by body (rotation_test.cpp tests the equivalence).
 TEST(ModelPlan, GyroscopicIsOffForSpheresAndCubes) {
   EXPECT_FALSE(is_on(scene_of(rough_cubes_and_balls), "gyroscopic"));
   EXPECT_TRUE(is_on(scene_of(smooth_boxes), "gyroscopic"));
@@ -146,7 +147,8 @@ TEST(ModelPlan, GravityIsOffWhereThereIsNone) {
                      "gravity"));
 }
 
-/// One grid for equal spheres, several for sizes far apart; and any number of them gives the same bits.
+/// There is one grid level for equal spheres and several for sizes far apart, and any number of levels gives
+/// the same bits.
 TEST(ModelPlan, GridLevelsFollowTheSizesAndChangeNoBit) {
   const std::string mixed = R"(
 gravity: [0, 0, -9.81]
@@ -166,7 +168,8 @@ bodies:
   }
 }
 
-/// Planes are unbounded bodies outside the grid; boxes with the same faces hold the same balls the same way.
+/// Planes are unbounded bodies outside the grid; boxes with the same faces hold the same balls in the same
+/// way.
 TEST(ModelPlan, PlanesAndThickBoxesAreTheSameWalls) {
   const std::string head = R"(
 gravity: [0, 0, -9.81]

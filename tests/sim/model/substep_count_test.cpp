@@ -30,7 +30,8 @@ TEST(SubstepCount, ShallowOnesAskForCoarserStepsAtOnce) {
   EXPECT_EQ(count.next(), 1);
 }
 
-/// One contact of millions that stays as deep held all at the finest steps.
+/// Without the limit on the wait, one contact among millions that stays this deep would hold the whole run at
+/// the finest steps.
 TEST(SubstepCount, WhatIsWedgedDoesNotHoldFineStepsForGood) {
   SubstepCount count = finest();
   for (int k = 1; k < tolerance::wedged_steps; ++k) count.judge(count.next(), wedged);
@@ -51,7 +52,8 @@ TEST(SubstepCount, ADeepOneStartsTheWaitAnew) {
 
 constexpr double between = 0.5 * (tolerance::heap_substep_overlap + tolerance::coarser_overlap);
 
-/// The number after so many steps of a heap that leaves overlaps of so many times what it may with quality 1.
+/// Returns the number of substeps after `steps` steps of a heap that leaves, with n substeps, `left(n)` times
+/// the overlaps that it may leave at quality 1.
 template <class Left>
 int next_after(int steps, SubstepCount& count, const Left& left, double quality = 1) {
   for (int k = 0; k < steps; ++k) {
@@ -82,7 +84,8 @@ TEST(SubstepCount, AHeapThatSinksDeepIsNotMeasuredFirst) {
   EXPECT_EQ(count.next(), 1) << "and one at rest never";
 }
 
-/// Two substeps leave too much, and four so little that two are tried. Over a long time few steps are.
+/// Two substeps leave too much overlap, and four so little that two are tried. Over a long time few steps
+/// have fewer than four.
 TEST(SubstepCount, WhatWasTriedInVainIsTriedLessOften) {
   SubstepCount count;
   const auto left = [](int substeps) { return substeps < 4 ? 1.5 : 0.1; };

@@ -1,4 +1,4 @@
-// How long the boxes of bodies that move hold their pairs, in each space.
+// Tests of how long the boxes of moving bodies keep their pairs valid, in each space.
 #include "sim/pairs/fat_boxes.hpp"
 
 #include "core/tolerances.hpp"

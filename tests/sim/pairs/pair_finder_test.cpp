@@ -1,5 +1,5 @@
-// The pairs kept for bodies in either space are those of bodies on Host, and so are the forces applied to
-// them.
+// Tests that the pairs kept for bodies in either space are those of bodies on Host, and so are the forces
+// applied to them.
 #include "sim/pairs/pair_finder.hpp"
 
 #include "core/rng.hpp"
@@ -43,7 +43,7 @@ forces:
 )");
 }
 
-/// Pairs and boxes of the bodies with the broad phase in their own space.
+/// The pairs and boxes of the bodies, with the broad phase in their own space.
 template <class Space>
 struct Found {
   std::vector<std::pair<std::int32_t, std::int32_t>> pairs;
@@ -90,15 +90,15 @@ TYPED_TEST(InSpaceTest, KeptPairsAreThoseOnHost) {
       EXPECT_EQ(found.boxes[k].lo, expected.boxes[k].lo);
       EXPECT_EQ(found.boxes[k].hi, expected.boxes[k].hi);
     }
-    // More bodies leave their boxes than are held against the others in either space: the pairs are made
-    // anew.
+    // More bodies leave their boxes than are compared with the others in either space, so that the pairs are
+    // found anew.
     for (std::size_t k = 2; k + 1 < state.position.size(); k += 2) state.position[k].x() += 0.05;
     ASSERT_GT(state.position.size() / 2 - 2, static_cast<std::size_t>(NewPairs<TypeParam>::most_outside));
   }
 }
 
-/// Pairs are kept though some bodies have left their boxes, as long as these may touch nobody else: beside
-/// the contacts of all pairs.
+/// Pairs are kept though some bodies have left their boxes, as long as these can touch no other body. The
+/// oracle is the contacts of all pairs.
 TYPED_TEST(InSpaceTest, PairsLastUntilOneOutsideItsBoxMayTouchAnother) {
   const Scene scene = scene_of(R"(
 seed: 4
@@ -192,7 +192,7 @@ TYPED_TEST(InSpaceTest, ForcesActFromTheirStartToTheirEnd) {
   copy_bodies(bodies, moved);
   EXPECT_NEAR(forces.work(bodies), 5 * 0.25, 1e-13);
 
-  // Bodies that become others are asked for anew.
+  // After forget(), the masses of bodies that have changed are read again.
   moved.inverse_mass[seventh] = 0;
   copy_bodies(bodies, moved);
   forces.forget();

@@ -1,5 +1,5 @@
-// On every scene of the repository, now and as it moves: the PCS of the grid, on Host and on Device, is that
-// of brute force, and the run does not depend on the space that makes it.
+// Tests on every scene of the repository, at the start and as it moves: the PCS of the grid, on Host and on
+// Device, is that of brute force, and the run does not depend on the space that computes it.
 #include "core/space.hpp"
 #include "core/tolerances.hpp"
 #include "sim/bodies/motion.hpp"
@@ -18,7 +18,7 @@ namespace {
 
 using PairSet = std::vector<std::pair<std::int32_t, std::int32_t>>;
 
-/// But those of configs/bench, which take long and have nothing that the others lack.
+/// Returns all scenes except those of configs/bench, which take long and have nothing that the others lack.
 std::vector<std::filesystem::path> all_scenes() {
   std::vector<std::filesystem::path> scenes;
   const std::filesystem::path configs = std::filesystem::path(SCREE_SOURCE_DIR) / "configs";
@@ -31,7 +31,7 @@ std::vector<std::filesystem::path> all_scenes() {
 }
 
 std::string name_of(const testing::TestParamInfo<std::filesystem::path>& info) {
-  // Some are called alike in their folders.
+  // Some scenes in different folders have the same name.
   std::string name = info.param.parent_path().filename().string() + "_" + info.param.stem().string();
   std::replace_if(
       name.begin(), name.end(), [](char c) { return !std::isalnum(static_cast<unsigned char>(c)); }, '_');
@@ -54,8 +54,8 @@ PairSet pairs_of(BroadPhaseMethod method, bool on_device, const Snapshot& state,
 
 class ScenePairs : public testing::TestWithParam<std::filesystem::path> {
  protected:
-  /// Compares at the start and after each of a few stretches of the run; with many bodies, beside a uniform
-  /// grid, since brute force takes their number squared.
+  /// Compares at the start and after each of a few stretches of the run. With many bodies it compares with a
+  /// uniform grid, since brute force takes their number squared.
   void compare(bool on_device) {
     const Scene scene = read_scene(GetParam());
     const bool many = scene.bodies.count() > 10000;

@@ -1,5 +1,5 @@
-// The direct solver beside the laws of contact, evaluated from the impulses alone in long double, and beside
-// all active sets of a problem without friction, tried one by one.
+// Tests of the direct solver, against the laws of contact, evaluated from the impulses alone in long double,
+// and against all active sets of a problem without friction, tried one by one.
 #include "sim/response/direct.hpp"
 
 #include "core/rng.hpp"
@@ -22,7 +22,7 @@ using RealMatrix = Eigen::Matrix<Real, Eigen::Dynamic, Eigen::Dynamic>;
 
 constexpr double tolerance = 1e-10;
 
-/// Contacts between some bodies, of which the first is not free.
+/// Contacts between some bodies, of which the first one is not free.
 struct Scene {
   std::vector<SolverBody> bodies;
   std::vector<Contact> contacts;
@@ -88,14 +88,15 @@ SolverBody random_body(Random& random) {
           world_inverse_inertia(rotation_of(random_vector(random, 3)), inverse_inertia)};
 }
 
-/// A chain of bodies from the ground up, one point for each contact and one more to the ground.
+/// Returns a chain of bodies from the ground up: each touches the one below it and the ground, at one point
+/// each.
 Scene random_scene(std::uint64_t item, double largest_friction) {
   Random random(23, item);
   Scene scene;
   scene.bodies.push_back(fixed_body());
   const int count = 1 + static_cast<int>(random.uniform(0, 4));
   for (int k = 0; k < count; ++k) scene.bodies.push_back(random_body(random));
-  // From below to above, so that there is a way out; a contact may have some room left to close.
+  // Normals point upwards, so that there is a way out. A contact may have some room left to close.
   const auto touch = [&](std::int32_t i, std::int32_t j) {
     const Vec3 normal = (random_vector(random, 1) + Vec3(0, 0, 1.2)).normalized();
     scene.add_contact(i, j, normal, random.uniform(0, largest_friction),
@@ -109,7 +110,7 @@ Scene random_scene(std::uint64_t item, double largest_friction) {
   return scene;
 }
 
-/// Relative velocities at the rows by their impulses, from the start, in long double.
+/// Returns the relative velocities at the rows that their impulses give from the start, in long double.
 std::vector<RealVec> velocities(const Scene& scene) {
   std::vector<RealVec> v, w;
   for (std::size_t k = 0; k < scene.bodies.size(); ++k) {
@@ -141,7 +142,8 @@ std::vector<RealVec> velocities(const Scene& scene) {
   return u;
 }
 
-/// How far the impulses are from Signorini's and Coulomb's laws (m/s, with impulses by their row's mass).
+/// Returns how far the impulses are from Signorini's and Coulomb's laws (m/s; impulses are divided by their
+/// row's mass).
 double violation(const Scene& scene) {
   const std::vector<RealVec> u = velocities(scene);
   Real worst = 0;
@@ -156,7 +158,7 @@ double violation(const Scene& scene) {
       const RealVec pt = p - pn * n;
       const RealVec ut = u[r] - u[r].dot(n) * n;
       worst = std::max({worst, -pn, -un, std::min(pn, un), pt.norm() - Real(c.friction) * pn});
-      // Where it slips, friction is all there is of it, and against the slip.
+      // Where a contact slips, friction is at its limit and against the slip.
       if (pn > 0)
         worst = std::max(worst, std::min(ut.norm(), (pt + Real(c.friction) * pn * ut.normalized()).norm()));
     }
@@ -164,14 +166,15 @@ double violation(const Scene& scene) {
   return static_cast<double>(worst);
 }
 
-/// How many of the problems are solved; those that are obey the laws.
+/// Returns how many of the problems are solved, and expects these to obey the laws.
 int number_solved(int problems, double largest_friction) {
   int solved = 0;
   for (int item = 0; item < problems; ++item) {
     Scene scene = random_scene(static_cast<std::uint64_t>(item), largest_friction);
     if (scene.solve() != DirectOutcome::solved) continue;
     ++solved;
-    EXPECT_LT(violation(scene), 1e-7) << "item " << item;  // of velocities of some m/s, at mass ratios of 1e3
+    // The tolerance is for velocities of some m/s, at mass ratios of 1e3.
+    EXPECT_LT(violation(scene), 1e-7) << "item " << item;
   }
   return solved;
 }
@@ -191,8 +194,8 @@ TEST(NaturalResidual, IsWhatTheMapChangesAndNextToNothingAtASolution) {
         const SolverBody& j = other.bodies[Scene::at(c.j)];
         const auto first = static_cast<std::size_t>(c.first_row);
         residual = residual + natural_residual(c, &other.rows[first], i, j);
-        // A step of the row's masses along -u, then the nearest impulse in the cone for the normal part it
-        // has.
+        // The map steps by the row's masses along -u, then takes the nearest impulse in the cone for its
+        // normal part.
         for (std::size_t r = first; r < first + static_cast<std::size_t>(c.count); ++r) {
           const ContactRow& row = other.rows[r];
           const RealVec n = c.normal.cast<Real>();
@@ -224,7 +227,7 @@ TEST(NaturalResidual, IsWhatTheMapChangesAndNextToNothingAtASolution) {
 
 TEST(Direct, ObeysTheLawsOfContact) {
   EXPECT_GT(number_solved(1000, 0.2), 950);
-  // Where friction couples strongly with the normals, slips take more passes than there are.
+  // Where friction couples strongly with the normals, slips need more passes than the solver makes.
   EXPECT_GT(number_solved(1000, 1.2), 350);
 }
 
@@ -232,7 +235,7 @@ TEST(Direct, FindsTheActiveSetThatAllOthersFail) {
   for (std::uint64_t item = 0; item < 100; ++item) {
     Scene scene = random_scene(item, 0.0);
     ASSERT_EQ(scene.solve(), DirectOutcome::solved) << "item " << item;
-    // W and the velocities without impulses, column by column, from unit impulses.
+    // The velocities without impulses, and W column by column, from unit impulses.
     const auto rows = static_cast<Eigen::Index>(scene.rows.size());
     Scene probe = scene;
     const auto normal_velocities = [&] {
@@ -270,7 +273,7 @@ TEST(Direct, FindsTheActiveSetThatAllOthersFail) {
   }
 }
 
-/// Unit cubes on one another, each of a given mass, that gravity has pulled down for a while.
+/// Returns unit cubes on one another, each of a given mass, that gravity has pulled down for a while.
 Scene stack(const std::vector<double>& masses, double friction) {
   Scene scene;
   scene.bodies.push_back(fixed_body());

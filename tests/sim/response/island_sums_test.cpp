@@ -1,4 +1,4 @@
-// Sums over the contacts of each island.
+// Tests of sums over the contacts of each island.
 #include "sim/response/island_sums.hpp"
 
 #include "core/parallel.hpp"
@@ -17,17 +17,17 @@ template <class Space>
 class IslandSumsTest : public test::InSpace<Space> {};
 TYPED_TEST_SUITE(IslandSumsTest, test::Spaces, test::SpaceName);
 
-/// The sum of contact c is what lies at c.
+/// The term of contact c is the number at c.
 struct NumberOf {
   ConstView<double> numbers;
   SCREE_HD double operator()(std::int64_t c) const { return numbers[c]; }
 };
 
-/// Bodies 0 to 5 are free, 6 is not. The solver has the bodies in another order, and the free ones first.
+/// Bodies 0 to 5 are free and body 6 is not. The solver has them in another order, with the free ones first.
 constexpr std::int32_t fixed = 6, bodies = 7;
 constexpr std::int32_t end_of_body[bodies] = {3, 5, 0, 4, 1, 2, 6};
 
-/// Contacts in blocks, which are not full. The slots that have none lie between those that have.
+/// Contacts in blocks that are not full. Slots without a contact lie between those with one.
 template <class Space>
 class Problem {
  public:
@@ -91,7 +91,8 @@ std::vector<double> sums_of(IslandSums<Space, double> sums) {
 }
 
 TYPED_TEST(IslandSumsTest, ContactsThatShareFreeBodiesAddUp) {
-  // A chain 0-1-2 over both blocks, a pair 4-5, and 3 alone on what is not free, which connects nothing.
+  // There is a chain 0-1-2 over both blocks, a pair 4-5, and body 3 alone on the fixed body, which connects
+  // nothing.
   Problem<TypeParam> problem({{{0, 1}, {3, fixed}, {4, 5}}, {{1, 2}, {fixed, 5}, {fixed, 0}}});
   EXPECT_EQ(sums_of(problem.sums()), (std::vector<double>{1 + 8 + 32, 2, 4 + 16}));
 }

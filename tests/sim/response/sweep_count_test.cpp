@@ -7,9 +7,9 @@
 namespace scree::solver {
 namespace {
 
-constexpr int balls = 6, boxes = 12;  // of plan_sweeps()
+constexpr int balls = 6, boxes = 12;  // as in plan_sweeps()
 
-/// As many substeps as are judged together, `times` times.
+/// Judges `times` periods of as many substeps as are judged together.
 void judge(SweepCount& count, int times, double residual, double dissipated = 0) {
   for (int k = 0; k < 32 * times; ++k) count.judge(k % 2 == 0 ? residual : -residual, 1.0, dissipated);
 }
@@ -53,9 +53,10 @@ TEST(SweepCount, AHeapThatMovesIsSweptAsUsual) {
   judge(of_boxes, 3, 0.05, 0.6);
   EXPECT_EQ(of_balls.sweeps(balls, false, 1.0), balls);
   EXPECT_EQ(of_boxes.sweeps(boxes, true, 1.0), boxes);
-  // Whatever it was swept before; and a slow mode that dissipates as much is none of that.
+  // This holds whatever the heap was swept before. A slow mode that dissipates as much does not count as such
+  // motion.
   judge(of_balls, 1, 0.4);
-  EXPECT_EQ(of_balls.sweeps(balls, false, 1.0), 24) << "much is left residual";
+  EXPECT_EQ(of_balls.sweeps(balls, false, 1.0), 24) << "much residual power is left";
   judge(of_balls, 2, 0.08, 0.9);
   EXPECT_EQ(of_balls.sweeps(balls, false, 1.0), balls);
   judge(of_balls, 1, 0.3, 0.9);
@@ -74,11 +75,11 @@ TEST(SweepCount, AHeapThatHasJustFallenIsSweptAtOnce) {
   EXPECT_EQ(of_balls.sweeps(balls, false, 1.0), 96);
   of_boxes.judge(-0.6, 1.0, 0.2);
   EXPECT_EQ(of_boxes.sweeps(boxes, true, 1.0), 96);
-  // Where all moves, that much is left residual however often it is swept.
+  // Where all bodies move, such a residual is left however often the heap is swept.
   SweepCount of_flow;
   of_flow.judge(1.0, 1.0, 2.0);
   EXPECT_EQ(of_flow.sweeps(balls, false, 1.0), balls);
-  // And as soon as little is left, there are fewer again.
+  // As soon as little is left, there are fewer sweeps again.
   for (const int expected : {48, 24, 12, 6}) {
     judge(of_balls, 1, 0.01, 0.5);
     EXPECT_EQ(of_balls.sweeps(balls, false, 1.0), expected);
@@ -98,12 +99,12 @@ TEST(SweepCount, EightSubstepsTellThatAllFlows) {
   }
   EXPECT_TRUE(of_flow.flows());
   EXPECT_EQ(of_flow.sweeps(balls, false, 1.0), balls);
-  EXPECT_EQ(of_more.sweeps(balls, false, 1.0), 96) << "more is left residual than flowing explains";
+  EXPECT_EQ(of_more.sweeps(balls, false, 1.0), 96) << "more residual power is left than flowing explains";
   judge(of_flow, 1, 0.01, 0.5);
   EXPECT_FALSE(of_flow.flows());
 }
 
-/// As many substeps as tell that a heap flows, `times` times.
+/// Judges `times` periods of as many substeps as show that a heap flows.
 void flow(SweepCount& count, int times, double overlap, double dissipated = 1.0) {
   for (int k = 0; k < 8 * times; ++k) {
     count.judge(0.02, 1.0, dissipated);

@@ -1,4 +1,4 @@
-// Body files: what each column says, and every way in which a file can be wrong.
+// Tests of body files: the meaning of each column, and every way in which a file can be wrong.
 #include "sim/scene/body_file.hpp"
 
 #include "core/error.hpp"
@@ -24,7 +24,7 @@ class BodyFileTest : public testing::Test {
         folder_ / "scene.yaml");
   }
 
-  /// Less the folder's path, and the scene's line.
+  /// Returns the message of the error in the file, without the path of the folder.
   std::string message_of(const std::string& csv, const std::string& more = "material: glass") {
     try {
       scene_with(csv, more);
@@ -78,7 +78,7 @@ TEST_F(BodyFileTest, FormsOfTextThatPeopleHave) {
   EXPECT_EQ(scene_with("\nshape,radius,x,y,z\n\n  \nsphere,1,0,0,1e-3\n\n").bodies.position[1].z(), 1e-3);
 }
 
-/// Three balls, by rows of cells.
+/// A table of three balls, as rows of cells.
 using Table = std::vector<std::vector<std::string>>;
 const Table three_balls = {{"shape", "radius", "x", "y", "z"},
                            {"sphere", "0.1", "0", "0", "0.5"},
@@ -283,7 +283,7 @@ TEST_F(BodyFileTest, EveryFaultIsToldAtItsPlace) {
 }
 
 TEST_F(BodyFileTest, APolyhedronIsTheHullOfAFile) {
-  // The tetrahedron from the origin to the three unit points.
+  // The hull is the tetrahedron from the origin to the three unit points.
   write_text(folder_ / "gem.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nv 0.2 0.2 0.2\n");
   const std::string rows =
       "shape,radius,x,y,z,qw,qx,qy,qz,hull\npolyhedron,,1,2,3,1,0,0,0,gem.obj\nsphere,1,9,0,0,,,,,\n"
@@ -302,7 +302,7 @@ TEST_F(BodyFileTest, APolyhedronIsTheHullOfAFile) {
   EXPECT_EQ(scene.geometry->of_body[2].hull, nullptr);
   EXPECT_EQ(scene.geometry->of_body[3].hull, &scene.geometry->hulls[0]);
   EXPECT_EQ(scene.geometry->hulls[0].vertices.size(), 4u);
-  // As the scene says the same.
+  // A scene that describes the polyhedron itself makes the same body.
   const Scene other = parse_scene(
       "format: 1\ntime: {end: 1, step: 0.1}\nmaterials: {glass: {density: 2500}}\nbodies:\n  - {polyhedron: "
       "{file: gem.obj}, at: [1, 2, 3], material: glass}\n",

@@ -1,4 +1,4 @@
-// The table of hints against the table of keys: what it advises must be there.
+// Tests of the table of hints against the table of keys: the keys that a hint advises must exist.
 #include "sim/scene/hints.hpp"
 
 #include "core/error.hpp"
@@ -37,7 +37,7 @@ void collect(const Type& type, std::map<std::string, std::set<std::string>>& key
   for (const Type& part : type.parts) collect(part, keys);
 }
 
-/// Sections with their keys, and body files with their columns.
+/// Returns the keys of each section, and the columns of body files.
 std::map<std::string, std::set<std::string>> known_keys() {
   std::map<std::string, std::set<std::string>> keys;
   collect(scene_codec().type, keys);
@@ -45,7 +45,7 @@ std::map<std::string, std::set<std::string>> known_keys() {
   return keys;
 }
 
-/// The names of keys in what stands between backticks: words before a colon, or a word alone.
+/// Returns the names of keys between backticks: a word before a colon, or a word alone.
 std::vector<std::string> keys_in(std::string_view advice) {
   std::vector<std::string> keys;
   for (std::size_t at = advice.find('`'); at != std::string_view::npos; at = advice.find('`', at + 1)) {
@@ -87,7 +87,7 @@ TEST(Hints, KnowEverySpelling) {
   EXPECT_TRUE(advice_for("nowhere", "diameter").empty());
 }
 
-/// A scene in which one line is to be wrong.
+/// Returns the message for a scene in which one line is wrong.
 std::string message_of(const std::string& material, const std::string& body, const std::string& top,
                        const std::vector<Override>& overrides = {}) {
   try {

@@ -1,4 +1,4 @@
-// A scene's tree as JSON, by what YAML 1.2 says of its scalars.
+// Converts a scene's tree to JSON, by the rules of YAML 1.2 for scalars.
 #pragma once
 
 #include "sim/scene/document.hpp"
@@ -9,10 +9,11 @@
 
 namespace scree {
 
-/// Keys stay in their order, which numbers materials.
+/// Keys stay in their order, which numbers the materials.
 using OrderedJson = nlohmann::ordered_json;
 
-/// Numbers are those of C, but for hexadecimal and infinite ones, which shipped scenes do not have.
+/// Converts a scalar. Numbers are those of C, which differ in hexadecimal and infinite ones; shipped scenes
+/// have none of these.
 inline OrderedJson json_of_scalar(const Node& node) {
   if (node.quoted) return node.text;
   if (node.text == "true" || node.text == "True" || node.text == "TRUE") return true;

@@ -1,4 +1,4 @@
-// The grammar of measures, and that each is worth what its name says.
+// Tests of the grammar of measures, and that each measure has the value that its name says.
 #include "sim/scene/measure.hpp"
 
 #include "core/error.hpp"
@@ -21,7 +21,8 @@ Scene named_scene() {
 }
 const Scene names = named_scene();
 
-/// Every quantity a different number, so that no two measures can be confused.
+/// Returns an observation in which every quantity is a different number, so that no two measures can be
+/// confused.
 Observation numbered() {
   Observation o;
   o.kinetic_linear = 1;
@@ -129,7 +130,7 @@ TEST(Measure, EachNameHasItsValue) {
       {"puck.force.norm", 26},
       {"floor.force.x", 12},
       {"floor.force.norm", 52},
-      // The second triangle is 1 m along x from the place of the mesh.
+      // The second triangle is 1 m from the place of the mesh, along x.
       {"floor.torque.x", 200},
       {"floor.torque.y", -24},
       {"floor.torque.z", 8},

@@ -1,4 +1,4 @@
-// Meshes from files: the same mesh in each format, and what is left out.
+// Tests of meshes from files: the same mesh in each format, and what is left out.
 #include "sim/scene/mesh_file.hpp"
 
 #include "core/error.hpp"
@@ -35,7 +35,7 @@ class MeshFiles : public testing::Test {
   SceneMesh read_scene(const char* name, const std::string& text) const {
     return scene_mesh(read(name, text), name, {});
   }
-  /// What is wrong with it.
+  /// Returns what the message says is wrong with the file.
   std::string told(const char* name, const std::string& text) const {
     try {
       read_scene(name, text);
@@ -44,7 +44,7 @@ class MeshFiles : public testing::Test {
     }
     return "";
   }
-  /// What is skipped of it; nothing more than one warning.
+  /// Returns the warning about what is skipped in the file; there must not be more than one.
   std::string warned(const char* name, const std::string& text) const {
     const SceneMesh mesh = read_scene(name, text);
     EXPECT_LE(mesh.warnings.size(), 1u);
@@ -58,7 +58,7 @@ constexpr std::array<std::array<std::array<float, 3>, 3>, 2> facets = {
     {{{{0, 0, 0}, {1, 0, 0}, {1, 1, 0.5f}}}, {{{0, 0, 0}, {1, 1, 0.5f}, {0, 1, 0}}}}};
 
 std::string binary_stl() {
-  std::string text(80, 's');  // begins like no text one
+  std::string text(80, 's');  // the beginning of no text file
   const std::uint32_t count = facets.size();
   text.append(reinterpret_cast<const char*>(&count), sizeof count);
   for (const auto& facet : facets) {
@@ -89,7 +89,8 @@ void put(std::string& bytes, T value, bool big) {
   bytes.append(raw.data(), raw.size());
 }
 
-/// Numbers of several types; a face of four corners, a property and an element besides.
+/// Returns a PLY file with numbers of several types, a face of four corners, and a property and an element
+/// that are not needed.
 std::string binary_ply(bool big, const std::string& end = "\n") {
   std::string text;
   for (const char* line :
@@ -100,7 +101,7 @@ std::string binary_ply(bool big, const std::string& end = "\n") {
     text += line + end;
   for (const std::array<double, 3>& v :
        {std::array{0.0, 0.0, 0.0}, {1.0, 0.0, 0.0}, {1.0, 1.0, 0.5}, {0.0, 1.0, 0.0}}) {
-    put<std::uint8_t>(text, '\n', big);  // which ends no line
+    put<std::uint8_t>(text, '\n', big);  // this byte ends no line
     put<double>(text, v[0], big);
     put<float>(text, static_cast<float>(v[1]), big);
     put<float>(text, static_cast<float>(v[2]), big);
@@ -188,7 +189,7 @@ TEST_F(MeshFiles, WhatIsSkippedIsSaid) {
 }
 
 TEST_F(MeshFiles, APolygonThatIsNotConvexKeepsItsForm) {
-  // An arrow's head, from each of its corners on.
+  // The polygon is an arrow's head, which starts at each of its corners in turn.
   constexpr double expected = 0.5;
   const std::array<const char*, 4> corners = {"v 0 0 0\n", "v 1 0.5 0\n", "v 0 1 0\n", "v 0.5 0.5 0\n"};
   for (std::size_t first = 0; first < 4; ++first) {
@@ -210,7 +211,7 @@ TEST_F(MeshFiles, AMirroredScaleTurnsTrianglesRound) {
        {Vec3(1, 1, 1), Vec3(-2, 1, 1), Vec3(1, -1, 3), Vec3(-1, -1, 1), Vec3(-1, -2, -3), Vec3(1, 1, -1)}) {
     const SceneMesh mesh = scene_mesh(read("a.obj", flat, scale), "a.obj", {});
     ASSERT_EQ(mesh.triangles.size(), 1u);
-    // The front of what lies in the plane is mirrored with it.
+    // The front of a triangle in the plane z = 0 is mirrored with the z axis.
     const double front = (mesh.triangles[0].orientation * Vec3::UnitZ()).z();
     EXPECT_NEAR(front, scale.z() > 0 ? 1 : -1, 1e-12) << scale.transpose();
   }

@@ -1,5 +1,5 @@
-// XYZ files and dumps of LAMMPS as sources of bodies, as their programs write them. What `scree export`
-// writes is read back in tests/sim/record/exports_test.cpp.
+// Tests of XYZ files and LAMMPS dumps as sources of bodies, as the programs that make them write them. The
+// files that `scree export` writes are read back in tests/sim/record/exports_test.cpp.
 #include "core/error.hpp"
 #include "sim/scene/scene.hpp"
 #include "tests/sim/record/temporary_folder.hpp"

@@ -1,4 +1,4 @@
-// What YAML 1.2 calls the same scalar is the same to scree, and a scene may be JSON.
+// Tests that scalars that are the same by YAML 1.2 are the same to scree, and that a scene may be JSON.
 #include "sim/scene/scalar.hpp"
 
 #include "core/error.hpp"
@@ -20,7 +20,7 @@ namespace {
 
 using namespace std::string_literals;
 
-/// A scene with one value of each kind left open.
+/// Returns a scene with one value of each kind left open.
 std::string scene_with(const std::string& mode, const std::string& material, const std::string& step,
                        const std::string& fixed, const std::string& count, const std::string& iterations) {
   return "format: 1\ntime:\n  end: 1\n  step: " + step +
@@ -40,7 +40,7 @@ std::string resolved(const std::string& text) {
 
 const std::string plain = resolved(scene_with("accurate", "glass", "0.1", "true", "16", "auto"));
 
-// YAML 1.2, chapters 7 and 8 (styles), and 10.3 (core schema).
+// The styles are those of YAML 1.2, chapters 7 and 8, and the tags those of its core schema (10.3).
 TEST(Scalars, TextIsTheSameInEveryStyle) {
   ASSERT_NE(plain.find("mode: accurate"), std::string::npos) << plain;
   const auto styles_of = [](const std::string& word) {
@@ -125,7 +125,7 @@ TEST(Scalars, WhatIsNotTheSameIsRefusedWithItsReason) {
     EXPECT_NE(of_step(foreign).find("no tags but those of YAML"), std::string::npos) << of_step(foreign);
 }
 
-// The core schema's regular expressions (section 10.3.2), case by case.
+// The cases are those of the core schema's regular expressions (section 10.3.2).
 TEST(Scalars, AreToldApartByTheCoreSchema) {
   for (const char* whole : {"0", "-0", "+12", "007", "0o17", "0xfF"})
     EXPECT_TRUE(is_whole_number(whole)) << whole;
@@ -151,12 +151,13 @@ std::string text_in(const std::filesystem::path& file) {
   return {std::istreambuf_iterator<char>(stream), {}};
 }
 
-/// With and without line breaks, indented with blanks or tabs, and with characters beyond ASCII escaped.
+/// Returns the JSON text with and without line breaks, indented with blanks or tabs, and with characters
+/// beyond ASCII escaped.
 std::vector<std::string> forms_of(const OrderedJson& json) {
   return {json.dump(), json.dump(2), json.dump(1, '\t'), json.dump(-1, ' ', true), json.dump(1, '\t', true)};
 }
 
-/// What the keys say, every default written out, without making the bodies.
+/// Returns what the keys of a scene say, with every default written out, without making the bodies.
 std::string canonical(const std::string& text) {
   Reader reader("test", {});
   const Node root = parse_document(text);
@@ -187,8 +188,8 @@ TEST(JsonScenes, HaveTheSameBodies) {
   }
 }
 
-/// Scalars that YAML 1.1 takes for something else than YAML 1.2 does: a scene may go through programs that
-/// read either. Quotes are no part of a key in the tree, so it is looked for in the text.
+/// Expects no scalar that YAML 1.1 reads differently from YAML 1.2, since a scene may go through programs
+/// that read either. Quotes are no part of a key in the tree, so that a quoted key is looked for in the text.
 void expect_same_in_yaml_11(const Node& node, const std::string& text, const std::filesystem::path& file) {
   for (const std::string truth : {"on", "off", "yes", "no"})
     EXPECT_FALSE(node.key == truth && text.find('"' + truth + "\":") == std::string::npos) << file << truth;

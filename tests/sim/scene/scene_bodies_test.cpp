@@ -1,4 +1,4 @@
-// The bodies that a scene makes, against closed forms and brute force.
+// Tests of the bodies that a scene makes, against closed forms and brute force.
 #include "core/error.hpp"
 #include "sim/scene/distribution.hpp"
 #include "sim/scene/scatter.hpp"
@@ -138,7 +138,7 @@ TEST(SceneBodies, JitterStaysInItsBoxAndFillsIt) {
   EXPECT_GT(high.minCoeff(), 0.48);
 }
 
-// Random choices depend on the seed and on the body's number alone.
+// Random choices depend only on the seed and on the body's number.
 TEST(SceneBodies, DrawsDoNotDependOnOtherBodies) {
   const std::string drawn =
       "  - {sphere: {radius: {uniform: [0.1, 0.2]}}, material: glass, "
@@ -154,7 +154,8 @@ TEST(SceneBodies, DrawsDoNotDependOnOtherBodies) {
   }
 }
 
-/// Mean and standard error of the radii of 40,000 bodies.
+/// Compares the mean radius of 40,000 bodies with `mean`; `deviation` is the standard deviation of one
+/// radius.
 void expect_mean(const std::string& radius, double mean, double deviation) {
   const Scene scene = scene_of("  - {sphere: {radius: " + radius +
                                "}, material: glass, repeat: {count: [40000, 1, 1], spacing: [9, 0, 0]}}\n");
@@ -167,7 +168,8 @@ void expect_mean(const std::string& radius, double mean, double deviation) {
 TEST(SceneBodies, DistributionsHaveTheirMeans) {
   expect_mean("{uniform: [1, 3]}", 2, std::sqrt(4.0 / 12));
   expect_mean("{choose: [1, 2, 6]}", 3, std::sqrt(14.0 / 3));
-  // The moments of x^-q on [a, b]: E x^n is the ratio of the integrals of x^(n-q) and x^-q.
+  // The moments of x^-q on [a, b] have a closed form: E x^n is the ratio of the integrals of x^(n-q) and
+  // x^-q.
   for (const double q : {0.0, 1.0, 2.5, 3.5, -2.0}) {
     const double a = 1, b = 5;
     const auto integral = [&](double power) {
@@ -189,14 +191,14 @@ TEST(SceneBodies, PowerlawQuantileInvertsItsDistribution) {
       const long double s = 1 - static_cast<long double>(q);
       const long double share = s == 0 ? std::log(x / a) / std::log(b / a)
                                        : std::expm1(s * std::log(x / a)) / std::expm1(s * std::log(b / a));
-      // Where the law is steep a rounding of x moves its share by s times as much.
+      // Where the law is steep, a rounding error of x changes its share by s times as much.
       EXPECT_NEAR(static_cast<double>(share), u, 1e-13 * (1 + std::abs(static_cast<double>(s)))) << q;
     }
   EXPECT_TRUE(std::isfinite(powerlaw_quantile(1e-9, 1e9, 1000, 0.5)));
   EXPECT_TRUE(std::isfinite(powerlaw_quantile(1e-9, 1e9, -1000, 0.5)));
 }
 
-// Brute force over all pairs: an independent statement of what scatter promises.
+// Brute force over all pairs states independently what scatter promises.
 TEST(SceneBodies, ScatteredBodiesKeepClear) {
   const Scene scene = scene_of(
       "  - {plane: {normal: [0, 1, 4], offset: 0.3}, material: glass}\n"
@@ -217,13 +219,13 @@ TEST(SceneBodies, ScatteredBodiesKeepClear) {
     ASSERT_NEAR(bodies.orientation[i].norm(), 1, 1e-14);
     EXPECT_GE((at - bodies.position[0]).dot(Vec3(0, 1, 4).normalized()), reach - 1e-12);
     EXPECT_GE((at - bodies.position[1]).norm(), reach + 0.3 - 1e-12);
-    // Distance to the box: the nearest of its points, found by clamping in its own frame.
+    // The distance to the box is that to its nearest point, found by clamping in the box's own frame.
     const Vec3 local = bodies.orientation[2].inverse() * (at - bodies.position[2]);
     const Vec3 nearest = local.cwiseMax(-bodies.size[2]).cwiseMin(bodies.size[2]);
     EXPECT_GE((local - nearest).norm(), reach - 1e-12);
     for (std::size_t j = 3; j < i; ++j) {
-      // Of two boxes the sphere around the later one clears the earlier one itself, and with it the largest
-      // sphere inside.
+      // Of two boxes, the sphere around the later one is clear of the earlier box itself, and so of the
+      // largest sphere inside that.
       const double other = bounding_radius(bodies.shape[j], bodies.size[j]);
       const bool boxes = bodies.shape[i] == Shape::box && bodies.shape[j] == Shape::box;
       const double clearance =
@@ -247,7 +249,8 @@ TEST(SceneBodies, ScatterTakesFlatAndThinRegions) {
   }
 }
 
-// Cells of such regions are too small for their inverses, and such obstacles too far away for differences.
+// Cells of such regions are too small for their inverses, and such obstacles are too far away for differences
+// of coordinates.
 TEST(SceneBodies, ScatterTakesRegionsAndObstaclesAtTheEndsOfNumbers) {
   const Scene scene = scene_of(
       "  - {sphere: {radius: 1e308}, at: [1.7e308, 0, 0], fixed: true, material: glass}\n"
@@ -256,7 +259,8 @@ TEST(SceneBodies, ScatterTakesRegionsAndObstaclesAtTheEndsOfNumbers) {
   EXPECT_EQ(scene.bodies.position[1].x(), -1e308);
 }
 
-// Bounds that reach over all cells, a thousand times: a list of them for each cell would be 600,000 long.
+// The bounds of a thousand obstacles reach over all cells: a list of them for each cell would have 600,000
+// entries.
 TEST(SceneBodies, ScatterKeepsClearOfAThousandObstaclesInOnePlace) {
   const Scene scene = scene_of(
       "  - {box: {size: 100}, fixed: true, repeat: {count: [1000, 1, 1], spacing: [0, 0, 0]}, material: "
@@ -277,7 +281,7 @@ TEST(SceneBodies, RandomOrientationsAreUniform) {
     mean += q.toRotationMatrix() / 20000;
     angle += Eigen::AngleAxisd(q).angle() / 20000;
   }
-  // Entries of a random rotation have mean 0 and variance 1/3; its angle has mean pi/2 + 2/pi.
+  // The entries of a random rotation have mean 0 and variance 1/3; its angle has mean pi/2 + 2/pi.
   EXPECT_LT(mean.cwiseAbs().maxCoeff(), 5 * std::sqrt(1.0 / 3 / 20000));
   EXPECT_NEAR(angle, pi / 2 + 2 / pi, 0.02);
 }
@@ -338,7 +342,7 @@ TEST(SceneBodies, ScatterStaysInsideATube) {
   bodies.mobility[0] = Mobility::fixed;
   bodies.size[0] = Vec3(0.5, 0.5, 1);
   bodies.position[0] = Vec3(3, 0, 0);
-  bodies.orientation[0] = Quat(Eigen::AngleAxisd(pi / 2, Vec3::UnitY()));  // along x
+  bodies.orientation[0] = Quat(Eigen::AngleAxisd(pi / 2, Vec3::UnitY()));  // the tube is along x
   for (std::size_t k = 1; k <= 200; ++k) {
     bodies.shape[k] = Shape::sphere;
     bodies.orientation[k] = Quat::Identity();
@@ -369,7 +373,7 @@ TEST(SceneBodies, ScatterPassesATubeThatIsElsewhere) {
     EXPECT_LE(held.bodies.position[k].x(), 1.4 + 1e-12);
 }
 
-// A fifth of the 100,000 items that may take 15 s: sanitizers need five times as long.
+// These are a fifth of the 100,000 items that may take 15 s, since sanitizers need five times as long.
 TEST(SceneBodies, TwentyThousandItemsLoadInFifteenSeconds) {
   std::string bodies;
   for (int k = 0; k < 20000; ++k)

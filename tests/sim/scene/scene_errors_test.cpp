@@ -1,4 +1,4 @@
-// Every kind of bad scene: the message names the place, the key and what is allowed.
+// Tests of every kind of bad scene: the message names the place, the key and what is allowed.
 #include "core/error.hpp"
 #include "sim/scene/scene.hpp"
 
@@ -298,7 +298,7 @@ TEST(BadScenes, EscapesThatAreReadAsHalfCharacters) {
               "test.yaml:2:7: the escape \\N or \\_; write \\x85 or \\xA0");
 }
 
-// A body takes a thousand bytes, and a comma one.
+// A comma is one byte of the file, but a body takes a thousand bytes of memory.
 TEST(BadScenes, AThousandErrorsAreEnough) {
   const std::string text = "format: 1\nbodies: [" + std::string(1'000'000, ',') + "]\n";
   EXPECT_NE(message_of(text).find("and at least 99"), std::string::npos) << message_of(text);
@@ -314,7 +314,7 @@ TEST(BadScenes, CopiesThatAnchorsHoldAreBounded) {
   EXPECT_NE(message_of(aliases + "]\n").find("aliases add more than 10000000 bytes"), std::string::npos);
 }
 
-// Each byte is looked at a few times at most: as the square of the length this would take minutes.
+// Each byte is read a few times at most: a time in the square of the length would be minutes.
 TEST(BadScenes, BlankLinesMayBeLong) {
   EXPECT_EQ(message_of(std::string(3'000'000, '\t') + "\n"), message_of(""));
 }
@@ -342,7 +342,7 @@ TEST(BadScenes, FilesThatAreNone) {
   EXPECT_EQ(message_of("# only a comment\n"), message_of(""));
 }
 
-// Whatever the machine: 2e9 bodies with names of 10,000 letters need 2e13 bytes.
+// The refusal does not depend on the machine: 2e9 bodies with names of 10,000 letters need 2e13 bytes.
 TEST(BadScenes, MoreBodiesThanMemoryAreRefusedBeforeAllocation) {
   const std::string message = message_of(
       "format: 1\ntime: {end: 1, step: 1}\nmaterials: {glass: {}}\nbodies:\n"
@@ -363,7 +363,7 @@ TEST(BadScenes, MoreBodiesThanTheMemoryGivenAreRefused) {
   EXPECT_THROW(parse_scene(text, "test.yaml", {}, 1e8), InputError);
 }
 
-// A scene may hold any character in quotes, and its messages are read in terminals.
+// A scene may hold any character in quotes, but its messages are read in terminals.
 TEST(BadScenes, MessagesHoldNoControlCharacters) {
   const std::tuple<std::string, std::vector<Override>, std::string> cases[] = {
       {"\"\\e[2J\": 1\n", {}, "test.yaml:1:1: \\x1B[2J: unknown key (known"},
@@ -374,7 +374,7 @@ TEST(BadScenes, MessagesHoldNoControlCharacters) {
     EXPECT_TRUE(begins_with(message_of(text, overrides), start)) << message_of(text, overrides);
 }
 
-// No prefix of a scene, and no scene with one byte changed, may do anything but load or be refused.
+// Any prefix of a scene, and any scene with one byte changed, must load or be refused, and do nothing else.
 TEST(BadScenes, DamagedScenesLoadOrAreRefused) {
   const std::string text =
       "format: 1\nname: \"a\"\ntime: {end: 1, step: 0.5}\nmaterials: &m {glass: {friction: 0.5}}\n"

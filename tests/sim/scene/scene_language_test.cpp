@@ -1,4 +1,5 @@
-// The language as a whole: schema, reference, resolved scene and overrides, against independent readings.
+// Tests of the language as a whole: schema, reference, resolved scene and overrides, against independent
+// readings.
 #include "core/error.hpp"
 #include "sim/scene/keys.hpp"
 #include "sim/scene/measure.hpp"
@@ -20,7 +21,7 @@ namespace {
 
 using Json = nlohmann::json;
 
-// Every key of this version, each with a value that is not its default.
+// A scene with every key of this version, each with a value that is not its default.
 const std::string full_scene = R"(format: 1
 name: "full scene"
 label: long
@@ -265,7 +266,7 @@ void visit_keys(const Type& type, const std::function<void(const SectionType&, c
   for (const Type& part : type.parts) visit_keys(part, f);
 }
 
-// A validator of the few keywords that the schema uses, written from the specification (draft 2020-12).
+// Validates a value by the few keywords that the schema uses; written from the specification (draft 2020-12).
 bool is_valid(const Json& value, const Json& schema) {
   if (schema.contains("anyOf")) {
     int fits = 0;

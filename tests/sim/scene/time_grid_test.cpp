@@ -22,9 +22,9 @@ TEST(TimeGrid, StepsHaveTheSceneLengthButForAShorterLast) {
 
 TEST(TimeGrid, CountsWholeStepsInSpiteOfRounding) {
   EXPECT_EQ(grid_of(6, 0.002).last(), 3000);
-  EXPECT_EQ(grid_of(0.3, 0.1).last(), 3);  // 0.3 / 0.1 < 3
+  EXPECT_EQ(grid_of(0.3, 0.1).last(), 3);  // although 0.3 / 0.1 < 3
   EXPECT_EQ(grid_of(0.7, 0.1).last(), 7);
-  EXPECT_EQ(grid_of(1.1, 0.1).last(), 11);  // 1.1 / 0.1 > 11
+  EXPECT_EQ(grid_of(1.1, 0.1).last(), 11);  // although 1.1 / 0.1 > 11
 }
 
 TEST(TimeGrid, LastStepIsShorterAndEndsAtTheEnd) {
@@ -34,7 +34,7 @@ TEST(TimeGrid, LastStepIsShorterAndEndsAtTheEnd) {
   EXPECT_EQ(grid.time(3), 3 * 0.3);
 }
 
-/// By looking at every step; `fits` compares a step's time with the one asked for.
+/// Finds the step nearest to a time by comparing every step's time with it.
 std::int64_t nearest_by_search(const TimeGrid& grid, double time) {
   std::int64_t best = 0;
   for (std::int64_t k = 1; k <= grid.last(); ++k) {
@@ -65,7 +65,7 @@ TEST(TimeGrid, IntervalsIncludeTheirEnds) {
 }
 
 TEST(TimeGrid, ContainsItsEndInSpiteOfRounding) {
-  EXPECT_TRUE(grid_of(0.3, 0.1).contains(3 * 0.1));  // > 0.3
+  EXPECT_TRUE(grid_of(0.3, 0.1).contains(3 * 0.1));  // although 3 * 0.1 > 0.3
   EXPECT_FALSE(grid_of(1, 0.1).contains(1.01));
 }
 
@@ -79,7 +79,7 @@ std::vector<std::int64_t> due_at_each_step(const TimeGrid& grid, double period) 
 TEST(Cadence, HappensAtTheStepNearestToEachMultiple) {
   using Due = std::vector<std::int64_t>;
   EXPECT_EQ(due_at_each_step(grid_of(1, 0.1), 0.3), (Due{1, 0, 0, 1, 0, 0, 1, 0, 0, 1, 0}));
-  EXPECT_EQ(due_at_each_step(grid_of(0.4, 0.1), 0.16), (Due{1, 0, 1, 1, 0}));  // 0, 0.16, 0.32
+  EXPECT_EQ(due_at_each_step(grid_of(0.4, 0.1), 0.16), (Due{1, 0, 1, 1, 0}));  // multiples 0, 0.16 and 0.32
   EXPECT_EQ(due_at_each_step(grid_of(0.75, 0.25), 0.125), (Due{2, 2, 2, 1})) << "ties go to the earlier step";
   EXPECT_EQ(due_at_each_step(grid_of(0.3, 0.1), 0), (Due{1, 0, 0, 0}));
   EXPECT_EQ(due_at_each_step(grid_of(0.3, 0.1), std::numeric_limits<double>::infinity()), (Due{1, 0, 0, 0}));

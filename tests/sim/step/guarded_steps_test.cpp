@@ -1,4 +1,4 @@
-// Steps that fail, by a stepper that fails as it is told to.
+// Tests of steps that fail, with a stepper that fails on demand.
 #include "sim/step/guarded_steps.hpp"
 
 #include "sim/step/step_failure.hpp"
@@ -19,7 +19,7 @@ namespace {
 
 constexpr double mass = 2;
 
-/// A ball that moves as it is pushed, and what has been asked of it.
+/// A stepper with one ball that moves as `on_substep` says, and that counts the calls made to it.
 class FakeStepper final : public Stepper {
  public:
   BodyTable bodies;
@@ -86,7 +86,7 @@ class FakeStepper final : public Stepper {
 
 class GuardedStepsTest : public testing::Test {
  protected:
-  static constexpr double length = 0.1;  // of a step (s)
+  static constexpr double length = 0.1;  // length of a step (s)
 
   const Scene scene_ = scene_of(
       "time: {end: 1, step: 0.1}\nmaterials: {stone: {}}\nworld: {from: [-1, -1, -1], to: [1, 1, 1]}\n"
@@ -122,8 +122,8 @@ TEST_F(GuardedStepsTest, AGoodStepIsTakenOnce) {
   EXPECT_EQ(stepper_.counters.redone, 0);
 }
 
-/// A heap that corrects deep overlaps, and leaves none: looked at every eighth step, but neither in the
-/// accurate mode, which follows what is corrected, nor where the scene sets the number.
+/// A heap corrects deep overlaps and leaves none: its overlaps are measured at every eighth step, but neither
+/// in the accurate mode, which follows what is corrected, nor where the scene sets the number of substeps.
 TEST_F(GuardedStepsTest, OverlapsOfAHeapAreMeasuredWhereTheyChooseSubsteps) {
   const auto substeps_of = [this](ResponseMode mode, std::optional<int> substeps, int& looks) {
     Scene scene = scene_;
@@ -173,7 +173,7 @@ TEST_F(GuardedStepsTest, WhateverIsNotFiniteFailsAndIsNamed) {
 }
 
 TEST_F(GuardedStepsTest, EnergyThatTheLedgerDoesNotExplainFails) {
-  // 1e-5 of the kinetic energy, which is 9 J, in each substep.
+  // Each substep adds 1e-5 of the kinetic energy, which is 9 J.
   stepper_.on_substep = [](double, FakeStepper& s) { s.bodies.velocity[0] *= 1 + 0.5e-5; };
   expect_given_up("the energy changed by 4e-05 of its scale more than the ledger explains");
   stepper_.on_substep = [](double, FakeStepper& s) {

@@ -1,4 +1,4 @@
-// Runs on meshes: a floor is flat however its corners were written, and what supports carry is what lies on
+// Tests of runs on meshes: a floor is flat however its corners were written, and supports carry what lies on
 // them.
 #include "core/rng.hpp"
 #include "sim/scene/measure.hpp"
@@ -29,7 +29,8 @@ class Meshes : public testing::Test {
   void SetUp() override { std::filesystem::create_directories(folder_); }
   void TearDown() override { std::filesystem::remove_all(folder_); }
 
-  /// Each triangle with corners of its own, each off by up to `noise` along each axis.
+  /// Writes a mesh file and returns its name. Each triangle has corners of its own, each off by up to `noise`
+  /// along each axis.
   std::string written(const std::vector<Triangle>& triangles, double noise) const {
     Random random(1, 0);
     const std::filesystem::path file = folder_ / "mesh.obj";
@@ -48,7 +49,8 @@ class Meshes : public testing::Test {
       std::filesystem::temp_directory_path() / ("scree_meshes_test_" + std::to_string(::getpid()));
 };
 
-/// A strip of 1 x 0.5 in two triangles, and beside it one in `parts` squares: its corners lie on an edge.
+/// Returns a strip of 1 x 0.5 in two triangles, and beside it one in `parts` squares, whose corners lie on an
+/// edge of the first.
 std::vector<Triangle> strips(int parts, double size) {
   const auto at = [&](double x, double y) { return Vec3(size * x, size * y, 0); };
   std::vector<Triangle> all = {{at(0, 0), at(1, 0), at(1, 0.5)}, {at(0, 0), at(1, 0.5), at(0, 0.5)}};
@@ -119,7 +121,7 @@ bodies:
       EXPECT_NEAR(measured(run, "it.force.z"), -4 * 9.81, 4e-6);
       EXPECT_NEAR(measured(run, "it.force.x"), 0, 1e-6);
       if (scene.meshes.empty()) continue;
-      // About its `at`: the arms of the two weights.
+      // The torques are about the `at` of the mesh: the two weights have these arms.
       EXPECT_NEAR(measured(run, "it.torque.x"), -9.81 * (1 * 0.35 + 3 * 0.25), 1e-5);
       EXPECT_NEAR(measured(run, "it.torque.y"), 9.81 * (1 * 0.7 + 3 * 0.3), 1e-5);
       EXPECT_NEAR(measured(run, "it.torque.z"), 0, 1e-5);

@@ -1,4 +1,5 @@
-// Gravity that turns, servos, and floors that shake, against closed forms, by each way of taking steps.
+// Tests of gravity that turns, servos, and floors that shake, against closed forms, by each way of taking
+// steps.
 #include "sim/scene/motion_bounds.hpp"
 #include "tests/sim/ways.hpp"
 
@@ -21,8 +22,8 @@ void expect_explained(Simulation& run) {
   }
 }
 
-/// x = g / W^2 (W t - sin W t), z = -g / W^2 (1 - cos W t); the error is of second order in the step, and the
-/// substeps count.
+/// The exact path is x = g / W^2 (W t - sin W t), z = -g / W^2 (1 - cos W t). The error is of second order in
+/// the length of the substeps.
 TEST_P(MotionAndForces, ABallFallsAsGravityTurns) {
   const auto error = [this](const char* time) {
     Simulation run =
@@ -39,7 +40,8 @@ TEST_P(MotionAndForces, ABallFallsAsGravityTurns) {
   EXPECT_NEAR(coarse / error("{end: 1, step: 0.02, substeps: 2}"), 4, 0.1);
 }
 
-/// Its potential energy follows at fixed places: what a heap at rest gains is work, and nothing else.
+/// As gravity changes, so does potential energy at fixed places: the energy that a heap at rest gains is
+/// work, and nothing else.
 TEST_P(MotionAndForces, TheWorkOfGravityThatChangesIsBooked) {
   Simulation run = simulate(R"(
 gravity: {keyframes: [{at: 0.1, vector: [0, 0, -10]}, {at: 0.3, vector: [0, 0, -4]}]}
@@ -53,15 +55,16 @@ checks:
   - {measure: floor.force.z, below: 1}
 )");
   expect_explained(run);
-  // The first box (8 kg, 0.1 m high) from 10 to 4 m/s^2, the second (0.3 m) from the 7 of its step, or of the
-  // substep before it.
+  // Gravity falls to 4 m/s^2: for the first box (8 kg, at 0.1 m) from 10 m/s^2, and for the second (at 0.3 m)
+  // from the 7 m/s^2 of the step in which it comes, or of the substep before that.
   const double change = 0.01 * 30;
   EXPECT_NEAR(run.observe().ledger.work, -8 * (0.1 * 6 + 0.3 * 3), 8 * 0.3 * change);
   EXPECT_NEAR(run.observe().potential, 8 * 4 * 0.4, 1e-3);
   EXPECT_NEAR(run.body(0).force.z(), -16 * 4, 1e-3);
 }
 
-/// A ball that lies on a floor that shakes by less than g stays on it; the floor works, and gravity takes.
+/// A ball that lies on a floor that shakes by less than g stays on it; the floor does work, and gravity takes
+/// it.
 TEST_P(MotionAndForces, WhatLiesOnAFloorThatShakesGentlyStays) {
   Simulation run = simulate(R"(
 gravity: [0, 0, -9.81]
@@ -82,8 +85,9 @@ bodies:
   EXPECT_GT(std::abs(run.observe().ledger.work), 1e-3);
 }
 
-/// A tower of which the uppermost is pushed down and aside by a servo oblique to it, with friction: the guide
-/// takes what is aside, and the servo no side at all. n.a N = F without friction.
+/// A servo pushes the uppermost cube of a tower down and aside along an oblique axis, without friction and
+/// with it. The guide bears the forces across the axis, and the servo does not move sideways. Without
+/// friction the normal force N obeys n.a N = F.
 TEST_P(MotionAndForces, AServoHoldsItsForceAndItsGuideTheRest) {
   if (std::string(GetParam().settings).find("mixed") != std::string::npos) GTEST_SKIP() << "is refused";
   for (const double friction : {0.0, 0.4}) {
@@ -117,8 +121,9 @@ checks:
   }
 }
 
-/// At a blow the piston counts with its mass along the axis alone, whatever the normal: against a wall with
-/// the slope n, u+ = -e u- makes v+ = -e v-; friction there stops more, and never gains.
+/// In an impact the piston counts with its mass along the axis alone, whatever the normal is: against a wall
+/// with the slope n, u+ = -e u- makes v+ = -e v-. Friction there stops more of the motion, and never adds to
+/// it.
 TEST_P(MotionAndForces, AServoBouncesAlongItsAxis) {
   if (std::string(GetParam().settings).find("mixed") != std::string::npos) GTEST_SKIP() << "is refused";
   const auto speed_after = [this](const std::string& law) {
@@ -133,7 +138,7 @@ bodies:
     EXPECT_LT(run.body(0).position.cross(Vec3(0.6, 0, -0.8)).norm(), 1e-12);
     return run.body(0).velocity.dot(Vec3(0.6, 0, -0.8));
   };
-  // After 0.5 m, at 0.5 s, with 2 m/s; 0.05 s more at 4 m/s^2.
+  // The piston strikes after 0.5 m, at 0.5 s, with 2 m/s; then it has 0.05 s more at 4 m/s^2.
   EXPECT_NEAR(speed_after("restitution: 1"), -2 + 0.2, 1e-9);
   EXPECT_NEAR(speed_after("restitution: 0.5"), -1 + 0.2, 1e-9);
   EXPECT_GT(speed_after("restitution: 0.5, friction: 0.3"), -1 + 0.2 - 1e-9);

@@ -1,4 +1,5 @@
-// Periodic spaces, in each way to take a step: what happens in them does not know where the cell ends.
+// Tests of periodic spaces, in each way to take a step: the events in them do not depend on where the cell
+// ends.
 #include "core/error.hpp"
 #include "core/rng.hpp"
 #include "narrowphase/pair_contacts.hpp"
@@ -26,7 +27,7 @@ BodyTable state_of(const Simulation& run) {
 
 constexpr const char* elastic = "materials: {steel: {density: 1000, restitution: 1, friction: 0}}\n";
 
-/// Five bodies on a ring of 1 m, 0.1 m apart; the first one moves at 1 m/s.
+/// Returns five bodies on a ring of 1 m, 0.1 m apart, of which the first one moves at 1 m/s.
 std::string ring_of(const char* shape) {
   return std::string(elastic) + fmt::format(R"(
 time: {{end: 1.65, step: 0.0113}}
@@ -38,7 +39,7 @@ bodies:
                                             shape);
 }
 
-/// The same without steps: the one that moves meets the next one after what is between them.
+/// The ring without steps: the body that moves meets the next one after the gap between them.
 struct Ring {
   double at[5] = {0, 0.2, 0.4, 0.6, 0.8};
   int moving = 0;
@@ -62,7 +63,8 @@ TEST_P(Periodic, MomentumGoesRoundARing) {
   for (const char* shape : {"sphere: {radius: 0.05}", "box: {size: [0.1, 0.08, 0.06]}"}) {
     Simulation run = simulate(ring_of(shape));
     Ring ring;
-    const double close = is_mixed() ? 1e-6 : 1e-9;  // a box that leans by rounding meets the next one so
+    // A box that leans by rounding meets the next one at a slant.
+    const double close = is_mixed() ? 1e-6 : 1e-9;
     while (!run.finished()) {
       const double before = run.time();
       run.step();
@@ -96,8 +98,8 @@ bodies:
   EXPECT_EQ(crossing.observe().total(), alone.observe().total());
 }
 
-/// A crowd of balls and boxes that falls on a floor, each body moved by `shift`, and by so many whole periods
-/// along x and y as `images` draws.
+/// Returns a crowd of balls and boxes that falls on a floor. Each body is moved by `shift`, and with `images`
+/// by a random number of whole periods along x and y.
 std::string crowd(const Vec3& shift, bool images, int copies = 1) {
   std::string bodies;
   for (int copy = 0; copy < copies; ++copy) {
@@ -128,7 +130,7 @@ std::string crowd(const Vec3& shift, bool images, int copies = 1) {
          bodies + "  - {plane: {normal: [0, 0, 1], offset: 0}, material: stone}\n";
 }
 
-/// Of pairs in contact, those of which one is in another image.
+/// Returns the number of pairs in contact whose bodies are in different images.
 std::int64_t in_other_images(Simulation& run) {
   const BodyTable bodies = state_of(run);
   return std::ranges::count_if(run.contact_forces(), [&](const ContactForce& c) {
@@ -159,7 +161,7 @@ TEST_P(Periodic, WhereTheCellEndsAndWhichImagesAreGivenDoesNotMatter) {
     const Vec3 b = end_there.position[k] - start_there.position[k];
     largest = std::max(largest, (a - b).norm());
   }
-  // Rounding differs, and grows with each impact.
+  // Rounding differs, and its effect grows with each impact.
   EXPECT_LT(largest, is_mixed() ? 1e-2 : 1e-5);
 }
 
@@ -205,7 +207,7 @@ bodies:
   EXPECT_EQ(last.counters.unfinished_impacts, 0);
 }
 
-/// Every pair, and each with every image of the other.
+/// The oracle tests every pair, and each with every image of the other body.
 TEST_P(Periodic, OverlapsAreThoseOverAllImages) {
   const std::string text = std::string(elastic) + R"(
 time: {end: 1, step: 0.001}
@@ -224,7 +226,7 @@ bodies:
   for (std::size_t i = 0; i < bodies.shape.size(); ++i) {
     for (std::size_t j = i + 1; j < bodies.shape.size(); ++j) {
       double depth = 0;
-      // The images of body i are up to seven periods from here.
+      // The images of body i are up to seven periods away from here.
       for (int x = -9; x <= 9; ++x) {
         for (int y = -9; y <= 9; ++y) {
           const Vec3 by(x, 1.25 * y, 0);
@@ -261,7 +263,7 @@ bodies:
 )",
                                               speed);
   };
-  // 0.3 m in a step, and the ball in its way may go as far after it.
+  // The ball goes 0.3 m in a step, and the ball in its way may go as far after the impact.
   Simulation fast = simulate(scene(30));
   run_to_end(fast);
   EXPECT_GT(fast.observe().counters.redone, 0);
@@ -332,7 +334,8 @@ TEST_P(Periodic, AnyNumberOfThreadsGivesTheSameBits) {
   EXPECT_EQ(one.state_hash(), three.state_hash());
 }
 
-// A chute without an end: v = 5/7 g sin t for a ball that rolls.
+// A ball rolls down a chute without an end. Its speed is v = 5/7 g t, with the component of gravity along the
+// chute.
 TEST_P(Periodic, ABallRollsDownForPeriods) {
   Simulation run = simulate(R"(
 materials: {stone: {density: 1000, restitution: 0, friction: 0.9}}

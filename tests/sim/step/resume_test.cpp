@@ -1,4 +1,4 @@
-// A simulation that is saved and loaded goes on with the same bits as one that never stopped.
+// Tests that a simulation that is saved and loaded goes on with the same bits as one that never stopped.
 #include "core/error.hpp"
 #include "sim/step/simulation.hpp"
 #include "tests/sim/ways.hpp"
@@ -16,7 +16,7 @@ namespace {
 
 class Resume : public WayTest {};
 
-/// What a row of the metrics could hold, to the bit.
+/// Returns the numbers that a row of the metrics could hold, to the bit.
 std::string seen(Simulation& run) {
   const Observation& o = run.observe();
   return fmt::format("{:016x} {} {} {} {} {} {} {} {} {} {} {} {} {} {} {}", run.state_hash(), o.step,
@@ -33,8 +33,9 @@ SavedState saved(Simulation& run) {
   return state;
 }
 
-/// Saves every `every` steps, and goes on from there in a simulation of its own for as many steps and some
-/// more. Looks at every state, as one that wrote rows would. Sets the most contacts that there were.
+/// Saves every `every` steps, and from each state goes on in a new simulation for as many steps and some
+/// more. It observes every state, as a run that writes rows does. Sets `contacts` to the largest number of
+/// contacts.
 template <class Make>
 void expect_same_after_resume(const Make& simulate, int every, std::int64_t& contacts) {
   Simulation whole = simulate();
@@ -49,7 +50,7 @@ void expect_same_after_resume(const Make& simulate, int every, std::int64_t& con
   ASSERT_GT(states.size(), 5u);
   for (const SavedState& state : states) {
     Simulation resumed = simulate();
-    resumed.step();  // contacts of its own must not be taken for those of the state
+    resumed.step();  // its own contacts must not be taken for those of the state
     Archive archive = Archive::loading(state);
     resumed.archive(archive);
     EXPECT_EQ(seen(resumed), expected[static_cast<std::size_t>(resumed.steps())]);
@@ -68,8 +69,8 @@ constexpr const char* common =
     "gravity: [0, 0, -9.81]\n"
     "materials: {stone: {density: 1000, restitution: 0.2, friction: 0.5, rolling_friction: 0.1}}\n";
 
-/// All shapes, a drum that turns, a gate that goes, a ball that comes, one that leaves the world, an emitter
-/// that waits for room, a region where bodies end, a force for a time.
+/// The scene has all shapes, a drum that turns, a gate that goes, a ball that comes, one that leaves the
+/// world, an emitter that waits for room, a region that removes bodies, and a force that acts for a time.
 TEST_P(Resume, EverythingGoesOnWithTheSameBits) {
   const std::string scene = std::string(common) + R"(
 time: {end: 0.5, step: 0.004}
@@ -101,7 +102,8 @@ bodies:
   EXPECT_GT(contacts, 15);
 }
 
-/// So many balls that sweeps go by what the last substeps have left undone, and substeps by the overlaps.
+/// There are so many balls that the number of sweeps follows the residual of the last substeps, and that of
+/// the substeps follows the overlaps.
 TEST_P(Resume, AHeapGoesOnWithTheSameBits) {
   if (std::string(GetParam().name) == "host_accurate") GTEST_SKIP() << "a heap is not for the accurate mode";
   const std::string scene = std::string(common) + R"(
@@ -122,8 +124,7 @@ bodies:
   EXPECT_GT(contacts, 2500) << "a heap, in is_heap()'s words";
 }
 
-/// A floor that shakes, a paddle that goes from place to place, a wall that holds a force, while gravity
-/// turns.
+/// A floor shakes, a paddle goes from place to place, and a wall holds a force, while gravity turns.
 TEST_P(Resume, WhatIsInMotionGoesOnWithTheSameBits) {
   const std::string scene = R"(
 gravity: {vector: [0, 0, -9.81], spin: [0, 0.5, 0.1]}
@@ -150,7 +151,7 @@ bodies:
   EXPECT_GT(contacts, 15);
 }
 
-/// Bodies that lie across the ends of the cell and go through them; some start in other images.
+/// Bodies lie across the ends of the cell and go through them; some start in other images.
 TEST_P(Resume, APeriodicSpaceGoesOnWithTheSameBits) {
   const std::string scene = std::string(common) + R"(
 time: {end: 0.35, step: 0.005}
@@ -177,7 +178,7 @@ bodies:
   EXPECT_GT(contacts, 15);
 }
 
-/// Loses the last row.
+/// Removes the last row of a field.
 void shorten(SavedField& field) { field.bytes.resize(field.bytes.size() - field.type.row()); }
 
 TEST_P(Resume, AStateOfAnotherKindIsRefused) {
@@ -185,7 +186,7 @@ TEST_P(Resume, AStateOfAnotherKindIsRefused) {
 time: {end: 1, step: 0.01}
 bodies:
   - {sphere: {radius: 0.1}, at: [0, 0, 1], material: stone})";
-  // What has refused a state is none to go on with.
+  // A simulation that has refused a state cannot go on, so each case has its own.
   for (const char* name : {"stepper/bodies/position", "stepper/bodies/id", "stepper/velocity_before"}) {
     Simulation run = simulate(scene);
     SavedState state = saved(run);

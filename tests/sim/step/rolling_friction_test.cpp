@@ -1,4 +1,4 @@
-// Rolling friction by each way of taking steps: what it must keep, and what it must do.
+// Tests of rolling friction by each way of taking steps: what it must keep, and what it must do.
 #include "tests/sim/ways.hpp"
 
 #include <gtest/gtest.h>
@@ -12,7 +12,7 @@ namespace {
 class RollingFriction : public WayTest {};
 
 /// Two clouds of spinning balls of several sizes meet without weight, one with a body of hundreds of times
-/// their mass in it: couples act on both bodies alike, in impacts (and in groups of them) and in contacts.
+/// their mass in it. Couples must act on both bodies equally, in impacts, in groups of them, and in contacts.
 TEST_P(RollingFriction, KeepsMomentaAndExplainsEnergy) {
   const auto cloud = [](const char* place, const char* velocity) {
     return std::string("  - {sphere: {radius: {uniform: [0.03, 0.06]}}, at: ") + place +
@@ -45,7 +45,7 @@ TEST_P(RollingFriction, KeepsMomentaAndExplainsEnergy) {
   EXPECT_LT(turned.norm(), (is_mixed() ? 1e-5 : 1e-11) * size);
 }
 
-/// Height of the middle of a column of balls that has slumped, over its floor.
+/// Returns the height of the middle of a column of balls that has slumped, above its floor.
 double height_after_slump(Simulation run) {
   double highest = 0;
   while (!run.finished()) run.step();
@@ -54,7 +54,7 @@ double height_after_slump(Simulation run) {
   return highest;
 }
 
-/// The reason why people ask for it: balls that may not roll stay where they are put.
+/// This is why users want rolling friction: balls that may not roll stay where they are put.
 TEST_P(RollingFriction, AColumnStandsSteeper) {
   if (std::string(GetParam().name) == "host_accurate") GTEST_SKIP() << "a heap is not for the accurate mode";
   const auto column = [](const char* rolling) {
@@ -69,7 +69,7 @@ TEST_P(RollingFriction, AColumnStandsSteeper) {
   EXPECT_GT(height_after_slump(simulate(column("0.4"))), 1.5 * height_after_slump(simulate(column("0"))));
 }
 
-/// Threads and vectors give the same bits.
+/// Any number of threads, with SIMD lanes, gives the same bits.
 TEST_P(RollingFriction, AnyNumberOfThreadsGivesTheSameBits) {
   if (GetParam().options.space == SpaceChoice::cuda) GTEST_SKIP() << "of Host's threads";
   const std::string text =
@@ -94,8 +94,8 @@ TEST_P(RollingFriction, AnyNumberOfThreadsGivesTheSameBits) {
 
 INSTANTIATE_TEST_SUITE_P(Ways, RollingFriction, testing::ValuesIn(all_ways()), way_name);
 
-/// The natural residual of the accurate mode counts couples too: held on a slope, where both friction and a
-/// couple stick.
+/// The natural residual of the accurate mode counts couples too. On this slope the balls are held, so that
+/// both friction and a couple stick.
 TEST(RollingFrictionAccurate, SolvesCouplesToTheTolerance) {
   Simulation run = simulation_of(R"(
 gravity: [1, 0, -9.81]

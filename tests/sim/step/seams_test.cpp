@@ -1,5 +1,5 @@
-// A flat floor of several bodies is flat: what slides over their seams feels nothing of them. And what is
-// thin, or may not turn, rests and slides as it should.
+// Tests that a flat floor of several bodies is flat: bodies that slide over its seams do not feel them. And
+// thin bodies, and bodies that may not turn, rest and slide as they should.
 #include "tests/sim/ways.hpp"
 
 #include <fmt/format.h>
@@ -13,19 +13,19 @@
 namespace scree {
 namespace {
 
-/// What slides over the seam of a floor, and how.
+/// A body that slides over the seam of a floor.
 struct Crossing {
-  const char* shape = "box";    ///< of the mover
-  const char* floor = "fixed";  ///< what the two tiles are: fixed, moving, free or mesh
-  double size = 1;              ///< of a tile (m); the mover has a tenth of it as half extent
-  double speed = 3;             ///< for a tile of 1 m (m/s)
-  double step = 0.002;          ///< likewise (s)
+  const char* shape = "box";    ///< shape of the mover
+  const char* floor = "fixed";  ///< kind of the two tiles: fixed, moving, free or mesh
+  double size = 1;              ///< width of a tile (m); the half extent of the mover is a tenth of it
+  double speed = 3;             ///< speed of the mover for a tile of 1 m (m/s)
+  double step = 0.002;          ///< length of a step for a tile of 1 m (s)
   double restitution = 0;
-  double gap = 0;            ///< between the tiles (of the size)
-  double up = 0;             ///< of the second tile's top (of the size)
-  bool mover_first = false;  ///< among the bodies
-  double thickness = 0.5;    ///< of the tiles (of the size)
-  double y = 0.05;           ///< of the mover (of the size)
+  double gap = 0;            ///< gap between the tiles (share of the size)
+  double up = 0;             ///< height of the second tile's top over the first (share of the size)
+  bool mover_first = false;  ///< whether the mover comes first among the bodies
+  double thickness = 0.5;    ///< thickness of the tiles (share of the size)
+  double y = 0.05;           ///< place of the mover along the seam (share of the size)
 
   double true_speed() const { return speed * std::sqrt(size); }
   double duration() const { return 0.6 * size / true_speed(); }
@@ -48,7 +48,7 @@ std::string mover(const Crossing& c) {
   return fmt::format("  - {{polyhedron: {{points: [{}]}}, {}", points, at);
 }
 
-/// A square of 6 x 6 squares of two triangles each.
+/// Writes a mesh of 6 x 6 squares of two triangles each.
 void write_grid(const std::string& file, double size) {
   constexpr int squares = 6;
   std::ofstream out(file);
@@ -93,8 +93,8 @@ std::string scene_of_crossing(const Crossing& c) {
 }
 
 struct Crossed {
-  double speed_lost = 0;  ///< share of it
-  double rise = 0;        ///< farthest from the height at the start (of the size)
+  double speed_lost = 0;  ///< share of the speed
+  double rise = 0;        ///< largest deviation from the height at the start (share of the size)
 };
 
 Crossed cross(Simulation run, const Crossing& c) {
@@ -111,13 +111,13 @@ Crossed cross(Simulation run, const Crossing& c) {
   return crossed;
 }
 
-/// What falls flat onto the seams of a floor.
+/// A body that falls flat onto the seams of a floor.
 struct Drop {
   const char* shape = "box";
   const char* floor = "two";  ///< two or four boxes, moving boxes, a mesh; or one box
-  double size = 1;            ///< of a tile (m); the body has a tenth of it as half extent
+  double size = 1;            ///< width of a tile (m); the half extent of the body is a tenth of it
   double restitution = 0.5;
-  double x = 0.03, y = 0.02;  ///< where (of the size)
+  double x = 0.03, y = 0.02;  ///< place of the body (share of the size)
   double friction = 0;
 
   double duration() const { return 0.75 * std::sqrt(size); }
@@ -156,7 +156,7 @@ std::string scene_of_drop(const Drop& d) {
       d.y * d.size, 3 * s);
 }
 
-/// Its fastest spin, and how it moves at the end: of a tile of 1 m.
+/// The fastest spin of a dropped body, and its motion at the end, scaled to a tile of 1 m.
 struct Dropped {
   double spin = 0;
   Vec3 velocity;
@@ -289,7 +289,7 @@ TEST_P(Seams, WithoutRotationABallSlides) {
 
 INSTANTIATE_TEST_SUITE_P(Ways, Seams, testing::ValuesIn(all_ways()), way_name);
 
-/// General shapes and meshes, on Host.
+/// Seams under general shapes and in meshes, on Host.
 class GeneralSeams : public testing::TestWithParam<const char*> {};
 
 TEST_P(GeneralSeams, AreNotFelt) {
@@ -323,7 +323,7 @@ TEST_P(GeneralSeams, AreStruckAsOneFloor) {
         }
 }
 
-/// The impulse of an impact on several walls is shared out, and none of it is lost.
+/// The impulse of an impact on several walls is divided among them, and none of it is lost.
 TEST_P(GeneralSeams, EachWallHasItsShareOfAnImpact) {
   const Drop d{.floor = "two", .restitution = 1};
   Simulation run = simulation_of(scene_of_drop(d) + fmt::format("response: {{mode: {}}}\n", GetParam()));
@@ -347,7 +347,7 @@ TEST_P(GeneralSeams, EachWallHasItsShareOfAnImpact) {
   EXPECT_LT(right, 0);
 }
 
-/// The sides of what slides lie along edges of the mesh.
+/// The sides of the sliding body lie along edges of the mesh.
 TEST_P(GeneralSeams, AreNotFeltAlongThem) {
   for (const char* shape : {"box", "cylinder", "polyhedron"}) {
     for (const double y : {-0.1, 0.1, 1.0 / 6 - 0.1}) {
@@ -385,7 +385,7 @@ TEST_P(GeneralSeams, WhatIsLargerThanAMeshRestsOnIt) {
   }
 }
 
-/// A mesh and its own image, a period away.
+/// The seam is that between a mesh and its own image, a period away.
 TEST_P(GeneralSeams, APeriodHasNone) {
   const Crossing c;
   const Crossing floor{.floor = "mesh", .size = 3};

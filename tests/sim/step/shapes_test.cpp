@@ -1,5 +1,5 @@
-// Runs with general shapes: beside the shapes that they equal, and with the same bits whatever the threads
-// and after a stop.
+// Tests of runs with general shapes: against equal shapes of another kind, and with the same bits whatever
+// the number of threads and after a stop.
 #include "core/error.hpp"
 #include "tests/sim/step/simulations.hpp"
 
@@ -16,7 +16,7 @@ materials: {stone: {density: 1000, restitution: 0.4, friction: 0.5}}
 )";
 const std::string floor_file = SCREE_SOURCE_DIR "/configs/meshes/floor.obj";
 
-/// The largest distance of the body called `it` in two runs that go side by side (m).
+/// Returns the largest distance between the bodies called `it` in two runs side by side (m).
 double largest_difference(const std::string& first, const std::string& second, int steps) {
   const Scene scenes[2] = {scene_of(head + first), scene_of(head + second)};
   Simulation runs[2] = {Simulation(scenes[0], one_thread), Simulation(scenes[1], one_thread)};
@@ -42,7 +42,7 @@ time: {end: 1, step: 0.002}
 bodies:
   - {plane: {normal: [0, 0, 1], offset: 0}, material: stone}
   - {)";
-  // `at` places the frame of the points: a corner of the box here.
+  // `at` places the frame of the points, whose origin is a corner of the box here.
   const std::string motion =
       ", name: it, velocity: [0.5, 0.2, 0], spin: [3, 1, 2], rotate: {axis: [1, 2, 0], degrees: 30}, "
       "material: stone";
@@ -51,7 +51,8 @@ bodies:
   const std::string at = ", at: [" + std::to_string(corner.x()) + ", " + std::to_string(corner.y()) + ", " +
                          std::to_string(corner.z()) + "]}\n";
   const std::string box = scene + "box: {size: [0.2, 0.3, 0.1]}" + motion + ", at: [0, 0, 0.5]}\n";
-  // In free flight to the rounding of what was written, and through the first bounces.
+  // The two agree in free flight to the rounding of the written numbers, and stay close through the first
+  // bounces.
   EXPECT_LT(largest_difference(box, scene + cube + motion + at, 100), 2e-6);
   EXPECT_LT(largest_difference(box, scene + cube + motion + at, 250), 1e-4);
 }
@@ -63,7 +64,7 @@ TEST(Shapes, ABallRollsOverAMeshAsOverAPlane) {
   const std::string time = "time: {end: 3, step: 0.004}\nbodies:\n";
   const std::string plane = "  - {plane: {normal: [0, 0, 1], offset: 0}, material: stone}\n";
   const std::string mesh = "  - {mesh: {file: " + floor_file + "}, fixed: true, material: stone}\n";
-  // With e = 0, since slow approaches to a mesh bounce a little less (FlightStage::slowest_bounce).
+  // The restitution is 0, since slow approaches to a mesh bounce a little less (FlightStage::slowest_bounce).
   const std::string law = "contacts: [{between: [stone, stone], restitution: 0, friction: 0.5}]\n";
   EXPECT_LT(largest_difference(law + time + plane + ball, law + time + mesh + ball, 750), 1e-9);
 }
@@ -103,8 +104,7 @@ TEST(Shapes, GiveTheSameBitsForAnyNumberOfThreadsAndAfterAStop) {
   EXPECT_EQ(resumed.state_hash(), one.state_hash());
 }
 
-// Which way finds the contacts changes no more of a heap than its chaos does; the way that is the default,
-// nothing.
+// The way to find contacts changes a heap no more than its chaos does, and the default way changes nothing.
 TEST(Shapes, MoveAlikeWithContactsByLibccd) {
   const auto with = [](const std::string& way) {
     return scene_of(all_shapes + "narrowphase: {convex: " + way + ", crosscheck: 0.5}\n");

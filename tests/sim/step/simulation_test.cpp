@@ -1,4 +1,5 @@
-// The whole step: what must not depend on how it is computed, and laws that hold for any scene.
+// Tests of the whole step: of what must not depend on how it is computed, and of laws that hold for any
+// scene.
 #include "sim/step/simulation.hpp"
 
 #include "core/error.hpp"
@@ -126,7 +127,7 @@ bodies:
   const Observation& o = simulation.observe();
   EXPECT_GT(o.ledger.restitution, 0) << "nothing met";
   EXPECT_LT((o.momentum - p0).norm(), 1e-13 * p0.norm());
-  // What position correction moved is booked.
+  // The motion by position correction is accounted.
   EXPECT_LT((o.angular_momentum - o.ledger.angular_correction - l0).norm(), 1e-12 * l0.norm());
 }
 
@@ -145,14 +146,15 @@ bodies:
     simulation.step();
     ASSERT_LT(simulation.observe().unexplained, 1e-12);
   }
-  // It carried them 1 m up; what it did beyond that was lost in the landing and the carrying along.
+  // The prescribed body carried the others up by 1 m. The rest of its work was lost in the landing and in
+  // carrying them along.
   const Observation& o = simulation.observe();
   EXPECT_GT(o.total() - first, 100);
   EXPECT_GT(o.ledger.work, o.total() - first);
 }
 
 TEST(Simulation, StepsAreCutFinerWhileOverlapsAreLarge) {
-  // Two balls in one another by a fifth of their radius.
+  // Two balls overlap by a fifth of their radius.
   const std::string balls = R"(
 materials: {a: {density: 1000}}
 bodies:
@@ -164,7 +166,7 @@ bodies:
   const std::int64_t substeps = cut.observe().counters.substeps;
   EXPECT_GT(substeps, 10);
   for (int k = 0; k < 10; ++k) cut.step();
-  EXPECT_EQ(cut.observe().counters.substeps, substeps + 10);  // they have parted
+  EXPECT_EQ(cut.observe().counters.substeps, substeps + 10);  // they are apart
 
   Simulation fixed = simulation_of("time: {end: 1, step: 0.01, substeps: 1}" + balls);
   for (int k = 0; k < 10; ++k) fixed.step();
@@ -172,8 +174,8 @@ bodies:
 }
 
 TEST(Simulation, ABodyThatOutrunsItsBoxInsideAStepStillMeetsWhatItShould) {
-  // The first ball strikes the second, which was at rest when the step's pairs were found, and that the
-  // third, which is beyond what the second was paired with.
+  // The first ball strikes the second, which was at rest when the pairs of the step were found. The second
+  // strikes the third, which is farther away than the bodies that the second was paired with.
   Simulation simulation = simulation_of(R"(
 time: {end: 0.1, step: 0.1, substeps: 100}
 materials: {a: {density: 1000, restitution: 1}}
@@ -198,7 +200,7 @@ bodies:
   - {box: {size: 1}, at: [0, 0, 0.5], repeat: {count: [1, 1, 3], spacing: [1, 1, 1]}, material: a}
 )");
   run_to_end(simulation);
-  EXPECT_EQ(simulation.observe().counters.pcs_made, 4);  // as often as the bodies are put in order
+  EXPECT_EQ(simulation.observe().counters.pcs_made, 4);  // as often as the bodies are sorted
 }
 
 TEST(Simulation, BallsWithoutFrictionNeverTurn) {
@@ -227,7 +229,7 @@ bodies:
 }
 
 TEST(Simulation, AppliedForcesAndTorquesDoTheirWork) {
-  // A cube on ice is pulled and turned for a while; another one is not.
+  // A cube on ice is pulled for a while and turned all the time; another one is left alone.
   const Scene scene = scene_of(R"(
 gravity: [0, 0, -10]
 time: {end: 1, step: 0.01}
@@ -255,7 +257,8 @@ forces:
 }
 
 TEST(Simulation, AppliedForcesAndBouncesAddUp) {
-  // A ball pushed against the floor twice as hard as by gravity bounces as in that gravity.
+  // Gravity and a force together push a ball twice as hard as gravity alone: it bounces as under twice that
+  // gravity.
   const std::string ball = R"(
 time: {end: 3, step: 0.013}
 materials: {a: {density: 1000, restitution: 1}}
@@ -274,7 +277,8 @@ bodies:
 }
 
 TEST(Simulation, ABallBouncesInATubeMoreThanOnceInAStep) {
-  // Along the sides of a square, a chord in each second: at the midpoint it would be far outside.
+  // The ball goes along the sides of a square, one chord in each second: at the midpoint of a step it would
+  // be far outside without the bounces.
   Simulation simulation = simulation_of(R"(
 time: {end: 100, step: 2.5}
 materials: {a: {density: 1000, restitution: 1}}
@@ -283,14 +287,15 @@ bodies:
   - {sphere: {radius: 0.1}, at: [0, 0, -0.7071067811865476], velocity: [1.4142135623730951, 0, 0], material: a}
 )");
   run_to_end(simulation);
-  // The rounding of each of a hundred bounces turns all chords that follow.
+  // The rounding error of each of a hundred bounces turns all later chords.
   EXPECT_LT((simulation.body(1).position - Vec3(0, 0, -std::sqrt(0.5))).norm(), 1e-11);
   EXPECT_LT((simulation.body(1).velocity - Vec3(std::sqrt(2.0), 0, 0)).norm(), 1e-11);
   EXPECT_EQ(simulation.observe().counters.impacts, 100);
 }
 
 TEST(Simulation, ATurningDrumHoldsWhatIsInIt) {
-  // Fast, end over end and about its axis at once; a box wedged between wall and cap now and then.
+  // The drum turns fast, end over end and about its axis at once; now and then it wedges a box between wall
+  // and cap.
   Simulation simulation = simulation_of(R"(
 gravity: [0, 0, -9.81]
 time: {end: 3, step: 0.002}
@@ -363,7 +368,8 @@ bodies:
 )");
   };
   Simulation metres(scene(1), one_thread);
-  Simulation small(scene(0.00390625), one_thread);  // a power of four: scaling rounds nothing, nor do roots
+  // The scale is a power of four: neither scaling nor square roots round.
+  Simulation small(scene(0.00390625), one_thread);
   while (!metres.finished()) {
     metres.step();
     small.step();
@@ -373,7 +379,7 @@ bodies:
   }
 }
 
-/// What falls on a floor, meets, slides and rolls; in this order, or from the last to the first.
+/// Returns bodies that fall on a floor, meet, slide and roll, in this order or reversed.
 Scene few_bodies(bool reversed = false) {
   std::vector<std::string> bodies = {
       "{plane: {normal: [0, 0, 1], offset: 0}, material: a}",

@@ -1,4 +1,4 @@
-// Scenes written in a test, and their simulations: without pictures, on one thread.
+// Scenes written in a test and their simulations, without pictures, on one thread.
 #pragma once
 
 #include "sim/step/simulation.hpp"
@@ -15,7 +15,7 @@ inline constexpr SimulationOptions one_thread{SpaceChoice::host, 1};
 
 inline Simulation simulation_of(const std::string& text) { return Simulation(scene_of(text), one_thread); }
 
-/// Empty where the machine has what the options ask for.
+/// Returns why the machine cannot run with these options; empty if it can.
 inline std::string why_not(const SimulationOptions& options) {
   const DeviceInfo device = device_info();
   return options.space == SpaceChoice::cuda && !device.available ? "no GPU: " + device.name : "";

@@ -1,4 +1,4 @@
-// The step in both spaces and precisions, beside closed forms and beside one another.
+// Tests of the step in both spaces and precisions, against closed forms and against one another.
 #include "sim/step/space_stepper.hpp"
 
 #include "core/block_limit.hpp"
@@ -18,7 +18,7 @@
 namespace scree {
 namespace {
 
-/// Where and how such steps are taken: on Host always, on Device where there is one.
+/// A space and a precision in which steps are taken: Host always, Device where there is one.
 struct Way {
   const char* name;
   SimulationOptions options;
@@ -39,7 +39,7 @@ class ResidentStep : public testing::TestWithParam<Way> {
 
 constexpr const char* grain = "materials: {stone: {density: 1000, restitution: 0, friction: 0.5}}\n";
 
-/// Floor and walls of stone, `half` from the middle to a wall (m).
+/// Returns a floor and walls of stone, `half` from the middle to a wall (m).
 std::string open_box(double half) {
   std::string planes = "\n  - {plane: {normal: [0, 0, 1], offset: 0}, material: stone}";
   for (const char* normal : {"1, 0", "-1, 0", "0, 1", "0, -1"})
@@ -73,7 +73,7 @@ bodies:
   EXPECT_GT(run.observe(false).counters.impacts, 4);
 }
 
-/// Boxes, balls, a drum that turns and a gate that goes: all shapes and kinds of contacts.
+/// A scene with boxes, balls, a drum that turns and a gate that goes: all its shapes and kinds of contacts.
 constexpr const char* everything = R"(
 materials: {stone: {density: 1000, restitution: 0.2, friction: 0.5}}
 gravity: [0, 0, -9.81]
@@ -99,7 +99,7 @@ TEST_P(ResidentStep, TheLedgerCloses) {
     worst = std::max(worst, run.observe().unexplained);
   }
   EXPECT_LT(worst, is_mixed() ? 1e-5 : 1e-9);
-  EXPECT_LT(run.observe().penetration.relative_max, 0.2);  // things still fall
+  EXPECT_LT(run.observe().penetration.relative_max, 0.2);  // bodies still fall
   EXPECT_GT(run.observe().contacts, 20);
 }
 
@@ -119,7 +119,7 @@ TEST_P(ResidentStep, RunsRepeatBitByBitWhateverTheThreadsAndWhoLooks) {
   EXPECT_EQ(first, hash(1, true));
 }
 
-/// What the step works on and what it tells of, wherever the bodies lie at the start.
+/// Neither the step nor its results depend on where the bodies lie in the arrays at the start.
 TEST_P(ResidentStep, PlacesOfTheStartDoNotMatter) {
   const Scene scene = scene_of(std::string(everything) + R"(
   - {sphere: {radius: 0.06}, name: pushed, at: [0.1, 0, 0.7], material: stone}
@@ -140,7 +140,7 @@ precision: )" + GetParam().precision +
   const auto here = make_resident_stepper(scene, grid, paths, {.on_device = on_device});
   const auto there = make_resident_stepper(elsewhere, grid, paths, {.on_device = on_device});
   constexpr BodyNumber drum{1}, ball{39};
-  const std::int64_t steps = 150;  // in which the bodies are put in order three times
+  const std::int64_t steps = 150;  // the bodies are sorted three times in these
   for (std::int64_t step = 0; step < steps; ++step) {
     for (Stepper* stepper : {here.get(), there.get()}) {
       stepper->start_step(step);
@@ -175,7 +175,7 @@ precision: )" + GetParam().precision +
   EXPECT_EQ(here->energies(Vec3::Zero()).kinetic(), there->energies(Vec3::Zero()).kinetic());
 }
 
-/// Whether the states of the bodies are the same, bit by bit, where they stay in the order of their numbers
+/// Expects the states of the bodies to be the same, bit by bit, where they stay in the order of their numbers
 /// and where they lie in disorder.
 void expect_no_matter_of_places(const Scene& scene, bool on_device, std::int64_t steps) {
   const TimeGrid grid(scene.time);
@@ -192,7 +192,7 @@ void expect_no_matter_of_places(const Scene& scene, bool on_device, std::int64_t
   for (std::int64_t step = 0; step < steps; ++step) {
     std::vector<std::uint64_t> hashes;
     for (Stepper* stepper : {in_order.get(), in_disorder.get()}) {
-      // They would be put in order at the start of step 0.
+      // Step 0 is left out, since the bodies would be sorted at its start.
       stepper->start_step(step + 1);
       stepper->substep(grid.length(step + 2), 0);
       BodyTable bodies;
@@ -238,7 +238,7 @@ response: {mode: accurate})";
   - sphere: {radius: 0.025}
     at: [-0.25, -0.25, 0.03]
     repeat: {count: [5, 5, 6], spacing: [0.07, 0.07, 0.07]}
-    material: stone)";  // all at once, so that many meetings have the same time
+    material: stone)";  // all are alike, so that many meetings have the same time
   for (const std::string& text :
        {bouncing + floor + heap + hub, rolling + floor + heap, bouncing + floor + rubble,
         bouncing + floor + few, bouncing + floor + equal}) {
@@ -249,7 +249,8 @@ response: {mode: accurate})";
   expect_no_matter_of_places(scene_of(std::string(everything) + precision), on_device, 50);
 }
 
-/// As on GPUs of other sizes: sums are added up in another order, and what hangs on them is the same.
+/// With fewer blocks, as on GPUs of other sizes, sums are added up in another order, but the results that
+/// depend on them are the same.
 TEST_P(ResidentStep, TheSizeOfTheGpuDoesNotMatter) {
   if (GetParam().options.space != SpaceChoice::cuda) GTEST_SKIP() << "of GPUs alone";
   const std::string heap = std::string(grain) + R"(
@@ -276,7 +277,8 @@ bodies:
   for (const int blocks : {1, 2, 7}) EXPECT_EQ(hash_with(blocks), whole) << blocks;
 }
 
-/// A heap, on both ways of taking a step: the same centre of mass within what chaos leaves, no overlap.
+/// In each way to take a step, the heap has the same centre of mass within what chaos leaves, and hardly any
+/// overlap.
 TEST_P(ResidentStep, AHeapComesToRestAsOnHost) {
   const std::string heap = std::string(grain) + R"(
 gravity: [0, 0, -9.81]
@@ -298,8 +300,9 @@ bodies:)" + open_box(0.4) +
   EXPECT_NEAR(seen.coordination_mean, host.observe().coordination_mean, 0.3);
 }
 
-/// 60 layers: with 6 sweeps always (response.iterations: 6) they still overlap by 8e-4 on average, and swing.
-/// As it is, four seeds on Host come to 8e-5 to 1.5e-4 (a GPU to 1.6e-4), and by 3.5 s to 3e-5 to 9e-5.
+/// The column has 60 layers. With 6 sweeps always (response.iterations: 6) they still overlap by 8e-4 on
+/// average, and swing. With the rule for sweeps, four seeds on Host have 8e-5 to 1.5e-4 (a GPU up to 1.6e-4),
+/// and by 3.5 s 3e-5 to 9e-5.
 TEST_P(ResidentStep, ATallColumnComesToRest) {
   if (is_mixed()) GTEST_SKIP() << "sweeps go by the same rule";
   Simulation run = simulate(R"(
@@ -329,8 +332,8 @@ bodies:
   EXPECT_LT(std::abs(seen.unexplained), 1e-12);
 }
 
-/// A hundred layers that fall together on their ground, without walls that would carry them: what sweeps do
-/// not find while they land sinks in by centimetres.
+/// A hundred layers fall together on their ground, without walls that would carry them. Where sweeps do not
+/// find the impulses while the layers land, these sink in by centimetres.
 TEST_P(ResidentStep, ADeepHeapDoesNotSinkIn) {
   Simulation run = simulate(R"(
 gravity: [0, 0, -9.81]
@@ -353,8 +356,8 @@ bodies:
   EXPECT_LT(seen.penetration.relative_max, 2e-2);
 }
 
-/// Balls fall on a heap, which is swept until its impulses have converged: with momentum, since plain sweeps
-/// would take twice as many (the heap is calm, so that its first two sweeps are plain).
+/// Balls fall on a heap, which is swept until its impulses have converged. The sweeps have momentum, since
+/// plain sweeps would need twice as many.
 TEST_P(ResidentStep, AFallOntoAHeapTakesFewSweeps) {
   Simulation run = simulate(std::string(grain) + R"(
 gravity: [0, 0, -9.81]
@@ -373,7 +376,7 @@ bodies:)" + open_box(0.4) +
   EXPECT_LT(sweeps / static_cast<double>(after.substeps - before.substeps), 50);
 }
 
-/// A column of 2,560 balls, which collapses as a wall is taken away.
+/// Returns a column of 2,560 balls, which collapses as a wall is taken away.
 std::string falling_column(double quality) {
   return fmt::format(R"(
 gravity: [0, 0, -9.81]
@@ -393,7 +396,7 @@ bodies:
                      quality);
 }
 
-/// What a run leaves from 0.36 s on: overlaps at every eighth step, and its counts.
+/// The overlaps that a run leaves from 0.36 s on, at every eighth step, and its counts.
 struct LeftInFlow {
   double mean = 0, worst = 0;
   std::int64_t sweeps = 0, substeps = 0;
@@ -415,16 +418,16 @@ struct LeftInFlow {
   }
 };
 
-/// A column whose wall goes: what docs/accuracy.md states of heaps in motion.
+/// A column whose wall is taken away: it keeps what docs/accuracy.md states of heaps in motion.
 TEST_P(ResidentStep, WhatFlowsOverlapsLittle) {
   const LeftInFlow left(simulate(falling_column(1)));
   EXPECT_LT(left.mean, 2 * tolerance::mean_overlap_left);
   EXPECT_LT(left.worst, tolerance::worst_overlap_left);
-  // 18 to 20.2 were seen, and 28 where sweeps end at the change of a heap at rest (docs/decisions/0052).
+  // The number was 18 to 20.2, and 28 where sweeps end at the change of a heap at rest (docs/decisions/0052).
   EXPECT_LT(left.sweeps, 24 * left.substeps);
 }
 
-/// One look may find up to twice as much at worst, before more substeps follow.
+/// One measurement may find up to twice the worst overlap, before more substeps follow.
 TEST_P(ResidentStep, QualityDividesWhatFlowsOverlaps) {
   const LeftInFlow fine(simulate(falling_column(4))), coarse(simulate(falling_column(0.25)));
   for (const auto& [left, quality] : {std::pair(&fine, 4.0), std::pair(&coarse, 0.25)}) {
@@ -436,8 +439,8 @@ TEST_P(ResidentStep, QualityDividesWhatFlowsOverlaps) {
   EXPECT_LT(2 * coarse.sweeps, fine.sweeps);
 }
 
-/// Two balls on two others fly towards one another. They bear load there, so that they bounce as contacts and
-/// not in an impact: by the same law.
+/// Two balls, each on another one, fly towards one another. They bear load on these, so that they bounce as
+/// contacts and not in an impact, by the same law.
 TEST_P(ResidentStep, WhatBearsLoadBouncesByTheSameLaw) {
   for (const double restitution : {0.0, 0.3, 0.8, 0.95}) {
     for (const bool accurate : {false, true}) {
@@ -455,7 +458,7 @@ bodies:
   - {{sphere: {{radius: 0.1}}, at: [0.2633, 0, 0.26], velocity: [-1, 0, 0], material: ice}})",
                                             restitution, accurate ? "accurate" : "default"));
       double worst = 0;
-      double apart = -2;  // no longer, once they have met
+      double apart = -2;  // relative speed; it ends once they have met
       while (apart < -1e-6 && !run.finished()) {
         run.step();
         worst = std::max(worst, run.observe().penetration.relative_max);
@@ -469,8 +472,8 @@ bodies:
   }
 }
 
-/// Boxes that fly into each other and turn: many are struck after the midpoint of the one substep, and their
-/// contacts are seen then.
+/// Boxes fly into each other and turn: many are struck after the midpoint of the one substep, and their
+/// contacts are found at that instant.
 TEST_P(ResidentStep, BoxesThatAreStruckLateKeepTheirMomenta) {
   double worst = 0;
   for (const double spacing : {0.1, 0.13, 0.16}) {
@@ -506,7 +509,7 @@ bodies:
   EXPECT_LT(worst, is_mixed() ? 1e-5 : 1e-13);
 }
 
-/// A heavy ball on a bed of many light ones that all touch it: its contacts are shared out.
+/// A slab lies on a bed of many light balls that all touch it: its contacts are divided among its parts.
 TEST_P(ResidentStep, AHubIsHeld) {
   Simulation run = simulate(std::string(grain) + R"(
 gravity: [0, 0, -9.81]
@@ -524,7 +527,7 @@ bodies:
   EXPECT_LT(run.body(slab).velocity.norm(), 1e-3);
 }
 
-/// Sweeps creep where a heavy body lies on a light one: that is for the direct solver.
+/// Sweeps converge slowly where a heavy body lies on a light one: such a problem needs the direct solver.
 TEST_P(ResidentStep, AHeavyCubeLiesOnALightOne) {
   Simulation run = simulate(R"(
 materials: {foam: {density: 1, friction: 0.5}, lead: {density: 3000, friction: 0.5}}
@@ -551,8 +554,8 @@ bodies:
   EXPECT_NEAR(run.body(0).force.z(), -weight, 1e-6 * weight);
 }
 
-/// A drum that turns over: its caps and its wall carry balls as they do in Host's own steps, and its points
-/// in the contact problem move as it does there.
+/// A drum turns over. Its caps and its wall carry balls as in the run on Host, and its points in the contact
+/// problem move as the drum does there.
 TEST_P(ResidentStep, AWallThatTurnsCarriesBalls) {
   const std::string drum = R"(
 materials: {stone: {density: 1000, restitution: 0, friction: 0.5}}
@@ -572,13 +575,13 @@ bodies:
     const ContactProblem problem = run.contact_problem();
     for (const ContactProblem::Contact& contact : problem.contacts) {
       const auto wall = static_cast<std::size_t>(std::max(contact.i, contact.j));
-      if (wall < 4) continue;  // of two balls
+      if (wall < 4) continue;  // a contact of two balls
       const auto ball = static_cast<std::size_t>(std::min(contact.i, contact.j));
       const ContactProblem::Point& point = problem.points[static_cast<std::size_t>(contact.first_point)];
       const Vec3 at = run.body(static_cast<std::int32_t>(ball)).position +
                       (contact.i < contact.j ? point.arm_i : point.arm_j);
       EXPECT_EQ(problem.bodies[wall].inverse_mass, 0);
-      // The contact is of the midpoint, the ball of the end: half a step later.
+      // The contact is that of the midpoint, and the ball that of the end, half a step later.
       EXPECT_LT((problem.bodies[wall].velocity - Vec3(0.6, 0, 0.3).cross(at)).norm(), 2e-3);
       ++on_walls;
     }
@@ -586,7 +589,7 @@ bodies:
   }
   EXPECT_GT(on_walls, 200);
   for (std::int32_t ball = 1; ball < 4; ++ball) {
-    // Host cuts the step in which the first one begins to stick.
+    // Host cuts the step in which the first ball begins to stick.
     const double tolerance = is_mixed() || ball == 1 ? 1e-5 : 1e-10;
     EXPECT_LT((run.body(ball).position - host.body(ball).position).norm(), tolerance);
     EXPECT_LT((run.body(ball).spin - host.body(ball).spin).norm(), 100 * tolerance);

@@ -1,4 +1,4 @@
-// How bodies of a step that failed are found and named.
+// Tests that the bodies of a step that failed are found and named.
 #include "sim/step/step_failure.hpp"
 
 #include "tests/sim/step/simulations.hpp"

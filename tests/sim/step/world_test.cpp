@@ -1,4 +1,4 @@
-// Bodies that leave the world, in each way to take a step.
+// Tests of bodies that leave the world, in each way to take a step.
 #include "sim/step/step_failure.hpp"
 #include "tests/sim/step/simulations.hpp"
 
@@ -11,7 +11,8 @@
 namespace scree {
 namespace {
 
-/// A bed of balls and boxes that rests and falls, and four balls that leave it, two of them at once.
+/// Returns a bed of balls and boxes that rests and falls, and three balls and a box that leave the world, two
+/// of them at once.
 std::string scene_text(const std::string& more) {
   return "time: {end: 0.6, step: 0.005}\ngravity: [0, 0, -9.81]\n"
          "materials: {stone: {density: 1000, restitution: 0.3, friction: 0.4}}\n"
@@ -62,10 +63,11 @@ TEST_P(WorldTest, ThoseThatLeaveAreTakenOutAndCountedAndTheLedgerKnows) {
   EXPECT_NE(run.observe().exchange.energy, 0);
   EXPECT_TRUE(std::isnan(run.body(scene.body_names.at("a")).position.x()));
   EXPECT_FALSE(std::isnan(whole.body(scene.body_names.at("a")).position.x()));
-  // They left in free flight.
+  // The bodies left in free flight.
   const double ball = 4.0 / 3 * pi * 0.001 * 1000, box = 8;
   EXPECT_NEAR(run.observe().exchange.momentum.x(), -((7 - 6 - 6) * ball + 9 * box), 1e-9);
-  // What stays goes on as if nothing had been; contacts are solved together, so not to the bit.
+  // The other bodies go on as if nothing had been there; contacts are solved together, so they do not agree
+  // to the bit.
   for (std::int32_t k = scene.body_names.at("d") + 1; k < scene.bodies.count(); ++k)
     EXPECT_LT((run.body(k).position - whole.body(k).position).norm(), 1e-3) << k;
 }
