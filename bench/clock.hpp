@@ -1,11 +1,11 @@
-// The clocks of benchmarks.
+// The clocks of the benchmarks.
 #pragma once
 
 #include <ctime>
 
 namespace scree::bench {
 
-/// What a clock shows, such as CLOCK_MONOTONIC or CLOCK_PROCESS_CPUTIME_ID, in s.
+/// Returns the time of a clock, such as CLOCK_MONOTONIC or CLOCK_PROCESS_CPUTIME_ID (s).
 inline double now(clockid_t clock) {
   timespec time{};
   clock_gettime(clock, &time);

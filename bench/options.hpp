@@ -1,4 +1,4 @@
-// The command line of a benchmark: options with a value each, some of which are lists, and words.
+// The command line of a benchmark: options with one value each, some of which are lists, and words.
 #pragma once
 
 #include "core/error.hpp"
@@ -15,14 +15,15 @@ namespace scree::bench {
 
 using Options = std::map<std::string, std::string>;
 
-/// What --help asks for; status_of() prints it.
+/// The text that --help prints. parse() throws it, and status_of() prints it.
 struct Help {
   std::string text;
 };
 
-/// The options, by their names with the dashes, at their defaults but for what the command line gives; what
-/// is no option goes to `words`. Throws InputError for an option that is not among them or is given twice,
-/// and for a word where none are wanted; and Help, with the options and their defaults if it has no `usage`.
+/// Parses a command line. Returns the options by their names (with the dashes), at their defaults unless the
+/// command line gives another value. Arguments that are no options are appended to `words`. Throws InputError
+/// for an option that is not in `options` or is given twice, and for a word if `words` is null. Throws Help
+/// on --help, with `usage`, or if that is empty with the options and their defaults.
 inline Options parse(int argc, char** argv, Options options, std::vector<std::string>* words = nullptr,
                      std::string usage = "") {
   std::set<std::string> given;
@@ -49,7 +50,7 @@ inline Options parse(int argc, char** argv, Options options, std::vector<std::st
   return options;
 }
 
-/// The items of a list, which commas part.
+/// Returns the items of a comma-separated list.
 inline std::vector<std::string> split(const std::string& list) {
   std::vector<std::string> items;
   std::istringstream text(list);
@@ -57,7 +58,8 @@ inline std::vector<std::string> split(const std::string& list) {
   return items;
 }
 
-/// What main() returns: the benchmark's own status, 0 after help, or 2 after the message of an error.
+/// Runs a benchmark and returns the exit status for main(): that of the benchmark, 0 after help, or 2 after
+/// the message of an error.
 template <class Benchmark>
 int status_of(const char* program, Benchmark run) {
   try {

@@ -49,7 +49,7 @@ Clipped clipped_by(const std::array<double, 2>& range, const Frame& frame, Color
   return clipped;
 }
 
-// Round values and the two ends, `least_apart` or more from one another.
+// Returns round values and the two ends of the range, all of them at least `least_apart` from one another.
 std::vector<double> ticks_with_ends(double low, double high, double least_apart) {
   std::vector<double> ticks = {low};
   for (const double tick : round_ticks(low, high, 5)) {
@@ -118,14 +118,14 @@ void Annotator::annotate(Image& image, const Frame& frame, const Style& style) c
   }
 }
 
-// In the lower left corner.
+// Draws the time and the width of the grid's cells in the lower left corner.
 void Annotator::draw_note(Image& image, const std::string& words) const {
   const int em = font_.size();
   fill(image, em, image.height - 3 * em, font_.width(words) + em, 2 * em, paper, paper_opacity);
   font_.draw(image, em + em / 2, image.height - em - 5 * em / 8, words, ink);
 }
 
-// At the right edge: a bar, with ticks and their values beside it.
+// Draws the colour scale at the right edge: a bar, with ticks and their values beside it.
 void Annotator::draw_scale(Image& image, const Frame& frame, const Style& style) const {
   const auto [low, high] = *style.range;
   const Clipped clipped = clipped_by(*style.range, frame, style.color_by);
@@ -138,7 +138,7 @@ void Annotator::draw_scale(Image& image, const Frame& frame, const Style& style)
     const char* sign = last && clipped.above ? "≥ " : first && clipped.below ? "≤ " : "";
     return sign + fmt::format("{:.3g}", tick);
   };
-  // Room for the sign whether it is there or not, so that nothing moves from frame to frame.
+  // The label has room for the sign whether there is one or not, so that nothing moves from frame to frame.
   for (const double tick : ticks) {
     label_width = std::max(label_width, font_.width("≥ " + fmt::format("{:.3g}", tick)));
   }
@@ -159,9 +159,9 @@ void Annotator::draw_scale(Image& image, const Frame& frame, const Style& style)
   }
 }
 
-// At the right edge: a square of each colour, with its name.
+// Draws the list of kinds at the right edge: a square of each colour, with the name of its kind.
 void Annotator::draw_kinds(Image& image, const Frame& frame, const Style& style) const {
-  // More would fill the picture; those that are left out are counted.
+  // More rows would fill the picture; the kinds that are left out are counted in the last row.
   constexpr std::size_t most = 12;
   const std::vector<Color>& palette =
       style.color_by == ColorBy::material ? style.palette : category_palette();

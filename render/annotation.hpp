@@ -1,4 +1,4 @@
-// What is written on a picture: the legend of its colours, its time, the width of the grid's cells.
+// The annotation of a picture: the legend of its colours, its time, and the width of the grid's cells.
 #pragma once
 
 #include "render/coloring.hpp"
@@ -17,29 +17,30 @@ struct Annotation {
   bool time_stamp = true;
 };
 
-/// Pictures less high than this have no room for text that can be read (pixels).
+/// The least height of a picture that has room for readable text (pixels).
 inline constexpr int least_annotated_height = 240;
 
-/// Round numbers, 1, 2 or 5 times a power of ten apart, in [low, high], low < high: about `count` of them.
+/// Returns about `count` round numbers in [low, high], low < high. They are 1, 2 or 5 times a power of ten
+/// apart.
 std::vector<double> round_ticks(double low, double high, int count);
 
-/// 1, 2 or 5 times a power of ten: the nearest one that is not less than a positive value.
+/// Returns the least of the numbers 1, 2 or 5 times a power of ten that is not less than a positive value.
 double rounded_up(double value);
 
-/// A length in words, with the unit that suits it: "0.5 m", "2 mm".
+/// Returns a length in words, in the unit that suits it: "0.5 m", "2 mm".
 std::string length_words(double metres);
 
-/// A time in words, with so many digits that frames `interval` (s) apart differ.
+/// Returns a time in words, with enough digits that the times of frames `interval` (s) apart differ.
 std::string time_words(double seconds, double interval);
 
-/// Writes on pictures of one size. The same input gives the same bytes.
+/// Writes the annotation on pictures of one size. The same input gives the same bytes.
 class Annotator {
  public:
-  /// `interval`: time between frames (s).
+  /// `interval` is the time between frames (s).
   Annotator(Annotation annotation, int picture_height, double interval);
 
-  /// Values beyond the scale's ends are told by a sign at its tick labels. Style::range must be set where the
-  /// colours are a scale, Style::cell where there are planes.
+  /// Annotates a picture. If bodies have values beyond an end of the scale, a sign at the tick label of that
+  /// end shows it. Style::range must be set if the colours are a scale, Style::cell if there are planes.
   void annotate(Image& image, const Frame& frame, const Style& style) const;
 
  private:

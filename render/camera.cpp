@@ -14,14 +14,15 @@ struct Ball {
   double radius;
 };
 
-// Nearer to edge-on than this (cosine), a plane is a wall: nothing comes to rest on it.
+// The least cosine between the normal and the vertical at which a plane counts as a floor. A steeper plane is
+// a wall: no body comes to rest on it.
 constexpr double wall_cosine = 0.25;
 
 struct Floor {
   Vec3 normal, point;
 };
 
-// What bodies can come to rest on.
+// Returns the planes on which bodies can come to rest.
 std::vector<Floor> floors_of(const BodyTable& bodies, const Vec3& up) {
   std::vector<Floor> floors;
   for (std::size_t k = 0; k < bodies.shape.size(); ++k) {
@@ -32,7 +33,7 @@ std::vector<Floor> floors_of(const BodyTable& bodies, const Vec3& up) {
   return floors;
 }
 
-// Where a ball comes to rest on the floors if it falls freely; the ball itself if it meets none.
+// Returns the place where a ball first meets a floor if it falls freely, or the ball itself if it meets none.
 Ball landed(const Ball& ball, const std::vector<Floor>& floors, const Vec3& up) {
   double fall = std::numeric_limits<double>::infinity();
   for (const Floor& floor : floors) {
@@ -42,7 +43,7 @@ Ball landed(const Ball& ball, const std::vector<Floor>& floors, const Vec3& up) 
   return std::isfinite(fall) ? Ball{ball.center - fall * up, ball.radius} : ball;
 }
 
-// The balls to be seen.
+// Returns the balls that the picture is to show.
 std::vector<Ball> subjects(const BodyTable& bodies, const Vec3& up) {
   const std::vector<Floor> floors = floors_of(bodies, up);
   std::vector<Ball> moving, fixed;
@@ -72,7 +73,8 @@ std::vector<Ball> subjects(const BodyTable& bodies, const Vec3& up) {
 Mat3 axes_of(const Camera& camera) {
   const Vec3 forward = (camera.to - camera.from).normalized();
   Vec3 right = forward.cross(camera.up.normalized());
-  // Looking straight up or down leaves the roll open: what is left of `right` is rounding.
+  // The roll is undetermined if the camera looks straight up or down: then `right` consists of rounding
+  // errors.
   const double parallel = std::sqrt(std::numeric_limits<double>::epsilon());
   right = right.norm() > parallel ? Vec3(right.normalized()) : tangent_of(forward);
   Mat3 axes;
@@ -91,7 +93,7 @@ Camera frame_all(const Snapshot& snapshot, const Vec3& gravity, double aspect, d
   Camera camera;
   camera.up = up_of(gravity);
   camera.fov = fov;
-  // From the front (against y where up is z), a little from the right, 22 degrees down.
+  // The camera looks from the front (against y where up is z), a little from the right, 22 degrees down.
   const Vec3 side = std::abs(camera.up.x()) < 0.9 ? Vec3::UnitX() : Vec3::UnitY();
   const Vec3 right = (side - side.dot(camera.up) * camera.up).normalized();
   const Vec3 back = right.cross(camera.up);
@@ -100,10 +102,11 @@ Camera frame_all(const Snapshot& snapshot, const Vec3& gravity, double aspect, d
   camera.to.setZero();
   const Mat3 axes = axes_of(camera);
 
-  // In the camera's axes, with z along the view: a ball lies inside the frustum of a camera at c if on each
-  // side
-  //   +-(x - c_x) cos a - (z - c_z) sin a + r <= 0,
-  // so each side asks one bound of c, and the two of a pair give its place across the view and how far back.
+  // The axes are those of the camera, with z along the view. A ball lies inside the frustum of a camera at c
+  // if on each side
+  //   +-(x - c_x) cos a - (z - c_z) sin a + r <= 0.
+  // So each side gives one bound of c. The bounds of two opposite sides give the camera's place across the
+  // view and its distance back.
   const std::vector<Ball> balls = subjects(snapshot.bodies, camera.up);
   if (balls.empty()) return {4 * toward_camera, Vec3::Zero(), camera.up, fov};
   constexpr double margin = 1.12;

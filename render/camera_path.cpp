@@ -17,7 +17,7 @@ Camera CameraPath::at(double time) const {
   if (after == keys_.end()) return keys_.back().camera;
   const CameraKey &a = *std::prev(after), &b = *after;
   const double length = b.at - a.at, s = (time - a.at) / length;
-  // m/s at a key; zero at the ends of the way.
+  // The velocity of a point at a key (m/s); zero at both ends of the path.
   const auto tangent = [&](auto key, Vec3 Camera::*point) {
     if (key == keys_.begin() || std::next(key) == keys_.end()) return Vec3(Vec3::Zero());
     const CameraKey &before = *std::prev(key), &next = *std::next(key);

@@ -1,4 +1,4 @@
-// How the camera moves.
+// The motion of the camera: an orbit about a point, and a path through given keys.
 #pragma once
 
 #include "render/camera.hpp"
@@ -7,21 +7,22 @@
 
 namespace scree::render {
 
-/// Turns the camera about the axis through `to` along `up`: counter-clockwise seen from above.
+/// Returns the camera turned by `angle` (rad) about the axis through `to` along `up`, counter-clockwise seen
+/// from above.
 Camera orbited(const Camera& camera, double angle);
 
-/// A camera at a time.
+/// A camera at a given time.
 struct CameraKey {
-  double at = 0;  ///< s
+  double at = 0;  ///< time (s)
   Camera camera;
 };
 
-/// A way through the keys, at rest at both ends, its velocity continuous (C1): places go along a cubic
-/// Hermite spline with the tangents of Catmull and Rom 1974 for uneven times, the field of view in smooth
-/// steps, which cannot overshoot.
+/// A path of the camera through the keys, at rest at both ends, with continuous velocity (C1). The places
+/// follow a cubic Hermite spline with the tangents of Catmull and Rom 1974 for uneven times. The field of
+/// view changes from key to key by a smoothstep, which cannot overshoot.
 class CameraPath {
  public:
-  /// `keys`: at least one, by ascending time, no two at once; all with the same `up`.
+  /// `keys` must be at least one, by ascending time, no two at the same time, and all with the same `up`.
   explicit CameraPath(std::vector<CameraKey> keys) : keys_(std::move(keys)) {}
 
   Camera at(double time) const;

@@ -19,7 +19,8 @@ Color srgb_of(const Color& linear) {
 
 namespace {
 
-// The two matrices of OKLab: linear sRGB to cone response, and its cube root to lightness and opponents.
+// The two matrices of OKLab. The first takes linear sRGB to the cone response, the second takes the cube root
+// of that to lightness and opponent colours.
 const Eigen::Matrix3f& cones() {
   static const Eigen::Matrix3f m =
       (Eigen::Matrix3f() << 0.4122214708f, 0.5363325363f, 0.0514459929f, 0.2119034982f, 0.6806995451f,
@@ -77,7 +78,8 @@ const std::vector<Color>& category_palette() {
 Color scale_color(double t) {
   const float s = static_cast<float>(std::clamp(t, 0.0, 1.0));
   const float lightness = 0.34f + 0.56f * s;
-  // From violet over blue and green to yellow; the chroma is what sRGB can show all along that path.
+  // The hue goes from violet over blue and green to yellow. The chroma is as high as sRGB can show all along
+  // that path.
   const float hue = (300.0f - 195.0f * s) * static_cast<float>(pi / 180);
   const float chroma = 0.105f + 0.055f * s * s;
   return linear_of_oklab({lightness, chroma * std::cos(hue), chroma * std::sin(hue)});

@@ -1,4 +1,4 @@
-// Colours: encodings, the palette of materials, and the scale for quantities.
+// Colours: encodings, the palettes of materials and of kinds, and the scale for quantities.
 #pragma once
 
 #include "core/math.hpp"
@@ -8,31 +8,32 @@
 
 namespace scree::render {
 
-/// Red, green and blue, 0 to 1. Functions say whether they mean sRGB-encoded or linear light.
+/// Red, green and blue, from 0 to 1. Each function says whether it means sRGB-encoded or linear light.
 using Color = Vec3f;
 
-/// sRGB-encoded to linear light and back (IEC 61966-2-1).
+/// Convert sRGB-encoded colours to linear light and back (IEC 61966-2-1).
 Color linear_of(const Color& srgb);
 Color srgb_of(const Color& linear);
 
-/// OKLab (Ottosson 2020, "A perceptual color space for image processing"): lightness, green-red and
-/// blue-yellow, from and to linear light. Colours outside sRGB's gamut are clipped to it.
+/// Convert linear light to OKLab and back (Ottosson 2020, "A perceptual color space for image processing").
+/// OKLab has lightness, green-red and blue-yellow. Colours outside sRGB's gamut are clipped to it.
 Vec3f oklab_of(const Color& linear);
 Color linear_of_oklab(const Vec3f& lab);
 
-/// sRGB colours for material 0, 1, ...; materials beyond the last start over.
+/// Returns the sRGB colours of materials 0, 1, ...; materials beyond the last colour start again with the
+/// first.
 const std::vector<Color>& default_palette();
 
-/// sRGB colours for kinds that have to be told apart by eye, with any common colour blindness too (Okabe and
-/// Ito 2008, "Color universal design", without black).
+/// Returns sRGB colours for kinds that must be distinguished by eye, also with any common colour blindness
+/// (Okabe and Ito 2008, "Color universal design", without black).
 const std::vector<Color>& category_palette();
 
-/// Linear light for t in 0 to 1, clamped: dark violet to light yellow, with lightness linear in t in OKLab,
-/// so that equal steps look equal and the order survives in grey.
+/// Returns the colour of the scale at t from 0 to 1 (clamped), in linear light: dark violet to light yellow.
+/// The lightness is linear in t in OKLab, so that equal steps look equal and the order survives in grey.
 Color scale_color(double t);
 
-/// A linear colour varied a little in lightness and hue, always the same for one number: neighbours in a pile
-/// of one material stay apart.
+/// Returns a linear colour varied a little in lightness and hue, always in the same way for the same number,
+/// so that neighbouring bodies in a pile of one material can be distinguished.
 Color tinted(const Color& linear, std::int32_t id);
 
 }  // namespace scree::render

@@ -6,14 +6,14 @@ namespace scree::render {
 
 namespace {
 
-// The q-quantile of the values, 0 <= q <= 1; there is at least one.
+// Returns the q-quantile of the values, 0 <= q <= 1. There must be at least one value.
 double quantile(std::vector<double>& values, double q) {
   const auto nth = values.begin() + static_cast<std::ptrdiff_t>(q * static_cast<double>(values.size() - 1));
   std::nth_element(values.begin(), nth, values.end());
   return *nth;
 }
 
-// sRGB; what is fixed, or muted, stays in the background.
+// The sRGB colour of fixed bodies; muted colours are mixed with it. It stays in the background.
 const Color stone(0.72f, 0.71f, 0.69f);
 
 }  // namespace

@@ -1,4 +1,4 @@
-// What one picture shows.
+// The content of one picture.
 #pragma once
 
 #include "core/geometry.hpp"
@@ -13,30 +13,30 @@
 
 namespace scree::render {
 
-/// Whether the colour of a body shows its material or its state: what stands still stays in the background,
+/// Returns whether the colour of a body shows its material or its state. Fixed bodies stay in the background,
 /// and so do boundaries, turning or not.
 inline bool is_colored(const BodyTable& bodies, std::size_t body) {
   return bodies.mobility[body] != Mobility::fixed && bodies.mobility[body] != Mobility::absent &&
          !is_surface(bodies.shape[body]);
 }
 
-/// A straight line over the bodies.
+/// A straight line drawn over the bodies.
 struct Line {
-  Vec3 from = Vec3::Zero(), to = Vec3::Zero();  ///< m
-  float width = 1;                              ///< pixels of a picture 720 high; grows with larger ones
-  Color color = Color::Zero();                  ///< sRGB
-  float where_hidden = 1;                       ///< opacity behind bodies, 0 to 1
+  Vec3 from = Vec3::Zero(), to = Vec3::Zero();  ///< ends (m)
+  float width = 1;              ///< width in pixels of a picture 720 high; larger pictures have wider lines
+  Color color = Color::Zero();  ///< sRGB
+  float where_hidden = 1;       ///< opacity where bodies hide the line, 0 to 1
 };
 
 struct Frame {
   Snapshot snapshot{};
-  // By place in the snapshot; empty unless the colours ask for it.
+  // Values by place in the snapshot; empty unless the colours need them.
   std::vector<double> force{};        ///< sum of the contact forces on the body (N)
-  std::vector<std::int32_t> level{};  ///< of the hierarchical grid
+  std::vector<std::int32_t> level{};  ///< level of the body in the hierarchical grid
   /// Names of the kinds that the colours stand for (materials, levels), in the order of the palette.
   std::vector<std::string> kinds{};
-  std::vector<Line> lines{};                   ///< the later ones on top
-  std::shared_ptr<const Geometry> geometry{};  ///< by id; null if no body's shape is general
+  std::vector<Line> lines{};                   ///< lines, of which later ones are drawn over earlier ones
+  std::shared_ptr<const Geometry> geometry{};  ///< geometry by body id; null if no body's shape is general
 };
 
 }  // namespace scree::render

@@ -7,14 +7,14 @@
 
 namespace scree::render {
 
-/// 8-bit sRGB, rows from the top, three bytes per pixel.
+/// A picture of 8-bit sRGB, rows from the top, three bytes per pixel.
 struct Image {
   int width = 0;
   int height = 0;
   std::vector<std::uint8_t> rgb;
 };
 
-/// The three bytes of a pixel inside the image.
+/// Returns the three bytes of a pixel inside the image.
 inline std::uint8_t* pixel_of(Image& image, int x, int y) {
   return &image.rgb[3 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(image.width) +
                          static_cast<std::size_t>(x))];

@@ -15,7 +15,7 @@ namespace scree::render {
 
 namespace {
 
-// Makes the file's contents safe on the disk. Returns errno's value.
+// Writes the file's contents through to the disk. Returns the value of errno, or 0.
 int sync(const std::filesystem::path& file) {
   const int descriptor = open(file.c_str(), O_RDONLY | O_CLOEXEC);
   const int error = descriptor >= 0 && fsync(descriptor) == 0 ? 0 : errno;
@@ -28,8 +28,8 @@ int sync(const std::filesystem::path& file) {
 void make_movie(const std::filesystem::path& frames, double fps, const std::filesystem::path& file) {
   std::filesystem::path part = file;
   part += ".part";
-  // Without -xerror ffmpeg ends with status 0 when the disk is full as it writes the file's index.
-  // crf 17 keeps small spheres crisp; the colours are tagged as what they are converted to.
+  // Without -xerror ffmpeg ends with status 0 if the disk gets full while it writes the file's index. With
+  // crf 17 small spheres stay crisp. The colour tags name the encoding to which the colours are converted.
   const std::vector<std::string> command = {
       "ffmpeg",
       "-nostdin",

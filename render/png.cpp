@@ -18,8 +18,8 @@ namespace {
   throw RunError("cannot write " + file.string() + ": " + reason);
 }
 
-// libpng is C: what its calls to us report, and exceptions, must not cross it. `error` takes its words, and
-// the long jump of its convention leads back to encode().
+// The state of one encoding. libpng is written in C, so no exception of ours may pass through its calls. An
+// error stores its message in `error`, and libpng's long jump leads back to encode().
 struct Encoding {
   std::FILE* file;
   std::string error;
@@ -30,7 +30,7 @@ void on_error(png_structp png, png_const_charp message) {
   png_longjmp(png, 1);
 }
 
-// Encodes into an open file; false with encoding.error set if that fails.
+// Encodes into an open file. Returns false and sets encoding.error if that fails.
 bool encode(Encoding& encoding, const Image& image) {
   png_structp png = png_create_write_struct(PNG_LIBPNG_VER_STRING, &encoding, on_error, nullptr);
   png_infop info = png != nullptr ? png_create_info_struct(png) : nullptr;
@@ -45,7 +45,7 @@ bool encode(Encoding& encoding, const Image& image) {
     return false;
   }
   png_init_io(png, encoding.file);
-  // Half the default's time for files a few percent larger.
+  // Level 3 takes half the time of the default level, for files a few percent larger.
   png_set_compression_level(png, 3);
   png_set_IHDR(png, info, static_cast<png_uint_32>(image.width), static_cast<png_uint_32>(image.height), 8,
                PNG_COLOR_TYPE_RGB, PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
@@ -68,7 +68,7 @@ void write_png(const std::filesystem::path& file, const Image& image) {
   Encoding encoding{std::fopen(part.c_str(), "wb"), {}};
   if (encoding.file == nullptr) fail(file, std::strerror(errno));
   bool written = encode(encoding, image);
-  // A full disk may show only when the buffers go out.
+  // A full disk may be reported only when the buffers are written out.
   if (written && (std::fflush(encoding.file) != 0 || fsync(fileno(encoding.file)) != 0)) {
     encoding.error = std::strerror(errno);
     written = false;

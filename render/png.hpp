@@ -1,4 +1,4 @@
-// Pictures as files.
+// The writing of pictures to PNG files.
 #pragma once
 
 #include "render/image.hpp"
@@ -7,8 +7,9 @@
 
 namespace scree::render {
 
-/// Writes a PNG marked as sRGB, or replaces one; the name appears only when the file is complete and on the
-/// disk. Throws RunError with the system's reason, for a full disk too, and leaves nothing behind.
+/// Writes a PNG file marked as sRGB, or replaces one. The file's name appears only when it is complete and on
+/// the disk. On failure, also if the disk is full, it throws RunError with the system's reason and leaves no
+/// file behind.
 void write_png(const std::filesystem::path& file, const Image& image);
 
 }  // namespace scree::render

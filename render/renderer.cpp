@@ -23,7 +23,7 @@ class NullRenderer : public Renderer {
 std::unique_ptr<Renderer> on_hardware_or_processor(int width, int height) {
   try {
     return gl::make_gl_renderer(gl::make_egl_context(gl::EglDevices::hardware), width, height);
-  } catch (const RunError&) {  // `scree info` says it
+  } catch (const RunError&) {  // `scree info` reports the reason
     return make_renderer(ContextChoice::osmesa, width, height);
   }
 }

@@ -1,4 +1,4 @@
-// Frame, camera and style to picture.
+// The interface of the renderer, which makes a picture of a frame, a camera and a style.
 #pragma once
 
 #include "render/camera.hpp"
@@ -15,43 +15,46 @@ namespace scree::render {
 
 struct Style {
   ColorBy color_by = ColorBy::material;
-  /// sRGB, by material index; starts over after the last.
+  /// sRGB colours by material index; they start over after the last.
   std::vector<Color> palette = default_palette();
-  /// Values at the two ends of the colour scale, in SI units, the first smaller. Absent: value_range() of the
-  /// frame; a sequence wants one range for all its frames.
+  /// Values at the two ends of the colour scale, in SI units, the first smaller. If absent, value_range() of
+  /// the frame is used; a sequence needs one range for all its frames.
   std::optional<std::array<double, 2>> range;
-  /// Width of the cells drawn on planes (m). Absent: grid_cell() of the camera.
+  /// Width of the cells drawn on planes (m). If absent, grid_cell() of the camera is used.
   std::optional<double> cell;
-  float muted = 0;  ///< of the bodies' colours, 0 to 1, so that lines over them stand out
-  /// sRGB. The ground fades into the horizon.
+  float muted = 0;  ///< share by which bodies lose their colours, 0 to 1, so that lines over them stand out
+  /// sRGB colours of the sky. The ground fades into that of the horizon.
   Color zenith = Color(0.66f, 0.73f, 0.81f);
   Color horizon = Color(0.885f, 0.895f, 0.905f);
 };
 
-/// Draws pictures of one size. Not for two threads at once.
+/// Draws pictures of one size. Two threads must not use it at the same time.
 class Renderer {
  public:
   virtual ~Renderer() = default;
-  /// The same input gives the same bytes. Spheres, boxes and the planes seen from their free side: nearly
-  /// level ones as ground, walls as a faint film that hides nothing. Of tubes the far side of the wall, with
-  /// stripes that show how it turns; the near side and the end caps as faint glass.
+  /// Draws a frame; the same input gives the same bytes. Spheres, boxes and bodies of general shapes are
+  /// drawn in full. Planes are drawn if seen from their free side: nearly level ones as ground, walls as a
+  /// faint film that hides nothing. The far side of a tube's wall is drawn with stripes that show how it
+  /// turns; its near side and end caps are drawn as faint glass.
   virtual Image draw(const Frame& frame, const Camera& camera, const Style& style) = 0;
-  /// What draws: "EGL, NVIDIA H200/PCIe/SSE2", "OSMesa, llvmpipe (LLVM 15.0.6, 256 bits)".
+  /// Returns the names of interface and device: "EGL, NVIDIA H200/PCIe/SSE2", "OSMesa, llvmpipe (LLVM 15.0.6,
+  /// 256 bits)".
   virtual std::string name() const = 0;
 };
 
-/// The ways to OpenGL. Pictures of two differ by what tests/render/context_test.cpp allows; of one, on one
-/// machine, not at all.
+/// The choice of an OpenGL context. Pictures of two contexts differ by no more than
+/// tests/render/context_test.cpp allows; those of one context on one machine do not differ at all.
 enum class ContextChoice {
-  automatic,  ///< EGL if that has a GPU that draws such pictures, else OSMesa
-  osmesa,     ///< on the processor
-  egl         ///< a GPU if there is one, else Mesa on the processor
+  automatic,  ///< EGL if it offers a GPU that can draw such pictures, else OSMesa
+  osmesa,     ///< Mesa on the processor, through OSMesa
+  egl         ///< a GPU if there is one, else Mesa on the processor, through EGL
 };
 
-/// Throws RunError, saying what was tried, if no OpenGL 3.3 context of this size is to be had.
+/// Makes a renderer. Throws RunError, which lists what was tried, if there is no OpenGL 3.3 context that can
+/// draw this size.
 std::unique_ptr<Renderer> make_renderer(ContextChoice choice, int width, int height);
 
-/// Draws black pictures, for what needs pictures but not their content.
+/// Makes a renderer of black pictures, for callers that need pictures but not their content.
 std::unique_ptr<Renderer> make_null_renderer(int width, int height);
 
 }  // namespace scree::render

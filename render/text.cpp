@@ -21,7 +21,7 @@ namespace scree::render {
 
 namespace {
 
-// The next code point of valid UTF-8, taken from the front of the text.
+// Removes the next code point of valid UTF-8 from the front of the text and returns it.
 std::uint32_t take_code_point(std::string_view& text) {
   const auto lead = static_cast<unsigned char>(text[0]);
   const std::size_t length = std::min<std::size_t>(lead < 0x80   ? 1
@@ -56,7 +56,7 @@ struct Font::Face {
   Face(const Face&) = delete;
   Face& operator=(const Face&) = delete;
 
-  /// Calls f(glyph slot, pen) for each glyph; returns the pen behind the last one (pixels).
+  /// Calls f(glyph slot, pen) for each glyph. Returns the position of the pen after the last one (pixels).
   template <class F>
   int for_each_glyph(std::string_view text, F&& f) const {
     int pen = 0;

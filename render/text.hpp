@@ -1,4 +1,4 @@
-// Text on pictures.
+// The drawing of text on pictures.
 #pragma once
 
 #include "render/color.hpp"
@@ -9,19 +9,19 @@
 
 namespace scree::render {
 
-/// One size of the font that comes with the program (DejaVu Sans).
+/// The font that comes with the program (DejaVu Sans), at one size.
 class Font {
  public:
-  /// `size`: of the em, in pixels, at least 1. Throws RunError.
+  /// `size` is that of the em in pixels, at least 1. Throws RunError if FreeType cannot load the font.
   explicit Font(int size);
   ~Font();
   Font(Font&&) noexcept;
 
   int size() const { return size_; }
-  /// Pixels from the start of the text to its end.
+  /// Returns the width of the text, from its start to its end (pixels).
   int width(std::string_view utf8) const;
-  /// Draws with smooth edges; (x, y) is the start of the base line, in pixels from the upper left corner of
-  /// the picture. What falls outside the picture is left out. `color`: sRGB.
+  /// Draws text with smooth edges. (x, y) is the start of the base line, in pixels from the upper left corner
+  /// of the picture. Parts outside the picture are left out. `color` is sRGB.
   void draw(Image& image, int x, int y, std::string_view utf8, const Color& color) const;
 
  private:
@@ -30,7 +30,7 @@ class Font {
   int size_;
 };
 
-/// Mixes a rectangle with a colour (sRGB); the part outside the picture is left out.
+/// Mixes a rectangle of the picture with a colour (sRGB). The part outside the picture is left out.
 void fill(Image& image, int x, int y, int width, int height, const Color& color, float opacity = 1);
 
 }  // namespace scree::render

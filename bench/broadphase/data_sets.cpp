@@ -17,13 +17,14 @@ namespace scree::bench {
 
 namespace {
 
-/// What makes a set; `side`: of the cube (m).
+/// The recipe of a data set. `side` is that of the cube (m).
 struct Recipe {
   const char* name;
-  double share;                              ///< of the cube that the objects would fill
-  double (*radius)(double u, double ratio);  ///< null: boxes
-  Vec3 (*place)(Random& random, double side, std::int64_t i) = nullptr;  ///< null: anywhere in the cube
-  Aabb (*first)(double side) = nullptr;  ///< of the first object; null: as all
+  double share;                              ///< share of the cube's volume that the objects would fill
+  double (*radius)(double u, double ratio);  ///< radius of a ball; null: the objects are boxes
+  Vec3 (*place)(Random& random, double side,
+                std::int64_t i) = nullptr;  ///< place of object i; null: anywhere in the cube
+  Aabb (*first)(double side) = nullptr;     ///< box of the first object; null: like all others
 };
 
 double half(double, double) { return 0.5; }
@@ -39,7 +40,8 @@ Vec3 in_cube(Random& random, double side) {
   return place;
 }
 
-/// Density (1 + R^2/a^2)^(-5/2). Its mean over the objects, which the pairs go by, is 45/1024 of n/a^3.
+/// Returns a place in a Plummer sphere, of density (1 + R^2/a^2)^(-5/2). The number of pairs depends on the
+/// mean density over the objects, which is 45/1024 of n/a^3.
 Vec3 in_plummer_sphere(Random& random, double side, std::int64_t) {
   const double a = std::cbrt(45.0 / 1024) * side;
   const double distance = a / std::sqrt(std::expm1(-2.0 / 3 * std::log(random.uniform())));
@@ -49,7 +51,7 @@ Vec3 in_plummer_sphere(Random& random, double side, std::int64_t) {
   return distance * Vec3(across * std::cos(angle), across * std::sin(angle), z);
 }
 
-/// Along (1, 1, 1): boxes of width 1 overlap where their places differ by 1 at most.
+/// Returns a place along (1, 1, 1). Boxes of width 1 overlap there if their coordinates differ by 1 at most.
 Vec3 on_line(Random& random, double side, std::int64_t) {
   const double length = std::pow(side, 3) / 4;
   return Vec3::Constant(random.uniform(-length / 2, length / 2));
@@ -77,13 +79,13 @@ const Recipe recipes[] = {
     {"giant", 0.5, half, nullptr, giant},
     {"slab", 0.5, half, nullptr, slab},
     {"plummer", 0.5, half, in_plummer_sphere},
-    {"boxes", 0.2, nullptr},  // the share that gives the pairs of A
+    {"boxes", 0.2, nullptr},  // the share that gives as many pairs as A has
     {"line", 0.5, half, on_line},
     {"clusters", 0.5, half, in_clusters},
     {"point", 0.5, half, at_origin},
 };
 
-/// A recipe and its R.
+/// A recipe and its ratio R.
 struct DataSet {
   const Recipe* recipe;
   double ratio = 1;
@@ -91,7 +93,7 @@ struct DataSet {
   double radius(std::int64_t i) const {
     return recipe->radius(Random(1, static_cast<std::uint64_t>(i)).uniform(), ratio);
   }
-  /// Of a box.
+  /// Returns half the edges of a box.
   static Vec3 half_edges(std::int64_t i) {
     Random random(1, static_cast<std::uint64_t>(i));
     const double second = std::pow(10.0, -random.uniform());
@@ -135,7 +137,8 @@ DataSet data_set_of(const std::string& name) {
   throw InputError(message + ", where R is at least 1");
 }
 
-/// Added up in the order of the objects, since the side of the cube follows from it.
+/// Returns the volume of all objects. It is summed in the order of the objects, since the side of the cube
+/// follows from it.
 double total_volume(const DataSet& set, std::int64_t n) {
   constexpr std::int64_t block = 1 << 16;
   std::vector<double> volumes(static_cast<std::size_t>(std::min(n, block)));

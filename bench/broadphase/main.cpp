@@ -1,4 +1,4 @@
-// Time of the broad phase over data sets and scenes; `usage` says what it is asked, and what it prints.
+// The benchmark of the broad phase over data sets and scenes. `usage` describes its options and its output.
 #include "bench/broadphase/data_sets.hpp"
 #include "bench/broadphase/input.hpp"
 #include "bench/broadphase/session.hpp"
@@ -95,8 +95,7 @@ std::vector<std::string> inputs_of(const std::vector<std::string>& words) {
   std::vector<std::string> inputs;
   for (const std::string& word : words) {
     for (const std::string& input : split(word)) {
-      if (!names_scene(input))
-        make_data_set(input, 1);  // refuses what it does not know before anything is measured
+      if (!names_scene(input)) make_data_set(input, 1);  // refuses unknown names before any measurement
       inputs.push_back(input);
     }
   }

@@ -24,7 +24,8 @@ double median(std::vector<double> values) {
   return *middle;
 }
 
-/// A 64-bit mix of each pair (splitmix64; Steele, Lea, Flood 2014); their sum does not depend on the order.
+/// Mixes each pair into 64 bits (splitmix64; Steele, Lea, Flood 2014). The sum of the mixes does not depend
+/// on the order of the pairs.
 struct MixPair {
   ConstView<Pair> pairs;
   SCREE_HD std::uint64_t operator()(std::int64_t k) const {
@@ -41,7 +42,7 @@ std::uint64_t checksum(ConstView<Pair> pairs) {
                                                 std::uint64_t{0}, thrust::plus<std::uint64_t>());
 }
 
-/// Objects, and the order in which they are given out.
+/// The objects, and the order in which each call gets them.
 template <class Space>
 class Deck {
  public:
@@ -49,7 +50,7 @@ class Deck {
     if (order == Order::rows) sort_into_rows(objects, ordered_);
     shuffle();
   }
-  /// Another permutation, if the order is random.
+  /// Makes another permutation, if the order is random.
   void shuffle() {
     if (order_ != Order::random) return;
     permute(objects_, Permutation(objects_.bounds.size(), ++permutations_), ordered_);
@@ -68,7 +69,7 @@ ConstView<Pair> find(BroadPhase<Space>& broad_phase, const Objects<Space>& objec
   return broad_phase.find(objects.bounds.view(), objects.mobility.view());
 }
 
-/// Of one call (s).
+/// Returns the time of one call (s).
 template <class Space>
 double time(BroadPhase<Space>& broad_phase, const Objects<Space>& objects) {
   Space::synchronize();
@@ -95,7 +96,7 @@ class Contestant {
                      static_cast<double>(result_.stats.pairs) * sizeof(Pair);
   }
   void repeat(const Objects<Space>& objects) { result_.times.push_back(time(*broad_phase_, objects)); }
-  /// On Device each parallel call then waits for its end.
+  /// Finds the pairs once more with each parallel call timed. On Device each call then waits for its end.
   void profile(const Objects<Space>& objects) {
     timing::reset();
     timing::time_calls(true);
@@ -110,7 +111,7 @@ class Contestant {
     return result_;
   }
 
-  /// Does the work unless some failed before.
+  /// Does the work, unless earlier work of this method failed. Stores the reason if it fails.
   template <class Work>
   void attempt(const Work& work) {
     if (!result_.problem.empty()) return;
@@ -142,7 +143,8 @@ std::vector<Measurement> measure(const Objects<Space>& objects,
     contestants.emplace_back(method);
     contestants.back().attempt([&](One& one) { one.warm_up(deck, objects, protocol.warm_ups); });
   }
-  // Another one begins each round: what it finds in the caches is the objects', not what a method left there.
+  // A different method begins each round, because the first method finds the objects in the caches, and each
+  // other one finds what the method before has left there.
   for (int k = 0; k < std::max(protocol.repeats, protocol.profiles); ++k, deck.shuffle()) {
     const auto all_in_turn = [&](const auto& work) {
       for (std::size_t c = 0; c < contestants.size(); ++c)
@@ -175,7 +177,7 @@ struct CopyBlock {
   void operator()(std::int64_t block) const { std::copy_n(from + block * words, words, to + block * words); }
 };
 
-/// By all threads on Host, by the driver on Device.
+/// Copies an array, with all threads on Host, by the driver on Device.
 template <class Space>
 void copy_words(Array<std::uint64_t, Space>& to, const Array<std::uint64_t, Space>& from) {
   if constexpr (std::is_same_v<Space, Host>) {

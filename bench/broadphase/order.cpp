@@ -49,7 +49,7 @@ struct IsPresent {
   SCREE_HD std::int64_t operator()(std::int64_t i) const { return is_absent(bounds[i]) ? 0 : 1; }
 };
 
-/// How far below the origin a centre is.
+/// Returns the distance of a centre below the origin along an axis (m).
 struct Depth {
   ConstView<Aabb> bounds;
   int axis;
@@ -94,7 +94,7 @@ void sort_into_rows(const Objects<Space>& from, Objects<Space>& to) {
   RowKey make_key{bounds, {}, 0, key.view(), place.view()};
   const std::int64_t present = parallel::sum<std::int64_t, Space>("bench.present", n, IsPresent{bounds});
   const double extents = parallel::sum<double, Space>("bench.extents", n, PresentExtent{bounds});
-  // Where all are points any width will do.
+  // If all objects are points, any width will do.
   make_key.width = extents > 0 ? extents / static_cast<double>(present) : 1.0;
   for (int a = 0; a < 3; ++a)
     make_key.lowest[a] = -parallel::max<double, Space>("bench.lowest", n, Depth{bounds, a}, -HUGE_VAL);

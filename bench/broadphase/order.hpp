@@ -1,4 +1,4 @@
-// The objects of a benchmark, and the orders in which a broad phase may be given them.
+// The objects of a benchmark, and the orders in which a broad phase gets them.
 #pragma once
 
 #include "broadphase/broad_phase.hpp"
@@ -11,16 +11,17 @@
 
 namespace scree::bench {
 
-/// What a broad phase is given.
+/// The input of a broad phase.
 template <class Space>
 struct Objects {
   Array<Aabb, Space> bounds;
   Array<Mobility, Space> mobility;
 };
 
-/// A permutation of 0 to n - 1 without a table, another one for each seed: a Feistel network of six rounds
-/// (Luby and Rackoff 1988) over the least power of four that holds n, walked on while it leads outside (Black
-/// and Rogaway 2002, "Ciphers with arbitrary finite domains").
+/// A permutation of 0 to n - 1 without a table, different for each seed. It is a Feistel network of six
+/// rounds (Luby and Rackoff 1988) over the least power of four that is not less than n. The network is
+/// applied again while its result is n or more (Black and Rogaway 2002, "Ciphers with arbitrary finite
+/// domains").
 class Permutation {
  public:
   Permutation(std::int64_t n, std::uint64_t seed)
@@ -52,7 +53,7 @@ class Permutation {
     }
     return std::uint64_t{left} << half_bits_ | right;
   }
-  /// murmur3's finaliser (Appleby 2011).
+  /// Returns the hash of murmur3's finaliser (Appleby 2011).
   SCREE_HD static std::uint32_t mixed(std::uint32_t h) {
     h = (h ^ (h >> 16)) * 0x85EBCA6Bu;
     h = (h ^ (h >> 13)) * 0xC2B2AE35u;
@@ -64,12 +65,12 @@ class Permutation {
   std::uint32_t key_[rounds];
 };
 
-/// Object i of `to` is object permutation(i) of `from`.
+/// Permutes the objects: object i of `to` is object permutation(i) of `from`.
 template <class Space>
 void permute(const Objects<Space>& from, const Permutation& permutation, Objects<Space>& to);
 
-/// Into the order of the cells, as wide as the mean extent, that hold their centres: by z, then y, then x.
-/// What is not there comes last.
+/// Sorts the objects by the cells that hold their centres, by z, then y, then x. The cells are as wide as the
+/// mean extent of the objects. Absent objects come last.
 template <class Space>
 void sort_into_rows(const Objects<Space>& from, Objects<Space>& to);
 

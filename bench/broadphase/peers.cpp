@@ -1,16 +1,17 @@
-// The broad phase on Host beside Bullet's tree (btDbvtBroadphase) and CGAL's hybrid of segment trees and
-// scans (box_self_intersection_d; Zomorodian and Edelsbrunner 2002): boxes that move, each 1 % of its extent
-// a step along a direction of its own.
+// The benchmark of the broad phase on Host beside Bullet's tree (btDbvtBroadphase) and CGAL's hybrid of
+// segment trees and scans (box_self_intersection_d; Zomorodian and Edelsbrunner 2002). The boxes move: each
+// by 1 % of its extent per step, along its own direction.
 //
 //   scree_bench_broadphase_peers [--set A,B,C] [--n 100000,1000000] [--programs scree,CGAL,Bullet]
 //                                [--threads 1,2] [--rounds 9] [--steps 10] [--margin 0.05] [--cutoff 3000]
 //
-// All take turns with the same boxes, so that whatever else the machine does hits them alike. scree and CGAL
-// start from nothing, once in a round; Bullet takes every one of a round's `steps`, of which it is given the
-// mean: its work comes in waves, since boxes leave their fat boxes after a few steps. Its margin is absolute
-// (m, its own default is 0.05). One round warms up. In the end the pairs of all are compared, one by one; of
-// Bullet's, those of boxes that overlap as given, without its margin. Exit status 1 if they differ. Times are
-// medians over the rounds, of the wall clock and of the processor.
+// All programs take turns with the same boxes, so that other load on the machine affects them equally. scree
+// and CGAL start from nothing, once in a round. Bullet gets every one of a round's `steps`, and its time is
+// the mean over them: its work varies from step to step, since boxes leave their fat boxes only after a few
+// steps. Its margin is absolute (m, its own default is 0.05). One round warms up. In the end the pairs of all
+// programs are compared one by one; from Bullet's pairs, only those are taken whose boxes overlap as given,
+// without its margin. The exit status is 1 if the pairs differ. Times are medians over the rounds, of the
+// wall clock and of the processor.
 #include "bench/broadphase/data_sets.hpp"
 #include "bench/clock.hpp"
 #include "bench/options.hpp"
@@ -43,9 +44,9 @@ class Contestant {
   explicit Contestant(std::string name) : name_(std::move(name)) {}
   virtual ~Contestant() = default;
   const std::string& name() const { return name_; }
-  /// The work that is timed: from the boxes to a list of pairs.
+  /// Does the work that is timed: it makes a list of pairs from the boxes.
   virtual void find(const Boxes& boxes) = 0;
-  /// Those of the last call of find(), in any order.
+  /// Returns the pairs of the last call of find(), in any order.
   virtual Pairs pairs() = 0;
   virtual bool takes_every_step() const { return false; }
 
@@ -67,7 +68,7 @@ class Scree final : public Contestant {
   ConstView<Pair> found_;
 };
 
-/// A box that knows its number, since CGAL sorts boxes.
+/// A box with its number, which is needed because CGAL sorts the boxes.
 struct NumberedBox {
   Aabb box;
   std::int32_t number;
@@ -83,7 +84,7 @@ struct NumberedBoxTraits {
   static int dimension() { return 3; }
 };
 
-/// Each thread keeps a list of its own.
+/// CGAL's hybrid method. Each thread keeps its own list of pairs.
 template <class Concurrency>
 class Cgal final : public Contestant {
  public:
@@ -112,7 +113,8 @@ class Cgal final : public Contestant {
   tbb::enumerable_thread_specific<Pairs> lists_;
 };
 
-/// In single precision, the faster one, from a tree that Bullet has balanced.
+/// Bullet in single precision, which is its faster version, with a tree that Bullet has balanced at the
+/// start.
 class Bullet final : public Contestant {
  public:
   explicit Bullet(const Boxes& boxes) : Contestant("Bullet") {
@@ -158,7 +160,7 @@ class Bullet final : public Contestant {
   std::vector<btBroadphaseProxy*> proxies_;
 };
 
-/// A data set in motion.
+/// A data set whose boxes move.
 class MovingBoxes {
  public:
   MovingBoxes(const std::string& set, std::int64_t n) {
@@ -190,13 +192,13 @@ class MovingBoxes {
   std::vector<Vec3> displacement_;
 };
 
-/// Seconds of the wall clock and of the processor.
+/// Times of the wall clock and of the processor (s).
 struct Seconds {
   double wall = 0;
   double processor = 0;
 };
 
-/// A contestant with a number of threads, and its times: the mean of a round's calls for each round.
+/// A contestant with a number of threads, and its times: for each round the mean of the round's calls.
 struct Entry {
   std::unique_ptr<Contestant> contestant;
   int threads;
@@ -218,7 +220,7 @@ struct Entry {
     mean.wall += (took.wall - mean.wall) / calls_in_round;
     mean.processor += (took.processor - mean.processor) / calls_in_round;
   }
-  /// Over the rounds but the first, which warms up.
+  /// Returns the median over all rounds but the first, which warms up.
   double median(double Seconds::*clock) const {
     std::vector<double> times;
     for (std::size_t k = 1; k < rounds.size(); ++k) times.push_back(rounds[k].*clock);
@@ -251,7 +253,7 @@ std::vector<Entry> make_entries(const Boxes& boxes, const Options& options) {
       } else if (program == "CGAL") {
         contestant = std::make_unique<Cgal<CGAL::Parallel_tag>>(cutoff);
       } else if (program == "Bullet") {
-        if (threads > 1) continue;  // its tree has no threads
+        if (threads > 1) continue;  // Bullet's tree uses no threads
         contestant = std::make_unique<Bullet>(boxes);
       } else {
         throw InputError("program " + program + ": one of scree, CGAL, Bullet");
@@ -262,7 +264,7 @@ std::vector<Entry> make_entries(const Boxes& boxes, const Options& options) {
   return entries;
 }
 
-/// Prints the rows of a data set; false if the pairs differ.
+/// Prints the rows of a data set. Returns false if the pairs differ.
 bool run(const std::string& set, std::int64_t n, const Options& options) {
   MovingBoxes moving(set, n);
   std::vector<Entry> entries = make_entries(moving.boxes(), options);

@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::array<std::string_view, 4> stages = {"initialize", "sort", "construct", "traverse"};
 
-/// The stage that the label "broadphase.STAGE..." names; stages.size() if it names none.
+/// Returns the stage named in the label "broadphase.STAGE...", or stages.size() if it names none.
 std::size_t stage_of(std::string_view label) {
   constexpr std::string_view prefix = "broadphase.";
   if (label.starts_with(prefix)) label.remove_prefix(prefix.size());
@@ -31,7 +31,7 @@ std::string machine_of(const std::string& space) {
   return fmt::format("{} ({} cores)", machine.cpu, machine.cores);
 }
 
-/// "label=ms" of each call, in one field.
+/// Returns "label=ms" of each call, in one field.
 std::string calls_field(const Measurement& result) {
   std::string field;
   for (const timing::Entry& call : result.calls)

@@ -11,9 +11,9 @@ namespace scree::bench {
 
 namespace {
 
-// What objects and their orders take of the memory of a space, and each method that works on them (B), or
-// about. What would need more than is free is left out, since the system may end a program rather than refuse
-// it memory.
+// The approximate memory in a space that each object takes with its orders, and that each method takes for
+// each object (B). Inputs that would need more than the free memory are left out, since the system may end a
+// program rather than refuse it memory.
 constexpr std::size_t bytes_of_object = 80;
 constexpr std::size_t bytes_of_method = 120;
 
@@ -29,7 +29,7 @@ bool has_room(const std::string& input, std::int64_t n, std::size_t methods) {
   return false;
 }
 
-/// The objects in a space; `copied` holds them if it is not Host.
+/// Returns the objects in a space. `copied` holds them if the space is not Host.
 const Objects<Host>& in_space(const Objects<Host>& objects, Objects<Host>&) { return objects; }
 template <class Space>
 const Objects<Space>& in_space(const Objects<Host>& objects, Objects<Space>& copied) {

@@ -32,7 +32,7 @@ int sign_of_determinant(const Whole& a, const Whole& b, const Whole& c) {
     return std::max({std::fabs(Real(v[0])), std::fabs(Real(v[1])), std::fabs(Real(v[2]))});
   };
   const Real found = determinant<Real>(a, b, c);
-  // Six products of three, with four roundings each and five more of sums.
+  // There are six products of three factors, with four roundings each, and five more roundings of the sums.
   const Real rounding = 6 * 9 * 0x1p-64L * size(a) * size(b) * size(c);
   if (std::fabs(found) > rounding) return found > 0 ? 1 : -1;
   return determinant<Wide>(a, b, c).sign();
@@ -68,7 +68,7 @@ class Builder {
     return whole;
   }
 
-  /// 1 if `d` is outside of the triangle, 0 if it is in its plane.
+  /// Returns 1 if `d` is outside of the triangle, 0 if it is in the triangle's plane, -1 if it is inside.
   int side(int a, int b, int c, int d) const {
     return sign_of_determinant(minus(at(b), at(a)), minus(at(c), at(a)), minus(at(d), at(a)));
   }
@@ -81,7 +81,7 @@ class Builder {
     return cross(0, 1) == 0 && cross(1, 2) == 0 && cross(2, 0) == 0;
   }
 
-  /// A tetrahedron of the first points that are one. False if there is none.
+  /// Makes a tetrahedron of the first points that span one. Returns false if no points do.
   bool start() {
     const int count = static_cast<int>(at_.size());
     int b = 1, c = 1, d = 1;

@@ -1,4 +1,4 @@
-// The hull of points in whole numbers: an oracle for make_hull().
+// The exact hull of points in integers: an oracle for make_hull().
 #pragma once
 
 #include "core/math.hpp"
@@ -9,19 +9,21 @@
 
 namespace scree::oracle {
 
-/// The convex hull as triangles; those in one plane stay apart. Points that are no corners of it may be
-/// corners of triangles, in their planes.
+/// The convex hull as triangles. Triangles in one plane are not merged. Points that are not corners of the
+/// hull may be corners of triangles in whose planes they lie.
 struct ExactHull {
-  std::vector<std::array<int, 3>> triangles;  ///< counterclockwise from outside; none if all is in a plane
-  long double volume = 0;                     ///< m^3; its rounding is that of the last operation
+  std::vector<std::array<int, 3>>
+      triangles;           ///< counterclockwise from outside; none if all points are in one plane
+  long double volume = 0;  ///< volume (m^3), rounded only by the last operation
 
-  /// How many points are corners of triangles: no fewer than the hull's vertices.
+  /// Returns how many points are corners of triangles. They are no fewer than the hull's vertices.
   int corners() const;
 };
 
-/// By insertion of one point after another (Seidel 1990; de Berg et al. 2008, chapter 11), with orientations
-/// in 256 bits where 64 do not tell. The points must be whole multiples of `unit`, a power of two, and less
-/// than 2^60 units from the first. Throws std::logic_error if they are not.
+/// Computes the hull by insertion of one point after another (Seidel 1990; de Berg et al. 2008, chapter 11).
+/// Orientations are computed in 256 bits if 64 bits cannot decide them. The points must be whole multiples of
+/// `unit`, a power of two, and less than 2^60 units from the first point. Throws std::logic_error if they are
+/// not.
 ExactHull exact_hull(std::span<const Vec3> points, double unit);
 
 }  // namespace scree::oracle

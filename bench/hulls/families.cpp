@@ -9,7 +9,7 @@
 namespace scree::oracle {
 namespace {
 
-/// A set of about unit size.
+/// Makes a set of points of about unit size.
 class Maker {
  public:
   Maker(HullFamily family, std::uint64_t n)
@@ -24,7 +24,7 @@ class Maker {
   }
 
  private:
-  /// In [low, high].
+  /// Returns a random integer in [low, high].
   int whole(int low, int high) {
     return low + static_cast<int>(random_.uniform() * static_cast<double>(high - low + 1));
   }
@@ -46,7 +46,7 @@ class Maker {
   void round_to(double digit) {
     for (Vec3& p : points_) p = (p / digit).array().round().matrix() * digit;
   }
-  /// Some of a lattice of `steps` to each side, with its corners or without.
+  /// Adds points of a lattice of `steps` to each side of the middle: all of them, or a random choice.
   void lattice() {
     const int steps = whole(1, most_ > 30 ? 4 : 2), n = 2 * steps + 1;
     const bool all = whole(0, 1) == 1 && n * n * n <= most_;

@@ -23,9 +23,9 @@ namespace {
 using Real = long double;
 using Vec = Eigen::Matrix<Real, 3, 1>;
 
-/// Thickness, relative to the longest extent, over which points must not be called flat.
+/// The thickness, relative to the longest extent, from which on points must not be refused as flat.
 constexpr Real surely_thick = 1e-6L;
-/// Roundings of a place, of its largest coordinate.
+/// The rounding of a place, relative to the largest coordinate of the points.
 constexpr Real rounding = 0x1p-49L;
 
 struct Range {
@@ -41,14 +41,14 @@ Range range_along(const std::vector<Vec>& points, const Vec& along) {
   return range;
 }
 
-/// Thinness of the points, of the directions of the exact hull's triangles.
+/// Returns the least thickness of the points over the normals of the exact hull's triangles.
 Real thickness(const std::vector<Vec>& points, const ExactHull& exact) {
   Real least = HUGE_VALL;
   for (const auto& t : exact.triangles) {
     const Vec& a = points[static_cast<std::size_t>(t[0])];
     const Vec n =
         (points[static_cast<std::size_t>(t[1])] - a).cross(points[static_cast<std::size_t>(t[2])] - a);
-    if (n.isZero(0)) continue;  // but for rounding in 64 bits
+    if (n.isZero(0)) continue;  // zero only by rounding in 64 bits
     const Range range = range_along(points, n.normalized());
     least = std::min(least, range.high - range.low);
   }
@@ -64,7 +64,7 @@ Real longest(const std::vector<Vec>& points) {
   return most;
 }
 
-/// What is wrong with faces, edges and vertices among each other; empty: nothing.
+/// Returns what is wrong between faces, edges and vertices, or an empty string.
 std::string fault_of_surface(const Hull& hull) {
   if (hull.vertices.size() + hull.faces.size() != hull.edges.size() + 2) return "Euler's formula is broken";
   if (hull.vertices.size() > Hull::most_vertices) return "too many vertices";
@@ -102,7 +102,7 @@ std::string fault_of_numbers(const Hull& hull) {
   return 2 * hull.moments.maxCoeff() > hull.moments.sum() * (1 + 1e-14) ? "moments that no body has" : "";
 }
 
-/// Of a found hull beside its points.
+/// Compares a found hull with its points, and notes the errors.
 class Judge {
  public:
   Judge(const std::vector<Vec>& points, const Hull& hull, Real width, HullError& error)
@@ -126,7 +126,7 @@ class Judge {
       const auto corners = hull_.corners_of(face);
       Real least = HUGE_VALL;
       for (const int c : corners) least = std::min(least, at(c).dot(n));
-      // Corners of one face are as far out as each other, and nothing is farther.
+      // All corners of a face must be equally far out, and no point farther.
       note(range.high - least, error_.plane);
       hold_polygon(corners, n);
     }
@@ -143,7 +143,7 @@ class Judge {
     most = std::max(most, static_cast<double>((found - slack_) / width_));
   }
 
-  /// Corners of a face are on the inner side of each of its edges.
+  /// Checks that the corners of a face are on the inner side of each of its edges.
   void hold_polygon(std::span<const int> corners, const Vec& n) {
     for (std::size_t k = 0; k < corners.size(); ++k) {
       const Vec& a = at(corners[k]);
@@ -167,7 +167,8 @@ class Judge {
   std::vector<Vec> vertices_;
 };
 
-/// Thickness across the line of the point farthest from the first and the one farthest from that.
+/// Returns the thickness across the line from the point farthest from the first point to the point farthest
+/// from that one.
 Real thickness_of_line(const std::vector<Vec>& points) {
   const auto farthest = [&](const auto& measure) {
     return *std::max_element(points.begin(), points.end(),
@@ -183,7 +184,8 @@ std::string fault_of_refusal(const std::string& words, const std::vector<Vec>& p
                              const ExactHull& exact) {
   if (words.find("vertices") != std::string::npos)
     return exact.corners() > Hull::most_vertices ? "" : "refused: " + words;
-  // Normals of points that lie along a line are noise, even in 64 bits, and so is what is measured by them.
+  // If the points lie along a line, the normals are noise even in 64 bits, and so is a thickness measured
+  // along them.
   const Real thick = std::min(thickness(points, exact), thickness_of_line(points));
   return !(thick >= surely_thick * longest(points)) ? "" : "refused: " + words;
 }

@@ -1,4 +1,4 @@
-// Whether what make_hull() makes of points is their hull.
+// The judge of make_hull(): it decides whether a result is the hull of the points.
 #pragma once
 
 #include "bench/hulls/families.hpp"
@@ -8,27 +8,28 @@
 
 namespace scree::oracle {
 
-/// How far a hull is from that of its points. Lengths are in units of the distance that counts as none:
-/// tolerance::coplanar of the longest extent, or of coplanar_thicknesses of the least.
+/// The errors of a hull relative to its points. Lengths are in units of the distance that counts as zero:
+/// tolerance::coplanar times the longest extent, or times coplanar_thicknesses times the least.
 struct HullError {
-  double support = 0;  ///< most that it falls short of the points, of the directions tried
-  double plane = 0;    ///< most that a point is outside of a face, or a corner off it
-  double polygon = 0;  ///< most that a corner of a face is outside of an edge of it, within its plane
-  double volume = 0;   ///< difference from the exact one, relative, as a length of the least extent
+  double support = 0;  ///< most by which the hull falls short of the points, over the directions tried
+  double plane = 0;    ///< most by which a point is outside of a face, or a corner of the face inside of it
+  double polygon = 0;  ///< most by which a corner of a face is outside of an edge of it, within its plane
+  double volume = 0;   ///< relative difference from the exact volume, as a length by the least extent
   bool refused = false;
-  std::string fault;  ///< empty: none. A hull that is not closed, not convex, or beyond one of the bounds
+  std::string fault;  ///< empty: none. A hull is at fault if it is not closed, not convex, or beyond one of
+                      ///< the bounds
 };
 
-/// Bound of its numbers: clusters of points that are only just not equal come to half of it, all else to a
-/// fifth.
+/// The bound of the errors. Clusters of points that are only just not equal reach half of it, all other
+/// families a fifth.
 inline constexpr double most_error = 100;
 
-/// What is wrong with a hull by itself: faces, edges and vertices that are no closed surface, or numbers that
-/// are none. Empty: nothing.
+/// Returns what is wrong with a hull by itself: faces, edges and vertices that do not form a closed surface,
+/// or invalid numbers. The string is empty if nothing is wrong.
 std::string fault_of(const Hull& hull);
 
-/// Makes the hull and holds it against the points (supports, in long double) and their exact hull (volume).
-/// A refusal is a fault unless the points are flat, or the exact hull has too many corners.
+/// Makes the hull and compares it with the points (supports, in long double) and with their exact hull
+/// (volume). A refusal is a fault unless the points are flat, or the exact hull has too many corners.
 HullError judge_hull(const HullPoints& set);
 
 }  // namespace scree::oracle

@@ -1,15 +1,16 @@
-// Hulls of adversarial points (families.hpp), each held against the points and their exact hull (judge.hpp).
+// The test of make_hull() on adversarial points (families.hpp). Each hull is compared with the points and
+// their exact hull (judge.hpp).
 //
 //   scree_bench_hulls [--sets 1000000] [--first 0] [--family all]
 //
-// Prints a row for each family; exit status 1 if a hull was wrong, or the program crashed on a set: then the
-// row says so, and the first such sets follow with what was wrong. A set is made from its family and number
-// alone, so that `--family NAME --first NUMBER --sets 1` is the one again.
+// It prints a row for each family. The exit status is 1 if a hull was wrong, or if the program crashed on a
+// set: then the row says so, and the first such sets follow with their faults. A set depends on its family
+// and number alone, so `--family NAME --first NUMBER --sets 1` makes it again.
 //   crash    sets at which the process died by a signal, or took more than ten seconds
 //   wrong    other faults
-//   refused  rightly: flat, or of too many vertices
-//   support, plane, polygon, volume   the largest errors, relative
-//   us       per set with all that it is held against; its process's time
+//   refused  sets rightly refused: flat, or with too many vertices
+//   support, plane, polygon, volume   the largest errors, relative to their tolerances
+//   us       process time per set (us), with all comparisons
 #include "bench/clock.hpp"
 #include "bench/hulls/judge.hpp"
 #include "bench/options.hpp"
@@ -27,7 +28,7 @@ namespace {
 
 using namespace oracle;
 
-/// What the processes share: the one that makes hulls may die.
+/// The data that the processes share, because the process that makes the hulls may die.
 struct Row {
   std::int64_t next = 0, end = 0;
   std::int64_t crashes = 0, wrong = 0, refused = 0;
@@ -63,7 +64,7 @@ void judge_sets(HullFamily family, Row& row) {
   }
 }
 
-/// In processes of their own, each of which goes on where the one before died.
+/// Judges a family in child processes, each of which continues where the one before died.
 void judge_family(HullFamily family, Row& row) {
   while (row.next < row.end) {
     std::fflush(stdout);

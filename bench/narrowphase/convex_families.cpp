@@ -43,13 +43,13 @@ const char* word_of(Shape shape) {
 bool one_in(int many, Random& random) { return random.uniform() * many < 1; }
 double power(double from, double to, Random& random) { return std::pow(10.0, random.uniform(from, to)); }
 
-/// What a body is like before it is placed: each length is one of its half extents.
+/// The proportions of a body before it is placed: `scale` and `stretch` multiply its half extents.
 struct Form {
   Vec3 stretch = Vec3::Ones();
   double scale = 1;
 };
 
-/// Prisms, and hulls of points on an ellipsoid.
+/// Returns a prism, or the hull of points on an ellipsoid.
 std::shared_ptr<const Hull> random_hull(const Form& form, Random& random) {
   std::vector<Vec3> points;
   const Vec3 half(std::exp2(random.uniform(-1, 0)), std::exp2(random.uniform(-1, 0)),
@@ -106,7 +106,7 @@ Form form_of(ConvexFamily family, bool large, Random& random) {
   return form;
 }
 
-/// Orientations and the direction from the first to the second.
+/// Sets the orientations and returns the direction from the first body to the second.
 Vec3 arrange(ConvexFamily family, ShapedSolid& a, ShapedSolid& b, Random& random) {
   const Vec3 axis = random_unit(random), any = random_unit(random);
   const double tilt = one_in(3, random) ? 0.0 : power(-12, -1, random);
@@ -134,8 +134,8 @@ double separation_of(const ConvexPair& pair) {
   return axes.best.separation;
 }
 
-/// The distance along the direction at which the bodies overlap by `depth`, by bisection. The axes only place
-/// the bodies: what they must be is asked of the oracle.
+/// Returns the distance along the direction at which the bodies overlap by `depth`, found by bisection. The
+/// axes under test only serve to place the bodies; the true separation comes from the oracle.
 double distance_for(ConvexPair pair, const Vec3& direction, double depth) {
   double near = 0, far = 3 * (pair.a.solid.size.norm() + pair.b.solid.size.norm());
   for (int k = 0; k < 40; ++k) {

@@ -1,20 +1,23 @@
-// Pairs of convex particles by the search along axes and by libccd, over families of overlapping pairs
-// (convex_families.hpp), each answer held against long double (convex_oracle.hpp). One thread.
+// The test of pairs of convex particles, by the search along axes and by libccd, over families of overlapping
+// pairs (convex_families.hpp). Each answer is compared with long double (convex_oracle.hpp). It uses one
+// thread.
 //
 //   scree_bench_convex [--pairs 66000] [--by family|kind]
 //
-// Prints a row for each family (or each kind of pair, of all families) and method; exit status 1 if a bound
-// is broken: then the row says so, and the numbers of the first such pairs follow. Half of the pairs have a
-// margin of a twentieth of the smaller size, the others none. Lengths are relative to the smaller body's
-// smallest size.
-//   miss, NaN    contacts of overlaps not found; answers with a number that is not finite
-//   error        axes: by how much the best axis overlaps more than the least; ccd: the same of libccd's own
-//                direction, before the certificate refuses it; `over`: share of those over ccd_excess;
-//                `taken`: the same of directions that the certificate let pass
-//   given away   largest difference of the deepest point's gap and the truth, of what decision 0007 allows
-//   refused      answers of libccd that the certificate refused, of those asked for
-//   stopped      likewise, searches that used up their budget of support points; hang: that went on after it
-//   ns           per pair; processor's time, median over batches; for ccd, with the axes that judge it
+// It prints a row for each family (or for each kind of pair, over all families) and method. The exit status
+// is 1 if a bound is broken: then the row says so, and the numbers of the first such pairs follow. Half of
+// the pairs have a margin of a twentieth of the smaller size, the others none. Lengths are relative to the
+// smaller body's smallest size.
+//   miss, NaN    overlapping pairs without a contact found; answers with a number that is not finite
+//   error        largest excess of an overlap over the least one: for axes along the best axis, for ccd along
+//                libccd's own direction before the certificate refuses it; `over`: share of excesses over
+//                ccd_excess; `taken`: largest excess along directions that the certificate accepted
+//   given away   largest difference of the deepest point's gap from the truth, relative to the difference
+//                that decision 0007 allows
+//   refused      share of libccd's answers that the certificate refused
+//   stopped      share of libccd's searches that used up their budget of support points; hang: number of
+//                searches that continued after it
+//   ns           processor time per pair, median over batches; for ccd, with the axes that judge it
 #include "bench/clock.hpp"
 #include "bench/narrowphase/convex_families.hpp"
 #include "bench/narrowphase/convex_oracle.hpp"
@@ -36,8 +39,9 @@ using oracle::ConvexFamily;
 using oracle::ConvexPair;
 
 constexpr std::int64_t batch = 500;
-constexpr double rounding = 1e-12;  // of the length
-/// Support points that libccd may ask for after the one that tells it to end: to end each loop under way.
+constexpr double rounding = 1e-12;  // relative to the pair's length
+/// Number of support points that libccd may request after the one that signals it to end, because each
+/// running loop must end.
 constexpr int supports_to_end = 16;
 
 struct Method {
@@ -73,7 +77,7 @@ int find(const Item& item, const Method& method, Manifold& out) {
   return find_contacts_by_ccd(pair.a, pair.b, pair.shapes(), item.margin, *method.ccd, &out, stats);
 }
 
-/// With the oracle's bodies about the first one's place, as the narrow phase has them.
+/// The oracle's bodies relative to the first one's place, which the narrow phase uses as origin too.
 struct Exact {
   oracle::Convex a, b;
   explicit Exact(const ConvexPair& pair)
@@ -84,7 +88,8 @@ struct Exact {
   }
 };
 
-/// Samples of the oracle may be short of the best, and any direction is no better than it.
+/// Finds the true separation. The oracle's samples may miss the largest separation, and no direction exceeds
+/// it; therefore the directions that the methods find are tried too.
 void find_truth(Item& item) {
   const Exact exact(item.pair);
   item.truth = static_cast<double>(oracle::separation(exact.a, exact.b));
@@ -105,7 +110,7 @@ void judge_axes(const Item& item, Row& row) {
   row.over += error > tolerance::ccd_excess + rounding * pair.length / pair.smallest;
 }
 
-/// False if it went on after its budget.
+/// Judges libccd on one pair. Returns false if it continued after its budget.
 bool judge_ccd(const Item& item, ccd::Method method, Row& row) {
   const ConvexPair& pair = item.pair;
   const ConvexBody a(pair.a, &pair.data_a, pair.a.solid.position),
@@ -131,7 +136,7 @@ bool judge_ccd(const Item& item, ccd::Method method, Row& row) {
   return !hung;
 }
 
-/// Whether the contact is there, and as deep as the bodies are.
+/// Returns whether the contact was found, with the depth of the overlap.
 bool judge_contact(const Item& item, const Answer& answer, Row& row) {
   const double slack = rounding * item.pair.length;
   const double allowed =
@@ -192,7 +197,7 @@ void print(const std::string& name, const Method& method, Row& row) {
   std::fflush(stdout);
 }
 
-/// False if a bound was broken. Every `step`-th item of the families from `first` on.
+/// Tests every `step`-th item of the families from `first` on. Returns false if a bound was broken.
 bool run(const std::string& name, const std::vector<ConvexFamily>& families, std::uint64_t first,
          std::uint64_t step, std::int64_t pairs) {
   std::vector<Row> rows(std::size(methods));

@@ -80,8 +80,8 @@ Real separation_along(const Convex& a, const Convex& b, const Vec& n) { return -
 
 namespace {
 
-/// The largest of many values of a function of one argument on a circle, or `known` if that is larger.
-/// `steepest`: of the function, per radian.
+/// Returns the largest of many values of a function of one argument on a circle, or `known` if that is
+/// larger. `steepest` is a bound of the function's slope per radian.
 template <class Function>
 Real largest_on_circle(Function f, Real known, Real steepest) {
   constexpr int samples = 128, most_refined = 4;
@@ -122,7 +122,7 @@ std::pair<Vec, Vec> across(const Vec& line) {
   return {u, line.cross(u)};
 }
 
-/// The farthest point of a body from its centre.
+/// Returns the distance of a body's farthest point from its centre.
 Real extent(const Convex& body) {
   Real most = std::hypot(body.disc, body.half);
   for (const Vec& p : body.points) most = std::max(most, (p - body.centre).norm());
@@ -136,8 +136,8 @@ Real largest_across(const Convex& a, const Convex& b, const Vec& line, Real know
       (b.centre - a.centre).norm() + extent(a) + extent(b));
 }
 
-/// Uphill from a direction until steps of a rounding bring no more; on a ridge, which others search, not to
-/// the end.
+/// Climbs from a direction until steps as small as rounding no longer increase the separation, and returns
+/// it. On a ridge, which other searches cover, it may stop before the top.
 Real climb(const Convex& a, const Convex& b, Vec n) {
   Real best = separation_along(a, b, n);
   constexpr int most_steps = 600;
@@ -177,8 +177,8 @@ Real largest_of_all(const Convex& a, const Convex& b) {
   return best;
 }
 
-/// From a point to a polygon with a unit normal; infinite where the foot is not in its inside, which its
-/// edges are for.
+/// Returns the distance of a point from a polygon with a unit normal. It is infinite if the foot of the point
+/// is not inside the polygon, because the distances from the edges cover that case.
 Real to_face(const Convex& body, std::size_t face, const Vec& p) {
   const std::vector<int>& corners = body.faces[face];
   const Vec& normal = body.normals[face];
@@ -191,7 +191,7 @@ Real to_face(const Convex& body, std::size_t face, const Vec& p) {
   return left > 0 && right > 0 ? INFINITY : std::fabs(normal.dot(p - at(0)));
 }
 
-/// Distance of the surfaces of cores of points, edges and faces.
+/// Returns the distance of the surfaces of two cores that consist of points, edges and faces.
 Real core_distance(const Convex& a, const Convex& b) {
   Real best = INFINITY;
   for (const Vec& p : a.points)
@@ -212,7 +212,7 @@ Real core_distance(const Convex& a, const Convex& b) {
   return best;
 }
 
-/// From a point to a cylinder; 0 inside.
+/// Returns the distance of a point from a cylinder; 0 inside.
 Real to_cylinder(const Convex& cylinder, const Vec& p) {
   const Vec d = p - cylinder.centre;
   const Real along = cylinder.axis.dot(d);
@@ -220,7 +220,8 @@ Real to_cylinder(const Convex& cylinder, const Vec& p) {
                     std::max(std::fabs(along) - cylinder.half, Real(0)));
 }
 
-/// From a point or a segment to a cylinder: a convex function of the place on the segment.
+/// Returns the distance of a point or a segment from a cylinder. It is a convex function of the place on the
+/// segment.
 Real core_to_cylinder(const Convex& round, const Convex& cylinder) {
   if (round.points.size() == 1) return to_cylinder(cylinder, round.points[0]);
   const Vec from = round.points[0], way = round.points[1] - from;
@@ -260,12 +261,13 @@ Real separation(const Convex& a, const Convex& b) {
   }
   if (a.cylinder && b.cylinder) best = std::max(best, largest_of_all(a, b));
   if (a.radius > 0 || b.radius > 0) {
-    // Along no direction are the cores farther apart than their surfaces are.
+    // No direction separates the cores by more than the distance of their surfaces.
     const Real distance = a.cylinder   ? core_to_cylinder(b, a)
                           : b.cylinder ? core_to_cylinder(a, b)
                                        : core_distance(a, b);
     const Real radii = a.radius + b.radius;
-    // Of points and segments none is inside another; with faces, some candidate parts what is apart.
+    // Points and segments are never inside one another. If a core has faces, one of the directions above
+    // separates cores that are apart.
     const bool apart = a.cylinder || b.cylinder
                            ? distance > 0
                            : (a.normals.empty() && b.normals.empty()) || best + radii >= 0;

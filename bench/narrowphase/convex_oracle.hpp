@@ -1,11 +1,12 @@
-// By how much two convex particles overlap, in long double and by definitions: of all directions the one that
-// parts them most.
+// The overlap of two convex particles, in long double and by its definition: the separation along the
+// direction that separates them most.
 //
-// Where the cores (see ConvexBody) are apart, that is their distance. Where they overlap, the surface of the
-// difference of the two is nearest to the origin at a point with one normal alone, so in the inside of one of
-// its patches: a face with a vertex, an edge with an edge (their normals are tried one by one), the wall of a
-// cylinder with a vertex or a rim with an edge (the normals are at right angles to its axis or to the edge: a
-// circle of them, sampled and refined), or a rim with a rim (all directions, sampled and refined).
+// If the cores (see ConvexBody) are apart, this is their distance. If they overlap, the surface of the
+// difference of the two is nearest to the origin at a point with a unique normal, which is thus inside one of
+// the surface's patches. A patch belongs to a face with a vertex or to an edge with an edge (their normals
+// are tried one by one), to the wall of a cylinder with a vertex or to a rim with an edge (the normals are at
+// right angles to the cylinder's axis or to the edge: a circle of them is sampled and refined), or to a rim
+// with a rim (all directions are sampled and refined).
 #pragma once
 
 #include "bench/narrowphase/convex_families.hpp"
@@ -18,30 +19,32 @@ namespace scree::oracle {
 
 class Convex {
  public:
-  /// `origin`: what places are relative to.
+  /// Places in the oracle are relative to `origin`.
   Convex(const ShapedSolid& body, const Hull* hull, const Vec3& origin);
 
-  /// Of the body's points along a unit direction.
+  /// Returns the reach of the body's points along a unit direction.
   Real reach(const Vec& n) const;
   Vec centre;
-  Real radius = 0;                         ///< around the core
+  Real radius = 0;                         ///< radius of the sphere swept over the core
   std::vector<Vec> points;                 ///< corners of the core
-  std::vector<Vec> normals;                ///< unit, outward
-  std::vector<std::vector<int>> faces;     ///< corners
-  std::vector<std::pair<int, int>> edges;  ///< corners
+  std::vector<Vec> normals;                ///< normals of the faces, unit, outward
+  std::vector<std::vector<int>> faces;     ///< corners of each face
+  std::vector<std::pair<int, int>> edges;  ///< corners of each edge
   bool cylinder = false;
   Vec axis;
-  Real disc = 0, half = 0;  ///< of a cylinder
+  Real disc = 0, half = 0;  ///< radius and half length of a cylinder
 
-  /// Directions at right angles to which its edges and walls are seen.
+  /// Returns the directions of the edges, or of a cylinder's axis. Normals of edges and walls are at right
+  /// angles to them.
   std::vector<Vec> lines() const;
 };
 
-/// How far apart two bodies are along a unit direction from the first to the second; negative: overlap.
+/// Returns the separation of two bodies along a unit direction from the first to the second; it is negative
+/// if they overlap.
 Real separation_along(const Convex& a, const Convex& b, const Vec& n);
 
-/// Largest separation over all directions, if the bodies overlap: minus the penetration depth. What the
-/// search of samples for cylinders finds may be short of it, but never beyond.
+/// Returns the largest separation over all directions, which is minus the penetration depth if the bodies
+/// overlap. The sampled search for cylinders may find less than the largest separation, but never more.
 Real separation(const Convex& a, const Convex& b);
 
 }  // namespace scree::oracle

@@ -12,7 +12,8 @@ namespace {
 
 bool one_in(int many, Random& random) { return random.uniform() * many < 1; }
 
-/// How far a pair is moved from touching, of its smaller size: in one of six, nothing or next to it.
+/// Returns the distance by which a pair is moved from touching, relative to its smaller size. In one of six
+/// pairs it is zero or nearly so.
 double step_from_touching(Random& random) {
   const double step = std::pow(10.0, -(one_in(6, random) ? random.uniform(7, 16) : random.uniform(0.7, 7)));
   return one_in(2, random) ? step : -step;
@@ -24,13 +25,15 @@ Vec3 random_extents(Random& random) {
   return extents;
 }
 
-/// Tilts of 1e-1 to 1e-12 rad.
+/// Returns a tilt of 1e-1 to 1e-12 rad.
 double small_angle(Random& random) { return std::pow(10.0, -random.uniform(1, 12)); }
 
-/// Eigen's own is a unit quaternion to 1e-11 only where the two are nearly opposed.
+/// Returns the rotation that takes one direction to another. It is normalised, because Eigen's own quaternion
+/// is of unit length only to 1e-11 if the two directions are nearly opposed.
 Quat turn_between(const Vec3& from, const Vec3& to) { return Quat::FromTwoVectors(from, to).normalized(); }
 
-/// Sizes and orientations of a family's boxes, the first at the origin, and the direction of the second one.
+/// The sizes and orientations of a family's boxes, the first of which is at the origin, and the direction
+/// from it to the second.
 struct Arrangement {
   Solid a, b;
   Vec3 direction;
@@ -109,8 +112,8 @@ Arrangement arrange(Family family, Random& random) {
   return pair;
 }
 
-/// The distance along the direction at which the boxes overlap by `depth`, by bisection. The axes tested here
-/// only place the boxes: what they must be is asked of the oracle.
+/// Returns the distance along the direction at which the boxes overlap by `depth`, found by bisection. The
+/// axes under test only serve to place the boxes; the true separation comes from the oracle.
 double distance_for(Arrangement pair, double depth) {
   double near = 0, far = 2 * (pair.a.size.norm() + pair.b.size.norm());
   for (int k = 0; k < 36; ++k) {
@@ -158,7 +161,7 @@ SolidPair make_pair(Family family, std::uint64_t n) {
 
 namespace {
 
-/// A size, up to 1000 times smaller than 1.
+/// Returns a size from 0.001 to 1.
 double random_ratio(Random& random) {
   return one_in(2, random) ? random.uniform(0.1, 1) : std::pow(10.0, -random.uniform(0, 3));
 }
@@ -167,7 +170,7 @@ Solid random_sphere(Random& random) {
   return {Vec3::Zero(), Quat::Identity(), Vec3::Constant(random_ratio(random))};
 }
 
-/// Its orientation is turned by nothing or little in one of three.
+/// Returns a random box. One of three boxes is not turned or only a little.
 Solid random_box(Random& random) {
   const Vec3 size = random_ratio(random) * random_extents(random);
   if (!one_in(3, random)) return {Vec3::Zero(), random_turn(random), size};
@@ -184,7 +187,8 @@ SolidPair spheres(Random& random) {
   return pair;
 }
 
-/// The centre is anywhere in the box or about it, also exactly over edges and vertices and on the surface.
+/// Places the centre of a sphere anywhere in a box or near it, also exactly over edges and vertices and on
+/// the surface.
 SolidPair sphere_and_box(Random& random) {
   SolidPair pair{random_sphere(random), random_box(random), 0, 0};
   Vec3 at;
@@ -201,7 +205,7 @@ SolidPair sphere_and_box(Random& random) {
   return pair;
 }
 
-/// A body over a plane; `reach`: of the body towards it.
+/// Puts a body over a plane. `reach` is the body's extent from its centre towards the plane.
 void put_on_plane(double reach, Random& random, SolidPair& pair) {
   pair.b.orientation = one_in(3, random) ? Quat::Identity() : random_turn(random);
   const Vec3 beside = random.uniform(0, 100) * (pair.b.orientation * Vec3(random_unit(random).x(), 1, 0));
@@ -222,7 +226,7 @@ SolidPair box_and_plane(Random& random) {
   return pair;
 }
 
-/// A body in a tube: anywhere, or with its ball touching the wall or a cap.
+/// Puts a body in a tube: anywhere, or with its bounding ball touching the wall or a cap.
 SolidPair in_tube(const Solid& body, double ball, Random& random) {
   SolidPair pair{body, {Vec3::Zero(), random_turn(random), Vec3::Zero()}, 0, 0};
   const double radius = random.uniform(0.3, 1);

@@ -14,18 +14,20 @@ using oracle::ClosedForm;
 using oracle::Real;
 using oracle::SolidPair;
 
-constexpr double rounding = 1e-12;  // of the length
-/// Support points that libccd may ask for after the one that tells it to end: to end each loop under way.
+constexpr double rounding = 1e-12;  // relative to the pair's length
+/// Number of support points that libccd may request after the one that signals it to end, because each
+/// running loop must end.
 constexpr int supports_to_end = 16;
 
-/// With the second body at the origin: far from it, long double has not enough digits either.
+/// Moves a pair so that the second body is at the origin. Far from the origin even long double has too few
+/// digits.
 SolidPair at_origin(SolidPair pair) {
   pair.a.position -= pair.b.position;
   pair.b.position.setZero();
   return pair;
 }
 
-/// Leaves no surface but the first.
+/// Sets the gap of the first surface, and none for the others.
 void set_gap(Item& item, Real gap) {
   item.gap = {static_cast<double>(gap), HUGE_VAL, HUGE_VAL};
   item.certain = {true, true, true};
@@ -58,7 +60,7 @@ bool is_finite(const Answer& answer) {
   });
 }
 
-/// The smallest gap found at one surface; infinite if there is no contact.
+/// Returns the smallest gap found at one surface; infinite if there is no contact.
 double gap_at(const Answer& answer, int part) {
   double gap = HUGE_VAL;
   for (int k = 0; k < answer.count; ++k) {
@@ -68,7 +70,7 @@ double gap_at(const Answer& answer, int part) {
   return gap;
 }
 
-/// Whether the answer was within bounds at one surface.
+/// Returns whether the answer was within bounds at one surface.
 bool judge_part(const Item& item, const Answer& answer, int part, bool of_boxes, Row& row) {
   const double gap = item.gap[part], slack = rounding * item.pair.length;
   const double found = gap_at(answer, part);
@@ -91,7 +93,7 @@ bool judge_part(const Item& item, const Answer& answer, int part, bool of_boxes,
   return off <= given_away + slack;
 }
 
-/// The depth by the 15 axes.
+/// Returns whether the depth by the 15 axes is right to rounding.
 bool judge_axes(const Item& item, Row& row) {
   if (item.gap[0] > 0) return true;
   const double found = separating_axes(BoxPair(item.pair.a, item.pair.b), HUGE_VAL).separation;
@@ -100,7 +102,8 @@ bool judge_axes(const Item& item, Row& row) {
   return error <= rounding;
 }
 
-/// What libccd alone said, where the way by libccd asked it.
+/// Judges libccd's own answer, if the method by libccd called it. Returns false if it continued after its
+/// budget.
 bool judge_ccd(const Item& item, ccd::Method method, Row& row) {
   const BoxPair pair(item.pair.a, item.pair.b);
   const BoxAxes axes = separating_axes(pair, item.margin);
@@ -125,7 +128,7 @@ bool judge_ccd(const Item& item, ccd::Method method, Row& row) {
 void find_truth(oracle::Family, Item& item) {
   const auto [a, b, length, smallest] = at_origin(item.pair);
   Real gap = oracle::separation(a, b);
-  // The separation is the distance at least: where it is beyond all doubt, the distance is too.
+  // The distance is at least the separation: if the separation is well beyond the margin, so is the distance.
   if (gap > 0 && gap <= 2 * item.margin + rounding * length) gap = oracle::distance(a, b);
   set_gap(item, gap);
 }

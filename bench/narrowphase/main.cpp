@@ -1,21 +1,24 @@
-// Every pair function over families of random and degenerate pairs (families.hpp), each answer held against
-// long double (judge.hpp). One thread.
+// The test of every pair function over families of random and degenerate pairs (families.hpp). Each answer is
+// compared with long double (judge.hpp). It uses one thread.
 //
 //   scree_bench_narrowphase [--pairs 10000000] [--family NAME,...]
 //
-// Prints a row for each family and method; exit status 1 if a bound is broken: then the row says so, and the
-// numbers of the first such pairs follow, by which they can be made again. Half of the pairs have a margin of
-// a twentieth of the smaller size, the others none.
+// It prints a row for each family and method. The exit status is 1 if a bound is broken: then the row says
+// so, and the numbers of the first such pairs follow, from which they can be made again. Half of the pairs
+// have a margin of a twentieth of the smaller size, the others none.
 //   touch        pairs with a contact within the margin
-//   miss, false  contacts not found, or made up; only what rounding (1e-12 of the length) leaves open is let
-//                pass, and with a margin what the preference for faces may give away of it
+//   miss, false  contacts not found, or found where there are none; a contact is not counted if rounding
+//                (1e-12 of the length) decides it, or with a margin if the preference for faces may do so
 //   NaN          answers with a number that is not finite
-//   error        sat: of the depth by the 15 axes; closed forms: of the gap; of the length. ccd: by how much
-//                libccd's own direction overlaps more than the least, before the certificate refuses it
-//   given away   largest difference of the deepest point's gap and the truth, of what decision 0007 allows
-//   refused      answers of libccd that the certificate refused, of those asked for
-//   stopped      likewise, searches that used up their budget of support points; hang: that went on after it
-//   ns           per pair; processor's time, median over batches
+//   error        relative to the length: for sat the largest error of the depth by the 15 axes, for closed
+//                forms that of the gap, for ccd the largest excess of the overlap along libccd's own
+//                direction over the least, before the certificate refuses it
+//   given away   largest difference of the deepest point's gap from the truth, relative to the difference
+//                that decision 0007 allows
+//   refused      share of libccd's answers that the certificate refused
+//   stopped      share of libccd's searches that used up their budget of support points; hang: number of
+//                searches that continued after it
+//   ns           processor time per pair, median over batches
 #include "bench/clock.hpp"
 #include "bench/narrowphase/families.hpp"
 #include "bench/narrowphase/judge.hpp"
@@ -144,7 +147,7 @@ void print(const Family& family, const Method& method, Row& row) {
   std::fflush(stdout);
 }
 
-/// False if a bound was broken.
+/// Tests a family. Returns false if a bound was broken.
 bool run(const Family& family, std::int64_t pairs) {
   std::vector<Row> rows(family.methods.size());
   std::vector<Answer> answers(batch);

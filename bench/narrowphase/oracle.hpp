@@ -1,5 +1,5 @@
-// What the narrow phase is held against: distances of shapes in long double, by definitions and not by its
-// formulas.
+// The reference for the narrow phase: distances of shapes in long double, computed from their definitions and
+// not by the narrow phase's formulas.
 #pragma once
 
 #include "narrowphase/box_pair.hpp"
@@ -48,7 +48,7 @@ struct Box {
   }
 };
 
-/// Distance of the boxes' vertex sets along a direction, negative if they overlap.
+/// Returns the distance of the boxes' vertex sets along a direction; it is negative if they overlap.
 inline Real separation_along(const Box& a, const Box& b, const Vec& n) {
   const auto shadow = [&](const Box& box) {
     std::pair<Real, Real> range(INFINITY, -INFINITY);
@@ -62,7 +62,7 @@ inline Real separation_along(const Box& a, const Box& b, const Vec& n) {
   return std::max(on_b.first - on_a.second, on_a.first - on_b.second);
 }
 
-/// Largest separation over the 15 axes: minus the penetration depth, if negative.
+/// Returns the largest separation over the 15 axes. If it is negative, it is minus the penetration depth.
 inline Real separation(const Solid& sa, const Solid& sb) {
   const Box a(sa), b(sb);
   Real best = -std::numeric_limits<Real>::infinity();
@@ -77,8 +77,8 @@ inline Real separation(const Solid& sa, const Solid& sb) {
 }
 
 inline Real segment_distance(const Vec& p0, const Vec& p1, const Vec& q0, const Vec& q1) {
-  // The squared distance is convex in the two coordinates: its minimum is in the inside, where the gradient
-  // is 0, or on one of the four borders, each a point against a segment.
+  // The squared distance is convex in the two coordinates. Its minimum is either inside, where the gradient
+  // is 0, or on one of the four borders, each of which is a point against a segment.
   const auto to_segment = [](const Vec& p, const Vec& a, const Vec& b) {
     const Real t = std::clamp((p - a).dot(b - a) / (b - a).squaredNorm(), Real(0), Real(1));
     return (p - a - t * (b - a)).norm();
@@ -95,7 +95,8 @@ inline Real segment_distance(const Vec& p0, const Vec& p1, const Vec& q0, const 
   return best;
 }
 
-/// Distance of two boxes that do not overlap: of vertices to the other box, and of edges.
+/// Returns the distance of two boxes that do not overlap: the least of vertices to the other box, and of
+/// edges to edges.
 inline Real distance(const Solid& sa, const Solid& sb) {
   const Box a(sa), b(sb);
   Real best = INFINITY;
@@ -108,14 +109,14 @@ inline Real distance(const Solid& sa, const Solid& sb) {
   return best;
 }
 
-/// By how much a preferred axis may overlap more than the best one, which separates the boxes by
-/// `separation`: the preference is a share of the preferred overlap, not of the best.
+/// Returns by how much a preferred axis may overlap more than the best one, which separates the boxes by
+/// `separation`. The preference is a share of the preferred overlap, not of the best.
 inline double most_given_away(double separation, double smallest) {
   return preference(separation, smallest) / (1 - tolerance::axis_preference);
 }
 
-/// Signed distance of a point to a box's surface, and where on it, by trying each of the 6 faces as a
-/// rectangle.
+/// Returns the signed distance of a point from a box's surface, and sets the nearest point of it. Each of the
+/// 6 faces is tried as a rectangle.
 inline Real to_surface(const Box& box, const Vec& p, Vec& nearest) {
   const Vec local = box.axes.transpose() * (p - box.centre);
   Real best = INFINITY;
@@ -132,7 +133,7 @@ inline Real to_surface(const Box& box, const Vec& p, Vec& nearest) {
   return inside ? -best : best;
 }
 
-/// Height of a point over a plane.
+/// Returns the height of a point over a plane.
 inline Real height(const Solid& plane, const Vec& p) {
   return (plane.orientation.cast<Real>() * Vec::UnitZ()).dot(p - plane.position.cast<Real>());
 }
@@ -148,18 +149,19 @@ struct Tube {
         radius(s.size.x()),
         half(s.size.z()) {}
 
-  /// From a point inside to the surface; negative beyond it.
+  /// Returns the distance of a point inside from the surface; it is negative beyond the surface.
   Real distance(int part, const Vec& p) const {
     const Vec offset = p - centre;
     if (part == tube_wall) return radius - offset.cross(axis).norm();
     return half + (part == tube_cap_below ? 1 : -1) * axis.dot(offset);
   }
-  /// The direction in which the surface is nearest.
+  /// Returns the direction in which the surface is nearest.
   Vec outward(int part, const Vec& p) const {
     if (part == tube_wall) return (p - centre - axis * axis.dot(p - centre)).normalized();
     return part == tube_cap_below ? Vec(-axis) : axis;
   }
-  /// Depth in the tube grown by the margin: at least 0 if it holds a body with this centre.
+  /// Returns the depth of a point in the tube grown by the margin. It is at least 0 if the tube holds a body
+  /// with this centre.
   Real depth(const Vec& p, double margin) const {
     return margin +
            std::min({distance(tube_wall, p), distance(tube_cap_below, p), distance(tube_cap_above, p)});

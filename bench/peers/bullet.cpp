@@ -1,4 +1,4 @@
-// Bullet, in double precision, behind the interface of the benchmark.
+// The engine Bullet, in double precision, behind the interface of the benchmark.
 #include "bench/peers/engine.hpp"
 
 #include <btBulletDynamicsCommon.h>
@@ -10,19 +10,19 @@ namespace {
 
 static_assert(sizeof(btScalar) == sizeof(double));
 
-/// The first values are Bullet's own defaults. Tuned: overlaps of any depth are parted without velocity,
-/// every approach bounces, and contacts do not act at a distance; a ball then keeps its energy. Without erp
-/// overlaps stay as they are. Wide: contacts are found all at once and kept however far a body slides, which
-/// else loses them now and then and falls for a step.
+/// The settings of Bullet. The initial values are Bullet's own defaults. In "tuned", overlaps of any depth
+/// are corrected without velocity, every approach bounces, and contacts do not act at a distance, so that a
+/// ball keeps its energy. Without erp, overlaps are not corrected. In "wide", contacts are found all at once
+/// and kept however far a body slides; otherwise a sliding body loses them now and then and falls for a step.
 struct BulletSetting {
   int iterations = 10;
-  bool continuous = false;                 // continuous detection for small fast bodies
-  double restitution_threshold = 0.2;      // m/s
-  double split_impulse_threshold = -0.04;  // m; deeper overlaps are parted without velocity
-  double contact_distance = 0.02;          // up to which contacts are kept, of the smaller body's radius
-  double warm_start = 0.85;                // share of the last impulses
+  bool continuous = false;                 // whether small fast bodies have continuous detection
+  double restitution_threshold = 0.2;      // least approach speed that bounces (m/s)
+  double split_impulse_threshold = -0.04;  // deeper overlaps (m) are corrected without velocity
+  double contact_distance = 0.02;          // contacts are kept up to this share of the smaller radius
+  double warm_start = 0.85;                // share of the last impulses with which the solver starts
   double erp = 0.2;                        // share of an overlap that is to vanish in a step
-  bool all_plane_contacts = false;         // of a body on a plane at once, else one more in each step
+  bool all_plane_contacts = false;         // all contacts with a plane at once, else one more per step
 };
 
 const std::map<std::string, BulletSetting> settings = {
@@ -43,8 +43,8 @@ const std::map<std::string, BulletSetting> settings = {
 btVector3 to_bullet(const Vec3& v) { return {v.x(), v.y(), v.z()}; }
 Vec3 from_bullet(const btVector3& v) { return {v.x(), v.y(), v.z()}; }
 
-/// The law of two bodies' materials. Each knows the scene by its user pointer, its material by its user
-/// index.
+/// Returns the contact law of two bodies' materials. A body's user pointer is the scene, its user index the
+/// material.
 const ContactLaw& law_of(const btCollisionObject* a, const btCollisionObject* b) {
   return static_cast<const Scene*>(a->getUserPointer())->law(a->getUserIndex(), b->getUserIndex());
 }

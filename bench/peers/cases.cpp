@@ -9,7 +9,7 @@ namespace scree::bench {
 
 namespace {
 
-/// Energy with which the free bodies, all spheres, would arrive at the plane z = 0 (J).
+/// Returns the energy with which the free bodies, all spheres, would arrive at the plane z = 0 (J).
 double arrival_energy(const Scene& scene) {
   const BodyTable& all = scene.bodies;
   double energy = 0;
@@ -25,7 +25,7 @@ double energy_end(const Scene& scene, const Findings& f) { return f.energy_chang
 double energy_worst(const Scene& scene, const Findings& f) {
   return f.worst_energy_change / arrival_energy(scene);
 }
-/// Without friction nothing can make a ball spin.
+/// Returns the energy in spin. It should be 0, because without friction nothing can make a ball spin.
 double energy_in_spin(const Scene& scene, const Findings& f) { return f.spin_energy / arrival_energy(scene); }
 
 const Vec3& launch(const Scene& scene) { return scene.bodies.velocity.back(); }
@@ -33,12 +33,13 @@ const ContactLaw& law(const Scene& scene) {
   return scene.law(scene.bodies.material.front(), scene.bodies.material.back());
 }
 
-/// A sphere that starts without spin rolls at 5/7 of its speed, whatever the friction.
+/// Returns the relative error of the speed of rolling. A sphere that starts without spin rolls at 5/7 of its
+/// initial speed, for any friction.
 double rolling_speed(const Scene& scene, const Findings& f) {
   return f.newest.velocity.back().x() / (launch(scene).x() * 5 / 7) - 1;
 }
 
-/// Coulomb friction stops it after v^2 / (2 mu g).
+/// Returns the relative error of the distance to rest, which by Coulomb friction is v^2 / (2 mu g).
 double stop_distance(const Scene& scene, const Findings& f) {
   const double expected = launch(scene).squaredNorm() / (2 * law(scene).friction * scene.gravity.norm());
   return (f.newest.position.back() - scene.bodies.position.back()).x() / expected - 1;
@@ -50,14 +51,15 @@ double relative_mean(const Scene&, const Findings& f) { return f.penetration.rel
 double relative_max(const Scene&, const Findings& f) { return f.penetration.relative_max; }
 double rms_speed(const Scene&, const Findings& f) { return f.rms_speed; }
 
-/// Share of the pellets, all bodies but the plate, that are behind the plate at the end.
+/// Returns the share of the pellets, which are all bodies but the plate, that are behind the plate at the
+/// end.
 double passed(const Scene& scene, const Findings& f) {
   const double plate = scene.bodies.position.front().x();
   const auto behind = std::count_if(f.newest.position.begin() + 1, f.newest.position.end(),
                                     [&](const Vec3& at) { return at.x() > plate; });
   return static_cast<double>(behind) / static_cast<double>(scene.bodies.position.size() - 1);
 }
-/// Worst of the speeds after the impact, which is e times that before.
+/// Returns the largest relative error of the speeds after the impact, which should be e times those before.
 double rebound(const Scene& scene, const Findings& f) {
   const double expected = -law(scene).restitution * launch(scene).x();
   double worst = 0;
@@ -69,8 +71,9 @@ double rebound(const Scene& scene, const Findings& f) {
 double squared_energy_change(const Scene&, const Findings& f) { return f.energy_change * f.energy_change; }
 double squared_penetration(const Scene&, const Findings& f) { return f.squared_penetration; }
 
-/// A force drags a board, the second body, from under balls that roll on it, over the ground, the first. All
-/// accelerations are constant; scene and docs have the formula. The sum of the board's and the first ball's.
+/// Returns the sum of the squared velocity errors of the board and the first ball. A force drags the board,
+/// the second body, over the ground, the first body, from under balls that roll on it. All accelerations are
+/// constant; the scene and the docs have the formula.
 double squared_velocity_errors(const Scene& scene, const Findings& f) {
   const BodyTable& all = scene.bodies;
   const auto balls = static_cast<double>(all.position.size() - 2);
@@ -78,7 +81,7 @@ double squared_velocity_errors(const Scene& scene, const Findings& f) {
   const Vec3 force = scene.forces.front().force;
   const double ground_friction = scene.law(all.material[0], all.material[1]).friction;
   const double pull = force.norm() - ground_friction * scene.gravity.norm() * (board + balls * ball);
-  const double on_ball = pull / board / (3.5 / ball + balls / board);  // N, of each ball's friction
+  const double on_ball = pull / board / (3.5 / ball + balls / board);  // friction on each ball (N)
   const Vec3 along = f.time * force.normalized();
   return (f.newest.velocity[1] - (pull - balls * on_ball) / board * along).squaredNorm() +
          (f.newest.velocity[2] - on_ball / ball * along).squaredNorm();
@@ -89,9 +92,10 @@ constexpr Measure end_penetration_max = {"penetration max", "r", relative_max};
 constexpr Measure mean_squared_energy_change = {"mean (E - E0)^2", "J^2", squared_energy_change, true};
 constexpr const char* simbenchmark = "validation/simbenchmark";
 
-// A bounce and a stack are judged often enough for their worst, and seldom enough that reading the clock of
-// the process costs nothing beside the steps between. Heaps are judged at their end. SimBenchmark's cases are
-// judged after every step, as their metrics want; of the cheapest, 8 us long, that takes a seventh more.
+// A bounce and a stack are judged often enough to find their worst state, and seldom enough that reading the
+// process clock costs nothing compared with the steps between. Heaps are judged at their end. SimBenchmark's
+// cases are judged after every step, because their metrics require it; for the cheapest case, whose steps
+// take 8 us, that adds a seventh to the time.
 const std::vector<Case> cases = {
     {"bounce", 0.25, 0, 0, {{"energy end", "", energy_end}, {"energy worst", "", energy_worst}}},
     {"roll", 0.25, 0, 0, {{"rolling speed", "", rolling_speed}}},

@@ -1,4 +1,4 @@
-// The cases: scenes with an answer that is known, or a wish that every engine shares.
+// The cases of the benchmark: scenes whose answer is known, or for which every engine has the same goal.
 #pragma once
 
 #include "bench/peers/judge.hpp"
@@ -12,14 +12,15 @@ struct Measure {
   const char* name;
   const char* unit;  ///< "" for shares
   double (*error)(const Scene& scene, const Findings& findings);
-  bool mean = false;  ///< of the errors in all the states that are judged, but the first; else of the newest
+  bool mean = false;  ///< whether to take the mean over all judged states but the first; else the newest
 };
 
 struct Case {
-  const char* name;    ///< of the scene configs/FOLDER/NAME.yaml, too
-  double watch_every;  ///< how often the state is judged (s); the time of the steps between is one sample
-  double watch_from;   ///< states before this time are not judged (s); but the first one always is
-  double timed_from;   ///< steps after this time make the median (s)
+  const char* name;    ///< name of the case, and of its scene configs/FOLDER/NAME.yaml
+  double watch_every;  ///< interval at which the state is judged (s); the time of the steps between is one
+                       ///< sample
+  double watch_from;   ///< time before which states are not judged (s), except for the first one
+  double timed_from;   ///< time after which steps count for the median (s)
   std::vector<Measure> measures;
   const char* folder = "bench";
 };
@@ -27,9 +28,9 @@ struct Case {
 /// The errors of one run.
 class Errors {
  public:
-  /// Both must outlive it.
+  /// Refers to the case and to the scene, which must outlive it.
   Errors(const Case& wanted, const Scene& scene);
-  /// To be told of every state that is judged, but the first.
+  /// Takes the errors of a judged state. It must be called for each of them but the first.
   void see(const Findings& findings);
   const std::vector<double>& values() const { return values_; }  ///< in the order of the measures
 
@@ -40,7 +41,7 @@ class Errors {
   std::vector<double> values_;
 };
 
-/// Throws InputError for a name that none has.
+/// Returns the case with the name. Throws InputError if there is none.
 const Case& find_case(const std::string& name);
 
 }  // namespace scree::bench

@@ -19,7 +19,7 @@ struct Energy {
   double total() const { return linear + angular + potential; }
 };
 
-/// sum of m v^2 / 2 + w.I w / 2 and of -m g.x over the free bodies.
+/// Returns the sums of m v^2 / 2 + w.I w / 2 and of -m g.x over the free bodies.
 Energy energy_of(const BodyTable& state, const Vec3& gravity) {
   Energy sum;
   for (std::size_t k = 0; k < state.position.size(); ++k) {
@@ -34,7 +34,7 @@ Energy energy_of(const BodyTable& state, const Vec3& gravity) {
   return sum;
 }
 
-/// Of a pair at its deepest point (m).
+/// The overlap of a pair at its deepest point (m).
 struct Overlap {
   std::int32_t i, j;
   double depth;
@@ -60,7 +60,7 @@ Penetration penetration_of(const std::vector<Overlap>& overlaps, const ConstBody
     out.relative_max = relative;
     out.deepest = {static_cast<std::int32_t>(bodies.id[i]), static_cast<std::int32_t>(bodies.id[j])};
   }
-  // The smallest depth that at least 99 % of the pairs do not exceed.
+  // p99 is the smallest depth that at least 99 % of the pairs do not exceed.
   const auto rank = static_cast<std::ptrdiff_t>(std::ceil(0.99 * n)) - 1;
   std::nth_element(depths.begin(), depths.begin() + rank, depths.end());
   out.p99 = depths[static_cast<std::size_t>(rank)];
@@ -100,7 +100,7 @@ void Judge::measure_penetration_of(const BodyTable& state) {
   Bodies<Host> bodies;
   copy_bodies(bodies, state);
   Array<double, Host> margin;
-  copy(margin, std::vector<double>(state.position.size(), 0.0));  // what does not overlap is not asked for
+  copy(margin, std::vector<double>(state.position.size(), 0.0));  // pairs that do not overlap are not needed
   const ConstBodyView views = view_of(std::as_const(bodies));
   const ConstView<Pair> pairs =
       candidates_.list(views, pair_finder_->find(bodies, margin), std::as_const(margin).view());

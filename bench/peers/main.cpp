@@ -1,9 +1,9 @@
-// Runs one case in one engine, and prints one line of JSON: what it got wrong, and what it cost.
+// The program that runs one case in one engine, and prints the errors and the costs as one line of JSON.
 //
 //   scree_bench_peers --case pile --engine bullet [--setting default] [--step 0.004166666666666667]
 //
-// Times are CPU times of the process, which works with one thread. bench/peers/run calls this for a whole
-// table.
+// Times are CPU times of the process, which works with one thread. bench/peers/run calls this program for a
+// whole table.
 #include "bench/clock.hpp"
 #include "bench/peers/cases.hpp"
 #include "bench/peers/engine.hpp"
@@ -25,16 +25,16 @@ struct Arguments {
   std::string name;
   std::string engine;
   std::string setting = "default";
-  double step = 1.0 / 240;  // s
+  double step = 1.0 / 240;  // step size (s)
 };
 
 struct Outcome {
-  double median = 0;           ///< time of a step, over the samples that count (s)
-  double total = 0;            ///< of all steps (s)
-  std::vector<double> errors;  ///< in the order of the measures
+  double median = 0;           ///< median time of a step, over the samples that count (s)
+  double total = 0;            ///< time of all steps (s)
+  std::vector<double> errors;  ///< errors in the order of the measures
 };
 
-/// Steps to the scene's end; a judge sees what the case wants to be seen.
+/// Steps the scene to its end, and judges the states that the case selects.
 Outcome run_case(const Case& wanted, const Scene& scene, double step, Engine& engine) {
   const auto steps = std::lround(scene.time.end / step);
   if (std::abs(static_cast<double>(steps) * step - scene.time.end) > 1e-9 * scene.time.end)
@@ -51,7 +51,7 @@ Outcome run_case(const Case& wanted, const Scene& scene, double step, Engine& en
     for (long k = done; k < stop; ++k) engine.step();
     const double elapsed = now(CLOCK_PROCESS_CPUTIME_ID) - start;
     outcome.total += elapsed;
-    const double half = 0.5 * step;  // times are sums of steps
+    const double half = 0.5 * step;  // tolerance, because times are sums of steps
     if (static_cast<double>(done) * step > wanted.timed_from - half)
       samples.push_back(elapsed / static_cast<double>(stop - done));
     done = stop;

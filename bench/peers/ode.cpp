@@ -1,4 +1,4 @@
-// ODE, in double precision, behind the interface of the benchmark.
+// The engine ODE, in double precision, behind the interface of the benchmark.
 #include "bench/peers/engine.hpp"
 #include "core/error.hpp"
 
@@ -11,12 +11,12 @@ namespace {
 
 static_assert(sizeof(dReal) == sizeof(double));
 
-/// ODE has no cone of friction. Its pyramid lies as ODE likes, or with an axis along the slip, where its
-/// friction has the size and the direction of the cone's.
+/// The settings of ODE. ODE has no friction cone but a pyramid. The pyramid has the orientation that ODE
+/// chooses, or an axis along the slip: then its friction has the size and the direction of the cone's.
 struct OdeSetting {
-  int iterations;           // of the quick step; 0: the direct step, a pivoting solver
+  int iterations;           // iterations of the quick step; 0: the direct step, a pivoting solver
   double erp = 0.2;         // share of an overlap that is to vanish in a step, by velocity
-  bool along_slip = false;  // how the pyramids lie
+  bool along_slip = false;  // whether the pyramids have an axis along the slip
 };
 
 const std::map<std::string, OdeSetting> settings = {
@@ -36,7 +36,7 @@ struct Destroy {
 template <class Handle>
 using Owned = std::unique_ptr<std::remove_pointer_t<Handle>, Destroy>;
 
-/// The library's own state lives as long as the program.
+/// Creates a world. The library's own state lives as long as the program.
 dWorldID create_world() {
   static const struct Library {
     Library() { dInitODE2(0); }
@@ -121,14 +121,14 @@ class OdeEngine : public Engine {
     dGeomSetData(geometry, const_cast<std::int32_t*>(&all.material[k]));
     bodies_.push_back(all.mobility[k] == Mobility::free ? make_body(k) : nullptr);
     if (bodies_.back()) dGeomSetBody(geometry, bodies_.back());
-    if (all.shape[k] == Shape::plane) return;  // has its place already
+    if (all.shape[k] == Shape::plane) return;  // a plane has its place already
     const Quat& q = all.orientation[k];
     const dQuaternion turn = {q.w(), q.x(), q.y(), q.z()};
     dGeomSetPosition(geometry, all.position[k].x(), all.position[k].y(), all.position[k].z());
     dGeomSetQuaternion(geometry, turn);
   }
 
-  /// Of a body's point after the step, if nothing touched it.
+  /// Returns the velocity that a point of a body would have after the step without contacts (m/s).
   Vec3 velocity_to_come(dBodyID body, const dReal* point) const {
     if (!body) return Vec3::Zero();
     dVector3 now;
@@ -143,7 +143,7 @@ class OdeEngine : public Engine {
     const Vec3 velocity =
         velocity_to_come(first, contact.geom.pos) - velocity_to_come(second, contact.geom.pos);
     const Vec3 slip = velocity - velocity.dot(normal) * normal;
-    if (slip.norm() < 1e-9) return;  // m/s; it sticks, and one direction is as good as another
+    if (slip.norm() < 1e-9) return;  // m/s; the contact sticks, and any direction will do
     contact.surface.mode |= dContactFDir1;
     Eigen::Map<Vec3>(contact.fdir1) = slip.normalized();
   }
@@ -171,10 +171,10 @@ class OdeEngine : public Engine {
   OdeSetting setting_;
   double step_;
   const std::vector<AppliedForce>& forces_;
-  Owned<dWorldID> world_{create_world()};                // with the bodies
-  Owned<dSpaceID> space_{dHashSpaceCreate(nullptr)};     // with the geometries
-  Owned<dJointGroupID> contacts_{dJointGroupCreate(0)};  // of one step
-  std::vector<dBodyID> bodies_;                          // in the order of the scene; null where fixed
+  Owned<dWorldID> world_{create_world()};                // the world owns the bodies
+  Owned<dSpaceID> space_{dHashSpaceCreate(nullptr)};     // the space owns the geometries
+  Owned<dJointGroupID> contacts_{dJointGroupCreate(0)};  // contacts of one step
+  std::vector<dBodyID> bodies_;                          // in the order of the scene; null for fixed bodies
 };
 
 }  // namespace

@@ -1,4 +1,4 @@
-// scree behind the interface of the benchmark.
+// The engine scree behind the interface of the benchmark.
 #include "bench/options.hpp"
 #include "bench/peers/engine.hpp"
 #include "core/error.hpp"
@@ -28,8 +28,9 @@ class ScreeEngine : public Engine {
 
 }  // namespace
 
-/// A setting is `default`, or a list such as response.iterations=20,response.tolerance=1e-4. The scene is
-/// read again with it, so that it is checked like any other.
+/// Makes the engine. A setting is `default`, or a list such as
+/// response.iterations=20,response.tolerance=1e-4. The scene is read again with the setting, so that it is
+/// checked like any other scene.
 std::unique_ptr<Engine> make_scree(const std::string& setting, const Scene& scene, double step) {
   std::vector<Override> overrides = {{"time.step", fmt::format("{}", step)}};
   for (const std::string& item : split(setting == "default" ? "" : setting)) {

@@ -1,12 +1,13 @@
-// Time of a picture, snapshot in to pixels out, of a mound of bodies with a splash above it.
+// The benchmark of the renderer: the time from snapshot to pixels, for pictures of a mound of bodies with a
+// splash above it.
 //
 //   scree_bench_render [--context auto,osmesa,egl] [--shape sphere,box,mixed] [--n 10000,100000,1000000]
 //                      [--size 1280x720] [--png FOLDER]
 //
-// One picture to warm up, then the median of five; in wall time, and in processor time of all threads. What
-// goes before OpenGL: finding the bodies that can be seen and packing those, as where the processor draws, or
-// packing all, as where a GPU does. And what compressing and writing the picture as PNG takes. --png keeps
-// the last picture of each row.
+// One picture warms up, then the median of five is taken, in wall time and in processor time of all threads.
+// Three parts are also timed alone. Before OpenGL, the data are set: `found` is for finding and packing the
+// visible bodies, as is done if the processor draws; `packed` is for packing all bodies, as is done if a GPU
+// draws. `png` is for compressing and writing the picture. --png keeps the last picture of each row.
 #include "bench/clock.hpp"
 #include "bench/options.hpp"
 #include "core/rng.hpp"
@@ -47,8 +48,8 @@ void append(BodyTable& bodies, Shape shape, const Vec3& position, const Quat& or
   bodies.material.push_back(static_cast<std::int32_t>(bodies.id.size() % 3));
 }
 
-/// A cone of bodies, jittered on a lattice, over its ground: height half the radius, 1 m. One in a thousand
-/// flies above it.
+/// Returns a cone of bodies over the ground, placed with jitter on a lattice. Its radius is 1 m, its height
+/// half of that. One body in a thousand flies above the cone.
 Snapshot mound(const std::string& shape, std::int64_t n) {
   const double pitch = std::cbrt(pi / 6 / static_cast<double>(n));
   Snapshot snapshot;

@@ -9,13 +9,14 @@ namespace scree::bench {
 namespace {
 
 /// Accelerated projected gradient descent (Mazhar, Heyn, Negrut and Tasora 2015, "Using Nesterov's method to
-/// accelerate multibody dynamics with friction and contact"), on
+/// accelerate multibody dynamics with friction and contact"). It solves
 ///   min x.W x / 2 + (q + s n).x, x in K,
-/// at given slips s = mu |u_t|, which follow by fixed-point iteration (Acary, Cadoux, Lemarechal and Malick
-/// 2011, "A formulation of the linear discrete Coulomb friction problem via convex optimization"), each time
-/// the gradient map has come down to a share of what the new slips had left. Departures: the variables are
-/// x = sqrt(stiffness) r, by point, so that heavy and light weigh alike; the products with W are kept, so
-/// that an iteration takes one; the step is never shorter than Gershgorin's bound asks for.
+/// at given slips s = mu |u_t|. The slips are found by fixed-point iteration (Acary, Cadoux, Lemarechal and
+/// Malick 2011, "A formulation of the linear discrete Coulomb friction problem via convex optimization"):
+/// they are updated each time the gradient map has come down to a share of its value just after the last
+/// update. This code departs from the papers in three points. The variables are x = sqrt(stiffness) r, by
+/// point, so that heavy and light bodies have equal weight. The products with W are kept, so that an
+/// iteration computes only one. The step is never shorter than Gershgorin's bound requires.
 class Apgd : public Solver {
  public:
   explicit Apgd(const Problem& problem) : problem_(problem), scale_(stiffness_of(problem)) {
@@ -46,7 +47,7 @@ class Apgd : public Solver {
  private:
   static constexpr double share = 0.1;
 
-  /// Slips of x; returns the norm of what the natural map then changes.
+  /// Sets the slips of x. Returns the norm of the change that the natural map then makes.
   double set_slips() {
     double square = 0;
     for (std::size_t p = 0; p < x_.size(); ++p) {
@@ -66,7 +67,8 @@ class Apgd : public Solver {
     --left_;
   }
 
-  /// Sets next_ and its product from y_, with a step that the function's curvature along it allows.
+  /// Sets next_ and its product with W from y_, with a step as long as the function's curvature along it
+  /// allows.
   void step() {
     for (;;) {
       double square = 0;
@@ -83,7 +85,7 @@ class Apgd : public Solver {
     }
   }
 
-  /// At the slips as they are, until the gradient map is a share of `error`.
+  /// Descends at fixed slips, until the gradient map is a share of `error`.
   void descend(double error) {
     y_ = x_;
     wy_ = wx_;
@@ -108,11 +110,11 @@ class Apgd : public Solver {
   }
 
   const Problem& problem_;
-  std::vector<double> scale_;  // of each point (kg^(1/2))
+  std::vector<double> scale_;  // scale of each point (kg^(1/2))
   double most_curvature_ = 0;
-  double left_ = 0;       // products with W
-  double curvature_ = 1;  // that the step takes W for
-  double length_ = 0;     // of the last step
+  double left_ = 0;       // number of products with W that may still be computed
+  double curvature_ = 1;  // curvature that the step assumes for W
+  double length_ = 0;     // length of the last step
   PointVectors x_, y_, next_, wx_, wy_, wnext_, slope_, scaled_;
 };
 

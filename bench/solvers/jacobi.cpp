@@ -7,11 +7,12 @@ namespace scree::bench {
 
 namespace {
 
-/// Projected Jacobi: all points at once take a step of the natural map, each so short that the diagonal of
-/// steps bounds W, as the split masses of Tonge, Benevolenski and Voroshilov do (2012, "Mass splitting for
-/// jitter-free parallel rigid body simulation"): there by the contacts of a body, here by the norms of the
-/// blocks in its row of W (Gershgorin), which needs no bodies. Such steps may be twice as long before they
-/// diverge at given slips; they are relaxed by 1.5.
+/// Projected Jacobi: all points at once take a step of the natural map. The steps are so short that the
+/// diagonal of their inverses bounds W, as the split masses of Tonge, Benevolenski and Voroshilov do (2012,
+/// "Mass splitting for jitter-free parallel rigid body simulation"). There the bound is made from the number
+/// of contacts of a body, here from the norms of the blocks in a point's row of W (Gershgorin), which needs
+/// no bodies. At given slips, steps of up to twice that length converge; these are longer by the relaxation
+/// factor 1.5.
 class Jacobi : public Solver {
  public:
   explicit Jacobi(const Problem& problem) : problem_(problem), step_(problem.size()) {
@@ -44,7 +45,7 @@ class Jacobi : public Solver {
   static constexpr double relaxation = 1.5;
 
   const Problem& problem_;
-  std::vector<double> step_;  // of each point (kg)
+  std::vector<double> step_;  // step of each point (kg)
 };
 
 }  // namespace

@@ -8,12 +8,13 @@
 
 namespace scree::bench {
 
-/// A point that slips: r_t = -(S + alpha)^-1 (q_t - w_tn q_n / w_nn), and r_n from u_n = 0.
+/// The state of a slipping point at alpha: r_t = -(S + alpha)^-1 (q_t - w_tn q_n / w_nn), and r_n from u_n =
+/// 0.
 struct LocalProblem::Slip {
   Vec2 friction;  // r_t, along the axes
   double normal;
-  double excess;  // of |r_t| over its bound: from positive at alpha = 0 to negative far out
-  double slope;   // of the excess, by alpha
+  double excess;  // excess of |r_t| over its bound: positive at alpha = 0, negative for large alpha
+  double slope;   // derivative of the excess by alpha
 };
 
 LocalProblem::LocalProblem(const Mat3& w, double friction)

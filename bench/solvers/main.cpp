@@ -1,15 +1,16 @@
-// Contact solvers alone, on problems taken out of running scenes, each against one residual (residual.hpp).
-// One thread.
+// The benchmark of contact solvers alone, on problems captured from running scenes, with the same residual
+// for all solvers (residual.hpp). It uses one thread.
 //
-//   scree_bench_solvers --scene FILE --until SECONDS --problem FILE      takes the last substep's problem out
-//   scree_bench_solvers --problem FILE --solver NAME [--seconds 4]       solves it, again and again
+//   scree_bench_solvers --scene FILE --until SECONDS --problem FILE      captures the last substep's problem
+//   scree_bench_solvers --problem FILE --solver NAME [--seconds 4]       solves it repeatedly
 //
-// The first prints a line of JSON about the problem and writes it (problem_file.hpp). The second prints a
-// line for each budget of the solver, from one iteration, or a tolerance of 0.1, on: until the residual is
-// under 1e-11, a solve takes longer than `seconds`, or eight budgets in a row have left no less; of
-// iterations that counts only under 1e-8, since slow modes stand still for long before they come down. Every
-// solve starts from no impulses; its time is CPU time, the median of several where it is short, without what
-// sets the solver up. bench/solvers/run calls this for a whole table.
+// The first form prints a line of JSON about the problem and writes it (problem_file.hpp). The second prints
+// a line for each budget of the solver, starting from one iteration or a tolerance of 0.1. It ends if the
+// residual is under 1e-11, if a solve takes longer than `seconds`, or if eight budgets in a row have not
+// reduced the residual. For budgets of iterations the last rule holds only under 1e-8, since slow modes can
+// stay the same for long before they come down. Every solve starts from zero impulses. Its time is CPU time
+// without the setup of the solver, and the median of several solves if they are short. bench/solvers/run
+// calls this program for a whole table.
 #include "bench/clock.hpp"
 #include "bench/options.hpp"
 #include "bench/solvers/problem_file.hpp"
@@ -32,11 +33,11 @@ using Json = nlohmann::ordered_json;
 
 constexpr double good_enough = 1e-11;  // residual
 constexpr double least_tolerance = 1e-14;
-constexpr double finer = 10;                 // from tolerance to tolerance
-constexpr double more = 1.4142135623730951;  // from iterations to iterations
-constexpr double sample = 0.02;              // of CPU time that repeats fill (s)
+constexpr double finer = 10;                 // ratio of one tolerance to the next
+constexpr double more = 1.4142135623730951;  // ratio of one number of iterations to the one before
+constexpr double sample = 0.02;              // CPU time that the repeats of a solve fill (s)
 constexpr int most_repeats = 25;
-constexpr double better = 0.99;  // of the best residual so far
+constexpr double better = 0.99;  // ratio to the best residual so far that counts as an improvement
 constexpr double least_plateau = 1e-8;
 constexpr int most_stale = 8;
 
@@ -77,7 +78,7 @@ int capture(const Options& options) {
   return 0;
 }
 
-/// Median over as many solves as fill a sample; the last one's impulses.
+/// Returns the median time over as many solves as fill a sample. `impulses` gets those of the last solve.
 double timed_solve(Solver& solver, double budget, PointVectors& impulses) {
   std::vector<double> seconds;
   const double start = cpu_time();

@@ -6,7 +6,7 @@ namespace scree::bench {
 namespace {
 
 /// Nonsmooth Gauss-Seidel (Jourdan, Alart and Jean 1998, "A Gauss-Seidel like algorithm to solve frictional
-/// contact problems"), in the order of the points, each solved exactly.
+/// contact problems"). It visits the points in order, and solves each point's problem exactly.
 class Nsgs : public Solver {
  public:
   explicit Nsgs(const Problem& problem) : problem_(problem) {

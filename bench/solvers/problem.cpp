@@ -12,22 +12,23 @@ Mat3 cross_matrix(const Vec3& a) {
   return m;
 }
 
-/// A point's grip on a body.
+/// A contact point as seen from one of its bodies: its arm, its frame, and its sign.
 struct Grip {
   std::int32_t point;
-  double sign;  // of the velocity of this body in the point's relative velocity
+  double sign;  // sign of this body's velocity in the point's relative velocity
   Mat3 frame;
   Vec3 arm;
 };
 
-/// What an impulse at one grip changes of the relative velocity at another, of the same body.
+/// Returns the matrix from an impulse at one grip to the change of the relative velocity at another grip of
+/// the same body.
 Mat3 coupling(const ContactProblem::Body& body, const Grip& to, const Grip& from) {
   const Mat3 change = body.inverse_mass * Mat3::Identity() -
                       cross_matrix(to.arm) * body.inverse_inertia * cross_matrix(from.arm);
   return to.sign * from.sign * to.frame.transpose() * change * from.frame;
 }
 
-/// Of each body, by point; none of bodies that are not free.
+/// Returns the grips of each body, ordered by point. Bodies that are not free have none.
 std::vector<std::vector<Grip>> grips_of(const ContactProblem& scene) {
   std::vector<std::vector<Grip>> grips(scene.bodies.size());
   const auto add = [&](std::int32_t body, std::int64_t point, double sign, const Mat3& frame,
@@ -47,7 +48,7 @@ std::vector<std::vector<Grip>> grips_of(const ContactProblem& scene) {
   return grips;
 }
 
-/// Adds a block to a row that is not ordered yet.
+/// Adds a block to a row whose blocks are not sorted yet.
 void add_block(std::vector<BlockMatrix::Block>& row, std::int32_t column, const Mat3& value) {
   const auto at = std::ranges::find(row, column, &BlockMatrix::Block::column);
   if (at == row.end()) {
@@ -88,7 +89,8 @@ BlockMatrix::BlockMatrix(const Rows& lower) {
   }
   for (std::size_t row = 0; row < lower.size(); ++row) begin_[row + 1] += begin_[row];
   blocks_.resize(begin_.back());
-  // Rows come in order, and so do the columns of each: its own before those of later rows.
+  // The rows are visited in order. So the columns of each row ascend: first the row's own blocks, then the
+  // transposed blocks of later rows.
   std::vector<std::size_t> next(begin_.begin(), begin_.end() - 1);
   for (std::size_t row = 0; row < lower.size(); ++row) {
     for (const Block& block : lower[row]) {

@@ -1,7 +1,7 @@
-// The contact problem of a substep in the form that the literature solves: impulses r of the points, in the
-// frame of each (normal, two tangents), such that with u = W r + q
-//   u + mu |u_t| n is in the dual of K, r is in K, and the two are at right angles,
-// K the product of the points' Coulomb cones |r_t| <= mu r_n (De Saxce and Feng 1998, "The bipotential
+// The contact problem of a substep in the form used in the literature. The unknowns are the impulses r of the
+// points, each in its own frame (normal, two tangents), such that with u = W r + q
+//   u + mu |u_t| n is in the dual of K, r is in K, and the two are at right angles.
+// K is the product of the points' Coulomb cones |r_t| <= mu r_n (De Saxce and Feng 1998, "The bipotential
 // method"; Acary, Bremond and Huber 2018, "On solving contact problems with Coulomb friction: formulations
 // and numerical comparisons").
 #pragma once
@@ -16,10 +16,10 @@
 
 namespace scree::bench {
 
-/// A vector for each point: x along the normal, y and z along the tangents.
+/// One vector for each point: x along the normal, y and z along the tangents.
 using PointVectors = std::vector<Vec3>;
 
-/// A symmetric matrix of 3 x 3 blocks, of which each row keeps those that are not zero, by column.
+/// A symmetric matrix of 3 x 3 blocks. Each row keeps its nonzero blocks, sorted by column.
 class BlockMatrix {
  public:
   struct Block {
@@ -29,16 +29,17 @@ class BlockMatrix {
   using Rows = std::vector<std::vector<Block>>;
 
   BlockMatrix() = default;
-  /// From the rows of the lower triangle: the columns ascend and end with the diagonal, which each row has.
+  /// Makes the matrix from the rows of its lower triangle. The columns of each row must ascend and end with
+  /// the diagonal.
   explicit BlockMatrix(const Rows& lower);
 
-  std::size_t size() const { return diagonal_.size(); }  ///< in blocks
-  std::size_t count() const { return blocks_.size(); }   ///< of blocks, in both triangles
+  std::size_t size() const { return diagonal_.size(); }  ///< number of block rows
+  std::size_t count() const { return blocks_.size(); }   ///< number of blocks, in both triangles
   const Block* begin(std::size_t row) const { return blocks_.data() + begin_[row]; }
   const Block* end(std::size_t row) const { return blocks_.data() + begin_[row + 1]; }
   const Mat3& diagonal(std::size_t row) const { return diagonal_[row]; }
 
-  /// One block row of the product with x.
+  /// Returns one block row of the product with x.
   Vec3 times(std::size_t row, const PointVectors& x) const {
     Vec3 sum = Vec3::Zero();
     for (const Block* b = begin(row); b != end(row); ++b)
@@ -47,7 +48,7 @@ class BlockMatrix {
   }
 
  private:
-  std::vector<std::size_t> begin_;  // of each row; one more than rows
+  std::vector<std::size_t> begin_;  // first block of each row, and the end of the last row
   std::vector<Block> blocks_;
   std::vector<Mat3> diagonal_;
 };
@@ -57,16 +58,16 @@ struct Problem {
   PointVectors free_velocity;    ///< q: relative velocities without impulses, less their targets (m/s)
   std::vector<double> friction;  ///< mu
 
-  std::size_t size() const { return friction.size(); }  ///< points
+  std::size_t size() const { return friction.size(); }  ///< number of points
 };
 
-/// The frame of a contact: its columns are the normal and two tangents, right-handed.
+/// Returns the frame of a contact. Its columns are the normal and two tangents, right-handed.
 Mat3 frame_of(const ContactProblem::Contact& contact);
 
-/// W = J M^-1 J^T, of the points of bodies that are free, q and mu.
+/// Computes W = J M^-1 J^T from the free bodies of each point, and q and mu.
 Problem assemble(const ContactProblem& scene);
 
-/// The impulses that the run had found (N s).
+/// Returns the impulses that the captured run found (N s).
 PointVectors impulses_of(const ContactProblem& scene);
 
 }  // namespace scree::bench

@@ -21,7 +21,7 @@ namespace fs = std::filesystem;
 constexpr std::string_view array_header = "%%MatrixMarket matrix array real general\n";
 constexpr std::string_view coordinate_header = "%%MatrixMarket matrix coordinate real symmetric\n";
 
-/// Rows of numbers; the format has them by columns.
+/// A table of numbers, stored by rows; the file format stores them by columns.
 struct Table {
   std::string name;
   std::size_t columns;
@@ -48,7 +48,7 @@ void append(const Table& table, std::string& text) {
   }
 }
 
-/// The lower triangle.
+/// Appends the lower triangle of a matrix.
 void append(const BlockMatrix& matrix, std::string& text) {
   std::string entries;
   std::size_t count = 0;
@@ -70,7 +70,7 @@ void append(const BlockMatrix& matrix, std::string& text) {
   text += entries;
 }
 
-/// Takes a file apart from front to back.
+/// Parses a file from front to back.
 class Source {
  public:
   explicit Source(const fs::path& file) : name_(file.string()) {
@@ -147,7 +147,7 @@ class Source {
     if (value > most) fail("too large a size");
     return value;
   }
-  /// Counted from 0.
+  /// Returns an index that counts from 0; in the file it counts from 1.
   std::size_t index(std::size_t most) {
     const std::size_t value = size(most);
     if (value == 0) fail("expected an index");
@@ -222,7 +222,7 @@ ContactProblem scene_of(const Table& bodies, const Table& contacts, const Table&
   return scene;
 }
 
-/// Whether the contacts name bodies and points that there are.
+/// Returns whether the contacts refer only to bodies and points that exist.
 bool is_whole(const ContactProblem& scene) {
   const auto bodies = static_cast<std::int32_t>(scene.bodies.size());
   std::int64_t next = 0;

@@ -1,5 +1,5 @@
-// A contact problem as a text file, for other programs and for later: matrices in Matrix Market's form, one
-// after the other, each with its name in the comment after its header:
+// The text file of a contact problem, for other programs and for later runs. It consists of matrices in
+// Matrix Market's form, one after the other. The comment after each header has the matrix's name:
 //   W         coordinate, symmetric (its lower triangle), 3 m x 3 m: rows 3 k + 1 to 3 k + 3 are the normal
 //             and the two tangents of point k (1/kg)
 //   q         array, 3 m x 1 (m/s)
@@ -7,7 +7,7 @@
 //   bodies    array, a row each: 1/mass; inverse inertia xx, xy, xz, yy, yz, zz; velocity; spin
 //   contacts  array, a row each: i, j, first point (all from 0), points, normal, mu, 1 if between balls
 //   points    array, a row each: arm of i, arm of j, target, impulse found by the run
-// The last three are what W, q and mu come from (ContactProblem). Numbers are as short as they can be to be
+// W, q and mu follow from the last three matrices (ContactProblem). Numbers have the fewest digits that are
 // read back to the same bits.
 #pragma once
 
@@ -22,10 +22,10 @@ struct ProblemFile {
   Problem problem;
 };
 
-/// Throws RunError.
+/// Writes a problem. Throws RunError if the file cannot be written.
 void write_problem(const std::filesystem::path& file, const ProblemFile& content);
 
-/// Throws InputError.
+/// Reads a problem. Throws InputError if the file cannot be read or is not valid.
 ProblemFile read_problem(const std::filesystem::path& file);
 
 }  // namespace scree::bench

@@ -1,30 +1,31 @@
-// How far impulses are from a solution, by one measure for all solvers.
+// The distance of impulses from a solution, by one measure for all solvers.
 #pragma once
 
 #include "bench/solvers/problem.hpp"
 
 namespace scree::bench {
 
-/// Velocities, relative to the natural residual of no impulses at all: what closes or slips in the problem.
+/// The residual in velocities, relative to the natural residual of zero impulses, which comes from the points
+/// that close or slip in the problem.
 struct Residual {
-  /// Root mean square over the points of |r - P_K(r - rho (u + mu |u_t| n))| / rho, the natural map of De
-  /// Saxce's form (Acary, Bremond and Huber 2018), with 1 / rho the largest eigenvalue of the
-  /// point's block of W. So heavy and light contacts weigh alike, and units do not matter. They divide by the
-  /// norm of q instead, to which contacts that stay open add much.
+  /// The root mean square over the points of |r - P_K(r - rho (u + mu |u_t| n))| / rho, the natural map of De
+  /// Saxce's form (Acary, Bremond and Huber 2018). 1 / rho is the largest eigenvalue of the point's block of
+  /// W, so that heavy and light contacts have equal weight, and units do not matter. Acary, Bremond and Huber
+  /// divide by the norm of q instead, to which contacts that stay open contribute much.
   double natural;
   double signorini;  ///< largest |min(u_n, r_n / rho)|
   double cone;       ///< largest excess of |r_t| / rho over mu r_n / rho
 };
 
-/// The nearest point to x of the cone |x_t| <= mu x_n.
+/// Returns the nearest point to x of the cone |x_t| <= mu x_n.
 Vec3 project_on_friction_cone(const Vec3& x, double mu);
 
-/// The largest eigenvalue of each point's block of W (1/kg).
+/// Returns the largest eigenvalue of each point's block of W (1/kg).
 std::vector<double> stiffness_of(const Problem& problem);
 
 class ResidualMeter {
  public:
-  /// Refers to the problem. Throws InputError if it is solved by no impulses.
+  /// Refers to the problem. Throws InputError if zero impulses solve it.
   explicit ResidualMeter(const Problem& problem);
 
   Residual operator()(const PointVectors& impulses) const;
@@ -34,7 +35,7 @@ class ResidualMeter {
 
   const Problem& problem_;
   std::vector<double> stiffness_;
-  double scale_;  // m/s
+  double scale_;  // natural residual of zero impulses (m/s)
 };
 
 }  // namespace scree::bench

@@ -1,4 +1,4 @@
-// scree's own solvers on a captured problem: the code that simulations run, from no impulses at all.
+// scree's own solvers on a captured problem: the code that simulations run, started from zero impulses.
 #include "bench/solvers/scree_contacts.hpp"
 #include "bench/solvers/solver.hpp"
 #include "sim/response/contacts_on_host.hpp"
@@ -32,8 +32,8 @@ class SweepsAlone : public Solver {
   int block_sweeps_;
 };
 
-/// Island by island, with the bounds of the accurate mode; an island too large for them is left without
-/// impulses.
+/// Solves island by island, with the limits of the accurate mode. An island that is too large for them keeps
+/// zero impulses.
 class DirectAlone : public Solver {
  public:
   explicit DirectAlone(const ContactProblem& scene) : contacts_(scene) {}
@@ -51,7 +51,7 @@ class DirectAlone : public Solver {
   ScreeContacts contacts_;
 };
 
-/// As ContactSolver::solve_islands().
+/// Solves as ContactSolver::solve_islands() does.
 class Response : public Solver {
  public:
   Response(const ContactProblem& scene, bool accurate) : contacts_(scene), accurate_(accurate) {}

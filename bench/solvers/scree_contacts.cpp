@@ -32,7 +32,8 @@ SolverBody ScreeContacts::body(std::int32_t k) const {
   return {of.velocity, of.spin, of.inverse_mass, of.inverse_inertia};
 }
 
-/// A contact of balls with a wall that turns is not: its arms are not along the normal alone.
+/// Returns whether a contact is stored as one of balls. A contact of a ball with a turning wall is not,
+/// because its arms are not along the normal alone.
 bool ScreeContacts::is_of_balls(const ContactProblem::Contact& contact) const {
   const auto is_ball = [&](std::int32_t k) {
     const ContactProblem::Body& of = problem_.bodies[static_cast<std::size_t>(k)];
@@ -41,7 +42,8 @@ bool ScreeContacts::is_of_balls(const ContactProblem::Contact& contact) const {
   return contact.balls && is_ball(contact.i) && is_ball(contact.j);
 }
 
-/// The lowest colours in the order of the contacts; -1 for those of the other kind.
+/// Gives each contact of one kind the lowest free colour, in the order of the contacts; contacts of the other
+/// kind get -1.
 std::vector<int> ScreeContacts::color_contacts(bool balls) {
   std::vector<std::vector<bool>> taken(problem_.bodies.size());
   std::vector<int> colors;

@@ -1,4 +1,4 @@
-// A captured problem in the contact store of scree's step on Host.
+// The contact store of scree's step on Host, filled with a captured problem.
 #pragma once
 
 #include "bench/solvers/problem.hpp"
@@ -17,21 +17,22 @@ class ScreeContacts {
  public:
   explicit ScreeContacts(const ContactProblem& problem);
 
-  /// Takes all impulses away.
+  /// Sets all impulses to zero.
   void reset();
-  /// From the impulses that there are. False if they have not converged.
+  /// Sweeps from the present impulses. Returns false if they have not converged.
   bool sweep(const SweepPlan& plan);
-  /// Of islands whose natural residual is beyond the tolerance. False if one is left.
+  /// Solves the islands whose natural residual is beyond the tolerance. Returns false if one is left
+  /// unsolved.
   bool solve_islands(double tolerance, const DirectLimits& limits, std::int64_t& solved,
                      std::int64_t& failed);
 
   std::int64_t contacts() const { return static_cast<std::int64_t>(problem_.contacts.size()); }
   std::int64_t points() const { return static_cast<std::int64_t>(problem_.points.size()); }
-  /// Of each point, in the frame of its contact.
+  /// Returns the impulse of each point, in the frame of its contact.
   PointVectors impulses();
 
  private:
-  /// Where a contact is among those of its kind.
+  /// The place of a contact among the contacts of its kind.
   struct Place {
     bool balls;
     std::int64_t at;
@@ -45,7 +46,7 @@ class ScreeContacts {
   SolverBody body(std::int32_t k) const;
 
   const ContactProblem& problem_;
-  std::vector<Place> place_;  // of each contact
+  std::vector<Place> place_;  // place of each contact
   std::vector<solver::Slot> slots_;
   solver::ContactStore<Host, double> store_;
   std::int32_t nobody_;

@@ -1,4 +1,4 @@
-// Solvers of contact problems behind one interface.
+// The common interface of the solvers of contact problems.
 #pragma once
 
 #include "bench/solvers/problem.hpp"
@@ -13,31 +13,31 @@ class Solver {
  public:
   virtual ~Solver() = default;
 
-  /// What solve() takes, from cheap to dear.
+  /// The kind of budget that solve() takes, from cheap to expensive.
   enum class Budget {
-    iterations,  ///< 1, 2, 3...
-    tolerance,   ///< at which it stops by itself
+    iterations,  ///< number of iterations: 1, 2, 3...
+    tolerance,   ///< tolerance at which the solver stops by itself
   };
   virtual Budget budget() const = 0;
 
-  /// Impulses of the points (N s) from none at all, as far as the budget takes them.
+  /// Returns impulses of the points (N s), solved from zero impulses as far as the budget allows.
   virtual PointVectors solve(double budget) = 0;
 };
 
-/// Names for make_solver().
+/// Returns the names for make_solver().
 std::vector<std::string> solver_names();
 
-/// Sets a solver up. It refers to both. Throws InputError for an unknown name.
+/// Makes a solver, which refers to `scene` and `problem`. Throws InputError for an unknown name.
 std::unique_ptr<Solver> make_solver(const std::string& name, const ContactProblem& scene,
                                     const Problem& problem);
 
-/// One for each file.
+/// Each solver has a file of its own; those of scree are in scree.cpp.
 std::unique_ptr<Solver> make_nsgs(const Problem& problem);
 std::unique_ptr<Solver> make_jacobi(const Problem& problem);
 std::unique_ptr<Solver> make_apgd(const Problem& problem);
 std::unique_ptr<Solver> make_scree_sweeps(const ContactProblem& scene, int block_sweeps);
 std::unique_ptr<Solver> make_scree_direct(const ContactProblem& scene);
-/// The response as simulations have it.
+/// Makes the response that simulations use.
 std::unique_ptr<Solver> make_scree_response(const ContactProblem& scene, bool accurate);
 
 }  // namespace scree::bench

@@ -1,12 +1,13 @@
-// Steps of a settled scene: how long one takes, and with which error.
+// The benchmark of the steps of a settled scene: the time of a step, and its errors.
 //
 //   scree bench step SCENE [--settle S] [--steps N] [--within W] [--space auto|host|cuda] [--threads N]
 //                          [--set key=value;...] [--calls no|yes]
 //
-// Runs until S seconds have passed, then times N steps. One JSON object: medians over these steps, the memory
-// that its space then has in use, and the state after the last. Settling ends, wherever it is, after W
-// seconds of wall time, and so do the timed steps. With --calls yes ten more steps follow in which each
-// parallel call is waited for: what they and the stages take, which on Device cannot be told apart otherwise.
+// It runs until S seconds of simulated time have passed, then times N steps. It prints one JSON object:
+// medians over these steps, the memory then in use in its space, and the state after the last step. Settling
+// ends after W seconds of wall time even if S is not reached, and the timed steps end after W seconds too.
+// With --calls yes, ten more steps follow in which each parallel call is waited for. They give the times of
+// the calls and stages, which on Device cannot be separated otherwise.
 #include "bench/options.hpp"
 #include "core/error.hpp"
 #include "core/space.hpp"
@@ -68,7 +69,8 @@ double median_speed(const Simulation& simulation) {
   return median(std::move(speeds));
 }
 
-/// What the program has taken of the space of that name, the one of `Spaces` where the bodies are.
+/// Returns the memory that the program uses in the space of that name, the one of `Spaces` that holds the
+/// bodies.
 template <class... Spaces>
 MemoryUse memory_use_of(const std::string& space) {
   MemoryUse use;
@@ -76,21 +78,21 @@ MemoryUse memory_use_of(const std::string& space) {
   return use;
 }
 
-/// The processor and, if the bodies are on it, the GPU.
+/// Returns the names of the processor and, if the bodies are on it, of the GPU.
 std::string hardware_of(const std::string& space) {
   const MachineInfo machine = machine_info();
   const std::string host = fmt::format("{}, {} cores", machine.cpu, machine.cores);
   return space == Host::name ? host : device_info().name + " beside " + host;
 }
 
-/// In ms per step.
+/// Returns the times of the entries in ms per step.
 Json per_step(const std::vector<timing::Entry>& list, double steps) {
   Json json;
   for (const timing::Entry& entry : list) json[entry.label] = 1e3 * entry.seconds / steps;
   return json;
 }
 
-/// Each parallel call is waited for, so that its share is seen; the steps take longer.
+/// Takes steps in which each parallel call is waited for, to measure its share; this makes the steps slower.
 Json steps_by_calls(Simulation& simulation, int most) {
   timing::reset();
   timing::time_calls(true);
@@ -105,14 +107,15 @@ Json steps_by_calls(Simulation& simulation, int most) {
           {"calls_ms", per_step(timing::calls(), steps)}};
 }
 
-/// Takes steps until a simulated time (s), or until so much wall time is gone (s).
+/// Takes steps until the simulated time `until` (s), or until the wall time `within` (s) has passed.
 void settle(Simulation& simulation, double until, double within) {
   const auto start = Clock::now();
   while (!simulation.finished() && simulation.time() < until && seconds_since(start) < within)
     simulation.step();
 }
 
-/// The wall time of each of at most so many steps (s), or of those that fit into so much wall time (s).
+/// Returns the wall time of each of at most `most` steps (s), or of the steps that fit into the wall time
+/// `within` (s).
 std::vector<double> time_steps(Simulation& simulation, int most, double within) {
   std::vector<double> times;
   const auto start = Clock::now();
@@ -125,7 +128,8 @@ std::vector<double> time_steps(Simulation& simulation, int most, double within) 
   return times;
 }
 
-/// What the timed steps and the state after them tell; `before`: the counters before these steps.
+/// Returns the results of the timed steps and the state after them. `before` holds the counters before these
+/// steps.
 Json results(const Scene& scene, Simulation& simulation, const std::vector<double>& times,
              const Counters& before) {
   const auto n = static_cast<double>(times.size());

@@ -13,7 +13,7 @@ namespace {
 struct Shares {
   const char* name;
   double aspect;
-  int long_sides;  ///< 0: each side is drawn
+  int long_sides;  ///< number of long sides; 0: each side is random
 };
 
 const Shares& shares_of(BoxFamily family) {
@@ -29,7 +29,8 @@ double surface_of(const Vec3& half) {
 
 double mean_curvature_of(const Vec3& half) { return 2 * pi * half.sum(); }
 
-/// Rows of cells as wide as the longest box, so that what is near has near numbers.
+/// Returns the cell of a place, as z, y, x. Cells are as wide as the longest box, so that boxes in
+/// neighbouring places get near numbers.
 std::array<std::int64_t, 3> cell_of(const Vec3& at) {
   constexpr double width = 2;
   const auto along = [](double x) { return static_cast<std::int64_t>(std::floor(x / width)); };
@@ -69,7 +70,8 @@ BoxScene make_boxes(BoxFamily family, std::int64_t count, double overlaps_per_bo
     volume += volume_of(Shape::box, bodies.size.back());
     excluded += excluded_volume(bodies.size.back(), bodies.size[static_cast<std::size_t>(k / 2)]);
   }
-  // The mean over pairs taken at random, times the number of others in a unit of volume.
+  // The sum is the mean over random pairs, times the number of bodies. Divided by the volume of the cube it
+  // is the number of overlaps per body.
   const double side = std::cbrt(excluded / overlaps_per_body);
   for (std::int64_t k = 0; k < count; ++k) {
     Random random(302, static_cast<std::uint64_t>(k));

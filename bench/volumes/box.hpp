@@ -1,4 +1,5 @@
-// Boxes around a box: along the world's axes (AABB), as the broad phase has it, and along its own (OBB).
+// The boxes around a box: along the world's axes (AABB), as in the broad phase, and along the box's own axes
+// (OBB).
 #pragma once
 
 #include "bench/volumes/rounding.hpp"
@@ -29,8 +30,8 @@ inline Aabb box_of(const Aabb& box) { return box; }
 
 struct Obb {
   Vec3f centre;
-  Eigen::Matrix3f axes;  ///< columns are the axes of the box in the world
-  Vec3f half;            ///< m
+  Eigen::Matrix3f axes;  ///< axes of the box in the world, as columns
+  Vec3f half;            ///< half extents (m)
 };
 
 class ObbFit {
@@ -48,14 +49,15 @@ class ObbFit {
 
  private:
   Vec3 half_;
-  double rounding_;  ///< of the axes, and of tests (m)
+  double rounding_;  ///< rounding of the axes and of the tests (m)
 };
 
-/// By the 15 axes (Gottschalk, Lin and Manocha 1996, section 5; Ericson 2005, section 4.4.1), those of edges
-/// not normalised. What they round in proportion to their length is in the half extents; the rest is added to
-/// the cosines here, which also keeps parallel edges from parting boxes by rounding alone.
+/// Tests the 15 axes (Gottschalk, Lin and Manocha 1996, section 5; Ericson 2005, section 4.4.1). The axes of
+/// pairs of edges are not normalised. The half extents cover the rounding that is proportional to the length
+/// of these axes. The other rounding is added to the cosines here; this also prevents parallel edges from
+/// separating boxes by rounding alone.
 inline bool overlap(const Obb& a, const Obb& b) {
-  Eigen::Matrix3f turn, size;  // a's axes times b's; their absolute values
+  Eigen::Matrix3f turn, size;  // the axes of b in the frame of a; their absolute values
   Vec3f offset;                // along a's axes
   const Vec3f between = b.centre - a.centre;
   for (int i = 0; i < 3; ++i) {

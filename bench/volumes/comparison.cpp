@@ -24,7 +24,7 @@ constexpr std::int64_t tightness_sample = 2000;
 
 bool is_before(const Pair& a, const Pair& b) { return a.i != b.i ? a.i < b.i : a.j < b.j; }
 
-/// What scree's broad phase finds, every one of `stride` bodies being free; ordered by the bodies.
+/// Returns the pairs that scree's broad phase finds if every `stride`-th body is free, ordered by the bodies.
 Pairs find_pairs(const std::vector<Aabb>& boxes, std::int64_t stride, BroadPhaseStats& stats) {
   Array<Aabb, Host> bounds;
   copy(bounds, boxes);
@@ -39,8 +39,9 @@ Pairs find_pairs(const std::vector<Aabb>& boxes, std::int64_t stride, BroadPhase
   return pairs;
 }
 
-/// Pairs as near as those that a grid of cells as wide as the bodies' boxes tests: as many are within three
-/// quarters of two boxes' widths, along each axis, as in half of the 27 cells about a body.
+/// Returns pairs as near as those that are tested by a grid whose cells are as wide as the bodies' boxes. Two
+/// bodies are a pair if along each axis their centres are within three quarters of the sum of their boxes'
+/// widths. That gives as many pairs as half of the 27 cells about a body.
 Pairs near_pairs(const std::vector<Aabb>& boxes, double tests_per_body) {
   std::vector<Aabb> cubes;
   for (const Aabb& box : boxes) {
@@ -88,7 +89,8 @@ Pairs without(const Pairs& pairs, const Pairs& taken) {
   return left;
 }
 
-/// At most so many as are timed, from the middle of the list: neighbours stay neighbours.
+/// Returns at most as many pairs as are timed, from the middle of the list, so that neighbours stay
+/// neighbours.
 Pairs part_of(const Pairs& pairs) {
   const std::int64_t size = std::min(std::ssize(pairs), most_timed);
   const auto first = pairs.begin() + (std::ssize(pairs) - size) / 2;
@@ -102,12 +104,12 @@ double nanoseconds(Work work) {
   return 1e9 * (now(CLOCK_PROCESS_CPUTIME_ID) - start);
 }
 
-/// The tests of pairs that the simulation makes, without margins.
+/// The narrow phase's tests of pairs as the simulation makes them, without margins.
 class NarrowPhaseOf {
  public:
   explicit NarrowPhaseOf(const BodyTable& table) { copy_bodies(bodies_, table); }
 
-  /// ns. 0 for too few pairs.
+  /// Returns the time per pair (ns), or 0 if there are too few pairs.
   double time_per_pair(const Pairs& pairs) {
     if (std::ssize(pairs) < least_timed) return 0;
     const ConstBodyView bodies = view_of(std::as_const(bodies_));
@@ -141,7 +143,7 @@ struct SharedPairs {
 
 enum Cost { update, random_test, near_test, second_test, narrow, narrow_left, costs };
 
-/// One kind of volume, the pairs that it leaves to the narrow phase for nothing, and its times in each round.
+/// One kind of volume, the false pairs that it leaves to the narrow phase, and its times in each round.
 struct Contestant {
   VolumeSet* volumes;
   Pairs false_pairs, false_left;
@@ -210,7 +212,7 @@ class Comparison {
     }
   }
 
-  /// One round to warm up.
+  /// Times all contestants in rounds, of which the first warms up.
   void time() {
     const SharedPairs pairs = {random_pairs(settings_.bodies),
                                near_pairs(sets_.front()->boxes(), report_.rows.front().tests),

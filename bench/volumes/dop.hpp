@@ -1,5 +1,6 @@
 // Discrete oriented polytopes: slabs in directions that all bodies share (Klosowski et al. 1998, section 3;
-// Ericson 2005, section 4.6). The box is projected anew in each place: nothing is lost by turning.
+// Ericson 2005, section 4.6). The box is projected anew in each orientation, so that turning does not loosen
+// the volume.
 #pragma once
 
 #include "bench/volumes/polytope.hpp"
@@ -9,20 +10,20 @@
 
 namespace scree::bench {
 
-/// The 14-DOP's: the axes, then the diagonals of the cube. The 8-DOP has the diagonals alone.
+/// The directions of the 14-DOP: the axes, then the diagonals of the cube. The 8-DOP has the diagonals alone.
 inline constexpr int dop_directions[7][3] = {{1, 0, 0},  {0, 1, 0},  {0, 0, 1}, {1, 1, 1},
                                              {1, 1, -1}, {1, -1, 1}, {-1, 1, 1}};
 
-/// The slabs lo <= direction * x <= hi, the directions being as long as they are above.
+/// A polytope of slabs lo <= direction * x <= hi, whose directions have the lengths of those above.
 template <int faces>
 struct Dop {
   static constexpr int slabs = faces / 2;
-  static constexpr int first = 7 - slabs;  ///< of the directions
+  static constexpr int first = 7 - slabs;  ///< index of the first direction
   static Vec3 direction(int k) {
     const int* d = dop_directions[first + k];
     return Vec3(d[0], d[1], d[2]);
   }
-  /// direction(k) * x, without the products by 0.
+  /// Returns direction(k) * x, without the products by 0.
   static double along(int k, const Vec3& x) {
     const int* d = dop_directions[first + k];
     return first + k < 3 ? x[first + k] : d[0] * x[0] + d[1] * x[1] + d[2] * x[2];
@@ -39,7 +40,7 @@ class DopFit {
   DopFit(const Vec3& half, double margin) : half_(half), margin_(margin) {}
 
   Dop<faces> place(const Vec3& position, const Quat& orientation) const {
-    constexpr double rounding = 0x1p-47;  // as in bounds_of(), of up to three times as many terms
+    constexpr double rounding = 0x1p-47;  // as in bounds_of(), but for up to three times as many terms
     const Mat3 axes = orientation.toRotationMatrix();
     Dop<faces> dop;
     for (int k = 0; k < Dop<faces>::slabs; ++k) {
@@ -77,7 +78,8 @@ inline Aabb box_of(const Dop<14>& dop) {
   return {{dop.lo[0], dop.lo[1], dop.lo[2]}, {dop.hi[0], dop.hi[1], dop.hi[2]}};
 }
 
-/// A coordinate is half the sum of two slabs', and half the difference of the two others'.
+/// Returns the box of an 8-DOP. A coordinate is half the sum of two slabs' coordinates, and half the
+/// difference of the other two's.
 inline Aabb box_of(const Dop<8>& dop) {
   Aabb box;
   for (int a = 0; a < 3; ++a) {

@@ -1,24 +1,25 @@
-// Bounding volumes around boxes: how tight they are, how many pairs their PCS holds for nothing, and what
-// they cost. One thread.
+// The benchmark of bounding volumes around boxes: their tightness, the false pairs in their PCS, and their
+// costs. It uses one thread.
 //
 //   scree_bench_volumes [--family cubes,rods_10,...] [--n 30000] [--overlaps 4] [--margin 0]
 //                       [--rounds 9]
 //
-// For each family of bodies (bodies.hpp) a row for each kind of volume; exit status 1 if a volume misses a
-// pair of bodies that overlap. Times are CPU times, medians of interleaved rounds after one to warm up.
-// --margin is how much further the volumes reach than the bodies, of their smallest half extents. --overlaps
-// is how many others each body would overlap, if there were no walls: twice the pairs per body.
-//   bytes         of one volume
-//   tight         mean volume over the body's own
-//   pairs         that overlap, per body
-//   false         of these, per pair of bodies that overlap (the 15 axes of the narrow phase)
-//   missed        pairs of bodies that overlap and whose volumes do not
+// It prints a row for each kind of volume, for each family of bodies (bodies.hpp). The exit status is 1 if a
+// volume misses a pair of bodies that overlap. Times are CPU times, medians of interleaved rounds after one
+// to warm up. --margin is the distance by which the volumes exceed the bodies, relative to the bodies'
+// smallest half extents. --overlaps is the number of others that each body would overlap without walls: twice
+// the pairs per body.
+//   bytes         size of one volume
+//   tight         mean ratio of a volume to the body's own
+//   pairs         pairs of volumes that overlap, per body
+//   false         false ones of these, per pair of bodies that overlap (by the 15 axes of the narrow phase)
+//   missed        pairs of bodies that overlap although their volumes do not
 //   update        ns: one volume from position and orientation
-//   random, near  ns: one test, of bodies taken at random, and of such as a grid tests
-//   tests         that scree's grid makes, per body
-//   narrow        ns: what the narrow phase spends on a false pair; - if there are under 200
+//   random, near  ns: one test, of random bodies, and of bodies as near as those that a grid tests
+//   tests         tests that scree's grid makes, per body
+//   narrow        ns: narrow phase of a false pair; - if there are under 200
 //   alone         ns per body: update + tests x near + false pairs x narrow
-//   second, left  where AABBs make the PCS, and this volume is tested for each pair of it: ns of that test,
+//   second, left  if AABBs make the PCS, and this volume is tested for each pair of it: ns of that test,
 //                 and false pairs that are left, per true pair
 //   after         ns per body: AABBs alone up to their PCS + update + pairs x second + left x narrow phase
 #include "bench/options.hpp"
@@ -63,7 +64,7 @@ void print(const FamilyReport& report, const VolumeRow& row) {
   std::printf("\n");
 }
 
-/// False if a pair was missed.
+/// Prints the rows of a family. Returns false if a pair was missed.
 bool run(BoxFamily family, const ComparisonSettings& settings) {
   const FamilyReport report = compare_volumes(family, settings);
   std::printf("\n%s: %.3g of the volume filled, %.2f pairs per body (%.2f without walls)\n", name_of(family),

@@ -10,11 +10,12 @@ using Polygon = std::vector<Vec3>;
 
 /// The points x with normal * x <= height.
 struct HalfSpace {
-  Vec3 normal;  ///< unit
+  Vec3 normal;  ///< outward, unit
   double height;
 };
 
-/// About the point in the middle of the first three slabs, where little cancels.
+/// Returns the half spaces of the slabs relative to the point in the middle of the first three slabs, where
+/// little cancels.
 std::vector<HalfSpace> half_spaces_of(const std::vector<Slab>& slabs) {
   Mat3 directions;
   Vec3 middles;
@@ -33,7 +34,7 @@ std::vector<HalfSpace> half_spaces_of(const std::vector<Slab>& slabs) {
   return all;
 }
 
-/// What of the polygon is in the half space (Sutherland and Hodgman 1974).
+/// Returns the part of the polygon in the half space (Sutherland and Hodgman 1974).
 Polygon clip(const Polygon& polygon, const HalfSpace& side) {
   Polygon inside;
   for (std::size_t k = 0; k < polygon.size(); ++k) {
@@ -59,8 +60,8 @@ double volume_of(const std::vector<Slab>& slabs) {
   const std::vector<HalfSpace> sides = half_spaces_of(slabs);
   double reach = 0;
   for (const HalfSpace& side : sides) reach = std::max(reach, std::fabs(side.height));
-  // A face is a part of its plane's square that reaches far enough for any polytope of slabs at angles that
-  // are not tiny; the pyramids over the faces fill the polytope.
+  // A face is a part of a square in its plane. The square is large enough for any polytope of slabs whose
+  // angles are not tiny. The pyramids over the faces fill the polytope.
   constexpr double far = 100;
   double volume = 0;
   for (const HalfSpace& face : sides) {

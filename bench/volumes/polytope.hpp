@@ -1,4 +1,4 @@
-// Volume of a convex polytope that is given by slabs.
+// The volume of a convex polytope that is given by slabs.
 #pragma once
 
 #include "core/math.hpp"
@@ -7,14 +7,14 @@
 
 namespace scree::bench {
 
-/// The points x with lo <= direction * x <= hi.
+/// The set of points x with lo <= direction * x <= hi.
 struct Slab {
   Vec3 direction;
   double lo, hi;
 };
 
-/// Volume of what the slabs have in common, exact but for rounding. The directions of the first three are
-/// independent; 0 if nothing is in all slabs.
+/// Returns the volume of the intersection of the slabs, exact to rounding; 0 if it is empty. The directions
+/// of the first three slabs must be independent.
 double volume_of(const std::vector<Slab>& slabs);
 
 }  // namespace scree::bench

@@ -1,4 +1,4 @@
-// What volumes in float must be larger by, so that their tests miss no bodies that touch.
+// The enlargement of volumes in float, by which their tests miss no bodies that touch.
 #pragma once
 
 #include "broadphase/aabb.hpp"
@@ -7,10 +7,10 @@
 
 namespace scree::bench {
 
-/// Sixteen roundings of 2^-24, relative to a volume's size: more than any test here makes.
+/// Sixteen roundings of 2^-24, relative to a volume's size. No test here makes more.
 inline constexpr double float_rounding = 0x1p-20;
 
-/// A vector in float, and how far that is from it at most (m).
+/// A vector in float, and its largest distance from the exact vector (m).
 struct RoundedVector {
   Vec3f at;
   double off;
@@ -18,10 +18,10 @@ struct RoundedVector {
       : at(exact.cast<float>()), off((at.cast<double>() - exact).lpNorm<1>()) {}
 };
 
-/// A length, larger by what places are off and by the rounding of tests; up to float.
+/// Returns a length in float, enlarged by the error of places and by the rounding of tests, and rounded up.
 inline float grown(double length, double off) { return round_up((1 + float_rounding) * (length + off)); }
 
-/// Box of half extents `half` (m) about a centre.
+/// Returns the box of half extents `half` (m) about a centre.
 inline Aabb box_around(const Vec3f& centre, const Vec3& half) {
   Aabb box;
   for (int a = 0; a < 3; ++a) {

@@ -7,13 +7,13 @@ namespace scree::bench {
 
 struct Sphere {
   Vec3f centre;
-  float radius;  ///< m
+  float radius;  ///< radius (m)
 };
 
 class SphereFit {
  public:
   static constexpr const char* name = "sphere";
-  /// Of boxes with these half extents, and of all that is within `margin` of them (m).
+  /// Fits the sphere around a box with these half extents and all that is within `margin` of it (m).
   SphereFit(const Vec3& half, double margin) : radius_(half.norm() + margin) {}
 
   Sphere place(const Vec3& position, const Quat&) const {

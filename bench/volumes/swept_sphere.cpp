@@ -10,8 +10,8 @@ struct Least {
   double at, value;
 };
 
-/// The minimum between 0 and `most` of a function with one, by golden sections to 1e-5 of the range: to
-/// rounding of the value, where it is smooth.
+/// Finds the minimum between 0 and `most` of a function with a single one, by golden sections to 1e-5 of the
+/// range. For a smooth function this gives its value to rounding.
 template <class Function>
 Least minimum_of(double most, Function function) {
   constexpr double section = 0.61803398874989485;
@@ -47,7 +47,7 @@ struct Rectangle {
   }
 };
 
-/// Whether all points of the other are farther than the reach from the plane of a face.
+/// Returns whether all points of the other rectangle are farther than the reach from the plane of a face.
 bool is_beyond(const Rectangle& face, const Rectangle& other, double squared_reach) {
   const Vec3 normal = face.along.cross(face.across);
   const double distance = std::fabs(normal.dot(other.centre - face.centre)) -
@@ -55,9 +55,10 @@ bool is_beyond(const Rectangle& face, const Rectangle& other, double squared_rea
   return distance > 0 && distance * distance > squared_reach * normal.squaredNorm();
 }
 
-/// Whether an edge p + s u, s in [-1, 1], comes as near as the reach to the inside of a face: with the point
-/// in which it goes through the plane, or with the end that is nearest to it. What is over the face elsewhere
-/// alone is nearer to its edges.
+/// Returns whether an edge p + s u, s in [-1, 1], comes within the reach of the inside of a face. Only one
+/// point of the edge is tested: the point where it crosses the plane, or the end that is nearest to the
+/// plane. If other points of the edge are over the face but this one is not, the edge is nearer to the face's
+/// edges.
 bool meets_inside(const Rectangle& face, const Vec3& p, const Vec3& u, double squared_reach) {
   const Vec3 normal = face.along.cross(face.across);
   const double height = normal.dot(p - face.centre), rise = normal.dot(u);

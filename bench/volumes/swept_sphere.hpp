@@ -1,7 +1,7 @@
-// Sphere-swept volumes around a box: a sphere swept along a segment (a capsule) and over a rectangle (Larsen,
-// Gottschalk, Lin and Manocha 1999; Ericson 2005, section 4.5). Two overlap if the distance of what they are
-// swept over is no more than their radii; it is found in double, since the coordinates of the closest points
-// of nearly parallel edges lose half of their digits.
+// The sphere-swept volumes around a box: a sphere swept along a segment (a capsule) and over a rectangle
+// (Larsen, Gottschalk, Lin and Manocha 1999; Ericson 2005, section 4.5). Two volumes overlap if the distance
+// of their segments or rectangles is no more than the sum of their radii. The distance is computed in double,
+// since the coordinates of the closest points of nearly parallel edges lose half of their digits.
 #pragma once
 
 #include "bench/volumes/rounding.hpp"
@@ -13,16 +13,16 @@ namespace scree::bench {
 /// A rectangle along the two longer axes of a box, and the radius of the sphere swept over it (m).
 struct SweptFit {
   Vec3 along;   ///< half a side, in the box's frame
-  Vec3 across;  ///< likewise; 0: the sphere is swept along a segment
+  Vec3 across;  ///< half the other side, in the box's frame; 0: the sphere is swept along a segment
   double radius;
 };
 
-/// The one of least volume that holds a box with half extents `half` (m). The corners of a box are what must
-/// be held: with the sides x and y shorter than the box's, the radius is sqrt(x^2 + y^2 + z^2), z the
-/// shortest half extent. Of the segment, likewise, y is the whole of the second half extent.
+/// Returns the fit of least volume that holds a box with half extents `half` (m). It must hold the corners of
+/// the box: if the sides are shorter than those of the box by x and y, the radius is sqrt(x^2 + y^2 + z^2),
+/// where z is the shortest half extent. For the segment, y is the whole second half extent.
 SweptFit fit_swept_sphere(const Vec3& half, bool over_rectangle);
 
-/// m^3; sides are half ones.
+/// Returns the volume (m^3). `along` and `across` are half sides.
 inline double swept_volume(double along, double across, double radius) {
   return 8 * along * across * radius + 2 * pi * radius * radius * (along + across) +
          4.0 / 3.0 * pi * radius * radius * radius;
@@ -31,7 +31,7 @@ inline double swept_volume(double along, double across, double radius) {
 struct Capsule {
   Vec3f centre;
   Vec3f along;   ///< half the segment (m)
-  float radius;  ///< m
+  float radius;  ///< radius (m)
 };
 
 class CapsuleFit {
@@ -49,11 +49,12 @@ class CapsuleFit {
   double margin_;
 };
 
-/// Squared distance of the segments p + s u and q + t v for s, t in [-1, 1], between = p - q (m^2). As
-/// Ericson 2005, section 5.1.9: the closest point of the lines, then of each segment to the other's. Where
-/// the lines are parallel but for rounding, it tells which ends are closest.
+/// Returns the squared distance of the segments p + s u and q + t v for s, t in [-1, 1], where between = p -
+/// q (m^2). As in Ericson 2005, section 5.1.9, it takes the closest point of the lines, then that of each
+/// segment to the other's. If the lines are parallel to rounding, the first point selects the ends that are
+/// closest.
 inline double squared_distance(const Vec3& between, const Vec3& u, const Vec3& v) {
-  constexpr double parallel = 1e-15;  // squared sine that is rounding
+  constexpr double parallel = 1e-15;  // squared sine that counts as rounding
   const double uu = u.squaredNorm(), uv = u.dot(v), vv = v.squaredNorm();
   const double on_u = u.dot(between), on_v = v.dot(between);
   const auto quotient = [](double a, double b) { return b > 0 ? std::clamp(a / b, -1.0, 1.0) : 0.0; };
@@ -85,7 +86,7 @@ inline Aabb box_of(const Capsule& capsule) {
 struct SweptRectangle {
   Vec3f centre;
   Vec3f along, across;  ///< half the sides (m)
-  float radius;         ///< m
+  float radius;         ///< radius (m)
 };
 
 class SweptRectangleFit {

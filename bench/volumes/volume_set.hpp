@@ -1,4 +1,4 @@
-// The volumes of one kind around all bodies, behind an interface that is the same for all kinds.
+// The set of the volumes of one kind around all bodies, with the same interface for all kinds.
 #pragma once
 
 #include "broadphase/broad_phase.hpp"
@@ -16,24 +16,25 @@ class VolumeSet {
   virtual ~VolumeSet() = default;
 
   virtual const char* name() const = 0;
-  /// How many volumes there are.
+  /// Returns the number of volumes.
   virtual std::int64_t size() const = 0;
-  /// Of one volume.
+  /// Returns the size of one volume in bytes.
   virtual std::size_t bytes() const = 0;
   /// Makes all volumes from position and orientation.
   virtual void update() = 0;
-  /// How many of the pairs overlap.
+  /// Returns how many of the pairs of volumes overlap.
   virtual std::int64_t count(const std::vector<Pair>& pairs) const = 0;
-  /// Those that do.
+  /// Returns the pairs whose volumes overlap.
   virtual std::vector<Pair> overlapping(const std::vector<Pair>& pairs) const = 0;
-  /// A box around each volume.
+  /// Returns a box around each volume.
   virtual std::vector<Aabb> boxes() const = 0;
-  /// Mean volume over the body's own, of `sample` bodies.
+  /// Returns the mean ratio of a volume to the body's own, over `sample` bodies.
   virtual double tightness(std::int64_t sample) const = 0;
 };
 
-/// AABB, sphere, OBB, capsule, rectangle-swept sphere, 8-DOP and 14-DOP around boxes, updated. They hold what
-/// is within `margin` of a body, relative to its smallest half extent. Refers to the bodies.
+/// Makes a set for each of AABB, sphere, OBB, capsule, rectangle-swept sphere, 8-DOP and 14-DOP around boxes,
+/// and updates them. The volumes hold all points within `margin` of a body, relative to its smallest half
+/// extent. The sets refer to the bodies.
 std::vector<std::unique_ptr<VolumeSet>> all_volume_sets(const BodyTable& boxes, double margin);
 
 }  // namespace scree::bench

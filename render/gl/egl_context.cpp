@@ -17,7 +17,8 @@ namespace {
 
 constexpr EGLint most_devices = 64;
 
-// Whole words alone: some names are the beginnings of others.
+// Returns whether a list of extensions has the name as a whole word, since some names are the beginnings of
+// others.
 bool has(const char* extensions, std::string_view name) {
   const std::string list = fmt::format(" {} ", extensions != nullptr ? extensions : "");
   return list.find(fmt::format(" {} ", name)) != std::string::npos;
@@ -35,9 +36,10 @@ struct Device {
   bool is_hardware;
 };
 
-/// Those that EGL knows, hardware first. None where no driver is installed.
+/// Returns the devices that EGL knows, hardware first. There are none if no driver is installed.
 std::vector<Device> devices() {
-  // Mesa would warn on the terminal of drivers that are not installed; what fails is told by the errors here.
+  // Without this setting, Mesa would warn on the terminal of drivers that are not installed. Failures are
+  // reported by the errors here.
   setenv("EGL_LOG_LEVEL", "fatal", 0);
   const char* client = eglQueryString(EGL_NO_DISPLAY, EGL_EXTENSIONS);
   const bool can_list = has(client, "EGL_EXT_device_base") || has(client, "EGL_EXT_device_enumeration");
@@ -58,7 +60,7 @@ std::vector<Device> devices() {
 
 class EglContext : public Context {
  public:
-  /// Throws RunError.
+  /// Throws RunError if the device gives no context.
   explicit EglContext(const Device& device) : is_hardware_(device.is_hardware) {
     const auto display_of = extension<PFNEGLGETPLATFORMDISPLAYEXTPROC>("eglGetPlatformDisplayEXT");
     if (display_of != nullptr) display_ = display_of(EGL_PLATFORM_DEVICE_EXT, device.device, nullptr);
@@ -78,7 +80,7 @@ class EglContext : public Context {
       context_ = eglCreateContext(display_, EGL_NO_CONFIG_KHR, EGL_NO_CONTEXT, attributes.data());
     if (context_ == EGL_NO_CONTEXT) throw RunError("gives no OpenGL 3.3 core context: " + last_error());
   }
-  /// The display stays: it is the process's, and other contexts may be on it.
+  /// The display is not terminated: it belongs to the process, and other contexts may use it.
   ~EglContext() override {
     eglMakeCurrent(display_, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
     eglDestroyContext(display_, context_);

@@ -8,12 +8,13 @@ namespace scree::render::gl {
 
 namespace {
 
-/// A place on a surface in the frame of its body, and the normal there.
+/// A point on a surface in the frame of its body, and the normal there.
 struct Spot {
   Vec3 at, normal;
 };
 
-/// On an octahedron unfolded into a square, 12 bits each way.
+/// Packs a normal into a float: the octahedron of normals is unfolded into a square, with 12 bits per
+/// coordinate.
 float packed_normal(const Vec3& n) {
   const double sum = n.cwiseAbs().sum();
   Eigen::Vector2d p = n.head<2>() / sum;
@@ -44,8 +45,8 @@ class Facets {
     add({a, normal}, {b, normal}, {c, normal});
   }
 
-  /// A surface of revolution about the z axis: its profile from below upwards. Quarters in two shades show
-  /// how it turns.
+  /// Adds a surface of revolution about the z axis, given its profile from below upwards. Quarters in two
+  /// shades show how the body turns.
   void add_round(const std::vector<Spot>& profile) {
     constexpr int sides = 40;
     const auto turned = [](const Spot& s, int k) {
@@ -73,7 +74,7 @@ class Facets {
 };
 
 std::vector<Spot> capsule_profile(const Vec3& size) {
-  constexpr int rings = 8;  // of each end
+  constexpr int rings = 8;  // number of rings at each end
   std::vector<Spot> profile;
   for (const double side : {-1.0, 1.0})
     for (int k = 0; k <= rings; ++k) {
@@ -84,7 +85,7 @@ std::vector<Spot> capsule_profile(const Vec3& size) {
   return profile;
 }
 
-/// With a narrow bevel that catches the light.
+/// Returns the profile of a cylinder, with a narrow bevel that catches the light.
 std::vector<Spot> cylinder_profile(const Vec3& size) {
   const double rim = 0.05 * std::min(size.x(), size.z());
   const Vec3 up = Vec3::UnitZ(), out = Vec3::UnitX();

@@ -1,4 +1,4 @@
-// Bodies that are drawn by triangles.
+// The bodies that are drawn by triangles.
 #pragma once
 
 #include "render/color.hpp"
@@ -10,8 +10,8 @@
 
 namespace scree::render::gl {
 
-/// Appends the triangles of a body of a general shape, four texels each as shaders/common.glsl has them,
-/// relative to the eye. Capsules and cylinders are fine enough to pass for round.
+/// Appends the triangles of a body of a general shape, four texels for each, in the layout of
+/// shaders/common.glsl and relative to the eye. Capsules and cylinders have enough triangles to look round.
 void facets_of(const Frame& frame, std::size_t body, const Vec3& eye, const Color& color,
                std::vector<Vec4f>& texels);
 

@@ -13,7 +13,7 @@ namespace scree::render::gl {
 
 namespace {
 
-/// Calls work(k) for each k below `count`, in chunks side by side.
+/// Calls work(k) for each k below `count`, with chunks in parallel.
 template <class Work>
 void for_each(std::size_t count, Work work) {
   constexpr std::size_t chunk = 8192;
@@ -22,7 +22,7 @@ void for_each(std::size_t count, Work work) {
   });
 }
 
-/// What `of` gives, which returns an optional, for each k below `count`, in order.
+/// Returns the values of the optionals that `of(k)` returns for k below `count`, in order.
 template <class T, class Of>
 std::vector<T> collect(std::size_t count, Of of) {
   constexpr std::size_t chunk = 16384;
@@ -42,13 +42,14 @@ std::vector<T> collect(std::size_t count, Of of) {
 
 Vec4f packed_color(const Color& c, float w) { return {c.x(), c.y(), c.z(), w}; }
 
-// Steeper than this (cosine), a plane in full would hide more than it shows.
+// The least cosine between a plane's normal and the vertical at which the plane is drawn in full. A steeper
+// plane in full would hide more than it shows.
 constexpr double wall_cosine = 0.25;
 
 enum class PlaneKind { ground, wall, hidden };
 
 struct PlaneFace {
-  Vec3 normal, point;  // the point next to the focus, relative to the eye
+  Vec3 normal, point;  // `point` is the point of the plane nearest to the focus, relative to the eye
   PlaneKind kind;
 };
 
@@ -63,10 +64,10 @@ PlaneFace face_of(const BodyTable& bodies, std::size_t k, const View& v) {
   return face;
 }
 
-// How far away things still shade each other: a few sizes of a typical body, within what the picture shows
-// well.
+// Returns the distance over which bodies shade each other (ambient occlusion, m): a few sizes of a typical
+// body, within limits relative to the size of the view.
 double occlusion_reach(const BodyTable& bodies, const View& v) {
-  // Of many, some: the middle of those is as typical.
+  // If there are many bodies, a sample is taken: its median is as typical.
   const std::size_t stride = 1 + bodies.shape.size() / 100000;
   std::vector<double> sizes;
   for (std::size_t k = 0; k < bodies.shape.size(); k += stride) {
@@ -97,8 +98,8 @@ FrameUniforms uniforms_of(const View& v, const LightView& light, const Style& st
   return u;
 }
 
-// Fills the texels, in the order that FrameUniforms::begin and ::after tell. They are overwritten in place: a
-// vector of a gigabyte takes longer to make than to fill.
+// Fills the texels, in the order that FrameUniforms::begin and ::after describe. The vector is overwritten in
+// place, because to make a vector of a gigabyte takes longer than to fill it.
 class Packing {
  public:
   Packing(const Frame& frame, const View& view, const Style& style, double cell, std::vector<Vec4f>& texels)
@@ -110,7 +111,7 @@ class Packing {
         texels_(texels) {}
   ~Packing() { texels_.resize(4 * packed_); }
 
-  /// Those of the bodies that have the shape; returns where they end.
+  /// Appends those of the given bodies that have the shape. Returns the index after the last of them.
   std::int32_t append(Shape shape, const std::vector<std::int32_t>& bodies) {
     const std::vector<std::int32_t> alike = collect<std::int32_t>(bodies.size(), [&](std::size_t n) {
       const std::int32_t body = bodies[n];
@@ -138,7 +139,7 @@ class Packing {
   }
 
  private:
-  /// Valid until the next call.
+  /// Returns room for the texels of that many bodies. The pointer is valid until the next call.
   Vec4f* room_for(std::size_t bodies) {
     const std::size_t first = 4 * packed_;
     packed_ += bodies;
@@ -156,15 +157,15 @@ class Packing {
   }
 
   void set_plane(const PlaneFace& face, Vec4f* texels) const {
-    // One axis of the grid is level; on a level plane it is x, or y for a plane at right angles to x.
+    // One axis of the grid is level. On a level plane it is x, or y if the plane is at right angles to x.
     const bool level = face.normal.dot(view_.up) > 0.9999;
     const Vec3 world = std::abs(face.normal.x()) < 0.9 ? Vec3::UnitX() : Vec3::UnitY();
     const Vec3 across =
         level ? Vec3(world - world.dot(face.normal) * face.normal) : Vec3(view_.up.cross(face.normal));
     const Vec3 a = (across.norm() > 0 ? across : tangent_of(face.normal)).normalized();
     const Vec3 b = face.normal.cross(a);
-    // The grid passes through the world's origin; what is left of that in floats is the eye's place within
-    // ten cells.
+    // The grid passes through the world's origin. Its phase relative to the eye is the eye's place modulo ten
+    // cells, which floats can hold.
     const auto offset = [&](const Vec3& axis) { return std::fmod(axis.dot(view_.eye), 10 * cell_); };
     texels[0] = packed(face.point, level ? 1 : 0);
     texels[1] = packed(a, offset(a));
@@ -177,13 +178,13 @@ class Packing {
   Painter paint_;
   double cell_;
   std::vector<Vec4f>& texels_;
-  std::size_t packed_ = 0;  // bodies
+  std::size_t packed_ = 0;  // number of bodies packed so far
 };
 
-/// The bodies of a frame, by what is done with them.
+/// The bodies of a frame, by the way in which they are drawn.
 struct Shown {
   std::vector<std::int32_t> solids;   ///< spheres and boxes that the camera sees
-  std::vector<std::int32_t> casters;  ///< and those that the light sees
+  std::vector<std::int32_t> casters;  ///< spheres and boxes that the light sees
   std::vector<std::int32_t> tubes;
   std::vector<PlaneFace> faces;
 };
@@ -216,7 +217,7 @@ Shown shown_in(const BodyTable& bodies, const View& v, const LightView& light, i
     shown.casters = collect<std::int32_t>(count, [&](std::size_t k) { return body_of(k, is_solid(k)); });
     return shown;
   }
-  // The two take about as long, and most of the time of a frame's data.
+  // The two calls take about the same time, and together most of the time of a frame's data.
   tbb::parallel_invoke(
       [&] { shown.solids = visible_discs(collect<Disc>(count, seen), width, height); },
       [&] { shown.casters = visible_discs(collect<Disc>(count, lit), shadow_size, shadow_size); });
@@ -224,7 +225,7 @@ Shown shown_in(const BodyTable& bodies, const View& v, const LightView& light, i
 }
 
 void append_line(std::vector<Vec4f>& texels, const Line& line, const View& v, int height) {
-  // Lines keep their share of the picture, but never get too thin to be seen.
+  // The width of a line is a fixed share of the picture's height, but never too small to be visible.
   const double width = std::max(line.width * static_cast<float>(height) / 720, 0.5f);
   texels.push_back(packed(Vec3(line.from - v.eye), width));
   texels.push_back(packed(Vec3(line.to - v.eye), line.where_hidden));

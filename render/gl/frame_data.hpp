@@ -1,4 +1,4 @@
-// A frame as the shaders want it: floats relative to the eye. All work in double is done here.
+// A frame in the form that the shaders need: floats relative to the eye. All work in double is done here.
 #pragma once
 
 #include "render/gl/view.hpp"
@@ -21,8 +21,9 @@ struct FrameUniforms {
 
 struct FrameData {
   FrameUniforms uniforms;
-  std::vector<Vec4f> texels;  ///< of the bodies that show, and of those that cast shadows: four each
-  std::vector<Vec4f> lines;   ///< three each
+  std::vector<Vec4f>
+      texels;  ///< four for each visible body, for each body that casts shadows, and for each facet
+  std::vector<Vec4f> lines;  ///< three texels for each line
 
   int spheres() const { return uniforms.begin[0]; }
   int boxes() const { return uniforms.begin[1] - uniforms.begin[0]; }
@@ -33,18 +34,18 @@ struct FrameData {
   int facets() const { return static_cast<int>(texels.size() / 4) - uniforms.after[3]; }
 };
 
-/// Texels along an edge of the shadow map: as many as the picture has pixels, and some more, since shadows
-/// are seen from nearby too.
+/// Returns the number of texels along an edge of the shadow map: as many as the longer side of the picture
+/// has pixels, and some more, since shadows are also seen from nearby.
 inline int shadow_size_for(int width, int height) {
   return std::clamp(6 * std::max(width, height) / 5, 512, 4096);
 }
 
-/// What is behind other bodies: finding it is the better way where the processor draws, drawing it where a
-/// GPU does. The picture is the same.
+/// The treatment of bodies that are hidden behind others. To find and leave them out is better where the
+/// processor draws; to draw them is better where a GPU does. The picture is the same.
 enum class Hidden { left_out, drawn };
 
-/// Sets `data`, whose memory it uses again. `shadow_size`: texels along an edge of the shadow map. On all
-/// threads that TBB has.
+/// Sets `data`, whose memory it uses again. `shadow_size` is the number of texels along an edge of the shadow
+/// map. The work runs on all threads that TBB has.
 void set_frame_data(const Frame& frame, const Camera& camera, const Style& style, int width, int height,
                     int shadow_size, Hidden hidden, FrameData& data);
 

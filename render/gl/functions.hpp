@@ -5,7 +5,7 @@
 
 #include <GL/glcorearb.h>
 
-// X(name without gl, name in the PFNGL...PROC types)
+// Each entry is X(name without gl, name in the PFNGL...PROC types).
 #define SCREE_GL_FUNCTIONS(X)                       \
   X(ActiveTexture, ACTIVETEXTURE)                   \
   X(AttachShader, ATTACHSHADER)                     \
@@ -65,9 +65,11 @@
 
 namespace scree::render::gl {
 
-/// gl.DrawArrays(...) and so on; valid while their context is current.
+/// The OpenGL functions as members, called as gl.DrawArrays(...). They are valid while their context is
+/// current.
 struct Functions {
-  /// Throws RunError with the name of a function that the context lacks. The context must be current.
+  /// Loads the functions. Throws RunError with the name of a function that the context lacks. The context
+  /// must be current.
   explicit Functions(const Context& context);
 
 #define SCREE_GL_MEMBER(name, type) PFNGL##type##PROC name = nullptr;

@@ -16,7 +16,7 @@ namespace {
 
 using namespace std::string_view_literals;
 
-// Texture units; each sampler of the shaders has its own for good.
+// The texture units. Each sampler of the shaders keeps its own unit.
 enum Unit : GLint {
   bodies_unit,
   lines_unit,
@@ -30,7 +30,7 @@ enum Unit : GLint {
 constexpr std::array<const char*, unit_count> samplers = {
     "bodies", "lines", "tags", "geometry", "occlusion", "shadow_map", "shadow_depths"};
 
-// Binds the uniform block and the samplers that the program has; asking for others is harmless.
+// Makes a program, and binds its uniform block and its samplers. Samplers that the program lacks do no harm.
 Program make_pass(const Functions& gl, const char* name, std::vector<std::string_view> vertex,
                   std::vector<std::string_view> fragment, std::string_view variant = ""sv) {
   const std::string head = "#version 330 core\n" + std::string(variant);
@@ -119,7 +119,7 @@ class GlRenderer : public Renderer {
     gl_.PixelStorei(GL_PACK_ALIGNMENT, 1);
     gl_.GetIntegerv(GL_MAX_TEXTURE_BUFFER_SIZE, &most_texels_);
   }
-  // The members' objects are deleted after this.
+  // The context must be current here, because the OpenGL objects of the members are deleted after this.
   ~GlRenderer() override { context_->make_current(); }
 
   Image draw(const Frame& frame, const Camera& camera, const Style& style) override {
@@ -139,7 +139,8 @@ class GlRenderer : public Renderer {
   }
 
  private:
-  /// A GPU draws them all sooner than the processor finds those that matter, if it can read so many.
+  /// Returns whether hidden bodies are drawn. A GPU draws all bodies faster than the processor finds the
+  /// visible ones, if its buffer texture can hold so many texels.
   Hidden hidden_for(const Frame& frame) const {
     const std::int64_t texels = 8 * (frame.snapshot.bodies.count() + 1);
     return context_->is_hardware() && texels <= most_texels_ ? Hidden::drawn : Hidden::left_out;
@@ -246,7 +247,7 @@ class GlRenderer : public Renderer {
   std::unique_ptr<Context> context_;
   Functions gl_;
   int width_, height_, shadow_size_;
-  GLint most_texels_ = 0;  // that a buffer texture shows
+  GLint most_texels_ = 0;  // largest number of texels in a buffer texture
   Passes passes_;
   Images images_;
   Sampler depths_;

@@ -1,11 +1,11 @@
-// The renderer proper, on any OpenGL 3.3 core context. Six passes over a picture:
-//   shadow map  depth of spheres and boxes from the light
-//   tags        which body each of four samples per pixel sees
+// The OpenGL renderer, on any OpenGL 3.3 core context. It makes a picture in six passes:
+//   shadow map  depth of spheres, boxes and facets from the light
+//   tags        the body that each of four samples per pixel shows
 //   geometry    normal and depth per pixel
 //   occlusion   ambient occlusion per pixel, then smoothed
 //   shade       light, background and encoding
-//   lines       over all that
-// Spheres are exact in every pass: rays against equations, no meshes.
+//   lines       the lines of the frame, over all else
+// Spheres are exact in every pass: rays are intersected with their equations, without meshes.
 #pragma once
 
 #include "render/gl/context.hpp"
@@ -15,7 +15,7 @@
 
 namespace scree::render::gl {
 
-/// Throws RunError if the context cannot draw pictures of this size.
+/// Makes the renderer. Throws RunError if the context cannot draw pictures of this size.
 std::unique_ptr<Renderer> make_gl_renderer(std::unique_ptr<Context> context, int width, int height);
 
 }  // namespace scree::render::gl

@@ -81,7 +81,7 @@ Sampler make_depth_sampler(const Functions& gl) {
 }
 
 Texture make_buffer_texture(const Functions& gl, const Buffer& buffer) {
-  // The buffer becomes an object with its first binding, and only an object can be viewed.
+  // The buffer becomes an object only at its first binding, and only an object can be viewed.
   gl.BindBuffer(GL_TEXTURE_BUFFER, buffer.name());
   Texture texture = make_texture(gl);
   gl.BindTexture(GL_TEXTURE_BUFFER, texture.name());

@@ -52,7 +52,8 @@ using Program = Object<detail::delete_program>;
 Buffer make_buffer(const Functions& gl);
 VertexArray make_vertex_array(const Functions& gl);
 
-/// Format of an image: sized internal format, and the format and type that glTexImage2D asks to go with it.
+/// The format of an image: the sized internal format, and the format and type that glTexImage2D needs with
+/// it.
 struct PixelFormat {
   GLenum internal;
   GLenum format;
@@ -65,23 +66,25 @@ inline constexpr PixelFormat pair_format = {GL_RG32F, GL_RG, GL_FLOAT};
 inline constexpr PixelFormat scalar_format = {GL_R16F, GL_RED, GL_FLOAT};
 inline constexpr PixelFormat color_format = {GL_RGBA8, GL_RGBA, GL_UNSIGNED_BYTE};
 
-/// An image without mipmaps, read texel by texel.
+/// Makes an image without mipmaps, which is read texel by texel.
 Texture make_image(const Functions& gl, const PixelFormat& format, int width, int height);
 
-/// A depth image that is compared as it is read, with bilinear weights; outside it everything is lit.
+/// Makes a depth image whose texels are compared when they are read, with bilinear weights. Everything
+/// outside it is lit.
 Texture make_shadow_image(const Functions& gl, int size);
 
-/// Reads a depth image as numbers, whatever the image says about comparisons.
+/// Makes a sampler that reads a depth image as numbers, even if the image is set to compare.
 Sampler make_depth_sampler(const Functions& gl);
 
-/// A view of a buffer as an array of four floats each.
+/// Makes a view of a buffer as an array of texels of four floats.
 Texture make_buffer_texture(const Functions& gl, const Buffer& buffer);
 
-/// Draws into color, depth or both; null for none. Throws RunError if OpenGL calls it incomplete.
+/// Makes a framebuffer that draws into color, depth or both; null stands for none. Throws RunError if OpenGL
+/// reports it as incomplete.
 Framebuffer make_framebuffer(const Functions& gl, const Texture* color, const Texture* depth);
 
-/// Compiles and links. `vertex` and `fragment` are lists of pieces of GLSL that follow one another.
-/// Throws RunError with `name` and the compiler's words.
+/// Compiles and links a program. `vertex` and `fragment` are lists of pieces of GLSL that follow one another.
+/// Throws RunError with `name` and the compiler's message.
 Program make_program(const Functions& gl, const char* name, const std::vector<std::string_view>& vertex,
                      const std::vector<std::string_view>& fragment);
 

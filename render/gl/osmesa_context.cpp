@@ -41,7 +41,8 @@ class OsmesaContext : public Context {
 
  private:
   OSMesaContext context_ = nullptr;
-  std::array<std::uint8_t, 4> window_{};  // OSMesa asks for one; everything is drawn into framebuffer objects
+  std::array<std::uint8_t, 4>
+      window_{};  // buffer that OSMesa needs; everything is drawn into framebuffer objects
 };
 
 }  // namespace

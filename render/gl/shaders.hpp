@@ -1,4 +1,4 @@
-// The texts of shaders/*.glsl; the build makes the definitions (render/CMakeLists.txt).
+// The texts of shaders/*.glsl. The build generates the definitions (render/CMakeLists.txt).
 #pragma once
 
 #include <string_view>

@@ -10,12 +10,13 @@ namespace scree::render::gl {
 
 namespace {
 
-/// The angular radius of the light, as a tangent: a large lamp rather than the sun (0.005), so that shadows
-/// say how far a body is from what it shades.
+/// The angular radius of the light, as a tangent. It is that of a large lamp rather than of the sun (0.005),
+/// so that the softness of a shadow shows how far a body is from the surface that it shades.
 constexpr double light_radius = 0.035;
 
-/// Radius of the largest disc about the centre that lies inside the body, at right angles to `view` (unit). A
-/// face of a box cuts the plane of the disc at its distance over the sine of its angle with the view.
+/// Returns the radius of the largest disc about the centre that lies inside the body, at right angles to
+/// `view` (unit). A face of a box intersects the plane of the disc at the face's distance from the centre
+/// divided by the sine of the angle between the face's normal and the view.
 double section_radius(const BodyTable& bodies, std::size_t body, const Vec3& view) {
   const Vec3& size = bodies.size[body];
   if (bodies.shape[body] == Shape::sphere) return size.x();
@@ -35,7 +36,8 @@ View::View(const Camera& camera, double aspect_ratio)
   tan_x = tan_y * aspect;
   view = focus.norm() * tan_y;
   near = 0.01 * focus.norm();
-  // From above, the left, and a little behind the camera: shadows fall to the right and away.
+  // The light comes from above, from the left, and from a little behind the camera, so that shadows fall to
+  // the right and away.
   const Vec3 ahead = up.cross(axes.col(0));
   to_light = (up - 0.62 * axes.col(0) - 0.38 * ahead).normalized();
 }
@@ -55,7 +57,8 @@ std::optional<Disc> View::disc_of(const BodyTable& bodies, std::size_t body, int
   disc.y = static_cast<float>(0.5 * height + focal * p.y() / p.z());
   // A point c + d of the ball, |d| <= r, is seen (d_x c_z - c_x d_z) / (c_z (c_z + d_z)) beside its centre.
   disc.outer = static_cast<float>(focal * radius * p.norm() / (p.z() * (p.z() - radius)));
-  // Across the axis of the camera, at the depth of the centre: such a disc is seen as a disc.
+  // The inner disc lies across the axis of the camera, at the depth of the centre: such a disc is seen as a
+  // disc.
   disc.inner = static_cast<float>(focal * section_radius(bodies, body, axes.col(2)) / p.z());
   disc.near = static_cast<float>(p.z() - radius);
   disc.far = static_cast<float>(p.z());
@@ -66,11 +69,12 @@ LightView::LightView(const BodyTable& bodies, const View& v, int map_size)
     : eye_(v.eye), map_size_(map_size) {
   const Vec3 x = tangent_of(v.to_light);
   axes_ << x, v.to_light.cross(x), -v.to_light;
-  // One body far off must not take the resolution from all others.
+  // The volume is limited, so that one body far away does not take the resolution from all others.
   const double reach = 4 * v.view * std::max(1.0, v.aspect);
   const Vec3 focus = axes_.transpose() * v.focus;
   const auto add_to = [&](Eigen::AlignedBox3d& bounds, std::size_t k) {
-    // Boundaries cast no shadows: what is in them would lie in the dark. Meshes do where bodies need a map.
+    // Boundaries cast no shadows, because bodies inside them would lie in the dark. Meshes cast shadows, but
+    // only where bodies need the map.
     if (is_surface(bodies.shape[k]) || bodies.mobility[k] == Mobility::absent) return;
     const Vec3 center = axes_.transpose() * (bodies.position[k] - eye_);
     const Vec3 radius = Vec3::Constant(bounding_radius(bodies.shape[k], bodies.size[k]));
@@ -87,14 +91,16 @@ LightView::LightView(const BodyTable& bodies, const View& v, int map_size)
       },
       [](const Eigen::AlignedBox3d& a, const Eigen::AlignedBox3d& b) { return a.merged(b); });
   if (bounds.isEmpty()) bounds.extend(focus);
-  // Sizes in steps and corners on multiples of a texel keep the edges of shadows still while bodies move.
+  // The size changes in steps and the corners are multiples of a texel, so that the edges of shadows stay
+  // still while bodies move.
   const double least = 0.01 * v.view;
-  // A fifth more than the bodies take, for penumbras.
+  // The map is a fifth larger than the bodies need, for penumbras.
   const double wanted = 1.2 * std::max({bounds.sizes().x(), bounds.sizes().y(), least});
   size_ = std::exp2(std::ceil(8 * std::log2(wanted)) / 8);
   corner_ = bounds.center() - Vec3::Constant(0.5 * size_);
   for (int axis = 0; axis < 2; ++axis) corner_[axis] = texel() * std::floor(corner_[axis] / texel());
-  // Receivers in front of the first caster and behind the last one, on the ground, have depths as well.
+  // Receivers in front of the first caster and behind the last one, such as the ground, must have depths in
+  // the map too.
   depth_ = 2 * reach;
   corner_.z() = focus.z() - reach;
   nearest_ = (bounds.min().z() - corner_.z()) / depth_;

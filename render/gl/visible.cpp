@@ -11,7 +11,7 @@ namespace {
 
 constexpr float nothing = std::numeric_limits<float>::max();
 
-// The depths covered so far: of each cell, how far away the nearest thing is that hides all of it.
+// A grid of covered depths: each cell has the depth of the nearest body so far that hides all of the cell.
 class CoverGrid {
  public:
   CoverGrid(int width, int height, float cell)
@@ -21,7 +21,7 @@ class CoverGrid {
         depth_(static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_), nothing) {}
 
   bool hides(const Disc& disc) const {
-    // Wider, and in cover() narrower, by what rounding can take away.
+    // The disc is wider here, and narrower in cover(), by more than rounding can take away.
     const float x = disc.x / cell_, y = disc.y / cell_, radius = disc.outer / cell_ + 0.01f;
     const int first = first_cell(y - radius, height_), last = last_cell(y + radius, height_);
     for (int row = first; row <= last; ++row) {
@@ -52,7 +52,7 @@ class CoverGrid {
   }
 
  private:
-  // Clamped before they become whole numbers: discs may be far outside.
+  // Cell numbers are clamped before they become integers, because discs may be far outside.
   static int first_cell(float x, int size) {
     return static_cast<int>(std::clamp(std::floor(x), 0.0f, static_cast<float>(size)));
   }
@@ -62,10 +62,10 @@ class CoverGrid {
 
   float cell_;
   int width_, height_;
-  std::vector<float> depth_;  // of what covers the cell
+  std::vector<float> depth_;  // depth of the body that covers the cell
 };
 
-// Some thousand values of a member of the discs, in order.
+// Returns some thousand values of a member of the discs, in ascending order.
 std::vector<float> sorted_sample(const std::vector<Disc>& discs, float Disc::*member) {
   std::vector<float> values;
   for (std::size_t k = 0; k < discs.size(); k += 1 + discs.size() / 1024) values.push_back(discs[k].*member);
@@ -73,13 +73,15 @@ std::vector<float> sorted_sample(const std::vector<Disc>& discs, float Disc::*me
   return values;
 }
 
-// About three cells to the radius of a typical disc: fewer cover badly, more take longer.
+// Returns the width of a cell, so that the radius of a typical disc is about three cells. Fewer cells cover
+// badly, more take longer.
 float cell_for(const std::vector<Disc>& discs) {
   const std::vector<float> radii = sorted_sample(discs, &Disc::outer);
   return std::clamp(radii[radii.size() / 2] / 3, 1.0f, 16.0f);
 }
 
-// Indices by ascending depth, as near as 4096 classes tell; a few discs far off share the outer ones.
+// Returns the indices of the discs by ascending depth, to the resolution of 4096 classes. A few discs far off
+// share the outer classes.
 std::vector<std::int32_t> front_to_back(const std::vector<Disc>& discs) {
   constexpr int classes = 4096;
   const std::vector<float> depths = sorted_sample(discs, &Disc::far);
