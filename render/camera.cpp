@@ -14,10 +14,6 @@ struct Ball {
   double radius;
 };
 
-// The least cosine between the normal and the vertical at which a plane counts as a floor. A steeper plane is
-// a wall: no body comes to rest on it.
-constexpr double wall_cosine = 0.25;
-
 struct Floor {
   Vec3 normal, point;
 };
@@ -28,7 +24,7 @@ std::vector<Floor> floors_of(const BodyTable& bodies, const Vec3& up) {
   for (std::size_t k = 0; k < bodies.shape.size(); ++k) {
     if (bodies.shape[k] != Shape::plane) continue;
     const Vec3 normal = bodies.orientation[k] * Vec3::UnitZ();
-    if (normal.dot(up) >= wall_cosine) floors.push_back({normal, bodies.position[k]});
+    if (normal.dot(up) >= floor_cosine) floors.push_back({normal, bodies.position[k]});
   }
   return floors;
 }

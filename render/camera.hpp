@@ -13,6 +13,10 @@ struct Camera {
   double fov = 40;             ///< vertical field of view (degrees)
 };
 
+/// The least cosine between a plane's normal and the vertical at which the plane is a floor. A steeper plane
+/// is a wall: no body comes to rest on it, and drawn in full it would hide more than it shows.
+inline constexpr double floor_cosine = 0.25;
+
 /// Returns the camera's axes: right, up and forward as columns, orthonormal. The camera may look along `up`.
 Mat3 axes_of(const Camera& camera);
 

@@ -19,6 +19,7 @@
 //                searches that continued after it
 //   ns           processor time per pair, median over batches; for ccd, with the axes that judge it
 #include "bench/clock.hpp"
+#include "bench/narrowphase/bounds.hpp"
 #include "bench/narrowphase/convex_families.hpp"
 #include "bench/narrowphase/convex_oracle.hpp"
 #include "bench/options.hpp"
@@ -39,10 +40,6 @@ using oracle::ConvexFamily;
 using oracle::ConvexPair;
 
 constexpr std::int64_t batch = 500;
-constexpr double rounding = 1e-12;  // relative to the pair's length
-/// Number of support points that libccd may request after the one that signals it to end, because each
-/// running loop must end.
-constexpr int supports_to_end = 16;
 
 struct Method {
   const char* name;

@@ -1,5 +1,6 @@
 #include "bench/narrowphase/judge.hpp"
 
+#include "bench/narrowphase/bounds.hpp"
 #include "bench/narrowphase/oracle.hpp"
 #include "narrowphase/box_box_ccd.hpp"
 
@@ -13,11 +14,6 @@ namespace {
 using oracle::ClosedForm;
 using oracle::Real;
 using oracle::SolidPair;
-
-constexpr double rounding = 1e-12;  // relative to the pair's length
-/// Number of support points that libccd may request after the one that signals it to end, because each
-/// running loop must end.
-constexpr int supports_to_end = 16;
 
 /// Moves a pair so that the second body is at the origin. Far from the origin even long double has too few
 /// digits.

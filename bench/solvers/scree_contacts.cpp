@@ -170,7 +170,7 @@ void ScreeContacts::reset() {
 
 bool ScreeContacts::sweep(const SweepPlan& plan) {
   copy(solver_, free_);
-  const ImpulseRounds<double, false> rounds{.ball_colors = ColorPhases(store_.ball_colors(), simd::width),
+  const ImpulsePhases<double, false> phases{.ball_colors = ColorPhases(store_.ball_colors(), simd::width),
                                             .point_colors = ColorPhases(store_.point_colors(), simd::width),
                                             .balls = store_.balls(),
                                             .points = store_.points(),
@@ -187,7 +187,7 @@ bool ScreeContacts::sweep(const SweepPlan& plan) {
                                             .block_sweeps = plan.block_sweeps,
                                             .tolerance = plan.tolerance,
                                             .first_with_momentum = plan.first_with_momentum};
-  return parallel::run_in_phases<Host>("sweeps", rounds, SweepState{}).converged;
+  return parallel::run_in_phases<Host>("sweeps", phases, SweepState{}).converged;
 }
 
 bool ScreeContacts::solve_islands(double tolerance, const DirectLimits& limits, std::int64_t& solved,

@@ -42,10 +42,6 @@ std::vector<T> collect(std::size_t count, Of of) {
 
 Vec4f packed_color(const Color& c, float w) { return {c.x(), c.y(), c.z(), w}; }
 
-// The least cosine between a plane's normal and the vertical at which the plane is drawn in full. A steeper
-// plane in full would hide more than it shows.
-constexpr double wall_cosine = 0.25;
-
 enum class PlaneKind { ground, wall, hidden };
 
 struct PlaneFace {
@@ -58,9 +54,9 @@ PlaneFace face_of(const BodyTable& bodies, std::size_t k, const View& v) {
   face.normal = bodies.orientation[k] * Vec3::UnitZ();
   const double height = face.normal.dot(v.eye - bodies.position[k]);
   face.point = v.focus - face.normal * (height + face.normal.dot(v.focus));
-  face.kind = height <= 0                           ? PlaneKind::hidden
-              : face.normal.dot(v.up) > wall_cosine ? PlaneKind::ground
-                                                    : PlaneKind::wall;
+  face.kind = height <= 0                             ? PlaneKind::hidden
+              : face.normal.dot(v.up) >= floor_cosine ? PlaneKind::ground
+                                                      : PlaneKind::wall;
   return face;
 }
 
