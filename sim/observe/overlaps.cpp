@@ -8,7 +8,7 @@
 #include <cstdint>
 #include <cstring>
 
-namespace scree::solver {
+namespace scree {
 
 namespace {
 
@@ -110,4 +110,4 @@ Penetration measure_overlaps(const ConstBodyView& bodies, ConstView<ShapeData> s
                                                Quantiles);
 SCREE_FOR_EACH_SPACE(SCREE_INSTANTIATE)
 
-}  // namespace scree::solver
+}  // namespace scree

@@ -7,7 +7,7 @@
 #include "core/shape_data.hpp"
 #include "sim/observe/observation.hpp"
 
-namespace scree::solver {
+namespace scree {
 
 /// Whether Penetration::p99 is found, for which all depths must be sorted; if not, it is NaN.
 enum class Quantiles { none, p99 };
@@ -18,4 +18,4 @@ template <class Space>
 Penetration measure_overlaps(const ConstBodyView& bodies, ConstView<ShapeData> shapes,
                              ConstView<Pair> candidates, Quantiles quantiles = Quantiles::p99);
 
-}  // namespace scree::solver
+}  // namespace scree

@@ -81,8 +81,8 @@ std::unique_ptr<Stepper> make_stepper(const Scene& scene, const TimeGrid& grid, 
   const bool on_device = space == SpaceChoice::cuda ||
                          (space == SpaceChoice::automatic && device_info().available &&
                           std::ranges::count(scene.bodies.mobility, Mobility::free) >= few_for_device);
-  return make_resident_stepper(scene, grid, paths_of(scene, grid, presence),
-                               {.on_device = on_device, .origin = origin});
+  return make_space_stepper(scene, grid, paths_of(scene, grid, presence),
+                            {.on_device = on_device, .origin = origin});
 }
 
 }  // namespace

@@ -89,8 +89,8 @@ class SpaceStepper final : public Stepper {
   bool has_heap() const override { return contacts_.has_heap(); }
   OverlapsLeft overlaps_left() const override {
     const timing::Region region("correction");
-    const Penetration left = solver::measure_overlaps<Space>(view_of(bodies_), std::as_const(shapes_).view(),
-                                                             kept_pairs_.pairs(), solver::Quantiles::none);
+    const Penetration left = scree::measure_overlaps<Space>(view_of(bodies_), std::as_const(shapes_).view(),
+                                                            kept_pairs_.pairs(), Quantiles::none);
     return {left.relative_mean, left.relative_max};
   }
 
@@ -156,7 +156,7 @@ class SpaceStepper final : public Stepper {
   void measure_overlaps(Observation& out) override {
     const ConstView<Pair> pairs = pairs_now();
     out.pairs = pairs_seen().size();
-    out.penetration = solver::measure_overlaps<Space>(view_of(std::as_const(bodies_)), shapes_.view(), pairs);
+    out.penetration = scree::measure_overlaps<Space>(view_of(std::as_const(bodies_)), shapes_.view(), pairs);
   }
 
   ContactProblem contact_problem() const override;
@@ -669,8 +669,8 @@ bool needs_host(const Scene& scene) {
 
 }  // namespace
 
-std::unique_ptr<Stepper> make_resident_stepper(const Scene& scene, const TimeGrid& grid,
-                                               const PathTable& paths, const StepperOptions& options) {
+std::unique_ptr<Stepper> make_space_stepper(const Scene& scene, const TimeGrid& grid, const PathTable& paths,
+                                            const StepperOptions& options) {
   if (needs_host(scene)) {
     if (scene.precision == Precision::mixed)
       throw InputError(

@@ -24,7 +24,7 @@ struct StepperOptions {
 /// Makes the stepper of a scene. In mixed precision impulses and velocities are found in float, but the state
 /// is in double. General shapes, and contacts by libccd, are known on Host alone: of such scenes only the PCS
 /// is found on Device. Throws InputError if there is no GPU, or if such a scene has mixed precision.
-std::unique_ptr<Stepper> make_resident_stepper(const Scene& scene, const TimeGrid& grid,
-                                               const PathTable& paths, const StepperOptions& options);
+std::unique_ptr<Stepper> make_space_stepper(const Scene& scene, const TimeGrid& grid, const PathTable& paths,
+                                            const StepperOptions& options);
 
 }  // namespace scree

@@ -25,7 +25,7 @@ struct Way {
   const char* precision;
 };
 
-class ResidentStep : public testing::TestWithParam<Way> {
+class SpaceStep : public testing::TestWithParam<Way> {
  protected:
   void SetUp() override {
     if (const std::string why = why_not(GetParam().options); !why.empty()) GTEST_SKIP() << why;
@@ -47,7 +47,7 @@ std::string open_box(double half) {
   return planes;
 }
 
-TEST_P(ResidentStep, ABallRollsAtFiveSeventhsOfItsSpeed) {
+TEST_P(SpaceStep, ABallRollsAtFiveSeventhsOfItsSpeed) {
   Simulation run = simulate(std::string(grain) + R"(
 gravity: [0, 0, -9.81]
 time: {end: 1, step: 0.004}
@@ -59,7 +59,7 @@ bodies:
   EXPECT_NEAR(run.body(1).position.z(), 0.5, is_mixed() ? 1e-7 : 1e-12);
 }
 
-TEST_P(ResidentStep, ABouncingBallKeepsItsEnergy) {
+TEST_P(SpaceStep, ABouncingBallKeepsItsEnergy) {
   Simulation run = simulate(R"(
 materials: {steel: {density: 1000, restitution: 1, friction: 0}}
 gravity: [0, 0, -9.81]
@@ -91,7 +91,7 @@ bodies:
     repeat: {count: [3, 3, 1], spacing: [0.2, 0.2, 0.2]}
     material: stone)";
 
-TEST_P(ResidentStep, TheLedgerCloses) {
+TEST_P(SpaceStep, TheLedgerCloses) {
   Simulation run = simulate(everything);
   double worst = 0;
   while (!run.finished()) {
@@ -103,7 +103,7 @@ TEST_P(ResidentStep, TheLedgerCloses) {
   EXPECT_GT(run.observe().contacts, 20);
 }
 
-TEST_P(ResidentStep, RunsRepeatBitByBitWhateverTheThreadsAndWhoLooks) {
+TEST_P(SpaceStep, RunsRepeatBitByBitWhateverTheThreadsAndWhoLooks) {
   const auto hash = [&](int threads, bool looks) {
     SimulationOptions options = GetParam().options;
     options.threads = threads;
@@ -120,7 +120,7 @@ TEST_P(ResidentStep, RunsRepeatBitByBitWhateverTheThreadsAndWhoLooks) {
 }
 
 /// Neither the step nor its results depend on where the bodies lie in the arrays at the start.
-TEST_P(ResidentStep, PlacesOfTheStartDoNotMatter) {
+TEST_P(SpaceStep, PlacesOfTheStartDoNotMatter) {
   const Scene scene = scene_of(std::string(everything) + R"(
   - {sphere: {radius: 0.06}, name: pushed, at: [0.1, 0, 0.7], material: stone}
 forces:
@@ -137,8 +137,8 @@ precision: )" + GetParam().precision +
     order[k] = static_cast<std::int32_t>((17 * k + 11) % order.size());
   permute(elsewhere.bodies, order);
   const bool on_device = GetParam().options.space == SpaceChoice::cuda;
-  const auto here = make_resident_stepper(scene, grid, paths, {.on_device = on_device});
-  const auto there = make_resident_stepper(elsewhere, grid, paths, {.on_device = on_device});
+  const auto here = make_space_stepper(scene, grid, paths, {.on_device = on_device});
+  const auto there = make_space_stepper(elsewhere, grid, paths, {.on_device = on_device});
   constexpr BodyNumber drum{1}, ball{39};
   const std::int64_t steps = 150;  // the bodies are sorted three times in these
   for (std::int64_t step = 0; step < steps; ++step) {
@@ -187,8 +187,8 @@ void expect_no_matter_of_places(const Scene& scene, bool on_device, std::int64_t
   permute(elsewhere.bodies, order);
   constexpr std::int64_t never = std::int64_t{1} << 40;
   const StepperOptions options{.on_device = on_device, .steps_in_order = never};
-  const auto in_order = make_resident_stepper(scene, grid, paths, options);
-  const auto in_disorder = make_resident_stepper(elsewhere, grid, paths, options);
+  const auto in_order = make_space_stepper(scene, grid, paths, options);
+  const auto in_disorder = make_space_stepper(elsewhere, grid, paths, options);
   for (std::int64_t step = 0; step < steps; ++step) {
     std::vector<std::uint64_t> hashes;
     for (Stepper* stepper : {in_order.get(), in_disorder.get()}) {
@@ -203,7 +203,7 @@ void expect_no_matter_of_places(const Scene& scene, bool on_device, std::int64_t
   }
 }
 
-TEST_P(ResidentStep, WhereBodiesLieDoesNotMatter) {
+TEST_P(SpaceStep, WhereBodiesLieDoesNotMatter) {
   const bool on_device = GetParam().options.space == SpaceChoice::cuda;
   const std::string precision = std::string("\nprecision: ") + GetParam().precision + "\n";
   const std::string floor = R"(
@@ -251,7 +251,7 @@ response: {mode: accurate})";
 
 /// With fewer blocks, as on GPUs of other sizes, sums are added up in another order, but the results that
 /// depend on them are the same.
-TEST_P(ResidentStep, TheSizeOfTheGpuDoesNotMatter) {
+TEST_P(SpaceStep, TheSizeOfTheGpuDoesNotMatter) {
   if (GetParam().options.space != SpaceChoice::cuda) GTEST_SKIP() << "of GPUs alone";
   const std::string heap = std::string(grain) + R"(
 gravity: [0, 0, -9.81]
@@ -279,7 +279,7 @@ bodies:
 
 /// In each way to take a step, the heap has the same centre of mass within what chaos leaves, and hardly any
 /// overlap.
-TEST_P(ResidentStep, AHeapComesToRestAsOnHost) {
+TEST_P(SpaceStep, AHeapComesToRestAsOnHost) {
   const std::string heap = std::string(grain) + R"(
 gravity: [0, 0, -9.81]
 time: {end: 1, step: 0.004166666666666667}
@@ -303,7 +303,7 @@ bodies:)" + open_box(0.4) +
 /// The column has 60 layers. With 6 sweeps always (response.iterations: 6) they still overlap by 8e-4 on
 /// average, and swing. With the rule for sweeps, four seeds on Host have 8e-5 to 1.5e-4 (a GPU up to 1.6e-4),
 /// and by 3.5 s 3e-5 to 9e-5.
-TEST_P(ResidentStep, ATallColumnComesToRest) {
+TEST_P(SpaceStep, ATallColumnComesToRest) {
   if (is_mixed()) GTEST_SKIP() << "sweeps go by the same rule";
   Simulation run = simulate(R"(
 gravity: [0, 0, -9.81]
@@ -334,7 +334,7 @@ bodies:
 
 /// A hundred layers fall together on their ground, without walls that would carry them. Where sweeps do not
 /// find the impulses while the layers land, these sink in by centimetres.
-TEST_P(ResidentStep, ADeepHeapDoesNotSinkIn) {
+TEST_P(SpaceStep, ADeepHeapDoesNotSinkIn) {
   Simulation run = simulate(R"(
 gravity: [0, 0, -9.81]
 time: {end: 1, step: 0.004166666666666667}
@@ -358,7 +358,7 @@ bodies:
 
 /// Balls fall on a heap, which is swept until its impulses have converged. The sweeps have momentum, since
 /// plain sweeps would need twice as many.
-TEST_P(ResidentStep, AFallOntoAHeapTakesFewSweeps) {
+TEST_P(SpaceStep, AFallOntoAHeapTakesFewSweeps) {
   Simulation run = simulate(std::string(grain) + R"(
 gravity: [0, 0, -9.81]
 time: {end: 0.7, step: 0.004166666666666667}
@@ -419,7 +419,7 @@ struct LeftInFlow {
 };
 
 /// A column whose wall is taken away: it keeps what docs/accuracy.md states of heaps in motion.
-TEST_P(ResidentStep, WhatFlowsOverlapsLittle) {
+TEST_P(SpaceStep, WhatFlowsOverlapsLittle) {
   const LeftInFlow left(simulate(falling_column(1)));
   EXPECT_LT(left.mean, 2 * tolerance::mean_overlap_left);
   EXPECT_LT(left.worst, tolerance::worst_overlap_left);
@@ -428,7 +428,7 @@ TEST_P(ResidentStep, WhatFlowsOverlapsLittle) {
 }
 
 /// One measurement may find up to twice the worst overlap, before more substeps follow.
-TEST_P(ResidentStep, QualityDividesWhatFlowsOverlaps) {
+TEST_P(SpaceStep, QualityDividesWhatFlowsOverlaps) {
   const LeftInFlow fine(simulate(falling_column(4))), coarse(simulate(falling_column(0.25)));
   for (const auto& [left, quality] : {std::pair(&fine, 4.0), std::pair(&coarse, 0.25)}) {
     EXPECT_LT(left->mean, 2 * tolerance::mean_overlap_left / quality);
@@ -441,7 +441,7 @@ TEST_P(ResidentStep, QualityDividesWhatFlowsOverlaps) {
 
 /// Two balls, each on another one, fly towards one another. They bear load on these, so that they bounce as
 /// contacts and not in an impact, by the same law.
-TEST_P(ResidentStep, WhatBearsLoadBouncesByTheSameLaw) {
+TEST_P(SpaceStep, WhatBearsLoadBouncesByTheSameLaw) {
   for (const double restitution : {0.0, 0.3, 0.8, 0.95}) {
     for (const bool accurate : {false, true}) {
       if (accurate && is_mixed()) continue;
@@ -474,7 +474,7 @@ bodies:
 
 /// Boxes fly into each other and turn: many are struck after the midpoint of the one substep, and their
 /// contacts are found at that instant.
-TEST_P(ResidentStep, BoxesThatAreStruckLateKeepTheirMomenta) {
+TEST_P(SpaceStep, BoxesThatAreStruckLateKeepTheirMomenta) {
   double worst = 0;
   for (const double spacing : {0.1, 0.13, 0.16}) {
     for (const int seed : {1, 2, 3, 4, 5, 6}) {
@@ -510,7 +510,7 @@ bodies:
 }
 
 /// A slab lies on a bed of many light balls that all touch it: its contacts are divided among its parts.
-TEST_P(ResidentStep, AHubIsHeld) {
+TEST_P(SpaceStep, AHubIsHeld) {
   Simulation run = simulate(std::string(grain) + R"(
 gravity: [0, 0, -9.81]
 time: {end: 1, step: 0.004}
@@ -528,7 +528,7 @@ bodies:
 }
 
 /// Sweeps converge slowly where a heavy body lies on a light one: such a problem needs the direct solver.
-TEST_P(ResidentStep, AHeavyCubeLiesOnALightOne) {
+TEST_P(SpaceStep, AHeavyCubeLiesOnALightOne) {
   Simulation run = simulate(R"(
 materials: {foam: {density: 1, friction: 0.5}, lead: {density: 3000, friction: 0.5}}
 gravity: [0, 0, -9.81]
@@ -542,7 +542,7 @@ bodies:
   EXPECT_GT(run.observe().counters.direct, 0);
 }
 
-TEST_P(ResidentStep, ForcesOnWallsAreThoseOfTheScene) {
+TEST_P(SpaceStep, ForcesOnWallsAreThoseOfTheScene) {
   Simulation run = simulate(std::string(grain) + R"(
 gravity: [0, 0, -9.81]
 time: {end: 0.2, step: 0.004}
@@ -556,7 +556,7 @@ bodies:
 
 /// A drum turns over. Its caps and its wall carry balls as in the run on Host, and its points in the contact
 /// problem move as the drum does there.
-TEST_P(ResidentStep, AWallThatTurnsCarriesBalls) {
+TEST_P(SpaceStep, AWallThatTurnsCarriesBalls) {
   const std::string drum = R"(
 materials: {stone: {density: 1000, restitution: 0, friction: 0.5}}
 gravity: [0, 0, -9.81]
@@ -597,7 +597,7 @@ bodies:
   EXPECT_LT(run.observe(false).unexplained, is_mixed() ? 1e-5 : 1e-12);
 }
 
-INSTANTIATE_TEST_SUITE_P(Ways, ResidentStep,
+INSTANTIATE_TEST_SUITE_P(Ways, SpaceStep,
                          testing::Values(Way{"host_double", {SpaceChoice::host, 1}, "double"},
                                          Way{"host_mixed", {SpaceChoice::host, 1}, "mixed"},
                                          Way{"cuda_double", {SpaceChoice::cuda, 0}, "double"},
