@@ -1,4 +1,4 @@
-// Closed forms of mass and inertia, and the draws of one body.
+// Closed formulas of mass and inertia, and the random draws of one body.
 #include "sim/scene/body.hpp"
 
 #include "core/random_orientation.hpp"
@@ -23,7 +23,7 @@ Vec3 place_of(const BodyEntry& entry, std::int64_t k, Random& random) {
   return at;
 }
 
-/// Of a body or a keyframe that has one.
+/// Returns the orientation that an entry, of a body or of a keyframe, gives, if it gives one.
 template <class Entry>
 std::optional<Quat> given_orientation(const Entry& entry) {
   if (entry.orientation) {
@@ -42,11 +42,12 @@ Quat orientation_of(const BodyEntry& entry, Random& random) {
   return entry.scatter || entry.emit ? random_orientation(random) : Quat::Identity();
 }
 
-/// Of a cylinder with or without a ball's halves at its ends (size as in Shape), about the principal axes (kg
-/// m^2).
+/// Returns the principal moments of inertia (kg m^2) of a cylinder, or of a capsule, which is a cylinder with
+/// half a ball at each end (size as in Shape).
 Vec3 inertia_of_round(Shape shape, const Vec3& size, double mass) {
   const double square = size.x() * size.x();
-  const double half = shape == Shape::capsule ? size.z() - size.x() : size.z();  // of the cylinder
+  const double half =
+      shape == Shape::capsule ? size.z() - size.x() : size.z();  // half length of the cylinder
   const double of_ends = shape == Shape::capsule ? size.x() / (size.x() + 1.5 * half) : 0.0;
   const double ends = of_ends * mass, middle = mass - ends;
   const double across =
@@ -54,7 +55,7 @@ Vec3 inertia_of_round(Shape shape, const Vec3& size, double mass) {
   return {across, across, middle * square / 2 + ends * 0.4 * square};
 }
 
-/// Of a solid body (size as in Shape), about the principal axes (kg m^2).
+/// Returns the principal moments of inertia (kg m^2) of a solid body (size as in Shape).
 Vec3 inertia_of(Shape shape, const Vec3& size, double mass) {
   if (shape == Shape::sphere) return Vec3::Constant(0.4 * mass * size.x() * size.x());
   if (shape == Shape::capsule || shape == Shape::cylinder) return inertia_of_round(shape, size, mass);
@@ -64,7 +65,8 @@ Vec3 inertia_of(Shape shape, const Vec3& size, double mass) {
 
 bool is_usable(double x) { return x > 0 && std::isfinite(x) && std::isfinite(1 / x); }
 
-/// Gives a free body its mass (kg; else of the density) and inertia; see make_body() for what it returns.
+/// Sets the mass and inertia of a free body. `given`: its mass (kg); absent: from `density` (kg/m^3). Returns
+/// false in the same cases as make_body().
 bool set_mass(const std::optional<double>& given, double density, const Hull* hull, std::size_t b,
               BodyTable& bodies) {
   const double volume = hull ? hull->volume : volume_of(bodies.shape[b], bodies.size[b]);
@@ -75,8 +77,8 @@ bool set_mass(const std::optional<double>& given, double density, const Hull* hu
   return is_usable(mass) && is_usable(inertia.minCoeff()) && is_usable(inertia.maxCoeff());
 }
 
-/// A turn of +z to the unit vector n. Exact along the axes; past the horizon it goes by way of -z,
-/// where 1 + n.z would cancel.
+/// Returns a rotation that takes +z to the unit vector n. It is exact along the axes. For n.z < 0 it goes by
+/// way of -z, because 1 + n.z would lose digits by cancellation.
 Quat turn_to(const Vec3& n) {
   if (n.z() >= 0) return Quat(1 + n.z(), -n.y(), n.x(), 0).normalized();
   return Quat(1 - n.z(), n.y(), -n.x(), 0).normalized() * Quat(0, 1, 0, 0);
@@ -91,7 +93,7 @@ void make_plane(const PlaneEntry& plane, std::size_t b, BodyTable& bodies) {
   bodies.orientation[b] = turn_to(normal);
 }
 
-/// The shape, and its size drawn.
+/// Sets the shape of a body, and its size, which is drawn at random if the entry gives a distribution.
 void make_shape(const BodyEntry& entry, const Hull* hull, Random& random, Shape& shape, Vec3& size) {
   if (entry.sphere) {
     shape = Shape::sphere;
@@ -115,8 +117,9 @@ void make_shape(const BodyEntry& entry, const Hull* hull, Random& random, Shape&
   }
 }
 
-/// From the frame of a hull's points, which is where the body's was said to be, to the hull's own. One that
-/// is its own, but for rounding, stays.
+/// Moves a body from the frame in which its hull's points are given, which is the frame that the row places,
+/// to the hull's own frame. If both have the same axes but for rounding (see make_hull()), the orientation
+/// keeps its bits.
 void place_hull(const Hull& hull, std::size_t b, BodyTable& bodies) {
   bodies.position[b] += bodies.orientation[b] * hull.centre;
   if (hull.axes.coeffs() != Quat::Identity().coeffs())
@@ -140,7 +143,8 @@ bool make_body(const BodyEntry& entry, std::int64_t k, std::int32_t id, std::uin
   bodies.position[b] = place_of(entry, k, random);
   bodies.orientation[b] = orientation_of(entry, random);
   if (hull) {
-    // What the entry has placed is the frame of the points.
+    // The entry places the frame in which the points are given; of a scattered or emitted body the random
+    // position is that of the centre of mass.
     if (!entry.scatter && !entry.emit) bodies.position[b] += bodies.orientation[b] * hull->centre;
     bodies.orientation[b] = (bodies.orientation[b] * hull->axes).normalized();
   }
@@ -204,7 +208,7 @@ bool make_body(const BodyEntry& entry, const BodyRow& row, std::int32_t id, std:
   bodies.inverse_inertia[b] = Vec3::Zero();
   if (fixed) return true;
   const bool usable = set_mass(row.mass, density, hull, b, bodies);
-  if (row.servo) bodies.inverse_inertia[b].setZero();  // as above
+  if (row.servo) bodies.inverse_inertia[b].setZero();  // its guide keeps it from turning
   return usable;
 }
 

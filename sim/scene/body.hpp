@@ -1,4 +1,4 @@
-// From one item of `bodies`, or one row of a body file, to the state of one body.
+// Functions that make the state of one body from one item of `bodies`, or from one row of a body file.
 #pragma once
 
 #include "core/bodies.hpp"
@@ -10,23 +10,25 @@
 
 namespace scree {
 
-/// Writes body `id` of the table, the k-th of the entry: everything but its material. The place of a
-/// scattered body stays open; that of one that will be emitted is the middle of the emitter's box until then.
-/// All draws are from the stream of (seed, id). False if a free body's mass or inertia, or the inverse of
-/// one, is not a positive finite number.
-/// `hull`: of a polyhedron.
+/// Writes body `id` of the table, the k-th body of the entry: everything but its material. The position of a
+/// scattered body is set later; a body that will be emitted is in the middle of the emitter's box until it
+/// appears. All random draws are from the stream of (seed, id). Returns false if the mass or the inertia of a
+/// free body, or the inverse of one of them, is not a positive finite number. `hull`: the hull of the body if
+/// it is a polyhedron.
 bool make_body(const BodyEntry& entry, std::int64_t k, std::int32_t id, std::uint64_t seed, double density,
                const Hull* hull, BodyTable& bodies);
 
-/// The same of a mesh's triangle.
+/// Writes body `id` of the table, one triangle of the entry's mesh: everything but its material.
 void make_body(const BodyEntry& entry, const PlacedTriangle& triangle, std::int32_t id, BodyTable& bodies);
 
-/// The same of a row of the entry's file. A shape of the entry is that of each row, its size drawn likewise.
-/// A fixed body has no velocity, whatever the row says, and is no servo.
+/// Writes body `id` of the table from a row of the entry's file: everything but its material. If the entry
+/// gives a shape with its size, each row has that shape, and its size is drawn from the stream of (seed, id).
+/// If the entry says that its bodies are fixed, they have no velocity, whatever the row says, and are no
+/// servos. Returns false in the same cases as the first make_body().
 bool make_body(const BodyEntry& entry, const BodyRow& row, std::int32_t id, std::uint64_t seed,
                double density, const Hull* hull, BodyTable& bodies);
 
-/// The motion of one of the entry's bodies.
+/// Returns the prescribed motion of one of the entry's bodies.
 Motion motion_of(const MotionEntry& entry, std::int32_t body);
 
 }  // namespace scree

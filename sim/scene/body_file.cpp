@@ -1,4 +1,4 @@
-// What the columns of a file say as a whole, and its rows one after another.
+// Checks the columns of a body file as a whole, and reads its rows one after another.
 #include "sim/scene/body_file.hpp"
 
 #include "sim/scene/particle_kinds.hpp"
@@ -57,7 +57,7 @@ bool BodyFile::has(BodyColumn column) const {
   return std::ranges::any_of(rows_->columns(), [&](const RowColumn& c) { return c.column == column; });
 }
 
-/// Where the column is named, or all of them are.
+/// Returns where the column is named; if it is not, where the columns are named.
 SourceMark BodyFile::mark_of(BodyColumn column) const {
   for (const RowColumn& known : rows_->columns())
     if (known.column == column) return known.mark;
@@ -76,8 +76,8 @@ void BodyFile::find_columns() {
     if (!has(column)) fail(column, rows_->head(), "the column is missing; x, y and z are needed");
 }
 
-/// Finds the shape of the bodies where no column has it: the scene says it, or only one shape has the sizes
-/// that the file has.
+/// Finds the shape of the bodies if no column gives it: either the scene gives it, or only one shape has the
+/// sizes that the file has.
 void BodyFile::find_shape() {
   if (use_.shape) {
     check_shape_of_scene();
@@ -86,7 +86,7 @@ void BodyFile::find_shape() {
   }
 }
 
-/// The shape that the scene gives, and its sizes, must not be in the file as well.
+/// Fails if the file has a shape, or sizes, which the scene gives already.
 void BodyFile::check_shape_of_scene() {
   constexpr std::array sizes = {BodyColumn::radius, BodyColumn::size_x, BodyColumn::size_y,
                                 BodyColumn::size_z, BodyColumn::hull};
@@ -127,7 +127,7 @@ void BodyFile::count_rows() {
   note_ignored(is_used);
 }
 
-/// Columns that say nothing of a body, if there is anything in them.
+/// Notes the columns that mean nothing for a body, if any of their cells is filled.
 void BodyFile::note_ignored(const std::vector<bool>& is_used) {
   constexpr std::size_t most_told = 8;
   std::vector<std::string> names;

@@ -1,4 +1,4 @@
-// Bodies from a file that has a row for each: a table, or a frame of particles (see RowSource).
+// The reader of files that have a row for each body: a table, or a frame of particles (see RowSource).
 #pragma once
 
 #include "sim/scene/body_row.hpp"
@@ -14,27 +14,27 @@
 
 namespace scree {
 
-/// The file that a path names: itself, or the final state in a run's folder. Throws InputError, without a
-/// place, if there is none.
+/// Returns the file that a path names: the path itself, or the final state in the folder of a run. Throws
+/// InputError, without a line and column, if there is none.
 std::filesystem::path find_body_file(const std::filesystem::path& path);
 
 class BodyFile {
  public:
-  /// Reads what names the columns and counts the rows, in constant memory. Throws InputError:
-  /// file:line:column, the column's name, what is allowed.
+  /// Reads the names of the columns and counts the rows, in constant memory. Throws InputError with
+  /// file:line:column, the column's name and what is allowed.
   explicit BodyFile(const std::filesystem::path& file, const BodyFileUse& use = {});
   BodyFile(const BodyFile&) = delete;
   BodyFile& operator=(const BodyFile&) = delete;
 
-  std::int64_t count() const { return count_; }  ///< of bodies; at least 1
+  std::int64_t count() const { return count_; }  ///< number of bodies; at least 1
 
-  /// What was left out, and what was understood that the file does not say: a sentence for each.
+  /// Returns sentences about what was left out, and about what was assumed because the file does not say it.
   const std::vector<std::string>& notes() const { return notes_; }
 
   /// Calls `take` with each row in order. Throws like the constructor.
   void read(const std::function<void(const BodyRow&)>& take);
 
-  /// The file that a row names.
+  /// Returns the path of the file that a row names in its column `hull`.
   std::filesystem::path hull_file(const BodyRow& row) const { return file_.parent_path() / row.hull; }
 
   [[noreturn]] void fail(BodyColumn column, const SourceMark& mark, std::string_view what);
@@ -54,7 +54,7 @@ class BodyFile {
   Reader reader_;
   BodyFileUse use_;
   std::unique_ptr<RowSource> rows_;
-  std::optional<RowReader> row_reader_;  ///< once it is known what the file has
+  std::optional<RowReader> row_reader_;  ///< set once the columns of the file are known
   std::vector<std::string> notes_;
   std::int64_t count_ = 0;
 };

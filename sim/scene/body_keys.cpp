@@ -1,4 +1,4 @@
-// The keys of bodies: their shapes, their places, and how many there are.
+// The keys of bodies: their shapes, their positions and motions, and the number of bodies.
 #include "sim/scene/key_sections.hpp"
 #include "sim/scene/particle_kinds.hpp"
 #include "sim/scene/rules.hpp"
@@ -31,7 +31,8 @@ Codec<Distribution<T>> distribution(std::string name, const Codec<T>& value) {
            check_distribution<T>)});
 }
 
-/// One number for all three axes, or one for each. `is_short`: three equal ones are written as one.
+/// Makes the codec of three numbers, given as one number for all axes or as one for each. `is_short`: three
+/// equal numbers are written as one.
 Codec<Vec3> one_or_three(const Codec<double>& number, bool is_short) {
   const Codec<Vec3> one{number.type,
                         [number](Vec3& v, const Node& node, Reader& reader) {
@@ -45,7 +46,7 @@ Codec<Vec3> one_or_three(const Codec<double>& number, bool is_short) {
   return any_of<Vec3>({one, fixed_list<Vec3, 3>(number)});
 }
 
-/// Edge lengths, or one number for a cube.
+/// Makes the codec of the edge lengths of a box, or one number for a cube.
 Codec<Vec3> edges() { return one_or_three(number(above_zero, "m"), false); }
 
 Codec<PlaneEntry> plane_section() {
@@ -223,7 +224,8 @@ Codec<MotionKeyEntry> motion_key_section() {
       check_motion_key);
 }
 
-/// Left out of the resolved scene where there are keyframes, and refused there.
+/// Makes a key that is left out of the resolved scene if there are keyframes, because it is refused beside
+/// them.
 Key<MotionEntry> rate(const char* name, Vec3 MotionEntry::*member, const char* unit, const char* help) {
   Key<MotionEntry> rate = key<MotionEntry>(name, member, vector(unit), optionally, help);
   rate.write = [write = rate.write](const MotionEntry& motion) {

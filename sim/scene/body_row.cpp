@@ -1,4 +1,4 @@
-// Rows of words to bodies, strict: what a cell says is taken, or refused at its place.
+// Converts rows of words to bodies, strictly: each cell is either used, or refused with its line and column.
 #include "sim/scene/body_row.hpp"
 
 #include "core/tolerances.hpp"
@@ -25,7 +25,7 @@ struct ColumnInfo {
   const char* unit;
 };
 
-/// In the order of BodyColumn.
+/// The names, ranges and units of the columns, in the order of BodyColumn.
 constexpr std::array<ColumnInfo, body_columns> columns = {{
     {"shape", any_value, ""},        {"radius", above_zero, "m"}, {"size_x", above_zero, "m"},
     {"size_y", above_zero, "m"},     {"size_z", above_zero, "m"}, {"x", any_value, "m"},
@@ -40,7 +40,7 @@ constexpr std::array<ColumnInfo, body_columns> columns = {{
 
 const ColumnInfo& info_of(BodyColumn column) { return columns[static_cast<std::size_t>(column)]; }
 
-/// Whether a point in place of the comma would make a number of the text.
+/// Returns whether the text would be a number with a point in place of its first comma.
 bool is_with_comma(std::string_view text) {
   const std::size_t comma = text.find(',');
   if (comma == std::string_view::npos) return false;
@@ -94,7 +94,7 @@ Shape RowReader::shape_of(const BodyCells& cells) {
                    suggestion(shape, {shape_words.begin(), shape_words.end()})));
 }
 
-/// As `scree export` numbers them.
+/// Returns the shape whose number, as `scree export` writes it, is in the column `shape`.
 Shape RowReader::shape_of_kind(const BodyCells& cells) {
   const std::string_view kind = cells[BodyColumn::shape];
   for (const Shape shape : shapes_of_kinds) {
@@ -116,7 +116,8 @@ void RowReader::require_hull(const BodyCells& cells, Shape shape) {
            : fmt::format("does not go with a {}; leave it empty", word_of(shape)));
 }
 
-/// It moves along its axis alone.
+/// Returns the servo that the row describes, if it describes one. Since a servo only moves along its axis,
+/// other velocities are refused.
 std::optional<Servo> RowReader::servo_of(const BodyCells& cells, const BodyRow& row) {
   const auto fail_at = [&](BodyColumn column, const char* what) {
     fail(column, cells.mark_of(column), what);
@@ -160,7 +161,8 @@ Vec3 RowReader::sizes_of(const BodyCells& cells, Shape shape) {
   return style_ == SizeStyle::ovito ? ovito_sizes_of(cells, shape) : own_sizes_of(cells, shape);
 }
 
-/// See docs/trajectories.md, "In OVITO and others".
+/// Returns the size of a body from columns as `scree export` writes them; see docs/trajectories.md, "In OVITO
+/// and others".
 Vec3 RowReader::ovito_sizes_of(const BodyCells& cells, Shape shape) {
   const auto positive = [&](BodyColumn column) {
     const double value = number_of(cells, column);
@@ -201,14 +203,15 @@ Vec3 RowReader::own_sizes_of(const BodyCells& cells, Shape shape) {
   return 0.5 * vector_of(cells, BodyColumn::size_x);
 }
 
-/// Of three columns next to each other.
+/// Returns the vector in three columns next to each other.
 Vec3 RowReader::vector_of(const BodyCells& cells, BodyColumn first) {
   Vec3 v;
   for (int k = 0; k < 3; ++k) v[k] = number_of(cells, after(first, k));
   return v;
 }
 
-/// The bits of a number stay where there is nothing to do.
+/// Converts a number to SI units by the scale and offset of its column. A number that needs no conversion
+/// keeps its bits.
 double RowReader::in_our_units(double value, const BodyCells& cells, BodyColumn column) {
   const RowColumn& about = *cells.about[static_cast<std::size_t>(column)];
   if (about.scale != 1) value *= about.scale;
@@ -218,8 +221,8 @@ double RowReader::in_our_units(double value, const BodyCells& cells, BodyColumn 
   return value;
 }
 
-/// 0 for an empty cell. The quick way takes most cells; the scene language's own reader takes the rest, or
-/// says what is wrong with them.
+/// Returns the number in a cell, 0 if the cell is empty. The fast path reads most cells; the reader of the
+/// scene language reads the others, or says what is wrong with them.
 double RowReader::number_of(const BodyCells& cells, BodyColumn column) {
   const std::string_view text = cells[column];
   if (text.empty()) return 0;

@@ -13,7 +13,8 @@
 namespace scree {
 namespace {
 
-/// A product of counts may exceed every integer, but not the doubles.
+/// Returns the number of bodies of an entry. It is a double, because a product of counts may exceed every
+/// integer type.
 double count_of(const BodyEntry& entry, const BodyFile* file, const SceneMesh* mesh) {
   if (file) return static_cast<double>(file->count());
   if (mesh) return static_cast<double>(mesh->triangles.size());
@@ -51,7 +52,7 @@ void require_room(const BodyEntry& body, const MemoryLoad& load, double memory, 
                     load.bodies, bytes_words(need), bytes_words(memory)));
 }
 
-/// Of a file's bodies, if the entry gives it whole.
+/// Returns the shape of a file's bodies if the entry gives it with its size.
 std::optional<Shape> shape_with_sizes(const BodyEntry& body) {
   if (body.sphere) return Shape::sphere;
   if (body.box) return Shape::box;
@@ -61,7 +62,8 @@ std::optional<Shape> shape_with_sizes(const BodyEntry& body) {
   return {};
 }
 
-/// The entry keeps where the file is found, for the resolved scene, which may be run from anywhere.
+/// Opens the file of an entry, if it has one. The entry is given the absolute path, because the resolved
+/// scene may be run from any folder.
 std::unique_ptr<BodyFile> open_file(BodyEntry& body, const std::filesystem::path& scene, Reader& reader) {
   if (body.file.empty()) return nullptr;
   std::filesystem::path found;
@@ -76,7 +78,8 @@ std::unique_ptr<BodyFile> open_file(BodyEntry& body, const std::filesystem::path
       found, BodyFileUse{body.frame, with_sizes ? with_sizes : body.shape, with_sizes.has_value()});
 }
 
-/// Where a mesh's file is, relative to the scene; the entry keeps it.
+/// Returns the absolute path of a mesh's file, which is relative to the scene, and writes it to `file`, the
+/// member of the entry.
 std::filesystem::path find_mesh(std::string& file, const std::filesystem::path& scene) {
   const std::filesystem::path found =
       std::filesystem::absolute(scene.parent_path() / file).lexically_normal();

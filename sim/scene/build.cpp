@@ -1,5 +1,5 @@
-// Makes the bodies and settles what spans sections; entries keep their nodes so that messages find their
-// place.
+// Makes the bodies of a scene, and checks what involves several sections. Entries keep their nodes, so that
+// messages can name line and column.
 #include "sim/scene/build.hpp"
 
 #include "sim/scene/body.hpp"
@@ -74,7 +74,8 @@ class Builder {
     }
   }
 
-  /// Without rotation no impulse turns a free body, and none starts with a spin.
+  /// Sets the spin and inverse inertia of free bodies to zero. In a model without rotation no impulse turns a
+  /// free body, and none starts with a spin.
   static void keep_from_turning(BodyTable& bodies) {
     for (std::size_t b = 0; b < bodies.mobility.size(); ++b) {
       if (bodies.mobility[b] != Mobility::free) continue;
@@ -91,7 +92,9 @@ class Builder {
     }
   }
 
-  /// What general shapes are, beyond their sizes. A tube has no test with them.
+  /// Collects the geometry of general shapes beyond their sizes: hulls, and the surroundings of mesh
+  /// triangles. Fails if there is also a tube, because there is no contact test between a tube and a general
+  /// shape.
   void find_geometry(Scene& scene) {
     const auto& shapes = scene.bodies.shape;
     if (std::ranges::none_of(shapes, is_general)) return;
@@ -158,7 +161,7 @@ class Builder {
     });
   }
 
-  /// The one hull of all rows that name the file.
+  /// Returns the hull of the file that a row names. All rows that name the same file share one hull.
   const Hull& hull_of(const BodyRow& row, BodyFile& file) {
     const std::string name = file.hull_file(row).lexically_normal().string();
     const auto [found, fresh] = hulls_.try_emplace(name);
@@ -198,14 +201,15 @@ class Builder {
                                slot.bodies.first + k);
   }
 
-  /// Whether the bodies of `other` are where the scene puts them when those of `slot` appear.
+  /// Returns whether the bodies of `other` are where the scene puts them when the bodies of `slot` appear.
   static bool is_in_place(const BodySlot& other, const BodySlot& slot, const Scene& scene) {
     if (other.entry->emit) return false;
     const bool fixed = scene.bodies.mobility[static_cast<std::size_t>(other.bodies.first)] == Mobility::fixed;
     return fixed ? other.steps.holds(slot.steps.first) : other.steps.first == slot.steps.first;
   }
 
-  /// Obstacles are the bodies with a place: those of no scatter, and of scatters before this one.
+  /// Scatters the bodies of a slot. The obstacles are the bodies that have their position by then: those that
+  /// are not scattered, and those of earlier scatters.
   void scatter_bodies(const BodySlot& slot, Scene& scene) {
     std::vector<std::int32_t> obstacles;
     for (const BodySlot& other : slots_)
@@ -223,7 +227,7 @@ class Builder {
     const Reader::Step item(reader_, slot.index);
     reader_.fail_at("scatter", *slot.entry->node,
                     fmt::format("only {} of {} bodies fit without overlap; make the region larger or the "
-                                "bodies fewer or smaller",
+                                "bodies fewer or smaller, or list larger bodies first",
                                 fitted, slot.bodies.count));
   }
 
@@ -238,14 +242,15 @@ class Builder {
     }
   }
 
-  /// Once every body has its place: the centre of a body that turns about a point moves by that too.
+  /// Makes the prescribed motions. It is called after every body has its position, because the centre of a
+  /// body that turns about a point has a velocity from the turn, too.
   void find_motions(Scene& scene) {
     for (const BodySlot& slot : slots_) {
       if (!slot.entry->motion) continue;
       for (std::int32_t id = slot.bodies.first; id < slot.bodies.first + slot.bodies.count; ++id) {
         const auto b = static_cast<std::size_t>(id);
         Motion& motion = scene.motions.emplace_back(motion_of(*slot.entry->motion, id));
-        // A mesh turns as a whole.
+        // A mesh turns as a whole, about its `at`.
         if (slot.mesh && !motion.about) motion.about = slot.entry->at.value_or(Vec3::Zero());
         if (motion.oscillate) {
           const double rate = motion.oscillate->omega() * std::cos(motion.oscillate->phase);
@@ -258,7 +263,7 @@ class Builder {
     }
   }
 
-  /// Those of body files are there already.
+  /// Adds the servos of the entries. Servos from body files have been added by read_bodies().
   void find_servos(Scene& scene) {
     for (const BodySlot& slot : slots_) {
       if (!slot.entry->servo) continue;
@@ -269,7 +274,8 @@ class Builder {
     std::ranges::sort(scene.servos, {}, &Servo::body);
   }
 
-  /// Sums and products of finite numbers may be infinite.
+  /// Fails if a position, an orientation or a velocity is not finite: sums and products of finite numbers may
+  /// be infinite.
   void require_numbers(const Scene& scene) {
     const Reader::Step step(reader_, "bodies");
     const BodyTable& bodies = scene.bodies;
@@ -305,7 +311,7 @@ class Builder {
     return std::ranges::any_of(scene.servos, [body](const Servo& servo) { return servo.body == body; });
   }
 
-  /// One body by its name, or all of an entry by the entry's.
+  /// Returns the one body with this name, or all bodies of the entry with this name.
   BodyRange bodies_called(const std::string& name, const Node& node, const Scene& scene) {
     const auto body = scene.body_names.find(name);
     if (body != scene.body_names.end()) return {body->second, 1};
@@ -352,7 +358,7 @@ class Builder {
     return check;
   }
 
-  /// Of the body that a check is about, at all times that it asks for.
+  /// Fails if the body of a check does not exist at the first or at the last step of the check.
   void require_presence(std::int32_t body, const CheckEntry& check) {
     const auto after =
         std::find_if(slots_.begin(), slots_.end(), [&](const BodySlot& s) { return s.bodies.first > body; });
@@ -376,7 +382,7 @@ class Builder {
   TimeGrid grid_;
   MaterialNames materials_;
   std::vector<BodySlot> slots_;
-  std::map<std::string, Hull> hulls_;  ///< that rows of body files name, by their files
+  std::map<std::string, Hull> hulls_;  ///< hulls that rows of body files name, by the paths of their files
   std::vector<std::pair<std::int32_t, const Hull*>> hulls_of_rows_;
 };
 

@@ -1,4 +1,4 @@
-// From a scene as written to the Scene that a simulation takes.
+// The function that makes the Scene of a simulation from a scene as it is written.
 #pragma once
 
 #include "sim/scene/keys.hpp"
@@ -7,8 +7,8 @@
 
 namespace scree {
 
-/// Draws and places the bodies, and checks what spans sections: materials, body names, measures, counts.
-/// `memory`: what a run may take (bytes). Throws InputError.
+/// Draws and places the bodies, and checks what involves several sections: materials, body names, measures,
+/// counts. `memory`: the memory that a run may take (bytes). Throws InputError.
 Scene build_scene(SceneEntry entry, const std::filesystem::path& source, double memory, Reader& reader);
 
 }  // namespace scree

@@ -1,4 +1,4 @@
-// Codecs of single values, and the messages of keys that are unknown or missing.
+// Codecs of single values, and the messages about keys that are unknown or missing.
 #include "sim/scene/codec.hpp"
 
 #include "sim/scene/scalar.hpp"
@@ -14,12 +14,12 @@
 namespace scree {
 namespace {
 
-/// The largest whole number that a T can be, of those that 64 bits hold.
+/// The largest whole number of 64 bits that can be converted to a T.
 template <class T>
 constexpr auto most_whole = static_cast<std::uint64_t>(
     std::is_integral_v<T> ? static_cast<std::uint64_t>(std::numeric_limits<T>::max()) : UINT64_MAX);
 
-/// Reads all of a plain scalar as a T; the forms are those of YAML's core schema.
+/// Reads a whole plain scalar as a T. The forms allowed are those of YAML's core schema.
 template <class T>
 T parse_plain(const Node& node, const Type& type, const Reader& reader) {
   if (!has_form(node, type)) fail_form(node, type, reader);
@@ -32,7 +32,8 @@ T parse_plain(const Node& node, const Type& type, const Reader& reader) {
   if (error == std::errc::result_out_of_range)
     reader.fail(node.mark, fmt::format("{} is out of range", shown(node)));
   if (error != std::errc{} || end != text.data() + text.size()) fail_form(node, type, reader);
-  // The whole number -0 is 0, as the programs see it that a scene may have gone through; -0.0 has its sign.
+  // The whole number -0 is read as 0, as other programs do that a scene may have gone through; -0.0 keeps its
+  // sign.
   return value == T{} && is_whole_number(node.text) ? T{} : value;
 }
 

@@ -1,5 +1,5 @@
-// Codecs: a type of the scene language together with how it is read into, and written from, a C++ value.
-// Small ones combine into sections, and these into the table of keys.
+// Codecs. A codec is a type of the scene language together with the functions that read it into a C++ value
+// and write it from one. Small codecs combine into sections, and sections into the table of keys.
 #pragma once
 
 #include "core/math.hpp"
@@ -19,13 +19,14 @@ namespace scree {
 template <class T>
 struct Codec {
   Type type;
-  /// Throws InputError at the node's place unless it is what the type says.
+  /// Reads a node into the value. Throws InputError, with the node's line and column, unless the node is of
+  /// the type.
   std::function<void(T&, const Node&, Reader&)> read;
-  /// Nothing where the value is one that is left out of a scene, such as an absent optional.
+  /// Returns the value as a node, or nothing if the value is left out of a scene, such as an absent optional.
   std::function<std::optional<Node>(const T&)> write;
 };
 
-/// A later part of the language: an error that says so by name.
+/// The message about a key that belongs to a later version of the language.
 inline constexpr const char* future_text = "is part of the scene language but not in this version";
 
 Codec<double> number(const Range& range = any_value, std::string unit = {});
@@ -33,21 +34,23 @@ Codec<std::int64_t> large_integer(const Range& range);
 Codec<std::uint64_t> seed_integer();
 Codec<int> integer(const Range& range);
 Codec<bool> boolean();
-/// A word that messages, measures and paths can use: a letter or _, then letters, digits, _ and -.
+/// Makes the codec of a name that messages, measures and paths can use: a letter or _, then letters, digits,
+/// _ and -.
 Codec<std::string> identifier();
-/// Text that can name a file: not empty, no slash or control character, no dot at its start.
+/// Makes the codec of text that can name a file: not empty, no slash or control character, no dot at its
+/// start.
 Codec<std::string> file_name();
 Codec<std::string> text();
 bool is_identifier(std::string_view word);
 bool is_file_name(std::string_view word);
 
 [[noreturn]] void fail_form(const Node& node, const Type& type, const Reader& reader);
-/// The index of a word; throws if it is none of them.
+/// Returns the index of the node's word among those of the type; throws InputError if it is none of them.
 std::size_t read_word(const Node& node, const Type& type, const Reader& reader);
 Type word_type(std::vector<std::string> words);
 Type list_type(const Type& item, std::int64_t least, std::int64_t most);
 
-/// One of a few words, each with its value.
+/// Makes the codec of a few words, each of which stands for a value.
 template <class T>
 Codec<T> word(std::vector<std::pair<std::string, T>> words) {
   std::vector<std::string> names;
@@ -64,7 +67,8 @@ Codec<T> word(std::vector<std::pair<std::string, T>> words) {
           }};
 }
 
-/// An item of a list, under its index in messages; an error in one does not hide those of the others.
+/// Reads the items of a list. Messages name the index of the item, and an error in one item does not hide
+/// errors in the others.
 template <class T>
 void read_items(std::vector<T>& values, const Node& node, Reader& reader, const Codec<T>& item) {
   values.clear();
@@ -96,7 +100,7 @@ Codec<std::vector<T>> list_of(Codec<T> item, std::int64_t least = 0, std::int64_
           }};
 }
 
-/// A list of known length N, read into anything with operator[].
+/// Makes the codec of a list of known length N, which is read into anything with operator[].
 template <class Values, std::size_t N, class T>
 Codec<Values> fixed_list(Codec<T> item) {
   const Type type = list_type(item.type, N, N);
@@ -122,7 +126,7 @@ inline Codec<Vec3> vector(std::string unit, const Range& range = any_value) {
   return fixed_list<Vec3, 3>(number(range, std::move(unit)));
 }
 
-/// A value that may be absent.
+/// Makes the codec of a value that may be absent.
 template <class T>
 Codec<std::optional<T>> optional(Codec<T> codec) {
   return {codec.type,
@@ -134,7 +138,8 @@ Codec<std::optional<T>> optional(Codec<T> codec) {
           }};
 }
 
-/// The first alternative of which the node has the form; written by the first that can.
+/// Makes the codec of a value with several alternatives. A node is read by the first alternative whose form
+/// it has; a value is written by the first alternative that can write it.
 template <class T>
 Codec<T> any_of(std::vector<Codec<T>> alternatives) {
   Type type{.kind = Type::Kind::any_of};
@@ -153,7 +158,7 @@ Codec<T> any_of(std::vector<Codec<T>> alternatives) {
           }};
 }
 
-/// A value, or `auto` where it is left to scree.
+/// Makes the codec of a value or the word `auto`, which leaves the value to scree.
 template <class T>
 Codec<std::optional<T>> or_auto(Codec<T> codec) {
   const Codec<std::optional<T>> automatic{
@@ -171,7 +176,7 @@ struct Key {
   std::function<std::optional<Node>(const T&)> write;
 };
 
-/// A key stored in a member of T (or of a base of T).
+/// Makes a key that is stored in a member of T (or of a base of T).
 template <class T, class Base, class M>
 Key<T> key(std::string name, M Base::*member, const Codec<M>& codec, Presence presence, std::string help) {
   return {{std::move(name), presence, codec.type, {}, std::move(help)},
@@ -181,18 +186,20 @@ Key<T> key(std::string name, M Base::*member, const Codec<M>& codec, Presence pr
           [member, codec](const T& object) { return codec.write(object.*member); }};
 }
 
-/// A key of the language that this version refuses by name.
+/// Makes a key of the language that this version refuses, with a message that says so.
 template <class T>
 Key<T> future(std::string name, std::string help) {
   return {{std::move(name), Presence::future, {}, {}, std::move(help)}, {}, {}};
 }
 
-/// The place of a member's key in the table; throws for unknown keys, with the nearest known one.
+/// Returns the index of a member's key in the section. Throws InputError for an unknown key, with the nearest
+/// known one.
 std::size_t find_key(const Node& member, const SectionType& section, Reader& reader);
 void require_keys(const Node& node, const SectionType& section, Reader& reader);
 
-/// A map with the keys given. `rule` checks what the keys say together, once each of them is right. A member
-/// `node` of T is set to the node, and a member `mark` to its place, for checks that come later.
+/// Makes the codec of a map with the given keys. `rule` checks the keys together, after each of them has been
+/// found right. If T has a member `node`, it is set to the node, and a member `mark` is set to the node's
+/// line and column, for later checks.
 template <class T>
 Codec<T> section(std::string name, std::string help, std::vector<Key<T>> list,
                  std::function<void(const T&, const Node&, Reader&)> rule = {}) {
@@ -207,7 +214,7 @@ Codec<T> section(std::string name, std::string help, std::vector<Key<T>> list,
   }
   Type type{.kind = Type::Kind::section};
   type.section = described;
-  // Shared, or copies of codecs within codecs would double at every level.
+  // The keys are shared, because copies of codecs within codecs would double at every level.
   const auto keys = std::make_shared<const std::vector<Key<T>>>(std::move(list));
   return {type,
           [keys, type, rule](T& object, const Node& node, Reader& reader) {
@@ -237,7 +244,8 @@ Codec<T> section(std::string name, std::string help, std::vector<Key<T>> list,
           }};
 }
 
-/// A map from at most so many names to sections; T has a member `name`. The order is that of the file.
+/// Makes the codec of a map from at most `most` names to sections. T has a member `name`. The order is that
+/// of the file.
 template <class T>
 Codec<std::vector<T>> named(Codec<T> codec, std::int64_t most) {
   Type type{.kind = Type::Kind::named, .most = most};

@@ -11,7 +11,7 @@ namespace {
 
 using Types = std::vector<const Type*>;
 
-/// Types that are told apart by form are all there; what is in them comes in their place.
+/// Appends a type to the forms; in place of a type any_of, appends its alternatives.
 void add_forms(const Type& type, Types& forms) {
   if (type.kind != Type::Kind::any_of) return forms.push_back(&type);
   for (const Type& part : type.parts) add_forms(part, forms);
@@ -35,7 +35,7 @@ Types members_of(const Types& forms, std::string_view name) {
   return members;
 }
 
-/// Where bodies[2].velocity leads to; nothing if it leads nowhere.
+/// Returns the types to which a path such as bodies[2].velocity leads; none if it leads nowhere.
 Types forms_at(std::string_view path) {
   Types forms;
   add_forms(scene_codec().type, forms);
@@ -52,7 +52,7 @@ Types forms_at(std::string_view path) {
   return forms;
 }
 
-/// What may come after a key: one for each form that its value has.
+/// Returns the characters that may follow a key, by the forms that its value may have: `.`, `[` or `=`.
 std::string signs_after(const Type& type) {
   Types forms;
   add_forms(type, forms);

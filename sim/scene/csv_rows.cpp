@@ -13,7 +13,7 @@
 namespace scree {
 namespace {
 
-constexpr std::size_t longest_told = 40;  // bytes of a cell, in messages
+constexpr std::size_t longest_told = 40;  // largest number of bytes of a cell in a message
 
 std::string all_names() {
   std::vector<std::string_view> names;
@@ -35,7 +35,8 @@ std::optional<BodyColumn> column_called(std::string_view name) {
   return {};
 }
 
-/// Whether one letter too many, too few or wrong, or two that have changed places, part the two.
+/// Returns whether two names are equal, or differ only by one letter that is extra, missing or wrong, or by
+/// two adjacent letters that are swapped.
 bool is_slip(std::string_view a, std::string_view b) {
   if (a.size() > b.size()) std::swap(a, b);
   if (b.size() > a.size() + 1) return false;
@@ -48,7 +49,8 @@ bool is_slip(std::string_view a, std::string_view b) {
          rest_a.substr(2) == rest_b.substr(2);
 }
 
-/// The column that a name is likely to mean. Short names are near to each other without meaning it: fx, vx.
+/// Returns the column that a misspelt name is likely to mean; empty if there is none. Short names are left
+/// out, because they are near to each other by chance: fx, vx.
 std::string_view misspelt(std::string_view name) {
   constexpr std::size_t short_name = 4;
   const std::string lower = small(name);
@@ -59,7 +61,8 @@ std::string_view misspelt(std::string_view name) {
   return {};
 }
 
-/// What parts the names: of the marks that are outside of quotes the one that is there most often.
+/// Returns the delimiter of a line: the mark that is most often in it outside quotes, or a blank if there is
+/// none.
 char delimiter_of(std::string_view line) {
   constexpr std::string_view marks = ",;\t|";
   std::array<int, marks.size()> counts{};
@@ -80,7 +83,7 @@ CsvRows::CsvRows(TextLines lines, const Reader& reader) : reader_(reader), lines
   behind_head_ = lines_.place();
 }
 
-/// Skips blank lines and comments.
+/// Goes to the next line that is neither blank nor a comment. Returns false at the end of the file.
 bool CsvRows::next_line() {
   while (lines_.next_filled()) {
     if (!trimmed(lines_.text()).starts_with('#')) return true;
@@ -91,7 +94,8 @@ bool CsvRows::next_line() {
 
 void CsvRows::read_head() {
   bool found = next_line();
-  // A spreadsheet's way to say what parts the cells, which the names show as well.
+  // Some spreadsheets name the delimiter in a first line `sep=;`, which is not needed: the line of names
+  // shows it.
   if (found && lines_.text().starts_with("sep=") && lines_.text().size() <= 5) found = next_line();
   if (!found)
     reader_.fail({1, 1},
@@ -112,7 +116,8 @@ void CsvRows::fail_names(const Cell& name) const {
                   comment_ > 0 ? fmt::format(" (if line {} has them, take its # away)", comment_) : ""));
 }
 
-/// Names that mean nothing to scree are let be; those that mean something, but are not written so, are not.
+/// Returns the column of a name. A name that means nothing to scree makes a column that is ignored; a name
+/// that means something, but is not spelt as in BodyColumn, is an error.
 RowColumn CsvRows::column_of(const Cell& name) const {
   RowColumn column{.name = std::string(name.text), .mark = name.mark, .column = column_called(name.text)};
   if (column.column) return column;
@@ -124,8 +129,8 @@ RowColumn CsvRows::column_of(const Cell& name) const {
                                                      : fmt::format("; {}", advice)));
 }
 
-/// The cell in quotes that starts at `at`, which becomes the place behind it. Two quotes in it stand for one
-/// (RFC 4180, section 2.7).
+/// Returns the cell in quotes that starts at `at`, and moves `at` behind it. Two quotes within the cell stand
+/// for one (RFC 4180, section 2.7).
 Cell CsvRows::quoted_cell(std::size_t& at) {
   std::string& line = lines_.text();
   const std::size_t start = ++at;
@@ -171,7 +176,8 @@ bool CsvRows::next(std::vector<Cell>& row) {
     if (!next_line()) return false;
     split(row);
   } while (std::ranges::all_of(row, is_empty));
-  // What parts cells may be there once more, or once less, where nothing is lost by it.
+  // Empty cells beyond the last column are dropped, and missing cells of last columns without a name are
+  // added, because nothing is lost by it.
   const auto given = static_cast<std::ptrdiff_t>(row.size());
   while (row.size() > columns_.size() && row.back().text.empty()) row.pop_back();
   while (row.size() < columns_.size() && columns_[row.size()].name.empty())

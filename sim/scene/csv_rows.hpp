@@ -1,6 +1,6 @@
-// A table as spreadsheets and scripts write it (RFC 4180, with what is done besides): a line of names, then
-// rows. Cells are parted by commas, semicolons, tabs, bars or blanks, whichever the first line has; they may
-// be in quotes. Lines that begin with # are comments.
+// The reader of tables as spreadsheets and scripts write them (RFC 4180, and common variants): a line of
+// names, then rows. Cells are separated by commas, semicolons, tabs, bars or blanks, whichever the first line
+// has; they may be in quotes. Lines that begin with # are comments.
 #pragma once
 
 #include "sim/scene/row_source.hpp"

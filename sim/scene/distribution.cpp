@@ -1,4 +1,4 @@
-// Quantiles and draws.
+// Quantiles of distributions, and random draws from them.
 #include "sim/scene/distribution.hpp"
 
 #include <algorithm>

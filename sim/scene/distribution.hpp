@@ -10,21 +10,23 @@
 
 namespace scree {
 
-/// Exactly one member is given.
+/// A size that is one value or a distribution. Exactly one member is given.
 template <class T>
 struct Distribution {
   std::optional<T> value;
-  std::optional<std::array<T, 2>> uniform;        ///< between two values; each component by itself
+  std::optional<std::array<T, 2>> uniform;  ///< uniform between two values; each component is drawn by itself
   std::optional<std::array<double, 3>> powerlaw;  ///< smallest, largest, exponent
-  std::vector<T> choose;                          ///< each as likely as the others
+  std::vector<T> choose;                          ///< values, each as likely as the others
 };
 
-/// The share u of the values is smaller: the quantile of the density ~ x^-exponent on [low, high], low > 0.
+/// Returns the quantile u of the density ~ x^-exponent on [low, high], low > 0: the share u of the values is
+/// smaller.
 double powerlaw_quantile(double low, double high, double exponent, double u);
 
-/// Radii. A draw takes one number of the stream, whatever the distribution.
+/// Draws a radius. A draw takes one number of the stream, whatever the distribution.
 double draw(const Distribution<double>& sizes, Random& random);
-/// Edge lengths. A draw takes three numbers for uniform, and one else; powerlaw makes cubes.
+/// Draws edge lengths. A draw takes three numbers of the stream for `uniform`, and one otherwise; `powerlaw`
+/// makes cubes.
 Vec3 draw(const Distribution<Vec3>& sizes, Random& random);
 
 }  // namespace scree

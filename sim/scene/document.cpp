@@ -1,4 +1,5 @@
-// yaml-cpp is included here alone: its events become a tree, and what it is lax about is refused.
+// The parser of YAML text. It makes a tree of the events of yaml-cpp, and refuses what yaml-cpp accepts
+// wrongly. No other file includes yaml-cpp.
 #include "sim/scene/document.hpp"
 
 #include "sim/scene/scalar.hpp"
@@ -26,8 +27,8 @@ SourceMark to_mark(const YAML::Mark& mark) {
   return {std::max(mark.line, 0) + 1, std::max(mark.column, 0) + 1};
 }
 
-/// Whether the second byte of a sequence of three or four is in the range that excludes overlong forms,
-/// surrogates and what lies beyond U+10FFFF.
+/// Returns whether the second byte of a sequence of three or four is in the range that excludes overlong
+/// forms, surrogates and what lies beyond U+10FFFF.
 bool is_second_byte(unsigned lead, unsigned second) {
   switch (lead) {
     case 0xE0:
@@ -43,7 +44,7 @@ bool is_second_byte(unsigned lead, unsigned second) {
   }
 }
 
-/// Length of the UTF-8 sequence that starts at `at`, or 0 if there is none (RFC 3629, section 4).
+/// Returns the length of the UTF-8 sequence that starts at `at`, or 0 if there is none (RFC 3629, section 4).
 std::size_t utf8_length(std::string_view text, std::size_t at) {
   const auto byte = [&](std::size_t i) {
     return at + i < text.size() ? static_cast<unsigned char>(text[at + i]) : 0u;
@@ -67,14 +68,15 @@ bool is_utf8(std::string_view text) {
   return true;
 }
 
-/// Whether the document is a map in braces, as in JSON, which may be indented with tabs.
+/// Returns whether the document is a map in braces, as in JSON, which may be indented with tabs.
 bool is_in_braces(std::string_view text) {
   if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);
   const std::size_t first = text.find_first_not_of(" \t\r\n");
   return first != std::string_view::npos && text[first] == '{';
 }
 
-/// The four hexadecimal digits of an escape \uXXXX at the place, or nothing.
+/// Returns the value of the four hexadecimal digits of an escape \uXXXX at `at`, or nothing if there is no
+/// such escape.
 std::optional<unsigned> escaped_unit(std::string_view text, std::size_t at) {
   if (text.size() < at + 6 || text.substr(at, 2) != "\\u") return {};
   unsigned unit = 0;
@@ -83,8 +85,8 @@ std::optional<unsigned> escaped_unit(std::string_view text, std::size_t at) {
   return unit;
 }
 
-/// JSON writes a character beyond U+FFFF as two escapes, a surrogate pair (RFC 8259, section 7), YAML as one
-/// of eight digits.
+/// Replaces surrogate pairs by single escapes. JSON writes a character beyond U+FFFF as two escapes, a
+/// surrogate pair (RFC 8259, section 7), YAML as one of eight digits.
 std::string join_surrogates(std::string_view text) {
   std::string joined;
   joined.reserve(text.size());
@@ -103,7 +105,8 @@ std::string join_surrogates(std::string_view text) {
   return joined;
 }
 
-/// yaml-cpp replaces bad bytes, stops at a control-D and is lax about tabs, all without a word.
+/// Throws SyntaxError for wrong characters. yaml-cpp itself replaces bad bytes, stops at a control-D and
+/// accepts tabs where YAML does not, all without an error. `tabs`: tabs are allowed in the indentation.
 void check_characters(std::string_view text, bool tabs) {
   SourceMark mark{1, 1};
   bool indentation = true;
@@ -133,7 +136,7 @@ void check_characters(std::string_view text, bool tabs) {
 
 struct Extent {
   std::int64_t nodes = 1;
-  std::int64_t bytes = 0;  ///< of text
+  std::int64_t bytes = 0;  ///< bytes of text
   int depth = 1;
 };
 
@@ -162,8 +165,8 @@ void refuse_duplicates(const Node& map) {
                                                     twice[0]->key, first.line, first.column)};
 }
 
-/// Builds the tree from the parser's events. Copies, those that anchors hold and those that aliases add, are
-/// bounded, so no file can make the tree much larger than itself.
+/// Builds the tree from the parser's events. The copies that anchors hold and that aliases add are bounded,
+/// so no file can make the tree much larger than itself.
 class TreeBuilder final : public YAML::EventHandler {
  public:
   Node root;
@@ -182,7 +185,7 @@ class TreeBuilder final : public YAML::EventHandler {
   void OnScalar(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor,
                 const std::string& value) override {
     const Meaning meaning = meaning_of(mark, tag, value);
-    // The text of the file is UTF-8, but these two yaml-cpp turns into single bytes.
+    // The text of the file is UTF-8, but yaml-cpp turns these two escapes into single bytes.
     if (!is_utf8(value)) throw SyntaxError{to_mark(mark), "the escape \\N or \\_; write \\x85 or \\xA0"};
     Node node = leaf(mark);
     if (meaning != Meaning::nothing) {
@@ -209,7 +212,7 @@ class TreeBuilder final : public YAML::EventHandler {
   struct Open {
     Node node;
     YAML::anchor_t anchor = 0;
-    std::optional<Node> key;  ///< of the map item whose value comes next
+    std::optional<Node> key;  ///< key of the map item whose value comes next
   };
 
   static void count_copy(Extent& copies, const Extent& extent, const SourceMark& mark, const char* what) {
@@ -235,8 +238,9 @@ class TreeBuilder final : public YAML::EventHandler {
 
   enum class Meaning { text, plain, nothing };
 
-  /// Of a scalar with YAML's own tags (core schema, section 10.3.2), or none. For yaml-cpp a quoted scalar
-  /// has the tag "!", as has one that is tagged so, and a plain one "?".
+  /// Returns what a scalar is by its tag, which must be one of YAML's own (core schema, section 10.3.2) or
+  /// absent. From yaml-cpp a quoted scalar has the tag "!", as has one that is written with this tag, and a
+  /// plain one has "?".
   static Meaning meaning_of(const YAML::Mark& mark, const std::string& tag, const std::string& value) {
     if (tag == "!" || tag == yaml_tag("str")) return Meaning::text;
     const auto require = [&](bool fits) {
@@ -301,8 +305,8 @@ class TreeBuilder final : public YAML::EventHandler {
 
   std::vector<Open> open_;
   std::map<YAML::anchor_t, std::pair<Node, Extent>> anchored_;
-  Extent held_{.nodes = 0};     // by anchors, those within others again
-  Extent aliased_{.nodes = 0};  // added by aliases
+  Extent held_{.nodes = 0};     // extent of the copies that anchors hold; nested ones count again
+  Extent aliased_{.nodes = 0};  // extent of the copies that aliases add
 };
 
 }  // namespace

@@ -1,4 +1,4 @@
-// The tree as text.
+// The writer of a tree of nodes as YAML text.
 #include "sim/scene/document.hpp"
 #include "sim/scene/scalar.hpp"
 
@@ -9,7 +9,7 @@
 namespace scree {
 namespace {
 
-/// Whether the text is one scalar, and not null, wherever it stands without quotes.
+/// Returns whether the text without quotes is read as one scalar, and not as null, in any context.
 bool is_plain(std::string_view text) {
   if (is_null_word(text)) return false;
   const auto is_alphanumeric = [](char c) {

@@ -27,7 +27,7 @@ constexpr Name names[] = {
     {"mass", BodyColumn::mass},
 };
 
-/// Of what `scree export` writes, whose sizes are twice those of XYZ.
+/// Names of the columns that only `scree export` writes; its sizes are twice those in its XYZ files.
 constexpr Name own_names[] = {
     {"type", BodyColumn::shape},
     {"shapex", BodyColumn::size_x, 0.5},
@@ -35,7 +35,7 @@ constexpr Name own_names[] = {
     {"shapez", BodyColumn::size_z, 0.5},
 };
 
-/// Places as shares of the cell, as the style `atom` has them.
+/// Names of positions as shares of the cell, as the dump style `atom` has them.
 constexpr std::string_view scaled[] = {"xs", "ys", "zs", "xsu", "ysu", "zsu"};
 
 double number_of(std::string_view text, const TextLines& lines) {
@@ -69,7 +69,7 @@ std::string_view DumpRows::next_value() {
   return trimmed(lines_.text());
 }
 
-/// From the line that the lines are at to the one that names the columns.
+/// Reads the head of a frame, from the current line to the line that names the columns.
 DumpRows::Head DumpRows::read_head() {
   Head head;
   std::optional<std::int64_t> rows;
@@ -114,16 +114,17 @@ bool DumpRows::has(BodyColumn column) const {
 void DumpRows::read_names(const Head& head) {
   std::vector<Cell> cells;
   split_at_blanks(head.names, head.mark.line, cells);
-  cells.erase(cells.begin(), cells.begin() + 2);  // ITEM: ATOMS
+  cells.erase(cells.begin(), cells.begin() + 2);  // the words ITEM: and ATOMS
   const auto is_there = [&](std::string_view name) {
     return std::ranges::any_of(cells, [&](const Cell& cell) { return cell.text == name; });
   };
-  // LAMMPS's own ellipsoids have no radius beside their shape.
+  // Only columns of `scree export` have a radius beside the shape; LAMMPS's own ellipsoids have none.
   if (is_there("type") && is_there("radius") && is_there("shapex")) style_ = SizeStyle::ovito;
   for (const Cell& cell : cells) add(cell, head);
 }
 
-/// Places may be there more than once, in different forms; the first one is taken.
+/// Adds the column of a name. Positions may be in the file more than once, in different forms; the first one
+/// is used.
 void DumpRows::add(const Cell& name, const Head& head) {
   std::string text(name.text);
   const auto is_it = [&](const Name& known) { return known.name == name.text; };

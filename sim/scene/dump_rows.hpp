@@ -1,5 +1,5 @@
-// Dumps of LAMMPS that are text (its manual, "dump command"): frames of items, the last of which, ATOMS,
-// names the columns of its rows.
+// The reader of LAMMPS dumps that are text (LAMMPS manual, "dump command"). Their frames consist of items,
+// the last of which, ATOMS, names the columns of its rows.
 #pragma once
 
 #include "sim/scene/frame_rows.hpp"
@@ -16,8 +16,8 @@ class DumpRows final : public FrameRows {
   struct Head {
     Frame frame;
     std::string names;  ///< the line that names the columns
-    SourceMark mark;    ///< of it
-    std::string units;  ///< empty: not given
+    SourceMark mark;    ///< start of this line
+    std::string units;  ///< word after ITEM: UNITS; empty: not given
     std::array<double, 3> low{}, high{};
     bool is_oblique = false;  ///< the cell's edges are not along the axes
   };

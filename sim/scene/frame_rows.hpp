@@ -1,4 +1,5 @@
-// Rows of one frame of a particle format that is text: a known number of lines, of words that blanks part.
+// The rows of one frame of a particle format that is text: a known number of lines, whose words are separated
+// by blanks.
 #pragma once
 
 #include "sim/scene/row_source.hpp"
@@ -17,23 +18,23 @@ class FrameRows : public RowSource {
  protected:
   FrameRows(TextLines lines, const Reader& reader) : reader_(reader), lines_(std::move(lines)) {}
 
-  /// Where the rows are, once the lines have come to the frame.
+  /// The number of rows of a frame, and where they are in the file.
   struct Frame {
     std::int64_t rows = 0;
-    TextLines::Place place;  ///< behind the line before the first one
+    TextLines::Place place;  ///< end of the line before the first row
   };
 
-  /// Reads on behind the frame. Throws InputError if it ends before its last row.
+  /// Skips the rows of a frame. Throws InputError if the file ends before the last row.
   void skip(const Frame& frame);
   void choose(const Frame& frame);
-  /// Throws InputError if there is no frame of the number, of so many.
+  /// Throws InputError if the file, which has `frames` frames, has no frame of the wanted number.
   void require_frame(std::optional<std::int64_t> wanted, std::int64_t frames) const;
-  /// The whole number that the line is.
+  /// Returns the whole number that a line consists of. `what` describes it in messages.
   std::int64_t count_of(std::string_view line, const char* what) const;
   void add_column(std::string name, SourceMark mark, std::optional<BodyColumn> column, double scale = 1,
                   double offset = 0);
-  /// Which of the columns, the next one to be added, says that a body is not free, as `scree export` writes
-  /// it.
+  /// Sets the index of the column, the next one to be added, that says whether a body is free, as `scree
+  /// export` writes it.
   void set_mobility(std::size_t column) { mobility_ = column; }
   void fail_short(std::int64_t rows, std::int64_t of) const;
 
@@ -42,8 +43,8 @@ class FrameRows : public RowSource {
 
  private:
   Frame frame_;
-  std::int64_t left_ = 0;  ///< rows of the frame that are not read yet
-  std::int64_t held_ = 0;  ///< rows of bodies that are not free, which are left out
+  std::int64_t left_ = 0;  ///< number of rows of the frame that are not read yet
+  std::int64_t held_ = 0;  ///< number of rows of bodies that are not free, which are left out
   bool counted_ = false;
   std::optional<std::size_t> mobility_;
 };

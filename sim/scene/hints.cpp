@@ -9,7 +9,7 @@ namespace {
 constexpr std::string_view rigid =
     "bodies are rigid: leave it out; `restitution` says how much speed an impact keeps";
 constexpr std::string_view not_modelled = "is not modelled: leave it out";
-constexpr std::string_view of_material = "is of the material: write it in `materials`";
+constexpr std::string_view of_material = "belongs to the material: write it in `materials`";
 constexpr std::string_view of_time = "write `time: {end: 2, step: 0.001}`, in seconds";
 constexpr std::string_view to_spin = "write `spin`, a vector in rad/s";
 
@@ -20,12 +20,12 @@ constexpr Hint hints[] = {
     {"scene", "objects particles rigidbodies shapes geoms entities actors items balls spheres boxes", "write `bodies`, a list of maps"},
     {"scene", "title scene id", "write `name`"},
     {"scene", "version schema", "write `format: 1`"},
-    {"scene", "camera fps resolution color colour lights view film video movie pictures", "is of the pictures: write it in `render`"},
-    {"scene", "output save log metrics trajectory checkpoint outputinterval", "is of what is written: write it in `record`"},
-    {"scene", "solver iterations tolerance mode integrator restitutionthreshold warmstart", "is of the contacts' answer: write it in `response`"},
+    {"scene", "camera fps resolution color colour lights view film video movie pictures", "belongs to the pictures: write it in `render`"},
+    {"scene", "output save log metrics trajectory checkpoint outputinterval", "belongs to the output: write it in `record`"},
+    {"scene", "solver iterations tolerance mode integrator restitutionthreshold warmstart", "belongs to the contact response: write it in `response`"},
     {"scene", "domain boundary boundaries bounds walls box", "write `world` where bodies must stay, `periodic` for a space that repeats, or bodies that are walls"},
     {"scene", "friction mu restitution cor density rho", of_material},
-    {"scene", "threads device gpu cpu cores", "is of the command line: --threads, --device"},
+    {"scene", "threads device gpu cpu cores", "belongs to the command line: --threads, --device"},
     {"scene", "units unit", "units are SI: leave it out"},
     {"scene", "damping drag wind viscosity air airresistance fluid joints constraints springs", not_modelled},
 
@@ -34,7 +34,7 @@ constexpr Hint hints[] = {
     {"time", "steps nsteps numsteps numberofsteps iterations", "write `end`: steps times `step`"},
     {"time", "nsubsteps substepping", "write `substeps`"},
     {"time", "start begin tstart", "a run starts at 0: leave it out"},
-    {"time", "fps framerate", "is of the pictures: write it in `render`"},
+    {"time", "fps framerate", "belongs to the pictures: write it in `render`"},
 
     {"materials.<name> contacts[]",
      "mu static staticfriction dynamicfriction kineticfriction slidingfriction frictioncoefficient coefficientoffriction cof mus muk mud staticfrictioncoefficient dynamicfrictioncoefficient",
@@ -51,7 +51,7 @@ constexpr Hint hints[] = {
      "youngsmodulus youngmodulus young youngs modulus elasticmodulus shearmodulus poisson poissonratio poissonsratio nu stiffness normalstiffness tangentialstiffness kn kt ks spring hardness damping normaldamping contactdamping dampingcoefficient dampingratio gamma gamman gammat viscosity compliance",
      rigid},
     {"materials.<name>", "rho massdensity densitykg densitykgm3 densitykgpm3 specificmass volumetricmass", "write `density`, in kg/m^3"},
-    {"materials.<name>", "mass weight", "is of a body: write `mass` there, or `density` here"},
+    {"materials.<name>", "mass weight", "belongs to a body: write `mass` there, or `density` here"},
     {"materials.<name> bodies[]", "color colour rgb rgba", "what colours show is one for all: write `color` in `render`"},
     {"contacts[]", "pair materials material bodies of a b first", "write `between: [glass, steel]`, two names of `materials`"},
 
@@ -70,11 +70,11 @@ constexpr Hint hints[] = {
     {"bodies[]", "ground floor halfspace wall", "write `plane: {normal: [0, 0, 1], offset: 0}`"},
     {"bodies[]", "pipe drum container", "write `tube: {radius: 1, length: 1}`, the inside of a cylinder"},
     {"bodies[]", "type kind geometry geom collider primitive", "the shape is a key of its own: write `sphere: {radius: 0.1}`"},
-    {"bodies[]", "radius diameter r d", "is of the shape: write `sphere: {radius: 0.1}`"},
-    {"bodies[]", "size halfsize extents halfextents halfextent dimensions dims width height depth", "is of the shape: write `box: {size: [x, y, z]}`, full edges"},
-    {"bodies[]", "length halflength halfheight", "is of the shape: write `cylinder: {radius: 0.1, length: 1}`"},
-    {"bodies[]", "points vertices", "is of the shape: write `polyhedron: {points: [...]}`"},
-    {"bodies[]", "normal offset", "is of the shape: write `plane: {normal: [0, 0, 1], offset: 0}`"},
+    {"bodies[]", "radius diameter r d", "belongs to the shape: write `sphere: {radius: 0.1}`"},
+    {"bodies[]", "size halfsize extents halfextents halfextent dimensions dims width height depth", "belongs to the shape: write `box: {size: [x, y, z]}`, full edges"},
+    {"bodies[]", "length halflength halfheight", "belongs to the shape: write `cylinder: {radius: 0.1, length: 1}`"},
+    {"bodies[]", "points vertices", "belongs to the shape: write `polyhedron: {points: [...]}`"},
+    {"bodies[]", "normal offset", "belongs to the shape: write `plane: {normal: [0, 0, 1], offset: 0}`"},
     {"bodies[]", "axis degrees radians", "write `rotate: {axis: [0, 0, 1], degrees: 30}`"},
     {"bodies[]", "csv table path filename data xyzfile lammps dump", "write `file: bed.csv`"},
     {"bodies[]", "density rho friction mu restitution cor rollingfriction staticfriction dynamicfriction bounciness", of_material},
@@ -156,7 +156,7 @@ constexpr Hint hints[] = {
     {"render", "every interval period", "write `fps`: 1 / interval"},
     {"render", "colorby colourby colormap", "write `color`"},
     {"render", "background lights light sky shadows", "cannot be chosen: leave it out"},
-    {"render", "from to fov eye lookat target", "is of the camera: write `camera: {from: [x, y, z], to: [x, y, z]}`"},
+    {"render", "from to fov eye lookat target", "belongs to the camera: write `camera: {from: [x, y, z], to: [x, y, z]}`"},
     {"render.camera render.camera.keyframes[]", "eye position pos location", "write `from: [x, y, z]`"},
     {"render.camera render.camera.keyframes[]", "target lookat focus center centre", "write `to: [x, y, z]`"},
     {"render.camera render.camera.keyframes[]", "fieldofview angle zoom fovy", "write `fov`, in degrees"},
@@ -165,7 +165,7 @@ constexpr Hint hints[] = {
     {"render.camera.orbit", "speed rate omega rpm", "write `degrees_per_second`"},
 
     {"record", "every interval dt outputinterval output metrics metricsinterval period", "write `metrics_every`, in seconds"},
-    {"record", "fps frames pictures", "is of the pictures: write it in `render`"},
+    {"record", "fps frames pictures", "belongs to the pictures: write it in `render`"},
     {"record", "checkpoint checkpoints restart", "write `checkpoint_every`, in seconds"},
     {"record", "vtk vtp xyz lammps csv", "write `trajectory: true`; scree export makes it of that"},
     {"record.trajectory", "interval dt period", "write `every`, in seconds"},

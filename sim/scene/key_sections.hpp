@@ -1,4 +1,4 @@
-// The sections of the table of keys that have files of their own, and what they are made with.
+// The sections of the table of keys that have files of their own, and helpers to make them.
 #pragma once
 
 #include "sim/scene/keys.hpp"
@@ -11,7 +11,7 @@ namespace scree {
 inline constexpr Presence required = Presence::required;
 inline constexpr Presence optionally = Presence::optional;
 
-/// A default that the member cannot show, because its absence is told from its being given.
+/// Sets the default of a key whose member cannot show it, because an absent value differs from a given one.
 template <class T>
 Key<T> with_default(Key<T> key, std::string fallback) {
   key.type.fallback = std::move(fallback);

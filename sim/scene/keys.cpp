@@ -7,7 +7,8 @@
 namespace scree {
 namespace {
 
-/// Materials have a law for each pair, regions a sum over all bodies each.
+/// The largest number of materials or of regions: each pair of materials has a contact law, and each region
+/// needs a sum over all bodies.
 constexpr std::int64_t most_names = 1000;
 
 Codec<TimeSettings> time_section() {
@@ -89,7 +90,7 @@ Codec<Region> region_section() {
           key<T>("to", &T::to, vector("m"), required, "upper corner"),
           with_default(key<T>("removes", &T::removes, optional(boolean()), optionally,
                               "free bodies whose centre is in the box at the end of a step are taken out, "
-                              "and booked as gone"),
+                              "and counted as gone"),
                        "false"),
       },
       check_region);
@@ -190,7 +191,7 @@ Codec<GravityKey> gravity_key_section() {
       });
 }
 
-/// A vector, or one that changes with time.
+/// Makes the codec of gravity: a vector, or a section if gravity changes with time.
 Codec<GravityEntry> gravity_value() {
   using T = GravityEntry;
   const Codec<Vec3> constant = vector("m/s^2");
@@ -212,7 +213,7 @@ Codec<GravityEntry> gravity_value() {
        section<T>("gravity",
                   "Gravity that turns or changes with time: the force alone. It is that of a frame that "
                   "turns slowly; a frame that turns fast has centrifugal and Coriolis forces too, which "
-                  "are left out. Its work is booked as energy.work.",
+                  "are left out. Its work is part of energy.work.",
                   {
                       std::move(at_start),
                       key<T>("spin", &T::spin, optional(vector("rad/s")), optionally,
@@ -234,7 +235,8 @@ Codec<Reduce> reduce_word() {
                        {"crossings", crossings}});
 }
 
-/// Left out of the resolved scene where it means nothing, and refused there.
+/// Makes the key `level`. It is left out of the resolved scene unless crossings are counted, because it is
+/// refused otherwise.
 Key<CheckEntry> crossings_level() {
   using T = CheckEntry;
   Key<T> level = with_default(

@@ -1,4 +1,4 @@
-// A scene as it is written, key for key, and the table that binds the two.
+// A scene as it is written, key for key, and the table that binds the keys to these structures.
 #pragma once
 
 #include "sim/scene/codec.hpp"
@@ -46,7 +46,7 @@ struct TubeEntry {
 
 struct CapsuleEntry {
   double radius = 0;
-  double length = 0;  ///< of the segment
+  double length = 0;  ///< length of the segment on the axis, without the round ends
 };
 
 struct CylinderEntry {
@@ -112,8 +112,8 @@ struct EmitEntry : ScatterEntry {
   double rate = 0;
 };
 
-/// One item of `bodies`; stands for many bodies if it repeats, scatters or emits. What does not apply to the
-/// item (the velocity of a plane, say) must be absent.
+/// One item of `bodies`. It stands for many bodies if it repeats, scatters or emits, or if it has a file or a
+/// mesh. A key that does not apply to the item (the velocity of a plane, say) must be absent.
 struct BodyEntry {
   std::optional<PlaneEntry> plane;
   std::optional<SphereEntry> sphere;
@@ -124,8 +124,8 @@ struct BodyEntry {
   std::optional<PolyhedronEntry> polyhedron;
   std::optional<MeshEntry> mesh;
   std::string file;
-  std::optional<Shape> shape;         ///< of a file's bodies
-  std::optional<std::int64_t> frame;  ///< of a file
+  std::optional<Shape> shape;         ///< shape of a file's bodies
+  std::optional<std::int64_t> frame;  ///< number of the frame in a file
   std::string name;
   std::string material;
   std::optional<double> mass;
@@ -158,7 +158,7 @@ struct CheckEntry : Check {
   const Node* node = nullptr;
 };
 
-/// Where the cell of a periodic space begins and ends along each axis that is so (m).
+/// The ends of the cell of a periodic space along each periodic axis (m).
 struct PeriodicEntry {
   std::optional<std::array<double, 2>> x, y, z;
   const Node* node = nullptr;
@@ -193,7 +193,7 @@ struct SceneEntry {
   std::vector<CheckEntry> checks;
 };
 
-/// The table: every key of the scene language.
+/// Returns the table of keys: every key of the scene language.
 const Codec<SceneEntry>& scene_codec();
 
 }  // namespace scree

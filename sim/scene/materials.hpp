@@ -1,4 +1,4 @@
-// Materials by their names, and the laws of their pairs.
+// Materials by their names, and the contact laws of their pairs.
 #pragma once
 
 #include "sim/scene/keys.hpp"
@@ -14,15 +14,16 @@ namespace scree {
 
 class MaterialNames {
  public:
-  /// The entries must outlive it.
+  /// The entries must outlive this object.
   explicit MaterialNames(const std::vector<MaterialEntry>& materials);
 
   std::optional<std::int32_t> find(std::string_view name) const;
-  /// The same, or the one at the place, from 0, that a number gives.
+  /// Returns the index of the material with this name, or, if the text is a number, with this index from 0.
   std::optional<std::int32_t> find_or_at(std::string_view name_or_place) const;
-  /// The same by name; throws InputError at `where`, the value that names the material.
+  /// Returns the index of the material with this name. Throws InputError at `where`, the value that names the
+  /// material, if there is none.
   std::int32_t require(const std::string& name, const Node& where, const Reader& reader) const;
-  /// "there is no material glas (did you mean glass?)"
+  /// Returns a message such as "there is no material glas (did you mean glass?)".
   std::string unknown(std::string_view name) const;
 
  private:
@@ -30,8 +31,8 @@ class MaterialNames {
   std::unordered_map<std::string_view, std::int32_t> index_;
 };
 
-/// The laws of all pairs, as Scene::laws: geometric means, but for the pairs listed. Writes the values that a
-/// listed pair leaves out into its entry.
+/// Returns the contact laws of all pairs, in the order of Scene::laws: geometric means, except for the pairs
+/// listed. Writes the values that a listed pair leaves out into its entry.
 std::vector<ContactLaw> contact_laws(const std::vector<MaterialEntry>& materials, const MaterialNames& names,
                                      std::vector<ContactEntry>& listed, Reader& reader);
 

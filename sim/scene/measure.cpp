@@ -18,7 +18,7 @@ double part_of(const Vec3& v, Component component) {
   return component == Component::norm ? v.norm() : v[static_cast<int>(component)];
 }
 
-/// The contact impulses on the mesh that the measure is of.
+/// Returns the load on the mesh to which the measure belongs.
 MeshLoad load_of_mesh(const Measure& measure, const std::function<BodyState(std::int32_t)>& body) {
   const BodyState first = body(measure.body);
   const Quat turned = first.orientation * first.start_orientation.conjugate();
@@ -50,7 +50,8 @@ const MeasureInfo* find_measure(std::string_view name, MeasureSubject of) {
   return found == table.end() ? nullptr : &*found;
 }
 
-/// `rest` is the measure's name, with its component if it is a vector.
+/// Parses the name of a measure. `text` is the whole measure, for messages; `rest` is its name, with the
+/// component if it is a vector.
 Measure parse_name(std::string_view text, std::string_view rest, MeasureSubject of) {
   if (const MeasureInfo* whole = find_measure(rest, of); whole && !whole->is_vector()) return {.info = whole};
   const std::size_t dot = rest.rfind('.');
@@ -66,10 +67,11 @@ Measure parse_name(std::string_view text, std::string_view rest, MeasureSubject 
     if (m.of == of) known.push_back(m.name);
   std::string hint = suggestion(rest, known);
   if (hint.empty() && info == nullptr) hint = suggestion(rest.substr(0, dot), known);
+  if (hint.empty()) hint = " (scree plan --reference lists all measures)";
   fail(text, fmt::format("{} is unknown{}", rest, hint));
 }
 
-/// What follows the name of the body or region.
+/// Returns the part of a measure that follows the name of the body or region. Fails if there is none.
 std::string_view after_name(std::string_view text, std::string_view name, const char* example) {
   const auto end = static_cast<std::size_t>(name.data() - text.data()) + name.size();
   if (end >= text.size()) fail(text, fmt::format("it says nothing about {}, such as {}", name, example));

@@ -14,7 +14,8 @@ double number(Count count) {
   return static_cast<double>(count);
 }
 
-/// Angle between the body's z axis now and at the start; exact near 0 and pi, where acos is not.
+/// Returns the angle between the body's z axis now and at the start. It is exact near 0 and pi, where acos is
+/// not.
 double tilt_of(const BodyState& body) {
   const Vec3 now = body.orientation * Vec3::UnitZ();
   const Vec3 start = body.start_orientation * Vec3::UnitZ();
@@ -102,13 +103,13 @@ constexpr MeasureInfo measures[] = {
      [](M s) -> double { return number(s.run.left); }, nullptr},
     {"guards.sweeps", S::run, "", "substeps that used all their sweeps over the contacts, since the start",
      [](M s) -> double { return number(s.run.counters.unconverged); }, nullptr},
-    {"guards.impacts", S::run, "", "substeps whose chains of impacts hit their bound, since the start",
+    {"guards.impacts", S::run, "", "substeps whose chains of impacts reached the limit, since the start",
      [](M s) -> double { return number(s.run.counters.unfinished_impacts); }, nullptr},
     {"guards.newton", S::run, "",
      "groups of contacts that neither Newton's method nor all sweeps have solved, since the start",
      [](M s) -> double { return number(s.run.counters.patient_failed); }, nullptr},
     {"guards.gjk", S::run, "",
-     "calls of libccd that hit their bound, and were answered in another way, since the start",
+     "calls of libccd that reached their limit, and were answered in another way, since the start",
      [](M s) -> double { return number(s.run.counters.narrowphase.ccd_stopped); }, nullptr},
     {"emission.requested", S::run, "", "bodies that emitters were to send since the start",
      [](M s) -> double { return number(s.run.requested); }, nullptr},

@@ -1,4 +1,5 @@
-// The constants are of measured runs: lattices of 100,000 and 400,000 spheres, apart and touching.
+// Estimates of memory. The constants are from measured runs: lattices of 100,000 and 400,000 spheres, apart
+// and touching.
 #include "sim/scene/memory.hpp"
 
 #include <fmt/format.h>
@@ -14,9 +15,10 @@ namespace scree {
 MemoryNeed memory_need(const MemoryLoad& load) {
   constexpr double program = 6e7;
   constexpr double pictures = 1.2e8;
-  constexpr double body = 1400;   // in scene, simulation, solver, broad phase and records
-  constexpr double dense = 6200;  // pairs, manifolds, rows of the solver, remembered impulses
-  constexpr double name = 96;     // an entry of a map, besides its letters
+  constexpr double body = 1400;  // bytes per body in scene, simulation, solver, broad phase and records
+  constexpr double dense =
+      6200;  // bytes per free body for pairs, manifolds, rows of the solver, remembered impulses
+  constexpr double name = 96;  // bytes per name for an entry of a map, besides the letters
   return {.program = program + (load.pictures ? pictures : 0),
           .bodies = body * load.bodies + name * load.names + load.name_bytes,
           .contacts = dense * load.free_bodies};
@@ -25,7 +27,8 @@ MemoryNeed memory_need(const MemoryLoad& load) {
 double machine_memory() {
   const double physical =
       static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGESIZE));
-  // Of the control group, version 2: a number, or the word max. Containers are bounded so.
+  // The limit of the control group, version 2, is a number, or the word max. Containers limit memory in this
+  // way.
   double allowed = 0;
   std::ifstream limit("/sys/fs/cgroup/memory.max");
   return limit >> allowed && allowed > 0 ? std::min(physical, allowed) : physical;

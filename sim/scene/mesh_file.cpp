@@ -42,7 +42,7 @@ std::string bytes_of(const fs::path& file) {
   return {std::istreambuf_iterator<char>(stream), {}};
 }
 
-/// Of triangles with the same corners all but the first.
+/// Marks every triangle that has the same corners as an earlier one.
 std::vector<char> repeats(const std::vector<std::array<int, 3>>& triangles) {
   std::vector<std::pair<std::array<int, 3>, std::size_t>> sorted;
   sorted.reserve(triangles.size());

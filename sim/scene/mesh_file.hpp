@@ -1,4 +1,4 @@
-// Triangle meshes from files: Wavefront OBJ, STL as text or binary, and PLY.
+// The readers of triangle meshes from files: Wavefront OBJ, STL as text or binary, and PLY.
 #pragma once
 
 #include "core/geometry.hpp"
@@ -10,9 +10,9 @@
 
 namespace scree {
 
-/// What a file says.
+/// The mesh in a file, and warnings about it.
 struct MeshFile : TriangleMesh {
-  std::vector<std::string> warnings;  ///< what of the file is not read, and may have been meant
+  std::vector<std::string> warnings;  ///< parts of the file that are not read, but may matter to the user
 };
 
 /// A mesh whose triangles all have an area.
@@ -23,16 +23,18 @@ struct SceneMesh {
   std::vector<std::string> warnings;
 };
 
-/// All vertices, those of equal place made one, each component times that of `scale`; where the scale
-/// mirrors, triangles are turned round, so that their fronts stay fronts. Polygons are cut into triangles.
-/// Throws InputError: file:line (of what is binary: file), what is wrong.
+/// Reads the mesh in a file. Vertices at equal positions become one, and each component is multiplied by that
+/// of `scale`. Where the scale mirrors, the order of corners is reversed, so that the fronts of triangles
+/// stay fronts. Polygons are cut into triangles. Throws InputError with file:line (only file if it is binary)
+/// and what is wrong.
 MeshFile read_mesh_file(const std::filesystem::path& file, const Vec3& scale);
 
-/// The same from bytes; `name` stands for the file in messages, and says by its suffix what they are.
+/// Parses the bytes of a mesh file, as read_mesh_file() does. `name` is the name of the file in messages, and
+/// its suffix determines the format.
 MeshFile parse_mesh_file(std::string_view bytes, const std::filesystem::path& name, const Vec3& scale);
 
-/// The triangles of a file, welded; those without area, and those that are there again, are left out and
-/// counted. Throws InputError if none is left.
+/// Welds the triangles of a file. Triangles without area and repeated triangles are left out and counted.
+/// Throws InputError if none is left.
 SceneMesh scene_mesh(MeshFile file, const std::filesystem::path& name, const Weld& how);
 
 }  // namespace scree

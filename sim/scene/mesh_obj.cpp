@@ -1,4 +1,4 @@
-// Wavefront OBJ: vertices and faces.
+// The reader of Wavefront OBJ files: vertices and faces.
 #include "sim/scene/mesh_source.hpp"
 
 #include <fmt/format.h>
@@ -10,12 +10,13 @@
 namespace scree {
 namespace {
 
-/// Lines that say nothing of where the surface is: colours, normals, groups.
+/// First words of lines that do not change the surface: colours, normals, groups.
 constexpr std::array harmless = {"vt",       "vn",     "g",          "o",        "s",     "usemtl",
                                  "mtllib",   "usemap", "maplib",     "mg",       "bevel", "c_interp",
                                  "d_interp", "lod",    "shadow_obj", "trace_obj"};
 
-/// A line, and those that follow where it ends with a backslash; without what follows a #.
+/// Reads a line, and the lines that follow while each ends with a backslash, without comments, which begin
+/// with #. Returns false at the end of the file.
 bool next_statement(MeshSource& source, std::string& statement) {
   std::string_view line;
   if (!source.next_line(line)) return false;
@@ -31,7 +32,8 @@ bool next_statement(MeshSource& source, std::string& statement) {
   }
 }
 
-/// `a/b/c` means the vertex a; negative ones count from the last.
+/// Returns the vertex that a word of a face means: in `a/b/c` the vertex a. Negative numbers count back from
+/// the last vertex.
 int corner(std::string_view word, const std::vector<int>& vertices, const MeshSource& source) {
   const std::string_view digits = word.substr(0, word.find('/'));
   std::int64_t index = 0;

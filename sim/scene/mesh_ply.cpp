@@ -1,4 +1,5 @@
-// PLY (Turk 1994): the elements `vertex` and `face`, as text or binary in either order of bytes.
+// The reader of PLY files (Turk 1994): the elements `vertex` and `face`, as text or binary in either byte
+// order.
 #include "sim/scene/mesh_source.hpp"
 
 #include <fmt/format.h>
@@ -30,7 +31,7 @@ std::optional<Number> number_called(std::string_view name) {
 struct Property {
   std::string name;
   Number type;
-  std::optional<Number> count;  ///< of a list: what its length is written as
+  std::optional<Number> count;  ///< type of the length if the property is a list
 };
 
 struct Element {
@@ -51,7 +52,8 @@ class HeaderReader {
   explicit HeaderReader(MeshSource& source) : source_(source) {}
 
   Header read() {
-    // Numbers in binary may begin with a \n: lines end as the first one does.
+    // Lines of the header must end as the first one does, because binary numbers after it may begin with a
+    // \n.
     const std::string_view end = line_end(source_.rest());
     std::string_view line;
     if (!source_.next_line(line, end) || Words(line).next() != "ply")
@@ -119,7 +121,7 @@ class HeaderReader {
   std::vector<Element> elements_;
 };
 
-/// The numbers after the header, one after another.
+/// The reader of the numbers after the header, one after another.
 class Numbers {
  public:
   Numbers(MeshSource& source, Form form) : source_(source), form_(form) {}

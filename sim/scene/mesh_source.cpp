@@ -56,7 +56,7 @@ double MeshSource::number(std::string_view word) const {
   double value = 0;
   if (word.starts_with('+')) word.remove_prefix(1);
   const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
-  // What is too small for a number is 0.
+  // A number that is too small for a double is read as 0.
   if (error == std::errc::result_out_of_range && std::abs(value) < 1) value = 0;
   const bool whole = end == word.data() + word.size() && (error == std::errc{} || value == 0);
   if (word.empty() || !whole || !std::isfinite(value))
@@ -91,7 +91,7 @@ std::size_t MeshMaker::Hash::operator()(const std::array<double, 3>& place) cons
 }
 
 int MeshMaker::vertex(const Vec3& given) {
-  const Vec3 at = scale_.cwiseProduct(given) + Vec3::Zero();  // no -0
+  const Vec3 at = scale_.cwiseProduct(given) + Vec3::Zero();  // -0 becomes 0
   if (!at.allFinite()) source_.fail("has a place that is beyond what numbers can hold");
   const auto [found, fresh] =
       known_.try_emplace({at.x(), at.y(), at.z()}, static_cast<int>(mesh_.vertices.size()));
@@ -106,7 +106,7 @@ void MeshMaker::triangle(int a, int b, int c) {
 
 void MeshMaker::polygon(const std::vector<int>& corners) {
   if (corners.size() < 3) source_.fail_in_line("a face needs three vertices at least");
-  // Cutting ears takes the square of their number, or more.
+  // Cutting ears takes a time that grows as the square of the number of corners, or faster.
   constexpr std::size_t most = 10000;
   if (corners.size() > most)
     source_.fail_in_line(fmt::format("a face has {} vertices; {} at most", corners.size(), most));

@@ -1,4 +1,4 @@
-// STL, as text or binary.
+// The reader of STL files, as text or binary.
 #include "sim/scene/mesh_source.hpp"
 
 #include <fmt/format.h>
@@ -25,7 +25,8 @@ std::size_t binary_size(std::string_view bytes) {
   return header + record * std::size_t{at<std::uint32_t>(bytes, header - 4)};
 }
 
-/// By its size, or where bytes follow or lack, by a byte that no text has: the number of facets has some.
+/// Returns whether a file is binary. A binary file has the size that its number of facets demands or, if
+/// bytes are missing or extra, a zero byte: the number of facets has some, and text has none.
 bool is_binary(std::string_view bytes) {
   constexpr std::size_t looked_at = 1024;
   if (bytes.size() < header) return false;
@@ -64,7 +65,7 @@ std::string lower(std::string_view word) {
   return text;
 }
 
-/// In any case.
+/// Returns whether a word, in upper or lower case, is a keyword of STL.
 bool is_keyword(std::string_view word) {
   static constexpr std::array known = {"solid",   "facet",    "outer",   "vertex",
                                        "endloop", "endfacet", "endsolid"};

@@ -1,10 +1,10 @@
-// The keys of how things are computed: contacts found and answered, features modelled.
+// The keys of methods: how contacts are found and solved, and which features are modelled.
 #include "sim/scene/key_sections.hpp"
 
 namespace scree {
 namespace {
 
-/// A number of levels, where 0 stands for auto.
+/// Makes the codec of a number of grid levels, where 0 stands for auto.
 Codec<int> levels() {
   const Codec<int> count = integer(between(1, 32));
   return any_of<int>({word<int>({{"auto", 0}}), count});
@@ -25,7 +25,8 @@ Codec<BoxBoxMethod> box_box_word() {
   return word<BoxBoxMethod>({{"auto", automatic}, {"sat", sat}, {"ccd_gjk", ccd_gjk}, {"ccd_mpr", ccd_mpr}});
 }
 
-/// Left out of the resolved scene where it is left to scree, as in scenes from before there was a choice.
+/// Makes the codec of the method for convex shapes. `auto` is left out of the resolved scene, as in scenes
+/// that were written before there was a choice.
 Codec<ConvexMethod> convex_word() {
   using enum ConvexMethod;
   Codec<ConvexMethod> codec =
@@ -36,7 +37,8 @@ Codec<ConvexMethod> convex_word() {
   return codec;
 }
 
-/// Left out likewise.
+/// Makes the codec of the quality. The default, 1, is left out of the resolved scene, as in scenes that were
+/// written before there was a choice.
 Codec<double> quality_number() {
   Codec<double> codec = number(between(0.01, 100));
   codec.write = [write = codec.write](const double& quality) -> std::optional<Node> {

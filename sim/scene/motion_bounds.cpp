@@ -16,9 +16,9 @@ Vec3 between_keys(const std::vector<GravityKey>& keys, double time) {
   return before.vector + share * (after->vector - before.vector);
 }
 
-/// Of a monotone cubic between two keys, by how far apart they are and the time between them: its ends are at
-/// most three times as steep as its chord (Fritsch and Carlson 1980), so it is nowhere steeper, and there its
-/// second derivative is largest.
+/// Bounds on a monotone cubic between two keys, from the distance and the time between them. Its ends are at
+/// most three times as steep as its chord (Fritsch and Carlson 1980), so it is nowhere steeper, and its
+/// second derivative is largest at the ends.
 struct CubicBounds {
   double rate, acceleration;
   CubicBounds(double distance, double time)
@@ -55,8 +55,8 @@ MotionBounds bounds_of(const Motion& motion) {
     bounds.acceleration = std::max(bounds.acceleration, way.acceleration);
     if (!from.orientation) continue;
     const CubicBounds turn(from.orientation->angularDistance(*to.orientation), to.at - from.at);
-    // Of three turns one after another (PathKey), of once, three times and once that angle at most; they turn
-    // each other besides.
+    // The rotation consists of three turns, one after another (PathKey). Their angles are at most once, three
+    // times and once the angle between the keys, and each turn also rotates the spin of those before it.
     bounds.spin = std::max(bounds.spin, 4 * turn.rate);
     bounds.angular_acceleration =
         std::max(bounds.angular_acceleration, 3 * turn.acceleration + 16 * turn.rate * turn.rate);

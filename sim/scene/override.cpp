@@ -1,4 +1,4 @@
-// Walks the tree and the table side by side.
+// Applies overrides: walks the tree of a scene and the table of keys side by side.
 #include "sim/scene/override.hpp"
 
 #include "sim/scene/codec.hpp"
@@ -15,7 +15,7 @@ namespace {
   throw InputError(printable(fmt::format("--set {}={}: {}", set.path, set.value, what)));
 }
 
-/// bodies[2].velocity[0] as parts; the views are into set.path.
+/// Splits a path such as bodies[2].velocity[0] into parts, which are views of set.path.
 std::vector<PathPart> parse_path(const Override& set) {
   std::vector<PathPart> parts;
   const std::string_view path = set.path;
@@ -41,7 +41,7 @@ std::vector<PathPart> parse_path(const Override& set) {
   return parts;
 }
 
-/// The alternatives of a type: itself, or those of any_of.
+/// Returns the alternatives of a type: those of any_of, or the type itself.
 std::vector<const Type*> alternatives(const Type& type) {
   if (type.kind != Type::Kind::any_of) return {&type};
   std::vector<const Type*> all;
@@ -54,7 +54,7 @@ class Walk {
  public:
   Walk(const Override& set, std::size_t index) : set_(set), index_(index), path_(parse_path(set)) {}
 
-  /// The node that the path leads to, created if need be.
+  /// Returns the node to which the path leads, and creates it if need be.
   Node& find(Node& root, const Type& type) {
     Node* node = &root;
     const Type* here = &type;
@@ -104,11 +104,15 @@ class Walk {
         return created(node, key);
       }
     }
+    const auto is_list = [](const Type* alternative) { return alternative->kind == Type::Kind::list; };
+    if (known.empty() && std::ranges::any_of(alternatives(type), is_list))
+      fail(set_, fmt::format("{0} is a list, so there is no {1}: write {0}[0], {0}[1], ...", before(), name));
     if (known.empty()) fail(set_, fmt::format("{} has no keys, so there is no {}", before(), name));
     fail(set_, fmt::format("{} has no {}{}", before(), name, hint_for(section, name, known)));
   }
 
-  /// The member of the map for this key; what is no map (`model: auto`, say) becomes one.
+  /// Returns the member of a node for this key, and creates it with its default if need be. A node that is no
+  /// map (`model: auto`, say) becomes one.
   Node& created(Node& node, const KeyType& key) const {
     if (node.kind != Node::Kind::map) {
       Node map = Node::map({}).named(node.key);

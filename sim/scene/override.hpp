@@ -8,9 +8,9 @@
 
 namespace scree {
 
-/// Applies the overrides in order. Keys that the table knows are created where they are absent, with their
-/// default as the start; list items and named entries must exist. Throws InputError that names the part of
-/// the path that is unknown.
+/// Applies the overrides in order. Keys that the table knows are created where they are absent, and start
+/// with their default; list items and named entries must exist. Throws InputError that names the part of the
+/// path that is unknown.
 void apply_overrides(Node& root, const Type& type, const std::vector<Override>& overrides);
 
 }  // namespace scree

@@ -1,4 +1,5 @@
-// What a scene with periods may hold: nothing that has an end where the cell has none.
+// Rules for scenes with periods: which planes, tubes, worlds and regions they may have, and how large their
+// bodies may be.
 #include "core/tolerances.hpp"
 #include "sim/scene/rules.hpp"
 
@@ -72,10 +73,10 @@ class PeriodRules {
   Period period_;
 };
 
-/// The largest of the spheres around two bodies of which one is free, together (m): twice their radii's sum
-/// is the least distance from one image to the next at which they meet through one alone.
+/// Returns the largest sum of the bounding radii of two bodies, at least one of which is free (m). A period
+/// of twice this sum is the shortest at which any two bodies meet through one image only.
 double reach_of_two(const BodyTable& bodies) {
-  double free = 0;  // the largest free one; and the largest of all others
+  double free = 0;  // largest radius of the free bodies; `other` is the largest of all other bodies
   double other = 0;
   for (std::size_t k = 0; k < bodies.shape.size(); ++k) {
     if (is_boundary(bodies.shape[k])) continue;
@@ -136,7 +137,7 @@ void fit_bodies(const PeriodicEntry& periodic, BodyTable& bodies, Reader& reader
                                "meet through two images; a floor that ends nowhere is a plane",
                                least, period.length[a], reach));
   }
-  // Rounding of the boxes to float is far less than what this leaves.
+  // Half a period, less a margin that is far larger than the rounding of the boxes to float.
   constexpr double share = 0.499;
   period.most_margin = 0.5 * (share * shortest - reach);
 }

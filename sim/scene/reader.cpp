@@ -1,4 +1,4 @@
-// Messages: place, path, nearest known word.
+// Error messages of the scene reader: line and column, path of the key, nearest known word.
 #include "sim/scene/reader.hpp"
 
 #include "sim/scene/hints.hpp"
@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::size_t most_told = 8;
 
-/// Levenshtein's distance, one row at a time; a swap of neighbours counts 2.
+/// Returns Levenshtein's distance, computed one row at a time; a swap of neighbours counts 2.
 std::size_t edit_distance(std::string_view a, std::string_view b) {
   std::vector<std::size_t> row(b.size() + 1);
   std::iota(row.begin(), row.end(), std::size_t{0});
@@ -33,7 +33,7 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
 }  // namespace
 
 std::string_view nearest(std::string_view word, const std::vector<std::string_view>& candidates) {
-  // Words longer than any name of the language are noise, and would make the search slow.
+  // Words longer than any name of the language cannot be meant, and would make the search slow.
   if (word.size() > 64) return {};
   std::string_view best;
   std::size_t best_distance = std::max<std::size_t>(word.size() / 3, 2) + 1;
@@ -106,7 +106,7 @@ void Reader::finish() const {
   throw InputError(text);
 }
 
-// Line 0 marks what an override brought in; the column is its number, from 1.
+// Line 0 marks a value that an override gave; the column is then the number of the override, from 1.
 std::string Reader::place(const SourceMark& mark) const {
   if (mark.line > 0) return fmt::format("{}:{}:{}", file_, mark.line, mark.column);
   const Override& set = overrides_.at(static_cast<std::size_t>(mark.column) - 1);

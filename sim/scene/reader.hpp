@@ -1,4 +1,4 @@
-// Where the reader of a scene stands, and how it says what is wrong there.
+// The position of the reader in a scene, and the error messages about that position.
 #pragma once
 
 #include "core/error.hpp"
@@ -11,13 +11,14 @@
 
 namespace scree {
 
-/// The candidate nearest to the word by edit distance, or empty if none is near enough to be meant.
+/// Returns the candidate nearest to the word by edit distance, or empty if none is near enough to be meant.
 std::string_view nearest(std::string_view word, const std::vector<std::string_view>& candidates);
 
-/// " (did you mean x?)", or nothing.
+/// Returns " (did you mean x?)", or an empty text.
 std::string suggestion(std::string_view word, const std::vector<std::string_view>& candidates);
 
-/// What to say of a word that a section does not have: what the table of hints advises, else suggestion().
+/// Returns the hint about a word that a section does not have: the advice in the table of hints, else
+/// suggestion().
 std::string hint_for(std::string_view section, std::string_view word,
                      const std::vector<std::string_view>& candidates);
 
@@ -29,7 +30,7 @@ struct PathPart {
 
 std::string to_text(const std::vector<PathPart>& path);
 
-/// The text on one line that terminals take as text: control characters are written out.
+/// Returns the text on one line, with control characters written out, so that a terminal shows them as text.
 std::string printable(std::string_view text);
 
 class Reader {
@@ -37,7 +38,7 @@ class Reader {
   Reader(std::string file, std::vector<Override> overrides)
       : file_(std::move(file)), overrides_(std::move(overrides)) {}
 
-  /// While it lives, messages are about this key or list item of what they were about before.
+  /// Extends the path in messages by a key or list index, for as long as the Step exists.
   class [[nodiscard]] Step {
    public:
     Step(Reader& reader, std::string_view key) : path_(reader.path_) { path_.push_back({key, -1}); }
@@ -55,21 +56,22 @@ class Reader {
   /// Throws InputError: file:line:column: key: what.
   [[noreturn]] void fail(const SourceMark& mark, std::string_view what) const;
 
-  /// The same about an item of the map given, at the map's own place if the item is absent.
+  /// Throws InputError about an item of the map given, with the line and column of the map if the item is
+  /// absent.
   [[noreturn]] void fail_at(std::string_view key, const Node& map, std::string_view what);
 
   /// Keeps an error, so that more can be found.
   void note(const InputError& error);
   std::size_t errors() const { return errors_; }
-  /// Whether so many are kept that reading on is of no use.
+  /// Returns whether so many errors are kept that reading on is of no use.
   bool gives_up() const { return errors_ >= most_errors; }
   /// Throws InputError with the first few errors noted, if there are any.
   void finish() const;
 
-  /// "file:line:column", or the --set that brought the value in.
+  /// Returns "file:line:column", or the --set that gave the value.
   std::string place(const SourceMark& mark) const;
 
-  /// Marks a value and all in it as brought in by an override.
+  /// Marks a value and everything in it as given by an override.
   static void mark_override(Node& node, std::size_t index);
 
  private:

@@ -72,7 +72,7 @@ A table begins with a line that names its columns, in any order, in capitals or 
 | `hull` | of a polyhedron: an OBJ, STL or PLY file, relative to this one, whose vertices' hull it is; else empty |
 | `servo_x`, `servo_y`, `servo_z`, `servo_force` | of a box that is a servo: its axis, and its force (N); else empty |
 
-Cells are parted by commas, semicolons, tabs, bars or blanks, whichever the first line has, and may be in quotes (`"`; two of
+Cells are separated by commas, semicolons, tabs, bars or blanks, whichever the first line has, and may be in quotes (`"`; two of
 them within quotes stand for one). What parts cells may be there once more at a line's end. Columns that are left out count
 as empty. Blank lines are skipped, and lines that begin with `#`. The text is UTF-8.
 
@@ -91,7 +91,7 @@ Numbers are taken as SI. Of several frames the last one is taken, or that of `fr
 comes back with its shapes, but for polyhedra, whose corners are not in it; bodies that are not free are left out, and said.
 )";
 
-/// A | within a cell would end it.
+/// Returns the text of a table cell. Each | in it is escaped, because it would end the cell.
 std::string cell(std::string_view text) {
   std::string out;
   for (const char c : text) {

@@ -33,7 +33,8 @@ Codec<CameraKeySettings> keyframe_section() {
                     check_keyframe);
 }
 
-/// Left out of the resolved scene beside keyframes, where it is refused: each has its own.
+/// Makes the key `fov`. It is left out of the resolved scene if there are keyframes, because it is refused
+/// beside them: each keyframe has its own.
 Key<CameraSettings> camera_field_of_view() {
   using T = CameraSettings;
   Key<T> fov = key<T>("fov", &T::fov, field_of_view(), optionally, "vertical field of view");
@@ -59,7 +60,7 @@ Codec<CameraSettings> camera_section() {
       check_camera);
 }
 
-/// The picture's size is one key, stored in two members.
+/// Makes the key of the picture's size, which is stored in two members.
 Key<RenderSettings> picture_size() {
   const auto codec = array_of<2>(integer(between(16, 16384)));
   return {{"size", optionally, codec.type, {}, "width and height of the pictures, in pixels"},

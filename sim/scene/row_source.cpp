@@ -14,7 +14,7 @@ std::unique_ptr<RowSource> open_rows(const std::filesystem::path& file, std::opt
   TextLines lines(file, reader);
   const std::string first(lines.next_filled() ? trimmed(lines.text()) : "");
   lines.go_to({});
-  // No column of a table is called like these.
+  // The names of a table's columns never begin like these.
   if (first.starts_with("ITEM: ")) return std::make_unique<DumpRows>(std::move(lines), frame, reader);
   if (is_whole_number(first)) return std::make_unique<XyzRows>(std::move(lines), frame, reader);
   if (frame) reader.fail({1, 1}, "a table has no frames; leave `frame` out in the scene");

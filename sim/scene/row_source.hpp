@@ -1,4 +1,4 @@
-// A file of bodies as rows of words under columns, whatever its format is.
+// The interface to a file of bodies as rows of words under columns, whatever its format is.
 #pragma once
 
 #include "sim/scene/body_column.hpp"
@@ -13,17 +13,17 @@
 
 namespace scree {
 
-/// What the words under it say of a body: value = scale * number + offset.
+/// A column, and the meaning of the words under it: value = scale * number + offset.
 struct RowColumn {
-  std::string name;  ///< as in the file
+  std::string name;  ///< name as in the file
   SourceMark mark;
-  std::optional<BodyColumn> column = {};  ///< none: nothing that a body has
+  std::optional<BodyColumn> column = {};  ///< column of a body; absent: the words mean nothing for a body
   double scale = 1;
   double offset = 0;
-  bool is_for_source = false;  ///< the rows' own reader uses it
+  bool is_for_source = false;  ///< true: the RowSource itself uses the column
 };
 
-/// How sizes are written.
+/// The way in which sizes are written.
 enum class SizeStyle {
   own,    ///< as BodyColumn says
   ovito,  ///< as `scree export` writes them, in the columns size_x to size_z: see docs/trajectories.md
@@ -35,13 +35,13 @@ class RowSource {
 
   const std::vector<RowColumn>& columns() const { return columns_; }
   SizeStyle style() const { return style_; }
-  /// Where a message about the columns points.
+  /// Returns the line and column for messages about the columns.
   const SourceMark& head() const { return head_; }
-  /// What the reader of a scene should know of the file, beyond its rows: whole sentences' ends, for "it
-  /// ...".
+  /// Returns what the user should know of the file beyond its rows. Each note is a sentence without its
+  /// subject, the name of the file.
   const std::vector<std::string>& notes() const { return notes_; }
 
-  /// The next row: as many cells as there are columns. False at the end.
+  /// Reads the next row, with as many cells as there are columns. Returns false at the end.
   virtual bool next(std::vector<Cell>& row) = 0;
   virtual void rewind() = 0;
   virtual void close() = 0;
@@ -53,8 +53,9 @@ class RowSource {
   std::vector<std::string> notes_;
 };
 
-/// A CSV file, an XYZ file or a dump of LAMMPS, told apart by their first lines; of the last two the frame of
-/// that number, from 0, or the last one. Throws InputError, by the reader.
+/// Opens a CSV file, an XYZ file or a dump of LAMMPS, which are distinguished by their first lines. `frame`:
+/// the number, from 0, of the frame of an XYZ file or a dump; absent: the last frame. Throws InputError
+/// through the reader.
 std::unique_ptr<RowSource> open_rows(const std::filesystem::path& file, std::optional<std::int64_t> frame,
                                      const Reader& reader);
 

@@ -1,4 +1,4 @@
-// Rules across the keys of one section.
+// Rules that involve several keys of one section.
 #include "sim/scene/rules.hpp"
 
 #include "core/tolerances.hpp"
@@ -14,7 +14,7 @@
 namespace scree {
 namespace {
 
-/// Keys that mean the same or contradict each other.
+/// Fails if both keys are given, because they mean the same or contradict each other.
 void exclude(const char* first, const char* second, const Node& node, Reader& reader) {
   const Node* item = node.find(second);
   if (!node.find(first) || !item) return;
@@ -27,7 +27,7 @@ bool is_direction(const Vec3& v) {
   return length > 0 && std::isfinite(length);
 }
 
-/// The number of the keys that are given.
+/// Returns how many of the keys are given.
 int given(std::initializer_list<const char*> keys, const Node& node) {
   int count = 0;
   for (const char* key : keys) count += node.find(key) != nullptr;
@@ -51,7 +51,7 @@ void check_file_body(const BodyEntry& body, const Node& node, Reader& reader) {
     reader.fail_at("file", node, "must be the path of a file of bodies or of a run's folder");
 }
 
-/// Keys that a shape cannot have, and why.
+/// Fails if one of the keys is given. `why`: the message.
 void refuse(std::initializer_list<const char*> keys, const char* why, const Node& node, Reader& reader) {
   for (const char* key : keys)
     if (const Node* item = node.find(key)) {
@@ -73,7 +73,7 @@ void check_tube_body(const BodyEntry& body, const Node& node, Reader& reader) {
     reader.fail_at("tube", node, "never moves freely: give `fixed: true` or `motion`");
 }
 
-/// Of `keyframes`.
+/// Fails unless the keyframes are in order of time.
 template <class Key>
 void require_order(const std::vector<Key>& keyframes, const Node& node, Reader& reader) {
   for (std::size_t k = 1; k < keyframes.size(); ++k) {
@@ -89,7 +89,8 @@ void check_orientation(const std::optional<std::array<double, 4>>& q, const Node
     reader.fail_at("orientation", node, "must not be zero");
 }
 
-/// The keyframes say where the body is, and how it lies if they have orientations.
+/// Refuses the keys that keyframes replace: those of the position, and those of the orientation if the
+/// keyframes have orientations.
 void check_keyframed_body(const MotionEntry& motion, const Node& node, Reader& reader) {
   refuse({"at", "repeat", "scatter"}, "does not go with motion.keyframes, which say where the body is", node,
          reader);
@@ -116,7 +117,7 @@ void check_mesh_body(const BodyEntry& body, const Node& node, Reader& reader) {
                    "of a mesh has no keyframes: they say where one body is, and a mesh is many");
 }
 
-/// Of the box with the keys `from` and `to`.
+/// Fails unless the keys `from` and `to` are the lower and the upper corner of a box.
 void check_corners(const Vec3& from, const Vec3& to, const Node& node, Reader& reader) {
   for (int k = 0; k < 3; ++k)
     if (!(from[k] < to[k]))
@@ -130,7 +131,7 @@ void check_corners(const Vec3& from, const Vec3& to, const Node& node, Reader& r
 void check_time(const TimeSettings& time, const Node& node, Reader& reader) {
   if (time.step > time.end)
     reader.fail_at("step", node, fmt::format("must be at most the end, {} s, not {} s", time.end, time.step));
-  // Step numbers are kept exactly in doubles and in 64-bit integers.
+  // Up to this number of steps, step numbers are exact in doubles and in 64-bit integers.
   if (time.end / time.step > 0x1p53)
     reader.fail_at("step", node, "is so short that the run would have more than 2^53 steps");
 }

@@ -1,4 +1,5 @@
-// What the keys of one section must say together. Each rule runs once the keys themselves are right.
+// Rules that the keys of one section must fulfil together. Each rule runs after the keys have been found
+// right by themselves.
 #pragma once
 
 #include "sim/scene/keys.hpp"
@@ -27,7 +28,7 @@ void check_world(const World& world, const Node& node, Reader& reader);
 void check_orbit(const OrbitSettings& orbit, const Node& node, Reader& reader);
 void check_keyframe(const CameraKeySettings& key, const Node& node, Reader& reader);
 void check_periodic(const PeriodicEntry& periodic, const Node& node, Reader& reader);
-/// The sections of a scene beside its periods.
+/// Checks the other sections of a scene against its periods.
 void check_in_period(const SceneEntry& scene, const Node& node, Reader& reader);
 void check_precision(const SceneEntry& scene, const Node& node, Reader& reader);
 void check_render(const RenderSettings& render, const Node& node, Reader& reader);
@@ -37,12 +38,12 @@ template <class T>
 void check_distribution(const Distribution<T>& sizes, const Node& node, Reader& reader);
 
 Period period_of(const PeriodicEntry& periodic);
-/// Sets how far the bodies, which have their sizes and their period, may look for others; fails where they
-/// are too large for it.
+/// Sets how far from its surface a body may search for others (Period::most_margin). The bodies must have
+/// their sizes and their period. Fails if the bodies are too large for the period.
 void fit_bodies(const PeriodicEntry& periodic, BodyTable& bodies, Reader& reader);
 
-/// Of the keys from and until of `node` (s; never, if there is none), once the steps of the run are known:
-/// the span must hold one.
+/// Returns the time span between the keys `from` and `until` of `node` (s; without `until` it has no end),
+/// once the steps of the run are known. Fails unless the span holds a step.
 TimeSpan time_span(double from, const std::optional<double>& until, const TimeGrid& grid, const Node& node,
                    Reader& reader);
 

@@ -12,7 +12,7 @@ bool is_one_of(std::string_view text, const std::array<std::string_view, N>& wor
   return std::find(words.begin(), words.end(), text) != words.end();
 }
 
-/// Takes the digits off the front; how many there were.
+/// Removes the digits at the front of the text. Returns how many there were.
 std::size_t take_digits(std::string_view& text) {
   const std::size_t count = std::min(text.find_first_not_of("0123456789"), text.size());
   text.remove_prefix(count);
@@ -25,7 +25,7 @@ bool take_sign(std::string_view& text) {
   return signed_;
 }
 
-/// [0-9]+ (. [0-9]*)?, or . [0-9]+, and an exponent or none.
+/// Returns whether the text is [0-9]+ (. [0-9]*)?, or . [0-9]+, with or without an exponent.
 bool is_decimal(std::string_view text) {
   std::size_t digits = take_digits(text);
   if (text.starts_with('.')) {

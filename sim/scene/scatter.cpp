@@ -1,4 +1,4 @@
-// Random sequential addition, with a grid of cells to find what is near.
+// Random sequential addition of bodies, with a grid of cells to find the bodies nearby.
 #include "sim/scene/scatter.hpp"
 
 #include "core/geometry.hpp"
@@ -16,13 +16,14 @@ double radius_of(const BodyTable& bodies, std::size_t b) {
   return bounding_radius(bodies.shape[b], bodies.size[b]);
 }
 
-/// Bodies by the cells that their bounds touch. Cells at the rim reach to infinity, so bodies of any size and
-/// place are found.
+/// A grid of cells, each with the bodies whose bounds touch it. Cells at the rim reach to infinity, so that
+/// bodies of any size and position are found.
 class CellGrid {
  public:
   CellGrid(const Vec3& low, const Vec3& high, std::int64_t count) : low_(low), bodies_(count) {
     const Vec3 extent = high - low;
-    // Bodies per cell stay few for any shape of the region; flat ones have one layer.
+    // The number of bodies per cell stays small for any shape of the region; flat regions have one layer of
+    // cells.
     double edge =
         std::max(extent.maxCoeff() / static_cast<double>(count), std::numeric_limits<double>::min());
     do {
@@ -35,8 +36,9 @@ class CellGrid {
     heads_.assign(static_cast<std::size_t>(cells_[0] * cells_[1] * cells_[2]), -1);
   }
 
-  /// False, and nothing done, for bodies that are in the way in a good part of the cells: to look at them
-  /// always is as fast. Nor may many that overlap fill the memory, or the 32 bits that tell links apart.
+  /// Adds a body. Returns false, without adding it, if the body touches more than an eighth of the cells,
+  /// because it is as fast to test it for every position. It also returns false if there would be so many
+  /// links, because many bodies overlap, that they fill the memory or exceed their 32-bit indices.
   bool insert(std::int32_t body, const Vec3& low, const Vec3& high) {
     std::int64_t touched = 1;
     for (int k = 0; k < 3; ++k) touched *= cell(high[k], k) - cell(low[k], k) + 1;
@@ -50,7 +52,7 @@ class CellGrid {
     });
   }
 
-  /// True if f(body) holds for every body that may touch the bounds.
+  /// Returns whether f(body) is true for every body that may touch the bounds.
   template <class F>
   bool all_of(const Vec3& low, const Vec3& high, F&& f) {
     return visit(low, high, [&](std::int32_t head) {
@@ -61,14 +63,16 @@ class CellGrid {
   }
 
  private:
-  static constexpr std::int64_t links_per_body = 64;  // equal spheres, close together, take 8
+  static constexpr std::int64_t links_per_body =
+      64;  // most links per body; equal spheres that are close together take 8
 
   struct Link {
     std::int32_t body;
     std::int32_t next;
   };
 
-  /// What is too far or too flat for numbers is in the first cell: fmax() takes 0 instead of what is none.
+  /// Returns the cell of a coordinate along axis k. Where infinities make its position no number, as with a
+  /// flat region, it is the first cell: fmax() then returns 0.
   std::int64_t cell(double x, int k) const {
     const double at = std::floor((x - low_[k]) * inverse_edge_[k]);
     return static_cast<std::int64_t>(std::fmin(std::fmax(at, 0.0), static_cast<double>(cells_[k] - 1)));
@@ -90,15 +94,16 @@ class CellGrid {
   }
 
   Vec3 low_;
-  std::int64_t bodies_;  // that the grid is for, and that it holds
+  std::int64_t bodies_;  // number of bodies for which the grid is made, plus those that it holds
   std::array<std::int64_t, 3> cells_{};
   std::array<double, 3> inverse_edge_{};
   std::vector<std::int32_t> heads_;
   std::vector<Link> links_;
 };
 
-/// Calls f with each shift (m) from the place of a body to one of its images that may touch something within
-/// half a period of `middle`; true if f always is. `reach`: of that body and of what it may touch (m).
+/// Calls f with each shift (m) from the position of a body to one of its images that may touch something
+/// within half a period of `middle`. Returns whether f was true for all of them. `reach`: sum of the radii of
+/// that body and of the largest body that it may touch (m).
 template <class F>
 bool all_images(const Period& period, const Vec3& middle, const Vec3& at, double reach, F&& f) {
   std::array<int, 3> first{}, last{};
@@ -114,8 +119,9 @@ bool all_images(const Period& period, const Vec3& middle, const Vec3& at, double
   return true;
 }
 
-/// Whether it is a tube that does not reach into the box, by the bounds of its cylinder: what is outside a
-/// tube passes it by, and so nothing is scattered beside one that does.
+/// Returns whether the body is a tube that does not reach into the box, by the bounds of its cylinder. Bodies
+/// outside a tube do not collide with it, so such a tube is no obstacle. No body is scattered outside a tube
+/// that reaches into the box.
 bool is_apart(const BodyTable& bodies, std::size_t tube, const Scattering& box) {
   if (bodies.shape[tube] != Shape::tube) return false;
   const Vec3 axis = bodies.orientation[tube] * Vec3::UnitZ();
@@ -125,7 +131,7 @@ bool is_apart(const BodyTable& bodies, std::size_t tube, const Scattering& box) 
   return (at - half - box.to).maxCoeff() >= 0 || (box.from - at - half).maxCoeff() >= 0;
 }
 
-/// From a point in the triangle's frame (m).
+/// Returns the distance from a triangle to a point in the triangle's frame (m).
 double distance_to_triangle(const Vec3& size, const Vec3& point) {
   bool over = true;
   double nearest = HUGE_VAL;
@@ -155,7 +161,7 @@ double distance_to(const BodyTable& bodies, std::size_t b, const Vec3& point) {
     }
     case Shape::cylinder:
     case Shape::polyhedron:
-      // Of the box around it, which is no farther.
+      // The distance from the box around the shape, which is at most that from the shape.
       return (local.cwiseAbs() - bodies.size[b]).cwiseMax(0.0).norm();
     case Shape::triangle:
       return distance_to_triangle(bodies.size[b], local);
@@ -191,10 +197,10 @@ class Scatterer {
     if (away.norm() <= reach_ + radius(b)) insert(b);
   }
 
-  /// Tries random places until one is clear; false if none was.
+  /// Tries random positions until one is clear. Returns false if none was.
   bool place(std::int32_t b) {
     Vec3& at = bodies_.position[static_cast<std::size_t>(b)];
-    // Places have streams of their own, so that what else is drawn for a body does not move it.
+    // Positions have random streams of their own, so that other draws for a body do not change its position.
     const auto id = static_cast<std::uint64_t>(bodies_.id[static_cast<std::size_t>(b)]);
     Random random(how_.seed, id + ((how_.round + 1) << 32));
     for (int tries = 0; tries < how_.tries; ++tries) {
@@ -237,7 +243,7 @@ class Scatterer {
   const Scattering& how_;
   Vec3 middle_;
   CellGrid grid_;
-  std::vector<std::int32_t> walls_;  // what is no ball of the grid: each is tested for every place
+  std::vector<std::int32_t> walls_;  // bodies that are not in the grid; they are tested for every position
   double reach_;                     // largest radius of the bodies to be placed (m)
   double largest_;                   // largest radius of all bodies so far (m)
 };

@@ -1,4 +1,4 @@
-// Reading a scene: text -> tree -> overrides -> entry (the table) -> bodies.
+// Reads a scene: text -> tree -> overrides -> entry (by the table of keys) -> bodies.
 #include "sim/scene/scene.hpp"
 
 #include "core/error.hpp"
@@ -30,7 +30,7 @@ std::string read_text(const std::filesystem::path& file) {
   return text;
 }
 
-/// `root` becomes the tree that the entry refers to.
+/// Reads the text of a scene into an entry. `root` becomes the tree to which the entry refers.
 SceneEntry read_entry(const std::string& text, const std::vector<Override>& overrides, Reader& reader,
                       Node& root) {
   try {

@@ -1,4 +1,5 @@
-// The table of keys as a JSON Schema. It says what editors can check; rules across keys stay with the reader.
+// The writer of the table of keys as a JSON Schema. The schema holds what editors can check; rules that
+// involve several keys are checked by the reader.
 #include "sim/scene/keys.hpp"
 
 #include <nlohmann/json.hpp>
@@ -10,13 +11,13 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// The words true and false of YAML are JSON's booleans.
+/// Returns a word as JSON; the words true and false become booleans.
 Json word_json(const std::string& word) {
   if (word == "true" || word == "false") return word == "true";
   return word;
 }
 
-/// Whole limits as integers, so that 1 does not become 1.0.
+/// Returns a limit as JSON; whole numbers become integers, so that 1 does not become 1.0.
 Json number_json(double x) {
   const auto whole = static_cast<std::int64_t>(x);
   return static_cast<double>(whole) == x ? Json(whole) : Json(x);
@@ -28,7 +29,8 @@ void put_range(Json& schema, const Range& range) {
     schema[range.below ? "exclusiveMaximum" : "maximum"] = number_json(range.high);
 }
 
-/// A default is YAML of numbers, lists and plain words: JSON but for the quotes of the words.
+/// Returns a default as JSON. A default is YAML of numbers, lists and plain words, and so is JSON except for
+/// words, which become strings.
 Json default_json(const std::string& fallback) {
   const Json parsed = Json::parse(fallback, nullptr, false);
   return parsed.is_discarded() ? Json(fallback) : parsed;

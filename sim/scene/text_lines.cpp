@@ -10,7 +10,7 @@
 namespace scree {
 namespace {
 
-constexpr std::size_t longest_line = 4095;  // bytes
+constexpr std::size_t longest_line = 4095;  // largest number of bytes in a line
 constexpr std::string_view blanks = " \t";
 constexpr int at_end = std::ifstream::traits_type::eof();
 
@@ -44,7 +44,7 @@ void TextLines::open() {
   if (!stream_) reader_.fail({1, 1}, fmt::format("cannot be read: {}", std::strerror(errno)));
 }
 
-/// By its mark, or by the zeros that it has beside each letter. A mark of UTF-8 is skipped.
+/// Fails for a file in UTF-16, which has a byte-order mark, or zero bytes beside the bytes of letters.
 void TextLines::refuse_utf16() {
   std::string start(4, '\1');
   stream_.read(start.data(), 4);
@@ -78,7 +78,8 @@ bool TextLines::next() {
     text_ += static_cast<char>(c);
   }
   if (c == '\r' && stream_.rdbuf()->sgetc() == '\n') take();
-  if (number_ == 1 && text_.starts_with("\xEF\xBB\xBF")) text_.erase(0, 3);  // of spreadsheets
+  if (number_ == 1 && text_.starts_with("\xEF\xBB\xBF"))
+    text_.erase(0, 3);  // byte-order mark of UTF-8, from spreadsheets
   refuse_bytes();
   return true;
 }

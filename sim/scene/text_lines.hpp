@@ -18,34 +18,35 @@ struct Cell {
   SourceMark mark;
 };
 
-/// The line without the blanks at its ends.
+/// Returns the line without the blanks at its ends.
 std::string_view trimmed(std::string_view line);
 
-/// The words of a line that blanks part; `cells` becomes them.
+/// Splits a line at blanks into words, which replace the contents of `cells`. `number` is the number of the
+/// line.
 void split_at_blanks(std::string_view line, int number, std::vector<Cell>& cells);
 
 class TextLines {
  public:
-  /// Throws InputError, by the reader, if the file cannot be read or is UTF-16.
+  /// Opens the file. Throws InputError through the reader if the file cannot be read or is UTF-16.
   TextLines(std::filesystem::path file, const Reader& reader);
 
-  /// False at the end of the file. Lines end with LF, CR LF or CR; the text may be changed until the next
-  /// call. Throws InputError for lines that are too long or no plain text.
+  /// Reads the next line. Returns false at the end of the file. Lines end with LF, CR LF or CR; the text may
+  /// be changed until the next call. Throws InputError for lines that are too long or no plain text.
   bool next();
-  /// The same, to the next line that is not blank.
+  /// Reads up to the next line that is not blank. Returns false at the end of the file.
   bool next_filled();
 
   std::string& text() { return text_; }
-  int number() const { return number_; }  ///< of the line, from 1
+  int number() const { return number_; }  ///< number of the current line, from 1
 
   struct Place {
     std::streamoff offset = 0;
     int number = 0;
   };
-  Place place() const { return {offset_, number_}; }  ///< behind the line
-  /// The next line is the one behind the place, whatever became of the file's handle.
+  Place place() const { return {offset_, number_}; }  ///< end of the current line
+  /// Goes to a place: the next line read is the one behind it. Opens the file again if it has been closed.
   void go_to(const Place& place);
-  /// Gives the handle back: a scene may name more files than a process may hold.
+  /// Closes the file, because a scene may name more files than a process may have open.
   void close() { stream_.close(); }
 
   [[noreturn]] void fail(std::string_view what, int column = 1) const {

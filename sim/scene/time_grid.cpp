@@ -9,7 +9,7 @@ namespace scree {
 
 namespace {
 
-// 3 * 0.1 is above 0.3: what rounding does must not decide which steps there are.
+// In doubles, 3 * 0.1 exceeds 0.3. Rounding must not decide which steps there are.
 constexpr double rounding = tolerance::step_count;
 
 std::int64_t count_steps(const TimeSettings& time) {

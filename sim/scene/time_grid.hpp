@@ -12,27 +12,29 @@ class TimeGrid {
  public:
   explicit TimeGrid(const TimeSettings& time);
 
-  /// Number of the last step; the state at t = 0 is step 0.
+  /// Returns the number of the last step; the state at t = 0 is step 0.
   std::int64_t last() const { return last_; }
-  /// Time after a step (s); the last one ends at time.end exactly.
+  /// Returns the time after a step (s); the last step ends at time.end exactly.
   double time(std::int64_t step) const;
-  /// Length of a step, counted from 1: time.step, but for a last step that is shorter.
+  /// Returns the length of a step (s): time.step, except for a last step that is shorter. The first step is
+  /// step 1.
   double length(std::int64_t step) const;
-  /// The step nearest to a time; of two as near, the earlier one. Times beyond the run give its first or last
-  /// step.
+  /// Returns the step nearest to a time; of two equally near steps, the earlier one. Times beyond the run
+  /// give its first or last step.
   std::int64_t nearest(double time) const;
-  /// First and last step in the closed interval [from, to]; the first is the greater where there is none.
+  /// Return the first and the last step in the closed interval [from, to]. If there is none, the first is
+  /// greater than the last.
   std::int64_t first_in(double from) const;
   std::int64_t last_in(double to) const;
-  /// The steps k whose time lies in the span, first <= k < end: what the span is about is there in their
-  /// states, and acts in the steps that follow them.
+  /// The steps k whose time is in the span, first <= k < end. A body with this span exists in the states
+  /// after these steps; a force with this span acts in the steps that follow them.
   struct Steps {
     std::int64_t first;
     std::int64_t end;
     bool holds(std::int64_t step) const { return first <= step && step < end; }
   };
   Steps steps_in(const TimeSpan& span) const;
-  /// Whether a time is not after the end, but for rounding.
+  /// Returns whether a time is at most the end of the run, up to rounding.
   bool contains(double time) const;
 
  private:
@@ -41,15 +43,16 @@ class TimeGrid {
   std::int64_t last_;
 };
 
-/// Things that happen every `period` of simulated time, each at the step nearest to its time, from `start` on
-/// (s).
+/// Events that happen every `period` of simulated time (s), from `start` on (s), each at the step nearest to
+/// its time.
 class Cadence {
  public:
-  /// A period of 0 or less, or an infinite one, happens at the start alone.
+  /// If the period is infinite, or 0 or less, there is one event, at the start.
   Cadence(const TimeGrid& grid, double period, double start = 0)
       : grid_(grid), period_(period), start_(start) {}
 
-  /// How many are due at a step, each counted once. Steps must come in ascending order.
+  /// Returns how many events are due at a step; each is counted once. Calls must be in ascending order of
+  /// steps.
   std::int64_t due(std::int64_t step);
   void archive(Archive& archive) { archive("next", next_); }
 

@@ -1,4 +1,4 @@
-// Types in words, and which form a node has.
+// Describes types in words, and tests which form a node has.
 #include "sim/scene/type.hpp"
 
 #include "sim/scene/scalar.hpp"
@@ -23,7 +23,7 @@ std::string words_of(const Range& range) {
   return words;
 }
 
-/// "a number > 0 (m)" as the items of a list: "numbers > 0 (m)".
+/// Returns the words for the items of a list: "numbers > 0 (m)" for "a number > 0 (m)".
 std::string plural_of(const Type& type) {
   const std::string one = words_of(type);
   if (type.kind == Type::Kind::number) return "numbers" + one.substr(std::string_view("a number").size());

@@ -1,4 +1,4 @@
-// What a value of the scene language may be, as data: messages, JSON Schema and reference are made of it.
+// The types of values of the scene language, as data from which messages, JSON Schema and reference are made.
 #pragma once
 
 #include "sim/scene/document.hpp"
@@ -12,7 +12,7 @@
 
 namespace scree {
 
-/// Allowed numbers. `above`: low itself is not allowed; `below`: high itself is not.
+/// A range of allowed numbers. `above`: low itself is not allowed; `below`: high itself is not.
 struct Range {
   double low = -HUGE_VAL;
   double high = HUGE_VAL;
@@ -36,19 +36,19 @@ struct Type {
     number,
     text,
     word,     ///< one of `words`
-    list,     ///< of parts[0]
+    list,     ///< a list of items of the type parts[0]
     named,    ///< a map from names of the user's choice to parts[0]
     section,  ///< a map with the keys of `section`
     any_of,   ///< one of `parts`, told apart by form
   };
 
   Kind kind = Kind::number;
-  Range range{};                     ///< of integer and number
-  std::string unit{};                ///< empty: none
-  std::vector<std::string> words{};  ///< of word
-  std::string pattern{};             ///< of text: what is allowed, as a regular expression
-  std::string pattern_words{};       ///< the same in words
-  std::int64_t least = 0;            ///< items of a list, or names
+  Range range{};                     ///< allowed range of an integer or a number
+  std::string unit{};                ///< empty: no unit
+  std::vector<std::string> words{};  ///< the allowed words of a type `word`
+  std::string pattern{};             ///< allowed text, as a regular expression; empty: any text
+  std::string pattern_words{};       ///< the pattern in words
+  std::int64_t least = 0;            ///< least number of items of a list or of names
   std::int64_t most = INT64_MAX;
   std::vector<Type> parts{};
   std::shared_ptr<const SectionType> section{};
@@ -70,17 +70,17 @@ struct SectionType {
   std::vector<KeyType> keys;
 };
 
-/// "a number > 0 (m)": completes "must be ...".
+/// Returns the type in words, such as "a number > 0 (m)", which complete "must be ...".
 std::string words_of(const Type& type);
 
-/// Whether the node has the form of the type (the values in it may still be wrong).
+/// Returns whether the node has the form of the type (the values in it may still be wrong).
 bool has_form(const Node& node, const Type& type);
 
-/// The place of the node's word among those of the type, if it is one of them. true and false are no text:
-/// they stand without quotes, and may begin with a capital.
+/// Returns the index of the node's word among those of the type, if it is one of them. The words true and
+/// false must not be in quotes, and may be True, TRUE and so on.
 std::optional<std::size_t> find_word(const Node& node, const Type& type);
 
-/// The node in a few words, for "must be ..., not ...".
+/// Returns the node in a few words, for "must be ..., not ...".
 std::string shown(const Node& node);
 
 }  // namespace scree

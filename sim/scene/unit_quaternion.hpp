@@ -1,4 +1,4 @@
-// Orientations as they are written.
+// Makes unit quaternions from orientations as they are written in files.
 #pragma once
 
 #include "core/math.hpp"
@@ -9,8 +9,8 @@
 
 namespace scree {
 
-/// The unit quaternion of the same direction; none if there is no direction. One that is a unit but for
-/// rounding stays as it is, so that a state that was written comes back to the bit.
+/// Returns the unit quaternion of the same direction; nothing if the length is 0 or not finite. A quaternion
+/// of unit length, up to rounding, stays as it is, so that a state that was written is read back to the bit.
 inline std::optional<Quat> unit_quaternion(double w, const Vec3& imaginary) {
   Eigen::Vector4d q(w, imaginary.x(), imaginary.y(), imaginary.z());
   const double length = q.stableNorm();

@@ -11,7 +11,7 @@ namespace scree {
 
 namespace {
 
-/// At the commas that no bracket or brace encloses.
+/// Splits the text at the commas that are not within brackets or braces.
 std::vector<std::string> split(std::string_view text) {
   std::vector<std::string> parts;
   std::size_t start = 0;

@@ -9,17 +9,18 @@
 namespace scree {
 
 struct Variation {
-  std::string key;                  ///< as of Override
-  std::vector<std::string> values;  ///< YAML
+  std::string key;                  ///< path of the key, as in Override
+  std::vector<std::string> values;  ///< values in YAML
 };
 
-/// Of KEY=V1,V2,... or, where values hold commas, KEY=[V1, V2, ...]. Throws InputError.
+/// Parses KEY=V1,V2,... or, where values hold commas, KEY=[V1, V2, ...]. Throws InputError.
 Variation parse_variation(const std::string& text);
 
-/// Every combination, the last key's values changing fastest: one, without settings, if nothing varies.
+/// Returns every combination of the values; those of the last key change fastest. If nothing varies, there is
+/// one combination, without settings.
 std::vector<std::vector<Override>> combinations(const std::vector<Variation>& variations);
 
-/// "time.step=0.01 response.mode=accurate".
+/// Returns words such as "time.step=0.01 response.mode=accurate".
 std::string describe(const std::vector<Override>& settings);
 
 }  // namespace scree

@@ -13,7 +13,8 @@
 namespace scree {
 namespace {
 
-/// The value of a key in a comment such as Lattice="1 0 0" Properties=pos:R:3, and where it starts.
+/// Returns the value of a key in a comment such as Lattice="1 0 0" Properties=pos:R:3, and where it starts;
+/// nothing if the key is absent.
 std::optional<std::pair<std::string_view, std::size_t>> value_of(std::string_view comment,
                                                                  std::string_view key) {
   for (std::size_t at = comment.find(key); at < comment.size(); at = comment.find(key, at + 1)) {
@@ -29,7 +30,7 @@ std::optional<std::pair<std::string_view, std::size_t>> value_of(std::string_vie
   return {};
 }
 
-/// What a property is to scree: columns one after another from the first one.
+/// A property of extended XYZ and its meaning: consecutive columns of a body, from the first one on.
 struct Property {
   std::string_view name;
   std::int64_t count;
@@ -37,8 +38,8 @@ struct Property {
   double scale = 1;
 };
 
-/// As OVITO, ASE and scree name them. Orientations are x, y, z, w there (OVITO's manual, "Extended XYZ") and
-/// have a rule of their own.
+/// Properties as OVITO, ASE and scree name them. Their orientations are in the order x, y, z, w (OVITO's
+/// manual, "Extended XYZ"), which add_property() handles by itself.
 constexpr Property known_properties[] = {
     {"pos", 3, BodyColumn::x},
     {"position", 3, BodyColumn::x},
@@ -53,7 +54,7 @@ constexpr Property known_properties[] = {
     {"masses", 1, BodyColumn::mass},
 };
 
-/// Only where `scree export` has written them: elsewhere they may mean anything.
+/// Properties that are known only in files of `scree export`; elsewhere they may mean anything.
 constexpr Property own_properties[] = {
     {"type", 1, BodyColumn::shape},
     {"material", 1, BodyColumn::material},
@@ -101,7 +102,7 @@ XyzRows::XyzRows(TextLines lines, std::optional<std::int64_t> frame, const Reade
   choose(chosen);
 }
 
-/// name:type:count, again and again, parted by colons.
+/// Reads the columns from name:type:count, again and again, separated by colons.
 void XyzRows::read_properties(std::string_view properties, const SourceMark& mark) {
   constexpr std::int64_t most_columns = 1000;  // a line holds no more words
   std::vector<std::string_view> parts;
@@ -135,7 +136,8 @@ void XyzRows::add_property(std::string_view name, std::int64_t count, const Sour
                known ? known->scale : 1);
 }
 
-/// Element, x, y, z, and what else the first particle has, which has no name.
+/// Makes the columns of a plain file: element, x, y, z, and, without a meaning, as many more as the first
+/// particle has.
 void XyzRows::count_plain_columns(const Frame& frame) {
   lines_.go_to(frame.place);
   std::vector<Cell> row;

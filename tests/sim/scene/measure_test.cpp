@@ -166,7 +166,8 @@ TEST(Measure, UnknownNamesAreErrors) {
             "pucks.tilt is no measure: there is no body called pucks (did you mean puck?)");
   EXPECT_EQ(message("enrgy.total"),
             "enrgy.total is no measure: there is no body called enrgy (did you mean energy?)");
-  EXPECT_EQ(message("energy"), "energy is no measure: energy is unknown");
+  EXPECT_EQ(message("energy"),
+            "energy is no measure: energy is unknown (scree plan --reference lists all measures)");
   EXPECT_EQ(message("puck"), "puck is no measure: it says nothing about puck, such as .position.z");
   EXPECT_EQ(message("puck.positon.z"),
             "puck.positon.z is no measure: positon.z is unknown (did you mean position?)");

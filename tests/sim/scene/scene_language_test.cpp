@@ -412,6 +412,8 @@ TEST(Override, NamesTheUnknownPartOfThePath) {
   EXPECT_EQ(message("tim.step", "1"), "--set tim.step=1: the scene has no tim (did you mean time?)");
   EXPECT_EQ(message("time.stepp", "1"), "--set time.stepp=1: time has no stepp (did you mean step?)");
   EXPECT_EQ(message("time.step.x", "1"), "--set time.step.x=1: time.step has no keys, so there is no x");
+  EXPECT_EQ(message("bodies.ball", "1"),
+            "--set bodies.ball=1: bodies is a list, so there is no ball: write bodies[0], bodies[1], ...");
   EXPECT_EQ(message("time[0]", "1"), "--set time[0]=1: time is no list");
   EXPECT_EQ(message("bodies[8].mass", "1"), "--set bodies[8].mass=1: bodies has 8 items, so there is no [8]");
   EXPECT_EQ(message("bodies[-1].mass", "1"), "--set bodies[-1].mass=1: [-1].mass is no index such as [2]");
