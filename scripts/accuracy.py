@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
-"""Writes docs/accuracy.md and its plots: what scree gets right, by how much, and at what price.
+"""Writes docs/accuracy.md and its plots: the errors of scree in scenes with known results, and their cost.
 
     accuracy.py PROGRAM [--only verify,simbenchmark,STUDY,...]
 
-PROGRAM is the built scree. What was measured is kept in output/accuracy, so that parts can be run again by --only; all
-of it takes about 40 minutes on 2 cores, on which nothing else should run.
+PROGRAM is the built scree. Measurements are kept in output/accuracy, so that parts can be measured again with --only.
+Measuring everything takes about 40 minutes on 2 cores, on which nothing else should run.
 """
 import argparse
 import json
@@ -21,7 +21,7 @@ PICTURES = ROOT / "docs/pictures/accuracy"
 
 MATRIX = ["response.mode=default,accurate", "narrowphase.box_box=sat,ccd_gjk"]
 
-# Name: scene, what varies, (check, words) of each plot, runs for each time.
+# By the name of a study: its scene, the settings that vary, check and words of each plot, and the number of runs for each time measured.
 STUDIES = {
     "stopping": ("configs/validation/single_contact/box_stopping.yaml",
                  ["time.step=0.05,0.025,0.0125,0.00625,0.003125,0.0015625", "response.mode=default,accurate"],
@@ -51,12 +51,12 @@ STUDIES = {
                 [(1, "2,000 settled boxes (mean overlap, of half the smallest edge), by the number of sweeps.")], 1),
 }
 
-# Studies whose plots have the other engines' points, and where these are from.
+# The studies whose plots also show points of other engines, and the table that has these points.
 PEERS_BESIDE = ["pile", "boxpile"]
 PEERS_TABLE = "bench/results/epyc-2-cores/peers.md"
 
-# Published at a step of 1 ms: the engine and setting that err least and their CPU time, on an i7-7700HQ (SimBenchmark, commit 3fd1764,
-# data/*/sample.csv, ERP off).
+# Published results at a step of 1 ms: the engine and setting with the least error, that error, and their CPU time (s) on an i7-7700HQ
+# (SimBenchmark, commit 3fd1764, data/*/sample.csv, ERP off).
 PUBLISHED = {
     "rolling": ("Bullet, iterated to the end", 3.9e-27, 1.8),
     "bouncing": ("RaiSim", 0.0186, 0.235),
@@ -65,7 +65,7 @@ PUBLISHED = {
 }
 
 
-# Case: metric, and who is asked (engine, setting).
+# By the name of a case: its metric, and the engines that run it, with their settings.
 SIMBENCHMARK = {
     "rolling": ("mean of squared velocity errors, (m/s)^2",
                 [("scree", "default"), ("bullet", "default"), ("bullet", "no-erp-wide-200"), ("ode", "quick-10"), ("ode", "direct-slip")]),
@@ -75,7 +75,7 @@ SIMBENCHMARK = {
 }
 NAMES = {"scree": "scree", "bullet": "Bullet", "ode": "ODE"}
 
-# Where a feature cannot matter, or for the levels, what they save where they do: words, scene, settings, key, (off, on).
+# Scenes in which a feature cannot matter, which show its cost; for the grid levels, also what they save: words, scene, settings, key, (off, on).
 SMOOTH_PILE = ["materials.gravel.friction=0", "time.end=0.5"]
 SWITCHES = [
     ("tangents, in a heap without friction", "configs/bench/pile.yaml", SMOOTH_PILE, "model.friction", ("off", "on")),
@@ -93,7 +93,7 @@ SWITCHES = [
 
 
 def run(*command):
-    """Status 1 is a check that fails, and part of the report."""
+    """Runs a command. Exit status 1 means that a check failed, which belongs to the report and is no error here."""
     print("+", *command, file=sys.stderr)
     done = subprocess.run([str(part) for part in command], cwd=ROOT, stdout=subprocess.PIPE, text=True)
     if done.returncode > 1:
@@ -102,7 +102,7 @@ def run(*command):
 
 
 def origin(program):
-    """Machine and commit, once for each part: they may be measured apart."""
+    """Returns machine and commit. Each part has its own, because parts may be measured separately."""
     git = subprocess.run(["git", "-C", ROOT, "describe", "--always", "--dirty"], capture_output=True, text=True)
     info = run(program, "info").stdout
     cpu = next((line.split(":")[1].strip() for line in open("/proc/cpuinfo") if line.startswith("model name")), "?")
@@ -132,7 +132,7 @@ def measure_granular(program):
 
 
 def measure_simbenchmark(program):
-    """scree, Bullet and ODE by SimBenchmark's own metrics, each in its default and in the settings that suit the case (bench/peers)."""
+    """Measures scree, Bullet and ODE by SimBenchmark's own metrics, each with its default and with settings that suit the case (bench/peers)."""
     peers = ROOT / "build/peers/bench/peers/scree_bench_peers"
     if not peers.exists():
         sys.exit(f"{peers} is not built: cmake --preset peers && cmake --build --preset peers --target scree_bench_peers")
@@ -146,7 +146,7 @@ def measure_simbenchmark(program):
 
 
 def study(program, name, scene, vary, repeats, settings=()):
-    """The folder it is in, and study.json."""
+    """Runs a study. Returns its folder and the contents of study.json."""
     folder = OUTPUT / f"study-{name}"
     words = [word for option, keys in (("--set", settings), ("--vary", vary)) for key in keys for word in (option, key)]
     run(program, "study", ROOT / scene, *words, "--repeats", repeats, "-o", folder, "--overwrite")
@@ -165,7 +165,7 @@ def measure_study(program, name):
 
 
 def draw_beside(folder, plot, case):
-    """Other engines' points in a study's plot: those of the table of bench/peers, whose first error is the study's."""
+    """Adds other engines' points to a study's plot. They are from the table of bench/peers, whose first error is that of the study."""
     script = (folder / f"{plot}.gp").read_text()
     points, here = [], set()
     for line in open(ROOT / PEERS_TABLE):
@@ -175,7 +175,7 @@ def draw_beside(folder, plot, case):
         elif line.startswith("| ") and inside and cells[0] not in ("engine", "scree") and cells[-2]:
             engine = cells[0].split()[0]
             if not cells[0].endswith("*"):
-                here.add(engine)  # what was measured earlier as well is not drawn twice
+                here.add(engine)  # an engine that was also measured earlier (rows with *) is not drawn twice
             elif engine in here:
                 continue
             points.append((float(cells[-2]) / 1e3, float(cells[3]), f"{cells[0]}, {cells[1]}, {cells[2]} s"))
@@ -222,7 +222,7 @@ def verify_section():
 
 
 def share_of(check):
-    """Of the room to the limit, what is used: error over error + margin."""
+    """Returns the share of the tolerance that the error uses up: error over error + margin."""
     if check["margin"] is None:
         return math.inf
     if check["error"] is None:  # a check with `above` and no expected value
@@ -249,7 +249,7 @@ def simbenchmark_section():
 
 
 def ensemble_section():
-    """The checks that are judged by a mean over seeds: in both modes, and heaps of thousands in the default one."""
+    """Lists the checks that are judged by a mean over seeds: in both modes, and heaps of thousands of bodies in the default mode only."""
     lines = ["## 4. Ensembles", "",
              "What is random is judged by its mean over several seeds: the whole interval that holds it with the confidence asked for (95 %, Student's t) "
              f"must lie within the tolerance. Heaps of thousands (configs/granular; {label(kept('granular'))}) are not run in the accurate mode: two seeds of the packing were not done after 17 minutes.", "",

@@ -1,13 +1,13 @@
 #!/usr/bin/env python3
-"""Gives every broken scene to scree run, and holds it to what bad input costs: exit status 2, a message that names a
-place, nothing written, less than a second (of the processor's time, so that a busy machine does not decide) and less
-than 50 MB more than the program takes for a file that is absent (which is its libraries, as far as the system has
-them in memory: 83 MB to 105 MB were seen of one program on one machine).
+"""Gives every broken scene to scree run, and checks the limits for bad input: exit status 2, a message that names a
+place, no file written, less than a second (of processor time, so that a busy machine has no influence), and less than
+50 MB more than the program takes for a file that does not exist (those are its libraries, as far as the system has
+them in memory: between 83 MB and 105 MB were measured for one program on one machine).
 
     broken_scenes.py PROGRAM [FOLDER]   prints a markdown table; exit status 1 if any scene breaks a limit
 
-FOLDER (default: tests/data/bad) holds scenes that open with a comment on what is wrong; those too large or too odd
-to keep there are made here.
+FOLDER (default: tests/data/bad) contains scenes that begin with a comment on what is wrong; scenes that are too large
+or too odd to keep there are made here.
 """
 import os
 import random
@@ -70,8 +70,8 @@ def kept(folder):
 
 
 def measure(program, file):
-    """Runs the scene in an empty folder. Returns exit status, message, seconds of the wall and of the processor,
-    megabytes and what was written."""
+    """Runs the scene in an empty folder. Returns exit status, message, wall time and processor time (s), memory at its
+    peak (MB) and the names of the files written."""
     with tempfile.TemporaryDirectory() as folder, tempfile.TemporaryFile() as errors:
         start = time.monotonic()
         process = subprocess.Popen([program, "run", file], cwd=folder, stdout=subprocess.DEVNULL, stderr=errors)

@@ -1,17 +1,17 @@
 #!/usr/bin/env python3
-"""Holds every include of scree to the arrows of its structure. There is no list of exceptions.
+"""Checks that every include of scree follows an arrow of its structure. There is no list of exceptions.
 
     check_arrows.py                     checks the tree; prints one line per breach; exit status 1 if there is any
-    check_arrows.py --self-test         the same, after showing that each rule refuses a breach of it
-    check_arrows.py --headers           the headers that no source includes first, each with a word: `parallel` where it
-                                        reaches Thrust, or `plain`
+    check_arrows.py --self-test         the same, after a test that each rule refuses a breach of it
+    check_arrows.py --headers           prints the headers that no source includes first, each with a word: `parallel` if
+                                        it reaches Thrust, else `plain`
 """
 import re
 import sys
 import tempfile
 from pathlib import Path
 
-# Who may include what; the row with the longest matching prefix holds. Paths under tests/ may include anything.
+# The paths that files of a folder may include; the row with the longest matching prefix applies. Files under tests/ may include anything.
 ARROWS = {
     "scree/": ["scree/"],
     "core/": ["core/", "scree/"],
@@ -38,7 +38,7 @@ ARROWS = {
 }
 FOLDERS = ["scree", "core", "broadphase", "narrowphase", "sim", "render", "bench", "tests"]
 
-# Each library has one or two files that know it, so that it can be replaced.
+# At most two files include each of these libraries, so that it can be replaced.
 LIBRARIES = {
     "yaml-cpp": r"yaml-cpp/", "libccd": r"ccd/", "Qhull": r"libqhull", "OpenGL and OSMesa": r"GL/", "EGL": r"EGL/", "libpng": r"png\.h",
     "FreeType": r"ft2build\.h", "HDF5": r"hdf5\.h",
@@ -46,7 +46,7 @@ LIBRARIES = {
 }
 THRUST_HEADERS = ["core/parallel.hpp", "core/space_matches.hpp", "core/space_matches_device.hpp", "core/space_matches_host.hpp",
                   "core/space_policy.hpp", "core/space_warp.hpp", "core/space_phases.hpp", "core/space_tiles.hpp"]
-DRIVERS = ["core/space.cpp"]  # calls the GPU's driver, and no Thrust
+DRIVERS = ["core/space.cpp"]  # sources that are named parallel because they call the GPU's driver, without Thrust
 THRUST = re.compile(r"(thrust|cub|cuda)/|cooperative_groups\.h")
 
 INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]', re.M)
@@ -63,22 +63,22 @@ class Tree:
         self.reach = {}
 
     def reaches_thrust(self, name):
-        """Whether a file includes one of the Thrust headers, itself or through others."""
+        """Returns whether a file includes one of the Thrust headers, directly or through others."""
         if name not in self.reach:
-            self.reach[name] = name in THRUST_HEADERS  # also what ends a cycle of includes
+            self.reach[name] = name in THRUST_HEADERS  # this value also ends a cycle of includes
             self.reach[name] |= any(self.reaches_thrust(to) for _, to in self.includes.get(name, []))
         return self.reach[name]
 
     def parallel_sources(self):
-        """The sources that the CMake files name parallel."""
+        """Returns the sources that the CMake files name parallel."""
         return {(lists.parent / source).resolve().relative_to(self.root.resolve()).as_posix()
                 for folder in FOLDERS for lists in (self.root / folder).rglob("CMakeLists.txt")
                 for arguments in PARALLEL.findall(re.sub(r"#.*", "", lists.read_text()))
                 for source in re.findall(r"[\w./-]+\.cpp", arguments)}
 
     def headers_alone(self):
-        """The headers that no source of every build includes first, which would show that they stand alone; without those
-        that are parts of one source, which is compiled for several instruction sets."""
+        """Returns the headers that no source of every build includes first, which would prove that they are self-contained.
+        Headers that are parts of one source, which is compiled for several instruction sets, are left out."""
         left_out = ("tests/", "sim/laws/simd/kernels/")
         first = {includes[0][1] for name, includes in self.includes.items()
                  if name.endswith(".cpp") and not name.startswith(("tests/", "bench/peers/")) and includes}
@@ -124,7 +124,7 @@ class Tree:
 
 
 def self_test():
-    """Each small tree breaks one rule, and the words show that it is that rule which refuses it."""
+    """Checks small trees, of which each but the last breaks one rule. The words of the message show that this rule refuses it."""
     lib = {"core/CMakeLists.txt": "add_library(a core.cpp)"}
     trees = [
         ("not along an arrow", {"core/a.hpp": '#pragma once\n#include "sim/step/simulation.hpp"'}),

@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
-"""Checks cmake/packages.txt, because a machine that has everything cannot show that the list lacks something.
+"""Checks cmake/packages.txt, because on a machine that has every package no build shows that the list lacks one.
 
-    check_packages.py           docs/dependencies.md explains each package of the list, and no other
-    check_packages.py BUILD     and every header that the build read and every library that its programs load comes
-                                from a package of the list or from one that such a package depends on
+    check_packages.py           checks that docs/dependencies.md explains each package of the list, and no other
+    check_packages.py BUILD     checks also that every header that the build read, and every library that its programs
+                                load, comes from a package of the list or from one that such a package depends on
 
-Prints one line per fault; exit status 1 if there is any.
+Prints one line per fault; the exit status is 1 if there is any.
 """
 import os
 import re
@@ -30,7 +30,7 @@ def documented_packages():
 
 
 def closure_of(packages):
-    """The packages, and all installed ones that they depend on."""
+    """Returns the packages and all installed ones that they depend on."""
     depends, providers = {}, {}
     fields = output_of("dpkg-query", "-W", "-f", "${Package}\t${Depends}, ${Pre-Depends}\t${Provides}\n")
     names = lambda text: re.findall(r"(?:^|[,|])\s*([a-z0-9.+-]+)", text)
@@ -47,7 +47,7 @@ def closure_of(packages):
 
 
 def owners_of(paths):
-    """{path: package} for the files that a package brought. Debian's merged /usr gives a file two names."""
+    """Returns {path: package} for the files that come from a package. A file has two names because of Debian's merged /usr."""
     real = {path: os.path.realpath(path) for path in paths}
     asked = sorted({name for path in real.values() for name in (path, path.removeprefix("/usr"))})
     owner = {}

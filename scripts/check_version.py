@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
-"""One version everywhere: CMakeLists.txt, CITATION.cff and the newest numbered section of CHANGELOG.md.
+"""Checks that CMakeLists.txt, CITATION.cff and the newest numbered section of CHANGELOG.md have the same version.
 
-    check_version.py [ROOT]     prints one line per fault; exit status 1 if there is any
+    check_version.py [ROOT]     prints one line per fault; the exit status is 1 if there is any
 """
 import re
 import sys

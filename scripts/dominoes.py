@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""dominoes.py > configs/11_dominoes.csv: dominoes along a curve, each across it, as a body file of scree.
+"""dominoes.py > configs/11_dominoes.csv: prints a body file of scree with dominoes along a curve, each across it.
 
 The curve is a spiral of Archimedes: its arm grows by PITCH a turn. Sizes are those of a real domino, in metres.
 """
@@ -12,7 +12,7 @@ INNER, PITCH, TURNS = 0.12, 0.075, 4.25
 
 
 def curve(angle):
-    """Point and direction of the spiral."""
+    """Returns point and direction (rad) of the spiral at an angle, and the arc length per radian."""
     radius = INNER + PITCH * angle / (2 * math.pi)
     slope = PITCH / (2 * math.pi)
     x, y = radius * math.cos(angle), radius * math.sin(angle)

@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
-"""Writes docs/gallery.md and its pictures from the demos, configs/NN_*.yaml, and what their runs left.
+"""Writes docs/gallery.md and its pictures from the demos, configs/NN_*.yaml, and the folders of their runs.
 
-    gallery.py [OUTPUT]   OUTPUT (default: output) holds the run folders, made by ./run of each scene; exit status 1
-                          if some scene has not been run to its end with pictures, which its entry then says
+    gallery.py [OUTPUT]   OUTPUT (default: output) contains the run folders, made by ./run of each scene; the exit
+                          status is 1 if a scene has not been run to its end with pictures, which its entry then says
 """
 import json
 import re
@@ -12,9 +12,9 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[1]
 PICTURES = ROOT / "docs/pictures"
-WIDTH = 960  # pixels, at most
+WIDTH = 960  # largest width of a picture (pixels)
 
-# When a scene shows best what it is about (s); the others at their end.
+# The times at which scenes show best what they are about (s); all others are shown at their end.
 MOMENTS = {
     "01_bouncing_ball": 0.8,
     "02_incline": 1.2,
@@ -44,7 +44,7 @@ def seconds_words(seconds):
 
 
 def opening_comment(text):
-    """The lines of the comment that the scene opens with; each paragraph starts with a line of its own."""
+    """Returns the comment at the start of a scene as Markdown. "Look for" and "Expected" begin new paragraphs."""
     lines = re.match(r"(?:#.*\n)*", text)[0].splitlines()
     words = "\n".join(line.removeprefix("#").strip() for line in lines)
     words = re.sub(r"([\\*_<])", r"\\\1", words)
@@ -52,7 +52,7 @@ def opening_comment(text):
 
 
 def run_of(folder):
-    """The manifest of a run to the scene's end, with pictures. None if there is none."""
+    """Returns the manifest of a run that reached the scene's end and has pictures, or None if there is no such run."""
     try:
         manifest = json.loads((folder / "manifest.json").read_text())
     except FileNotFoundError:

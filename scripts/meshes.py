@@ -12,7 +12,7 @@ ROOT = Path(__file__).resolve().parents[1]
 
 
 def grid(columns, rows, place, flip=lambda i, j: (i + j) % 2 == 0):
-    """Vertices and triangles of columns x rows cells; place(i, j) says where a vertex is."""
+    """Returns vertices and triangles of columns x rows cells; place(i, j) gives the position of a vertex, and flip(i, j) the diagonal of a cell."""
     vertices = [place(i, j) for j in range(rows + 1) for i in range(columns + 1)]
     at = lambda i, j: j * (columns + 1) + i
     triangles = []
@@ -32,7 +32,7 @@ def write(path, about, vertices, triangles, digits=17):
 
 
 def floor():
-    """20 x 4 m about the origin, cells of 0.25 m whose corners are moved at random: no two edges are in line."""
+    """Makes a floor of 20 x 4 m about the origin. Corners of its cells of 0.25 m are moved at random, so that no two edges inside are in line."""
     draw = random.Random(3)
     columns, rows, cell = 80, 16, 0.25
 
@@ -45,7 +45,7 @@ def floor():
 
 
 def bent(slope_before, slope_after):
-    """Two planes that meet in the y axis; slopes are dz/dx."""
+    """Makes two planes that meet in the y axis; slopes are dz/dx."""
     columns, rows, cell = 32, 8, 0.25
 
     def place(i, j):
@@ -56,7 +56,7 @@ def bent(slope_before, slope_after):
 
 
 def pyramid():
-    """Its top, at the origin, is over the corners of a square at a slope of 1/2."""
+    """Makes a pyramid with its top at the origin, over a square; its faces have a slope of 1/2."""
     base = [(-1, -1, -0.5), (1, -1, -0.5), (1, 1, -0.5), (-1, 1, -0.5)]
     return [(0, 0, 0)] + base, [(0, 1, 2), (0, 2, 3), (0, 3, 4), (0, 4, 1)]
 
@@ -77,12 +77,12 @@ class Noise:
 
 
 def terrain():
-    """A gully that comes down from a steep flank, bends, and fans out on a plain; 44 x 30 m."""
+    """Makes a gully that comes down from a steep flank, bends, and fans out on a plain; 44 x 30 m."""
     noise = Noise(8)
     columns, rows = 88, 60
 
     def height(x, y):
-        # x: from the flank's top (0) to the plain (44).
+        # x goes from the top of the flank (0 m) to the plain (44 m).
         flank = 17 * (1 - math.tanh((x - 9) / 9.5)) / 2 + 3.5 * max(0, 1 - x / 24)
         middle = 2.6 * math.sin(x / 6.5) * math.exp(-((x - 16) / 14) ** 2)
         open_ = 1 / (1 + math.exp((x - 27) / 2.5))
@@ -104,7 +104,7 @@ def terrain():
 
 
 def bowl():
-    """A bowl of revolution, 0.75 m deep and 1.25 m to its rim, with a wall that gets steep."""
+    """Makes a bowl of revolution, 0.75 m deep and 1.25 m to its rim, with a wall that gets steep."""
     around, up = 64, 22
 
     def place(i, j):

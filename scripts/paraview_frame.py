@@ -1,12 +1,12 @@
 #!/usr/bin/env python3
-"""Draws one frame of a run with ParaView, by its own filters alone, as the scene's camera sees it.
+"""Draws one frame of a run with ParaView, only by ParaView's own filters, as the scene's camera sees it.
 
     xvfb-run -a pvpython scripts/paraview_frame.py RUN EXPORT TIME OUT.png
 
-RUN is the folder of a run with a trajectory, EXPORT what `scree export RUN --to vtp -o EXPORT` has made of it, TIME the frame's (s).
-Debian's paraview, python3-paraview, python3-yaml, xauth and xvfb; 5.11 and newer. Spheres and boxes are glyphs of the trajectory's points; meshes
-and polyhedra are in surfaces.pvd; capsules, cylinders and tubes are lines in axes.pvd with a tube around them, capsules with a sphere at each end.
-Where the run has contacts, they are drawn as tubes into OUT-forces.png.
+RUN is the folder of a run with a trajectory, EXPORT is the folder that `scree export RUN --to vtp -o EXPORT` has made of it, and TIME is the time of
+the frame (s). Needs Debian's paraview (5.11 or newer), python3-paraview, python3-yaml, xauth and xvfb. Spheres and boxes are drawn as glyphs at the
+trajectory's points; meshes and polyhedra are in surfaces.pvd; capsules, cylinders and tubes are lines in axes.pvd, drawn with a tube around them, and
+capsules also with a sphere at each end. If the run has contacts, their forces are drawn as tubes into OUT-forces.png.
 """
 import math
 import sys
@@ -31,7 +31,7 @@ SPHERE, BOX, CAPSULE = 0, 1, 5
 
 
 def bodies_of(source, shape):
-    # Not from 0 to 0: a limit of 0 is ParaView's default, which it widens to the range of the data.
+    # The limits are not both `shape`: for shape 0 they would be ParaView's default, which it widens to the range of the data.
     return Threshold(
         Input=source, Scalars=["POINTS", "shape"], LowerThreshold=shape - 0.5, UpperThreshold=shape + 0.5, ThresholdMethod="Between"
     )
@@ -59,7 +59,7 @@ def color_by_material(display, where):
 
 
 def show_glyphs(source, shape, name):
-    """The bodies of a shape, each a glyph of its size, turned by its quaternion, in the colour of its material."""
+    """Shows the bodies of a shape, each as a glyph of its size, turned by its quaternion, in the colour of its material."""
     bodies = bodies_of(source, shape)
     display = Show(bodies, view)
     display.SetRepresentationType("3D Glyphs")
@@ -78,14 +78,14 @@ def show_glyphs(source, shape, name):
 
 
 def show_surfaces(file):
-    """Meshes and polyhedra."""
+    """Shows meshes and polyhedra."""
     surfaces = OpenDataFile(str(file))
     color_by_material(Show(surfaces, view), "CELLS")
     return [surfaces]
 
 
 def show_axes(file):
-    """Capsules, cylinders and tubes."""
+    """Shows capsules, cylinders and tubes."""
     axes = MergeBlocks(Input=OpenDataFile(str(file)), OutputDataSetType="Polygonal Mesh")
     solid = Tube(Input=axes, Scalars=["POINTS", "radius"], VaryRadius="By Absolute Scalar", NumberofSides=32, Capping=1)
     ends = Glyph(Input=bodies_of(axes, CAPSULE), GlyphType="Sphere", ScaleArray=["POINTS", "radius"], GlyphMode="All Points")

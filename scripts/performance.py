@@ -1,14 +1,15 @@
 #!/usr/bin/env python3
-"""Measures whole steps, and writes docs/performance.md and its plots from what was measured.
+"""Measures whole steps, and writes docs/performance.md and its plots from the measurements.
 
     performance.py measure BUILD OUT --space host|cuda --part NAME [--most N] [--seconds S]
     performance.py page
 
-BUILD holds scree_bench_step (build/cuda-release, or what scripts/bundle.sh made); OUT is a machine's folder,
-bench/results/MACHINE/step. A part is a list of runs of `scree bench step`; what each gave is added at once to OUT/NAME.jsonl, so
-that what is cut short loses nothing, and the page takes the last of each. --most: no run has more bodies, to try the rest out.
---seconds: the whole part's time (default 570); runs that do not fit into what is left of it settle less, or say so.
-The page needs gnuplot, measuring does not. The folders may come from different machines.
+BUILD contains scree_bench_step (build/cuda-release, or the folder that scripts/bundle.sh made); OUT is the folder of a machine,
+bench/results/MACHINE/step. A part is a list of runs of `scree bench step`. The result of each run is added at once to
+OUT/NAME.jsonl, so that nothing is lost if a part is cut short; the page takes the last result of each run. --most is the largest
+number of bodies of a run, for trials. --seconds is the time for the whole part (default 570); runs that do not fit into the rest
+of it settle for a shorter time, or are reported as not done. The page needs gnuplot, measuring does not. The folders may come from
+different machines.
 """
 import argparse
 import json
@@ -26,7 +27,8 @@ SCENES = Path("configs/bench")
 
 @dataclass
 class Run:
-    """`within`: wall seconds to settle in, and for the steps that are timed. `spaces`: of those that are asked for, all if empty."""
+    """A run of `scree bench step`. `settle` is the simulated time to settle (s); `within` is the wall time that settling, and then the timed steps, may take
+    (s); `space` is host or cuda, or empty for the space that is asked for."""
     scene: str
     settings: dict
     settle: float
@@ -46,8 +48,8 @@ class Run:
 
 
 def lattice(n, most_layers, height, wall):
-    """Of about n bodies in two interleaved layers each: as high, in layers to a width of one, as `height`, but not of more layers than
-    the scene has. `wall`: where the walls are, by the bodies along each."""
+    """Returns the settings of a scene of about n bodies in a lattice of two interleaved sets of layers. `height` is the ratio of its layers to the bodies
+    along a side, and `most_layers` is the number of layers that the scene has. `wall` gives the offset of the walls from the bodies along a side."""
     side = round(max((n / (2 * height)) ** (1 / 3), (n / (2 * most_layers)) ** 0.5))
     count = f"[{side},{side},{min(most_layers, max(1, round(n / (2 * side * side))))}]"
     return {f"bodies[{k}].repeat.count": count for k in (5, 6)} | {f"bodies[{k}].plane.offset": f"{-wall(side):.6g}" for k in (2, 4)}
@@ -60,13 +62,13 @@ def spheres(n, precision="mixed", **rest):
 
 
 def wide(n, precision="mixed"):
-    """20 layers, whatever their number."""
+    """Returns a run of spheres in 20 layers, whatever their number."""
     settings = lattice(n, 10, 10, lambda side: 0.1206 * side + 0.052)
     return spheres(n, precision, settings=settings, settle=3, varied={"n": n, "layers": 20})
 
 
 def boxes(n, precision="mixed"):
-    """20 layers, too: more come to rest slowly."""
+    """Returns a run of boxes in 20 layers, because more layers come to rest slowly."""
     settings = lattice(n, 10, 10, lambda side: 0.1206 * side + 0.061)
     return Run("settled_boxes", settings, 3, 30 if n < 10**6 else 150, precision, varied={"n": n, "layers": 20})
 
@@ -89,7 +91,7 @@ def drum(n, precision="mixed"):
 
 
 def scaled(n, of, **lengths):
-    """Settings of lengths, or lists of them, that grow with the number of bodies `of` which the scene has."""
+    """Returns settings of lengths, or of lists of lengths, scaled from the `of` bodies that the scene has to n bodies."""
     scale = (n / of) ** (1 / 3)
     text = lambda value: f"[{','.join(map(text, value))}]" if isinstance(value, (list, tuple)) else f"{scale * value:.6g}"
     return {key: text(value) for key, value in lengths.items()}
@@ -143,7 +145,7 @@ def motion_and_error(n):
 
 
 def speed_and_error(n):
-    """Sweeps go on to their bound: the tolerance is out of reach."""
+    """Yields runs whose sweeps go on to their largest number, because the tolerance is out of reach."""
     for precision in ("mixed", "double"):
         for substeps in (1, 2, 4):
             for iterations in (3, 6, 12, 24):
@@ -153,7 +155,7 @@ def speed_and_error(n):
 
 
 def crossover(counts, space):
-    """On Device's machine Host is measured too."""
+    """Yields runs on Host and, if the space is cuda, also on Device, so that both are measured on the same machine."""
     for n in counts:
         for here in ("host", "cuda") if space == "cuda" else ("host",):
             for precision in ("double", "mixed"):
@@ -193,7 +195,7 @@ def program_in(build):
 
 
 def result_of(program, words, seconds):
-    """Of a run, or why there is none."""
+    """Returns the result of a run, or the reason why there is none."""
     try:
         done = subprocess.run([program, *words], cwd=performance_page.ROOT, capture_output=True, text=True, timeout=seconds)
     except subprocess.TimeoutExpired:

@@ -1,4 +1,4 @@
-"""docs/performance.md and its plots, from the results of `performance.py measure` (bench/results/MACHINE/step/PART.jsonl)."""
+"""Writes docs/performance.md and its plots from the results of `performance.py measure` (bench/results/MACHINE/step/PART.jsonl)."""
 import json
 import math
 import os
@@ -26,7 +26,7 @@ shapes at the end of a step, by the smaller body's size, the mean over all that 
 
 
 class Row(dict):
-    """A run: what was asked for and, over it, what it gave. Its keys are attributes."""
+    """The settings of a run and its results, which replace settings of the same name. Its keys are attributes."""
 
     __getattr__ = dict.__getitem__
 
@@ -40,7 +40,7 @@ class Row(dict):
 
 
 def rows_of(*parts):
-    """(runs, [what did not run and why]), of all machines; of a run that was made again, the last that came to its end."""
+    """Returns (runs, [failed runs and why]) of all machines. If a run was repeated, the last one that succeeded counts."""
     done, failed = {}, {}
     for part in parts:
         for file in sorted((ROOT / "bench/results").glob(f"*/step/{part}.jsonl")):
@@ -56,7 +56,7 @@ def rows_of(*parts):
 
 
 def caption(rows):
-    """Who measured, where, and with which commit."""
+    """Returns the lines that name machine, commit and commands of the measurements."""
     lines = {}
     for row in rows:
         folder = row.file.parent.relative_to(ROOT)
@@ -75,7 +75,7 @@ def left_out(failed):
 
 
 def curves_of(rows, x, y, key=lambda row: row.curve):
-    """A line for each value of `key`, through the rows as they come."""
+    """Returns a line of the plot for each value of `key`, through the rows in their order."""
     names = list(dict.fromkeys(map(key, rows)))
     return [([(x(row), y(row)) for row in rows if key(row) == name], line_of(k, name)) for k, name in enumerate(names)]
 
@@ -142,7 +142,7 @@ def scaling(number):
 
 
 def stages_of(row):
-    """Shares of the stages, and what is in none of them."""
+    """Returns the shares of the stages in a step, and the share that is in none of them."""
     seen = row.by_calls if row.space == "cuda" else row
     total = row.by_calls["mean_ms"] if row.space == "cuda" else row.mean_ms
     shares = [seen["stages_ms"].get(stage, 0) / total for stage in STAGES]
@@ -171,7 +171,7 @@ def stages(number):
 
 
 def memory(number):
-    rows = [row for row in scaling_rows()[0] if row.bodies >= 5000]  # or the program itself is most of it
+    rows = [row for row in scaling_rows()[0] if row.bodies >= 5000]  # with fewer bodies the program itself takes most of the memory
     if not rows:
         return []
     lines = [f"## {number}. Memory", "",
@@ -223,7 +223,7 @@ def motion_against_error(number):
 
 
 def crossings(rows):
-    """From how many bodies on a GPU is the faster, beside the same machine's Host."""
+    """Returns lines that say from how many bodies on a GPU is faster than Host on the same machine."""
     lines = []
     for gpu in dict.fromkeys((row.file, row.machine) for row in rows if row.space == "cuda"):
         for precision in ("double", "mixed"):
@@ -278,7 +278,7 @@ def speed_against_error(number):
 
 
 def peers_of(case):
-    """Rows of the table of bench/peers, by the heads of its columns."""
+    """Returns the rows of a case in the table of bench/peers as dictionaries with the column heads as keys."""
     rows, inside, head = [], False, None
     for line in PEERS.read_text().splitlines():
         cells = [cell.strip() for cell in line.strip().strip("|").split("|")]
@@ -320,7 +320,7 @@ def peers(number):
 
 
 def write():
-    """Sections without results are left out."""
+    """Writes the page. Sections without results are left out."""
     text = HEAD
     number = 1
     for section in (scaling, stages, memory, other_scenes, in_motion, motion_against_error, crossover, speed_against_error, peers):

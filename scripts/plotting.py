@@ -1,4 +1,4 @@
-"""Plots by gnuplot and tables of the generated pages."""
+"""Plots, made with gnuplot, and tables for the generated pages."""
 import subprocess
 import sys
 
@@ -8,7 +8,7 @@ STYLE = ("set grid lc rgb '#e8e8e8'\nset border lc rgb '#444444'\nset key outsid
 
 
 def plot(folder, name, settings, curves, size="900,520"):
-    """Draws the curves, (points, gnuplot's words for them) each, a point being a list of numbers or words."""
+    """Draws curves with gnuplot. A curve is (points, gnuplot's words for them); a point is a list of numbers or words."""
     script, words = STYLE + settings, []
     for k, (points, how) in enumerate(curves):
         script += f"$data{k} << END\n" + "".join(" ".join(quoted(x) for x in point) + "\n" for point in points) + "END\n"

@@ -1,5 +1,5 @@
-"""For mkdocs, which takes what has no extension for no file: a link to a folder of the sources goes to a page that lists
-what is in it, and one that leads nowhere is a warning, as it is for other links."""
+"""Hooks for mkdocs, which does not treat link targets without an extension as files. A link to a folder of the sources
+goes to a page that lists its contents, and a link that leads nowhere causes a warning, as other links do."""
 import logging
 import re
 from pathlib import Path
@@ -10,7 +10,7 @@ log = logging.getLogger("mkdocs.plugins.site_links")
 
 
 def folder_at(page, target):
-    """The folder that a page links to, or nothing."""
+    """Returns the folder that a page links to, or None if the target is no folder."""
     path = Path(page).parent / target
     return path if path.is_dir() else None
 

@@ -1,5 +1,6 @@
-// drop_height SCENE BODY [KEY=VALUE]...: runs a scene until a body of it rests or time.end comes, and says on
-// the way how high the body is (m), and by how much the energy is off. With a demo of scree, from 3 m:
+// drop_height SCENE BODY [KEY=VALUE]...: runs a scene until one of its bodies is at rest or time.end is
+// reached, and prints on the way the height of the body (m) and the error of the energy. With a demo of
+// scree, from 3 m:
 //     drop_height /usr/share/scree/configs/01_bouncing_ball.yaml ball "bodies[1].at[2]=3" time.end=10
 #include <cmath>
 #include <cstdio>
@@ -11,7 +12,8 @@
 
 namespace {
 
-/// Neither rising, falling, nor about to: at the top of a bounce the acceleration is that of free fall.
+/// Returns whether the body neither rises nor falls, nor is about to: at the top of a bounce its velocity is
+/// zero, too, but its acceleration is that of free fall.
 bool rests(scree::Simulation& simulation, const std::string& body) {
   return simulation.steps() > 0 && std::abs(simulation.measure(body + ".velocity.z")) < 1e-6 &&
          std::abs(simulation.measure(body + ".acceleration.z")) < 1e-6;
@@ -57,7 +59,7 @@ int main(int argc, char** argv) {
   try {
     drop(words[0], words[1], overrides);
     return EXIT_SUCCESS;
-  } catch (const std::exception& error) {  // scree::InputError and scree::RunError say what to mend
+  } catch (const std::exception& error) {  // scree::InputError and scree::RunError say what to correct
     std::fprintf(stderr, "drop_height: %s\n", error.what());
     return EXIT_FAILURE;
   }

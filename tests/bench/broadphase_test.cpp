@@ -1,5 +1,5 @@
-// The broad-phase benchmark: its data sets beside the laws that they promise, its orders beside the
-// definition of a permutation, its measurements beside brute force.
+// Tests of the broad-phase benchmark: the data sets follow the laws that they promise, the orders are
+// permutations, and the measurements agree with brute force.
 #include "bench/broadphase/data_sets.hpp"
 #include "bench/broadphase/input.hpp"
 #include "bench/broadphase/measurement.hpp"
@@ -23,7 +23,7 @@
 namespace scree::bench {
 namespace {
 
-constexpr double pairs_of_a = 12 / pi;  ///< per object, where there is no border
+constexpr double pairs_of_a = 12 / pi;  ///< pairs per object in an unbounded set A
 
 std::vector<double> radii_of(const std::vector<Aabb>& boxes) {
   std::vector<double> radii;
@@ -38,7 +38,7 @@ double volume_of_balls(const std::vector<double>& radii) {
                          [](double sum, double r) { return sum + ball_volume(r); });
 }
 
-/// Side of the cube that the centres fill, but for its last part in n.
+/// Returns the side of the cube that the centres fill, too small by about one part in n.
 double side_of(const std::vector<Aabb>& boxes) {
   double most = 0;
   for (const Aabb& box : boxes)
@@ -75,7 +75,7 @@ TEST(DataSetsTest, AreTheSameForAnyNumberOfThreads) {
   }
 }
 
-// What the committed tables were measured on.
+// The committed tables of measurements are of sets with these pairs.
 TEST(DataSetsTest, HaveTheirPairs) {
   EXPECT_EQ(stats_of("A", 100000).pairs, 369702);
   EXPECT_EQ(stats_of("B", 100000).pairs, 108677);
@@ -108,7 +108,7 @@ TEST(DataSetsTest, VolumeHasAsMuchVolumeInEachOctave) {
   for (const double volume : volumes) EXPECT_NEAR(volume / all, 0.25, 0.02);
 }
 
-// In a cube the objects at its border lack neighbours: 3 % at this number.
+// Objects at the border of the cube lack neighbours, which costs 3 % of the pairs at this number.
 TEST(DataSetsTest, HaveThePairsOfA) {
   for (const char* name : {"A", "plummer", "boxes", "line", "clusters"})
     EXPECT_NEAR(pairs_per_object(name, 100000), pairs_of_a, 0.06 * pairs_of_a) << name;

@@ -1,5 +1,5 @@
-// Each engine of the benchmark is given the scene as it is: falls, rests, bounces and slides as the engine's
-// own documentation promises.
+// Tests of the benchmark against other engines: each engine gets the scene as it is, so that bodies fall,
+// rest and slide as that engine's documentation promises; the judge and its errors give known values.
 #include "bench/peers/cases.hpp"
 #include "bench/peers/engine.hpp"
 #include "core/error.hpp"
@@ -23,8 +23,8 @@ struct Entrant {
 
 class Peers : public testing::TestWithParam<Entrant> {
  protected:
-  /// A file of its own, because scree reads it again with its settings. Gravity 9.81 m/s^2, friction 0.3, no
-  /// restitution.
+  /// Returns a scene with these bodies, gravity 9.81 m/s^2, friction 0.3 and no restitution. It is written to
+  /// a file, because the engine `scree` reads that file again with its own settings.
   Scene scene_of(const std::string& bodies) {
     const std::string path = testing::TempDir() + "/peers_" + GetParam().engine + ".yaml";
     std::ofstream(path) << "format: 1\ngravity: [0, 0, -9.81]\ntime: {end: 10, step: 0.00390625}\n"
@@ -49,14 +49,15 @@ TEST_P(Peers, FallFreelyWithTheOrderOfTheirStep) {
       "  - {box: {size: [0.2, 0.3, 0.4]}, at: [1, 2, 3], velocity: [1, 0, 0], spin: [0, 0, 2], material: "
       "a}\n",
       steps);
-  // Semi-implicit Euler falls farther by g t step / 2, the midpoint rule does not.
+  // Bodies fall farther by g t step / 2 with semi-implicit Euler; with the midpoint rule they do not.
   const double excess = 0.5 * 9.81 * 1 * step;
   EXPECT_NEAR(end.position[0].x(), 2, 1e-12);
   EXPECT_NEAR(end.position[0].z(), 3 - 0.5 * 9.81, 1.001 * excess);
   EXPECT_NEAR(end.velocity[0].z(), -9.81, 1e-12);
   EXPECT_NEAR(end.spin[0].z(), 2, 1e-12);
   const Vec3 axis = end.orientation[0] * Vec3::UnitX();
-  // Orientations that go along their tangent and are made unit again lag by (w h)^3 / 12 in each step: 1e-5.
+  // An orientation that is moved along its tangent and normalised again lags by (w h)^3 / 12 in each step,
+  // which makes 1e-5.
   EXPECT_NEAR(std::atan2(axis.y(), axis.x()), 2, 1e-4);
 }
 
@@ -65,7 +66,7 @@ TEST_P(Peers, RestOnAPlaneThatIsNotAtTheOrigin) {
       "  - {plane: {normal: [0, 0, 1], offset: 2}, material: a}\n"
       "  - {sphere: {radius: 0.25}, at: [0, 0, 2.25], material: a}\n",
       512);
-  // Contacts that act like springs give way; half a percent of the radius is rest.
+  // Contacts that act like springs give way; a ball within half a percent of its radius counts as at rest.
   EXPECT_NEAR(end.position[1].z(), 2.25, 1e-3);
   EXPECT_NEAR(end.velocity[1].norm(), 0, 1e-2);
 }
@@ -75,7 +76,7 @@ TEST_P(Peers, SlideAsTheFrictionOfThePairSays) {
       "  - {plane: {normal: [0, 0, 1], offset: 0}, material: a}\n"
       "  - {sphere: {radius: 0.5}, at: [0, 0, 0.5], velocity: [4, 0, 0], material: a}\n",
       64);
-  // Friction takes 0.0115 m/s in a step: none is missing, and none is one too many.
+  // Friction takes 0.0115 m/s in each step: no step lacks it, and no step applies it twice.
   EXPECT_NEAR(end.velocity[1].x(), 4 - 0.3 * 9.81 * 0.25, 0.01);
 }
 
@@ -140,8 +141,8 @@ bodies:
   Judge judge(scene);
   EXPECT_EQ(judge.findings().energy_change, 0);
   BodyTable moved = scene.bodies;
-  moved.position[1].z() = 0.4;            // 0.1 in the plane
-  moved.position[2] = Vec3(0.3, 0, 0.8);  // 0.5 from the first: 0.25 in it
+  moved.position[1].z() = 0.4;            // 0.1 deep in the plane
+  moved.position[2] = Vec3(0.3, 0, 0.8);  // 0.5 from the first ball, and so 0.25 deep in it
   moved.velocity[2] = Vec3(0, 3, 0);
   moved.spin[2] = Vec3(0, 0, 4);
   judge.see(moved, 0.5);
@@ -178,7 +179,8 @@ TEST(Errors, AreMeansOfAllStatesOrOfTheNewest) {
   EXPECT_EQ(errors.values()[1], 16);
 }
 
-/// The published error of the engines that friction pyramids hold in place, and none of the formula's motion.
+/// Engines whose friction pyramids hold the bodies in place get the published error, and motion by the
+/// formula gets no error.
 TEST(Errors, OfTheRollingCaseAreAsPublished) {
   const Case& rolling = find_case("rolling");
   const Scene scene = read_scene(SCREE_SOURCE_DIR "/configs/validation/simbenchmark/rolling.yaml");

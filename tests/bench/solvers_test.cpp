@@ -1,5 +1,5 @@
-// Contact problems taken out of simulations beside dense matrices in long double, the residual beside known
-// solutions, and the solvers beside the laws of contact.
+// Tests of contact problems that are taken out of simulations, against dense matrices in long double; of the
+// residual, against known solutions; and of the solvers, against the laws of contact.
 #include "bench/solvers/local_problem.hpp"
 #include "bench/solvers/problem_file.hpp"
 #include "bench/solvers/residual.hpp"
@@ -25,7 +25,7 @@ using RealVec = Eigen::Matrix<Real, 3, 1>;
 using RealVector = Eigen::Matrix<Real, Eigen::Dynamic, 1>;
 using RealMatrix = Eigen::Matrix<Real, Eigen::Dynamic, Eigen::Dynamic>;
 
-/// After one step, on one thread.
+/// Returns the contact problem of a scene after one step on one thread.
 ContactProblem problem_of(const std::string& text) {
   Simulation simulation(parse_scene("format: 1\nrender: false\n" + text, "test.yaml"),
                         {SpaceChoice::host, 1});
@@ -58,7 +58,8 @@ bodies:
   - {box: {size: [0.2, 1, 1]}, at: [0.9, 0, 1.5], motion: {velocity: [-0.1, 0, 0]}, material: stone}
 )";
 
-/// J: the relative velocity of each point in its frame from the velocities and spins of all bodies.
+/// Returns the matrix J that gives the relative velocity of each point, in the frame of its contact, from the
+/// velocities and spins of all bodies.
 RealMatrix jacobian_of(const ContactProblem& scene) {
   RealMatrix j = RealMatrix::Zero(3 * std::ssize(scene.points), 6 * std::ssize(scene.bodies));
   for (const ContactProblem::Contact& c : scene.contacts) {
@@ -146,7 +147,7 @@ TEST(Residual, OfABallAtRestIsRounding) {
   const ContactProblem scene = problem_of(ball);
   const Problem problem = assemble(scene);
   ASSERT_EQ(problem.size(), 1u);
-  const Residual exact = ResidualMeter(problem)({Vec3(3 * 9.81 * 0.01, 0, 0)});  // m g h carries it
+  const Residual exact = ResidualMeter(problem)({Vec3(3 * 9.81 * 0.01, 0, 0)});  // m g h carries the ball
   EXPECT_LT(exact.natural, 1e-15);
   EXPECT_LT(exact.signorini, 1e-15);
   EXPECT_LE(exact.cone, 0);
@@ -166,7 +167,7 @@ TEST(Residual, ProjectsOnTheNearestPointOfTheCone) {
     const Vec3 x(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1));
     const Vec3 p = project_on_friction_cone(x, mu);
     const Vec3 back = p - x;
-    // In the cone, and the way back is in its dual and at right angles.
+    // The projection is in the cone; the difference to x is in the dual cone and orthogonal to it.
     EXPECT_LE(std::hypot(p.y(), p.z()), mu * p.x() + 1e-15);
     EXPECT_LE(mu * std::hypot(back.y(), back.z()), back.x() + 1e-15);
     EXPECT_NEAR(p.dot(back), 0, 1e-15);
@@ -208,7 +209,7 @@ TEST(ProblemFile, ReadsBackTheSameBits) {
   EXPECT_EQ(read.problem.delassus.count(), written.problem.delassus.count());
   EXPECT_EQ(read.problem.free_velocity, written.problem.free_velocity);
   EXPECT_EQ(read.problem.friction, written.problem.friction);
-  // And what it came from.
+  // The scene that the problem came from is read back, too.
   const Problem again = assemble(read.scene);
   EXPECT_EQ(dense(again.delassus), dense(written.problem.delassus));
   EXPECT_EQ(again.free_velocity, written.problem.free_velocity);
@@ -227,20 +228,20 @@ TEST(ProblemFile, NamesTheLineThatIsWrong) {
   std::filesystem::remove(file);
 }
 
-/// Not to the same one: with friction there may be several.
+/// The solutions may differ, because with friction there may be several.
 TEST(Solvers, AllFindASolution) {
   const ContactProblem scene = problem_of(heap);
   const Problem problem = assemble(scene);
   for (const std::string& name : solver_names()) {
     const auto solver = make_solver(name, scene, problem);
     const PointVectors r = solver->solve(solver->budget() == Solver::Budget::iterations ? 20000 : 1e-12);
-    // Those of first order come by the last digits slowly.
+    // Solvers of first order converge slowly in the last digits.
     EXPECT_LT(natural_of(problem, r), 1e-6) << name;
   }
   EXPECT_THROW(make_solver("oracle", scene, problem), InputError);
 }
 
-/// It visits the contacts in another order than the run, whose impulses solve the problem as well.
+/// The solver visits the contacts in another order than the run; the impulses of both solve the problem.
 TEST(Solvers, TheResponseSolvesWhatARunHasSolved) {
   const ContactProblem scene = problem_of(std::string(heap) + "response: {warm_start: false}\n");
   const Problem problem = assemble(scene);

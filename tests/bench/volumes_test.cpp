@@ -1,5 +1,5 @@
-// Bounding volumes: none misses bodies that touch, each holds its body, and volumes and shares of overlaps
-// are those of closed forms, of integral geometry and of points drawn at random.
+// Tests of bounding volumes: no volume misses bodies that touch, each holds its body, and their sizes and
+// frequencies of overlap agree with closed forms, with integral geometry and with points drawn at random.
 #include "bench/narrowphase/families.hpp"
 #include "bench/narrowphase/oracle.hpp"
 #include "bench/volumes/box.hpp"
@@ -20,7 +20,7 @@ namespace {
 using oracle::Real;
 using oracle::Vec;
 
-constexpr double standard_deviations = 5;  // of a count of random draws
+constexpr double standard_deviations = 5;  // tolerance of counts and sums of random draws
 
 template <class Fit>
 auto volume_around(const Solid& box, double margin = 0) {
@@ -48,7 +48,7 @@ bool holds(const Obb& box, const Vec& p) {
   return (at.cwiseAbs().array() <= box.half.cast<Real>().array()).all();
 }
 
-/// The share of a half side, in [-1, 1], that leads nearest to a point; 0 for no side.
+/// Returns the multiple of a half side, in [-1, 1], that is nearest to a point; 0 if the side has no length.
 Real nearest(const Vec& half_side, const Vec& p) {
   const Real square = half_side.squaredNorm();
   return square > 0 ? std::clamp(half_side.dot(p) / square, Real(-1), Real(1)) : Real(0);
@@ -73,9 +73,12 @@ bool holds(const Dop<faces>& dop, const Vec& p) {
   return true;
 }
 
-// ---- Mean volume in which one of two volumes that turn at random overlaps the other ----
+// ---- Mean excluded volume ----
+// It is the volume of all positions at which one volume overlaps the other, averaged over random
+// orientations.
 
-/// Of convex bodies with volume V, surface S and integral of mean curvature M (Isihara 1950).
+/// Volume V, surface S and integral of mean curvature M of a convex body. Two such bodies have the mean
+/// excluded volume V_a + V_b + (S_a M_b + S_b M_a) / 4 pi (Isihara 1950).
 struct Measures {
   double volume, surface, curvature;
 };
@@ -84,7 +87,8 @@ double excluded(const Measures& a, const Measures& b) {
   return a.volume + b.volume + (a.surface * b.curvature + b.surface * a.curvature) / (4 * pi);
 }
 
-/// Of a rectangle with half sides l and m, swept by a sphere: derivatives by the radius (Steiner).
+/// Returns the measures of a rectangle with half sides l and m that is swept by a sphere of radius r. Surface
+/// and curvature are derivatives of the volume with respect to r (Steiner).
 Measures swept(double l, double m, double r) {
   return {swept_volume(l, m, r), 8 * l * m + 4 * pi * (l + m) * r + 4 * pi * r * r,
           2 * pi * (l + m) + 4 * pi * r};
@@ -103,7 +107,7 @@ double excluded(const SweptRectangle& a, const SweptRectangle& b) {
 double excluded(const Obb& a, const Obb& b) {
   return excluded_volume(a.half.cast<double>(), b.half.cast<double>());
 }
-/// Volumes that do not turn with the body: not a mean, but of these two.
+/// AABBs and DOPs do not turn with their bodies, so that this is no mean but the value for these two.
 double excluded(const Aabb& a, const Aabb& b) {
   double volume = 1;
   for (int k = 0; k < 3; ++k) volume *= (a.hi[k] - a.lo[k]) + (b.hi[k] - b.lo[k]);
@@ -129,7 +133,7 @@ void for_each_family(Action action) {
   for (int f = 0; f < static_cast<int>(BoxFamily::count); ++f) action(static_cast<BoxFamily>(f));
 }
 
-/// Whether a number of draws is what a share of all of them may give.
+/// Expects that `found` of `draws` random draws is a likely count if each succeeds with probability `share`.
 void expect_share(std::int64_t found, std::int64_t draws, double share, const char* of) {
   const double deviation = std::sqrt(static_cast<double>(draws) * share * (1 - share));
   EXPECT_NEAR(static_cast<double>(found), static_cast<double>(draws) * share, standard_deviations * deviation)
@@ -212,7 +216,7 @@ TYPED_TEST(Volumes, OverlapAsOftenAsIntegralGeometrySays) {
       const Solid a = turned();
       Solid b = turned();
       const auto volume_a = volume_around<TypeParam>(a);
-      // Somewhere in a box about all places in which they overlap.
+      // Place b at random in a box that holds all positions at which the volumes overlap.
       const Aabb box_a = box_of(volume_a), box_b = box_of(volume_around<TypeParam>(b));
       double places = 1;
       for (int c = 0; c < 3; ++c) {
@@ -249,10 +253,10 @@ TEST(Polytope, HasTheVolumeOfClosedForms) {
   EXPECT_NEAR(volume_of(slabs_of_dop(0, 1, 3, centre)), 8, 1e-12);         // a cube that touches the rest
   EXPECT_NEAR(volume_of(slabs_of_dop(0, 1, 9, centre)), 8, 1e-12);
   EXPECT_NEAR(volume_of(slabs_of_dop(0, 5, 2, centre)), 32.0 / 3, 1e-12);
-  // A parallelepiped: the product of its widths over the determinant of its directions.
+  // A parallelepiped has the product of its widths over the determinant of its directions as volume.
   const std::vector<Slab> skew = {{Vec3(1, 0, 0), -1, 1}, {Vec3(1, 2, 0), 0, 3}, {Vec3(-1, 1, 0.5), 7, 8}};
   EXPECT_NEAR(volume_of(skew), 6, 1e-12);
-  // Apart from the rest, and flat.
+  // A slab apart from the others leaves nothing, and a flat one leaves no volume.
   std::vector<Slab> none = slabs_of_dop(0, 1, 9, centre), flat = none;
   none.push_back({Vec3(1, 1, 0), 50, 60});
   flat[1].lo = flat[1].hi;
@@ -294,12 +298,14 @@ TEST(SweptSphere, DistancesOfSegmentsAreThoseOfLongDouble) {
       return Vec3(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1));
     };
     const Vec3 between = draw(), u = draw();
-    // Parallel but for 1e-16 to 1, or exactly.
+    // One third of the segments have any direction, one third are parallel except for a tilt of 1e-16 to 1,
+    // and one third are exactly parallel.
     const double tilt = n % 3 == 0 ? 1 : n % 3 == 1 ? std::pow(10.0, random.uniform(-16, 0)) : 0;
     const Vec3 v = n % 3 == 0 ? draw() : Vec3(random.uniform(-2, 2) * u + tilt * draw());
     const Real distance = oracle::segment_distance(exact(Vec3(between - u)), exact(Vec3(between + u)),
                                                    exact(Vec3(-v)), exact(v));
-    // Of nearly parallel edges the oracle has the ends alone, which are farther apart by 2e-7 at most.
+    // For nearly parallel edges the oracle uses only the end points, whose distance is too large by 2e-7 at
+    // most.
     const double found = std::sqrt(squared_distance(between, u, v));
     ASSERT_LE(found, static_cast<double>(distance) + 1e-12) << n;
     ASSERT_GE(found, static_cast<double>(distance) - 2e-7) << n;
@@ -311,7 +317,7 @@ TEST(SweptSphere, DistancesOfSegmentsAreThoseOfLongDouble) {
 TEST(Comparison, OfRodsIsWhatItsPartsSay) {
   const FamilyReport report =
       compare_volumes(BoxFamily::rods_10, {.bodies = 3000, .overlaps_per_body = 4, .margin = 0, .rounds = 1});
-  // Walls take some of the pairs.
+  // Bodies near the walls have fewer pairs.
   EXPECT_GT(report.true_pairs, 0.8 * report.random_pairs);
   EXPECT_LT(report.true_pairs, report.random_pairs);
   ASSERT_EQ(report.rows.size(), 7u);
@@ -327,7 +333,7 @@ TEST(Comparison, OfRodsIsWhatItsPartsSay) {
   const VolumeRow &obb = report.rows[2], &dop_8 = report.rows[5], &dop_14 = report.rows[6];
   EXPECT_NEAR(obb.tightness, 1, 1e-4);
   EXPECT_LT(obb.false_pairs, 1e-3);
-  // What the 14 faces have in common with the AABB is the AABB; the rest are the 8-DOP's.
+  // Three slabs of the 14-DOP are the AABB's, and the other four are the 8-DOP's.
   EXPECT_EQ(dop_8.left, dop_14.left);
   EXPECT_EQ(dop_14.left, dop_14.false_pairs);
 }

@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
-"""Runs the golden scene again, and compares the states' hashes with those kept in tests/determinism/SPACE.
+"""Runs the golden scene again, and compares the hashes of its states with those kept in tests/determinism/SPACE.
 
     golden.py SCREE host|cuda [--write]
 
-Exit status 1 if a state is another one, 77 if the machine has no such space. --write keeps the states of this build instead: to be done, and said in the commit,
-where a change is meant to change bits.
+The exit status is 1 if a state differs, and 77 if the machine has no such space. --write instead replaces the kept states by those of this build. That is to be
+done, and mentioned in the commit, if a change is meant to change bits.
 """
 import argparse
 import json

@@ -1,18 +1,20 @@
-// Faults on demand. Loaded before a program's libraries (LD_PRELOAD), it makes calls fail as the environment
-// says; faults.py sets it. FAULT is one of these:
-// - write, fsync, rename: the call fails with FAULT_ERRNO where its path has FAULT_PATH in it;
-// - memory: once FAULT_AFTER bytes were written to such a path, allocations of FAULT_SIZE bytes and more
+// A library that makes calls fail on demand. It is loaded before a program's libraries (LD_PRELOAD), and
+// environment variables, which faults.py sets, say which calls fail. FAULT is one of these:
+// - write, fsync, rename: the call fails with FAULT_ERRNO if its path contains FAULT_PATH;
+// - memory: once FAULT_AFTER bytes have been written to such a path, allocations of FAULT_SIZE bytes and more
 // fail;
-// - allocation: allocations of FAULT_SIZE bytes and more fail, whatever was written; where FAULT_TIMES bounds
-// their number, those of HDF5 are left alone;
-// - arrays: the same as memory, of aligned memory alone, which only a program's own arrays are;
-// - limit: instead, the process gets no more address space from then on (RLIMIT_AS);
-// - flush: of a stream to such a path, whose buffer is lost, as on a full disk;
-// - osmesa_create, osmesa_current: the first call of OSMesa's that can fail, and the second;
-// - realtime: the time of day is right, FAULT_SIZE seconds ahead, and as much behind, by turns;
+// - allocation: allocations of FAULT_SIZE bytes and more fail, whatever has been written; if FAULT_TIMES
+// limits their number, allocations by HDF5 do not fail;
+// - arrays: as for memory, but only aligned allocations fail, which only a program's own arrays use;
+// - limit: once FAULT_AFTER bytes have been written to such a path, the process gets no more address space
+// (RLIMIT_AS);
+// - flush: flushing a stream to such a path fails, and its buffer is lost, as on a full disk;
+// - osmesa_create, osmesa_current: the first call of OSMesa that can fail does so, or the second one;
+// - realtime: the time of day is by turns right, FAULT_SIZE seconds ahead and FAULT_SIZE seconds behind;
 // - monotonic: the steady clock is FAULT_SIZE seconds ahead.
-// FAULT_AFTER: bytes (of write, too) or calls before the first fault. FAULT_TIMES: how many there are;
-// without end if 0. FAULT_NOTE: a file that gets a byte for each.
+// FAULT_AFTER is the number of bytes (for write, too) or of calls before the first fault. FAULT_TIMES is the
+// number of faults; 0 means no limit. FAULT_NOTE is a file that gets one byte for each fault (for memory,
+// arrays and limit: one in all, when the shortage begins).
 #define _GNU_SOURCE
 #include <dlfcn.h>
 #include <errno.h>
@@ -43,14 +45,14 @@ static const char* text_of(const char* name, const char* otherwise) {
 
 static long long number_of(const char* name) { return atoll(text_of(name, "0")); }
 
-// Of what the program starts, ffmpeg, nothing fails.
+// Reads the variables, and unsets LD_PRELOAD so that no call fails in programs that this one starts (ffmpeg).
 __attribute__((constructor)) static void begin(void) {
   path_part = text_of("FAULT_PATH", "");
   error_number = (int)number_of("FAULT_ERRNO");
   after = number_of("FAULT_AFTER");
   times = number_of("FAULT_TIMES");
   size = number_of("FAULT_SIZE");
-  // With a number that no file of the program would have.
+  // The file gets a descriptor of 100 or more, a number that no file of the program would have.
   const int low = open(text_of("FAULT_NOTE", "/dev/null"), O_WRONLY | O_CREAT | O_APPEND, 0666);
   note = fcntl(low, F_DUPFD_CLOEXEC, 100);
   close(low);
@@ -66,7 +68,7 @@ static ssize_t real_write(int descriptor, const void* bytes, size_t count) {
   return next(descriptor, bytes, count);
 }
 
-// Whether the present call, after `amount` more have passed, is one to fail.
+// Counts `amount` more bytes or calls, and returns whether the present call is to fail.
 static bool is_due(long long amount) {
   if (atomic_fetch_add(&passed, amount) + amount <= after) return false;
   if (atomic_fetch_add(&caused, 1) >= times && times > 0) return false;
@@ -99,7 +101,7 @@ ssize_t write(int descriptor, const void* bytes, size_t count) {
     }
     return real_write(descriptor, bytes, count);
   }
-  // As a disk does: what there is room for is written, and the next call fails.
+  // As on a real disk, the bytes for which there is room are written, and the next call fails.
   const long long room = after - atomic_load(&passed);
   if (room > 0 && room < (long long)count) {
     atomic_fetch_add(&passed, room);
@@ -110,7 +112,7 @@ ssize_t write(int descriptor, const void* bytes, size_t count) {
   return -1;
 }
 
-// HDF5's.
+// HDF5 writes with this call.
 ssize_t pwrite(int descriptor, const void* bytes, size_t count, off_t place) {
   if (is("write") && concerns_file(descriptor) && is_due((long long)count)) {
     errno = error_number;
@@ -152,7 +154,7 @@ int rename(const char* from, const char* to) {
   return next(from, to);
 }
 
-// glibc's own names, because dlsym allocates.
+// The allocators have glibc's own names here, because dlsym itself allocates memory.
 void* __libc_malloc(size_t bytes);
 void* __libc_calloc(size_t count, size_t bytes);
 void* __libc_realloc(void* old, size_t bytes);
@@ -206,7 +208,7 @@ unsigned char OSMesaMakeCurrent(void* context, void* buffer, unsigned type, int 
   return next(context, buffer, type, width, height);
 }
 
-// Seconds to add to a clock.
+// Returns the seconds to add to a clock.
 static long long jump(clockid_t clock) {
   const bool steady = clock == CLOCK_MONOTONIC;
   if (!(steady && is("monotonic")) && !(clock == CLOCK_REALTIME && is("realtime"))) return 0;

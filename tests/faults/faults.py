@@ -3,10 +3,10 @@
 
     faults.py SCREE --libraries DIR [--table] [NAME...]
 
-DIR holds fault_shim.so, which lets single calls fail, and old_driver.so; small disks are mounted where the system allows it. Each fault must have happened,
-the run must end as promised and say why, no file may have its final name and be half, and the resumed run must be the same to the byte as one that nothing
-disturbed. What cannot be caused here is said to be skipped. Prints a line for each fault (--table: as Markdown), exit status 1 if one is not as it should be.
-NAME: only the cases whose name holds it.
+DIR contains fault_shim.so, which makes single calls fail, and old_driver.so; small disks are mounted if the system allows it. Each fault must have happened, the
+run must end as promised and say why, no file with its final name may be incomplete, and the resumed run must be the same to the byte as an undisturbed one.
+Faults that cannot be caused on this machine are reported as skipped. Prints a line for each fault (--table: as Markdown); the exit status is 1 if a case is not
+as it should be. With NAME, only the cases whose name contains it are tried.
 """
 import argparse
 import errno
@@ -26,7 +26,7 @@ cases = []
 
 
 def case(*arguments):
-    """A case, or several: their names and the arguments of each."""
+    """Makes a function one case or several; the arguments are tuples of the name of a case and of its own arguments."""
 
     def add(function):
         for name, *more in arguments:
@@ -36,7 +36,7 @@ def case(*arguments):
     return add
 
 
-# The disk.
+# Faults of the disk.
 
 
 def no_room(path, after, number=errno.ENOSPC, call="write", times=0):
@@ -117,7 +117,7 @@ def tmpfs(case):
 
 
 def fill(place, free):
-    """Leaves so many bytes."""
+    """Fills the disk until only `free` bytes are left."""
     disk = os.statvfs(place)
     (place / "other").write_bytes(bytes(disk.f_bavail * disk.f_frsize - free))
 
@@ -125,7 +125,7 @@ def fill(place, free):
 @case(("a full disk (tmpfs)", tmpfs), ("a full disk (ext4 on a loop device)", ext4))
 def full_disk(case, make):
     place = make(case)
-    # Room for three checkpoints of 64 kB, as there are while one is written, and for less than half of the rows and frames.
+    # There is room for three checkpoints of 64 kB, the number that exists while one is written, and for less than half of the rows and frames.
     fill(place, 260000)
     case.ends(case.run(), 3, "cannot", FULL)
     (place / "other").unlink()
@@ -161,7 +161,7 @@ def read_only(case):
 def held(case):
     other = case.start(stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
     rows = case.folder / "metrics.csv.part"
-    while not rows.exists() or rows.read_bytes().count(b"\n") < 2:  # its header and a row
+    while not rows.exists() or rows.read_bytes().count(b"\n") < 2:  # the header and one row
         expect(other.poll() is None, "the other run came to nothing")
         time.sleep(0.001)
     other.send_signal(signal.SIGSTOP)
@@ -174,11 +174,11 @@ def held(case):
     case.nothing_to_resume()
 
 
-# Pictures.
+# Faults of pictures and movies.
 
 
 def no_room_for_movie(after):
-    """For a script in ffmpeg's place: ffmpeg itself, on a disk that gets full."""
+    """Returns the maker of a script that replaces ffmpeg, which runs ffmpeg itself on a disk that gets full."""
 
     def script(case):
         variables = {"LD_PRELOAD": case.harness.libraries / "fault_shim.so", **no_room("/movie.mp4", after)}
@@ -219,7 +219,7 @@ def no_pictures(case, fault, words):
     case.nothing_to_resume()
 
 
-# Memory.
+# Faults of memory.
 
 
 @case(("more bodies than memory",))
@@ -233,7 +233,8 @@ def too_large(case):
 
 
 def shortage(fault, size=0, times=0, after=12000):
-    """After so many bytes of metrics.csv, which a thread of its own writes: on a busy machine when most steps have been taken."""
+    """Returns a shortage of memory that begins after `after` bytes of metrics.csv. A separate thread writes that file, so that on a busy machine most steps have
+    been taken by then."""
     return {"FAULT": fault, "FAULT_PATH": "/metrics.csv", "FAULT_AFTER": after, "FAULT_TIMES": times, "FAULT_SIZE": size}
 
 
@@ -245,11 +246,11 @@ def shortage(fault, size=0, times=0, after=12000):
 )
 def out_of_memory(case, fault):
     case.expected = case.harness.without_pictures
-    # From 32 kB on memory comes from the system and goes back to it.
+    # With this threshold, blocks of 32 kB and more come from the system and go back to it.
     case.ends(case.run("--no-render", fault=fault, environment={"MALLOC_MMAP_THRESHOLD_": "32768"}), 3, "out of memory", "--resume", "scree plan")
     expect(case.caused() > 0, "the fault did not happen")
     if fault["FAULT"] != "arrays":
-        # Where there is no array at all the state cannot be told either.
+        # If no array can be allocated at all, the state of the run cannot be written to the manifest either.
         case.failed()
     case.resume("--no-render")
 
@@ -257,9 +258,9 @@ def out_of_memory(case, fault):
 @case(("any allocation of 32 kB fails, and all after it", 32768, 0), ("any allocation of 8 kB fails, alone", 8192, 1))
 def out_of_memory_anywhere(case, size, times):
     case.expected = case.harness.without_pictures
-    case.folder.mkdir(exist_ok=True)  # so that what is in it is read, which takes memory too
+    case.folder.mkdir(exist_ok=True)  # so that the run reads what is in the folder, which takes memory, too
     statuses = {}
-    # Where memory ends right after it was seen that there is some, at the start, HDF5 crashes; nothing but a test brings that about.
+    # If memory runs out at the start, right after it was seen that there is some, HDF5 crashes; only a test can bring that about.
     first = 8 if times == 0 else 0
     for after in (*range(first, 20), *range(20, 600, 14)):
         fault = {"FAULT": "allocation", "FAULT_SIZE": size, "FAULT_AFTER": after, "FAULT_TIMES": times}
@@ -277,14 +278,14 @@ def out_of_memory_anywhere(case, size, times):
 @case(("memory runs out while pictures are drawn", shortage("memory", 4096)))
 def out_of_memory_for_pictures(case, fault):
     finished = case.run(fault=fault)
-    # Mesa and libpng have their own ways to go, and some end the process.
+    # Mesa and libpng react to a lack of memory in their own ways, and some of them end the process.
     expect(finished.status in (3, -signal.SIGABRT, -signal.SIGSEGV), f"exit status {finished.status}")
     expect(case.caused() > 0, "the fault did not happen")
     case.ends(finished, finished.status)
     case.resume()
 
 
-# The GPU.
+# Faults of the GPU.
 
 
 @case(("--device cuda where there is no GPU",))
@@ -334,7 +335,7 @@ def out_of_device_memory(case):
     expect(case.run("--device", "cuda").status == 0, "the undisturbed run failed")
     case.expected, case.folder = contents(case.folder)[0], folder
     run = case.start("--device", "cuda")
-    # Before the balls come together and have contacts.
+    # Memory is taken before the balls meet and have contacts, which need memory.
     while not list(case.folder.glob("checkpoint/*.h5")):
         expect(run.poll() is None, "it has come to its end")
         time.sleep(0.001)
@@ -351,7 +352,7 @@ def out_of_device_memory(case):
     case.resume("--device", "cuda")
 
 
-# Clocks.
+# Faults of clocks.
 
 
 @case(("the time of day jumps to and fro by hours", {"FAULT": "realtime", "FAULT_SIZE": 10000}, 0))
@@ -367,11 +368,11 @@ def jump(case, fault, checkpoints):
     case.nothing_to_resume(settings={"record.checkpoint_every": 1000})
 
 
-# Who listens.
+# Faults of the standard streams.
 
 
 def closed_pipe():
-    """The end for writing of a pipe that nobody reads."""
+    """Returns the writing end of a pipe whose reading end is closed."""
     reading, writing = os.pipe()
     os.close(reading)
     return writing
@@ -395,7 +396,7 @@ def unheard(case, streams, kind, words):
 
 @case(("the three standard streams are closed, and there is a warning",))
 def closed_streams(case):
-    # What is said to a number that a file has by now must not be in that file.
+    # With closed streams, files of the run may get the descriptors 0 to 2. Messages must not be written into those files.
     case.ends(case.run(fault={"FAULT": "osmesa_create"}, preexec_fn=lambda: os.closerange(0, 3)), 0)
     expect(case.caused() > 0, "the fault did not happen")
     case.is_undisturbed(but=("files", "frames", "manifest: frames"))
@@ -414,7 +415,7 @@ def unheard_result(case):
 
 
 def try_case(harness, name, act):
-    """Its case, and what is wrong or why it was skipped."""
+    """Tries a case. Returns the case, its verdict, and what is wrong or why it was skipped."""
     with tempfile.TemporaryDirectory() as scratch:
         case = Case(harness, name, Path(scratch))
         try:
@@ -430,7 +431,8 @@ def try_case(harness, name, act):
 
 
 def alone():
-    """Mounts are for this process alone, and gone with it; so a user other than root may make those of memory."""
+    """Restarts this program in a mount namespace of its own, if the system allows it. Mounts then exist only for this process and end with it, and a user other
+    than root may mount a tmpfs."""
     mine = ["unshare", "--mount", *([] if os.geteuid() == 0 else ["--user", "--map-root-user"])]
     if os.environ.get("FAULTS_ALONE") or subprocess.run([*mine, "true"], capture_output=True).returncode != 0:
         return

@@ -1,4 +1,4 @@
-"""One run and one fault: how it is started, what must be true of what it leaves, and how it is resumed."""
+"""A run with one fault: how it is started, what must hold for the files that it leaves, and how it is resumed."""
 import csv
 import json
 import os
@@ -30,7 +30,7 @@ class Finished:
 
 
 class Case:
-    """One fault: runs in a folder of its own, and what is told of it."""
+    """One fault, with its runs in a folder of their own and the results that are reported."""
 
     def __init__(self, harness, name, scratch):
         self.harness, self.scratch, self.folder = harness, scratch, scratch / "RUN"
@@ -40,7 +40,7 @@ class Case:
     def start(self, *more, fault={}, environment={}, settings={}, **options):
         variables = {**os.environ, **environment}
         if fault:
-            # Only the name of the folder is sure to be in every path below it.
+            # Every path in the run's folder contains the name of that folder, but not always its full path.
             variables.update({"LD_PRELOAD": str(self.harness.libraries / "fault_shim.so"), "FAULT_NOTE": str(self.note), "FAULT_PATH": "RUN/"})
             variables.update({key: str(value) for key, value in fault.items()})
         sets = [word for key, value in {**SMALL, **settings}.items() for word in ("--set", f"{key}={value}")]
@@ -69,7 +69,7 @@ class Case:
         return json.loads((self.folder / "manifest.json").read_text())
 
     def ends(self, finished, status, *words):
-        """Judges how a run ended, and what it said."""
+        """Checks the exit status of a run, and the words of its messages."""
         said = finished.error.replace(str(self.folder), "RUN").replace(str(SCENE), SCENE.name)
         said = "; ".join(line.removeprefix("scree: ") for line in said.splitlines() if line)
         self.happened, self.status = self.happened or said, self.status or str(finished.status)
@@ -83,7 +83,7 @@ class Case:
         expect(manifest["status"] == "failed" and manifest["error"], "the manifest does not say that the run failed")
 
     def found(self):
-        """What is on the disk, in words. All that has its final name must be whole."""
+        """Describes in words what is on the disk. Every file with its final name must be complete."""
         if not self.folder.exists():
             return "nothing"
         words = []
@@ -111,7 +111,7 @@ class Case:
         return ", ".join(words) or "nothing but " + " ".join(sorted(path.name for path in self.folder.iterdir()))
 
     def resume(self, *more, from_checkpoint=True, **options):
-        """The fault is gone: the run must come to its end, and be as if there had been none."""
+        """Resumes the run without the fault. It must reach its end, and leave what a run without a fault leaves."""
         finished = self.run("--resume", *more, **options)
         expect(finished.status == 0, f"resumed, it ended with {finished.status}: {finished.out}{finished.error}")
         self.resumed = "from the beginning"
@@ -132,7 +132,7 @@ class Case:
         return {str(path): path.read_bytes() for path in self.folder.rglob("*") if path.is_file()}
 
     def is_undisturbed(self, but=()):
-        """The same as a run without a fault, but for contents that are named."""
+        """Checks that the contents are those of a run without a fault, except for those named in `but`."""
         different = [name for name in differing(self.expected, contents(self.folder)[0]) if name not in but and not name.startswith(tuple(but))]
         expect(not different, f"DIFFERENT: {', '.join(different)}")
 

@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
-"""Kills a run again and again at random times, resumes it after each, and compares what it leaves with an undisturbed run.
+"""Kills a run again and again at random times, resumes it after each kill, and compares what it leaves with an undisturbed run.
 
     kill_resume.py SCREE [--kills N] [--signal KILL|TERM] [--seed S] [--longest T] [MORE...]
 
-All other arguments go to `scree run` (--device cuda, --set time.end=4...). The run must be the same to the byte: the state's hash, metrics.csv, final.csv, the
-frames, the checks. Prints what happened, exit status 1 if anything differs, or if the run came to its end before it was killed so often.
+All other arguments are passed to `scree run` (--device cuda, --set time.end=4...). The run must be the same to the byte: the hash of the state, metrics.csv,
+final.csv, the frames and the checks. Prints what happened; the exit status is 1 if anything differs, or if the run ended before it had been killed N times.
 """
 import argparse
 import random
@@ -27,7 +27,7 @@ def run_whole(arguments, folder):
 
 
 def run_killed(arguments, folder):
-    """How it went: kills, and the steps at which it was resumed."""
+    """Kills and resumes the run until it ends. Returns the number of kills."""
     times = random.Random(arguments.seed)
     kills = 0
     while True:

@@ -1,4 +1,4 @@
-"""Runs of everything.yaml, and what two of them must have in common."""
+"""Commands that run everything.yaml, and the contents that two such runs must have in common."""
 import json
 from pathlib import Path
 
@@ -10,7 +10,7 @@ def command(scree, folder, *more, scene=SCENE):
 
 
 def contents(folder):
-    """By name, of what must be the same to the byte."""
+    """Returns the contents of a run that must be the same to the byte, by name, and its manifest."""
     manifest = json.loads((folder / "manifest.json").read_text())
     found = {f"manifest: {key}": json.dumps(manifest[key]) for key in ("status", "state_hash", "states", "steps", "checks", "observation", "counters", "frames")}
     for file in [folder / "metrics.csv", folder / "final.csv", folder / "scene.yaml", folder / "trajectory.vtkhdf", *sorted(folder.glob("frames/*"))]:
@@ -20,5 +20,5 @@ def contents(folder):
 
 
 def differing(expected, found):
-    """The names of the contents that are not the same."""
+    """Returns the names of the contents that differ."""
     return sorted(name for name in expected.keys() | found.keys() if expected.get(name) != found.get(name))

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Takes all memory of the first GPU that is free, says how much, and keeps it until it is killed."""
+"""Takes all free memory of the first GPU, prints how much that is, and keeps it until this program is killed."""
 import ctypes
 import signal
 

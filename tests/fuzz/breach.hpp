@@ -1,4 +1,4 @@
-// What hostile input must never bring about, and a file of it.
+// Helpers of the tests with hostile input: they report a breach, check a message and make a file in memory.
 #pragma once
 
 #include <string>
@@ -6,13 +6,14 @@
 
 namespace scree {
 
-/// Throws std::logic_error.
+/// Throws std::logic_error with this message.
 [[noreturn]] void breach(const std::string& what);
 
-/// What is said of bad input names a place, and is fit for a terminal.
+/// Calls breach() unless the message about bad input names a place and has no control characters, so that a
+/// terminal can show it.
 void require_message(std::string_view message);
 
-/// The path of a file in memory with these bytes, which holds until the next call.
+/// Returns the path of a file in memory with these bytes. It is valid until the next call.
 const std::string& file_of(std::string_view bytes);
 
 }  // namespace scree

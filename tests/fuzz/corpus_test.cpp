@@ -1,4 +1,4 @@
-// Every input that was kept does what hostile input may, in this build too.
+// Tests that every hostile input of the corpus is read or refused in this build as it should be.
 #include "tests/fuzz/hostile_input.hpp"
 
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
-// Prints what libFuzzer may put into a scene as one piece: every key and word of the table, and what numbers
-// and YAML are likely to be misread for.
+// Prints the dictionary of pieces that libFuzzer may put into a scene: every key and word of the table of
+// keys, and pieces that readers of numbers and of YAML are likely to misread.
 #include "sim/scene/body_file.hpp"
 #include "sim/scene/keys.hpp"
 #include "sim/scene/measure.hpp"
@@ -14,7 +14,7 @@ namespace {
 
 using Words = std::set<std::string>;
 
-// A backslash is doubled where it belongs to YAML.
+// Backslashes that belong to YAML are doubled.
 // clang-format off
 constexpr const char* misleading[] = {
     "--set ", "- ", "? ", "&a ", "*a", "<<: ", "! ", "| ", "---", "...", "[0]", "null", "glass", "ball", "region.",

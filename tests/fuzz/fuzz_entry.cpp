@@ -1,4 +1,4 @@
-// libFuzzer's entry, for the reader SCREE_READ; scripts/fuzz.sh runs it.
+// The entry point of libFuzzer for the reader SCREE_READ; scripts/fuzz.sh runs it.
 #include "tests/fuzz/hostile_input.hpp"
 
 #include <cstddef>

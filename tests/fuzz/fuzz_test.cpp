@@ -1,6 +1,6 @@
-// Random small scenes must obey the laws that hold for any scene. SCREE_FUZZ_SCENES says how many (100);
-// --gtest_filter='*/seed_17' runs one alone. A scene that breaks a law is printed: saved as a file, it runs
-// by itself.
+// Tests that small random scenes obey the laws that hold for any scene. SCREE_FUZZ_SCENES is the number of
+// scenes (default: 100); --gtest_filter='*/seed_17' runs a single one. A scene that breaks a law is printed;
+// it can be saved as a file and run by itself.
 #include "tests/fuzz/ledger_watch.hpp"
 #include "tests/fuzz/random_scene.hpp"
 

@@ -18,11 +18,11 @@
 namespace scree {
 namespace {
 
-/// Room for pictures and for some ten thousand bodies: what asks for more is refused soon, whatever the
-/// machine.
+/// The memory that a scene may take (bytes), enough for pictures and about ten thousand bodies. Larger scenes
+/// are refused soon on every machine, whatever its memory.
 constexpr double memory = 2.6e8;
 
-/// Words and numbers are written as they were, without quotes.
+/// Returns whether a text is a word or a number, which to_yaml() must write without quotes if it had none.
 bool is_word_or_number(std::string_view text) {
   const auto is_alphanumeric = [](char c) {
     return (c >= '0' && c <= '9') || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z');
@@ -106,7 +106,7 @@ ScenePart split(std::string_view bytes) {
 }
 
 void require_scene_or_refusal(const std::string& text, const std::vector<Override>& overrides = {}) {
-  // In a folder that there is not, so that no `file` of a scene is found beside it.
+  // The folder does not exist, so that no `file` of a scene is found in it.
   static const std::filesystem::path name = "/nowhere/scene.yaml";
   try {
     require_scene(parse_scene(text, name, overrides, memory));

@@ -12,7 +12,7 @@
 namespace scree {
 namespace {
 
-/// Enough for hulls of too many vertices.
+/// The most points that are read, enough for hulls with too many vertices.
 constexpr std::size_t most_points = 300;
 
 std::vector<Vec3> doubles_in(std::string_view bytes) {
@@ -25,7 +25,8 @@ std::vector<Vec3> doubles_in(std::string_view bytes) {
   return points;
 }
 
-/// Each coordinate is a whole number of 4 bits and one of 4 bits at a power of ten that all share.
+/// Returns points of which each coordinate is the sum of a whole number of 4 bits and of another one, also of
+/// 4 bits, times a power of ten. The first byte gives that power, for all points.
 std::vector<Vec3> lattice_in(std::string_view bytes) {
   std::vector<Vec3> points;
   if (bytes.empty()) return points;
@@ -61,9 +62,9 @@ void read_hostile_points(std::string_view bytes) {
   try {
     hull = make_hull(points);
   } catch (const InputError&) {
-    return;  // without a place, which the scene gives it
+    return;  // the message has no place, because the scene adds it
   }
-  // Beyond these a cube's volume or a square is no number.
+  // Beyond these limits volumes (cubes of lengths) overflow, or squares underflow.
   double largest = 0, smallest = HUGE_VAL;
   for (const Vec3& v : hull.vertices) {
     largest = std::max(largest, v.norm());

@@ -1,4 +1,4 @@
-// What a run left behind.
+// Readers of hostile input for files that a run leaves: checkpoints, trajectories, tables and manifests.
 #include "core/archive.hpp"
 #include "core/bodies.hpp"
 #include "core/error.hpp"
@@ -30,10 +30,10 @@ void require_same(const SavedState& a, const SavedState& b) {
   if (!same) breach("the state is another when it is written and read again");
 }
 
-/// What parts an input in two.
+/// The line that separates the two parts of an input.
 constexpr std::string_view between = "====\n";
 
-/// A part with every kind of field.
+/// A part of the state with every kind of field.
 struct Part {
   struct Record {
     std::int32_t number;
@@ -74,7 +74,8 @@ void load(const SavedState& state) {
   }
 }
 
-/// The library takes what names a file's objects can have: not what has nothing between slashes, say.
+/// Writes the state to a file and reads it again. Returns nothing if it cannot be written, because HDF5
+/// refuses some names of objects: for example those with nothing between two slashes.
 std::optional<SavedState> read_again(const SavedState& state) {
   static const TemporaryFolder folder;
   try {
@@ -130,7 +131,7 @@ void read_hostile_checkpoint(std::string_view bytes) {
 }
 
 void read_hostile_trajectory(std::string_view bytes) {
-  constexpr std::size_t most_frames = 8;  // they may be of the same chunks, without end
+  constexpr std::size_t most_frames = 8;  // more are not read, because many frames may share the same chunks
   const std::size_t end = std::min(bytes.find(between), bytes.size());
   const std::string_view numbers = bytes.substr(0, end);
   const std::string_view lines = bytes.substr(std::min(end + between.size(), bytes.size()));

@@ -10,24 +10,27 @@ namespace scree {
 
 namespace {
 
-// Energies are shares of the energy scale, momenta of what the bodies carry.
+// Bounds on energies are shares of the energy scale; bounds on momenta are shares of what the bodies carry.
 constexpr double explained = 1e-9;
 constexpr double energy_gain = 1e-9;
 constexpr double loss_rounding = 1e-12;      // in one step
 constexpr double momentum_rounding = 1e-12;  // in one step
-// Of each impulse in a step: bodies that wedge one another in a turning drum press ever harder (seed 275: by
-// 1e6 N s for weights of 5), and what the two of a pair take differs by the rounding of that.
+// This bound is a share of the impulses of a step. Bodies that wedge one another in a turning drum press ever
+// harder (seed 275: by 1e6 N s for weights of 5 N), and the impulses on the two bodies of a pair differ by
+// the rounding of that.
 constexpr double impulse_rounding = 1e-16;
 constexpr double angular_rounding = 1e-10;  // in the whole run
-// What turns and rolls into others within a substep, where nothing overlapped at the start. Corrections may
-// lift so much of the energy scale in a run: the least of a flat bound, and of one of second order, here at
-// 1/60 s. Measured over 1,000 scenes: 0.020 and 0.19.
+// Bounds on the energy that position correction may add in a run by lifting bodies, where nothing overlapped
+// at the start: bodies turn and roll into others within a substep. The smaller one of two bounds holds: a
+// constant one, and one of second order in the substep, given for 1/60 s. Measured over 1,000 scenes: 0.020
+// and 0.19.
 constexpr double correction_gain = 0.025;
 constexpr double correction_gain_60 = 0.25;
-// Overlaps may grow by so much of the smaller body beyond the angles by which bodies turn and roll: the
-// larger of the two (measured: 0.021 at 1/240 s; at 1/60 s 0.072 as nvcc builds it and 0.11 with sanitizers).
-// Where the first one is more than the whole body, the way out is not the way in, and it may grow at first
-// (measured: 1.61).
+// Bounds on overlaps, as shares of the smaller body's size, besides the overlap that turning and rolling
+// allow. The larger one of two bounds holds: a constant one, and one of second order in the substep, given
+// for 1/60 s (measured: 0.021 at 1/240 s; at 1/60 s 0.072 as nvcc builds it and 0.11 with sanitizers). If an
+// overlap at the start is larger than the whole body, the way out is not the way in, and the overlap may grow
+// at first, by the factor `overlap_growth` (measured: 1.61).
 constexpr double overlap = 0.025;
 constexpr double overlap_60 = 0.15;
 constexpr double overlap_growth = 1.7;
@@ -63,7 +66,7 @@ class Watch {
   }
 
  private:
-  /// Fails, too, for what is not a number.
+  /// Notes a breach of the law if the value exceeds the bound. A value that is not a number is a breach, too.
   void hold(const char* law, double value, double bound) {
     if (value <= bound) return;
     const auto [place, is_first] = breaches_.try_emplace(law);
@@ -79,14 +82,15 @@ class Watch {
     const double scale = now_.energy_scale;
     if (scale == 0) return;
     hold("unexplained energy", now_.unexplained, explained);
-    // Either alone may do work where the Delassus matrix couples them, and friction may give back what
-    // gravity's kick takes in the step in which it turns a slip; together they lose.
+    // Friction or restitution alone may add energy where the Delassus matrix couples them, and friction may
+    // return the energy that gravity's kick takes in the step in which the kick reverses a slip; their sum
+    // dissipates energy.
     hold("gain in impulses, of one step",
          (before_.ledger.friction + before_.ledger.restitution - now_.ledger.friction -
           now_.ledger.restitution) /
              scale,
          loss_rounding);
-    const double lifted = std::max(-now_.ledger.correction, 0.0);  // bounded below
+    const double lifted = std::max(-now_.ledger.correction, 0.0);  // correction has its own bound below
     hold("energy beyond the start's and what was done",
          (now_.total() - first_.total() - now_.ledger.work - lifted) / scale, energy_gain);
     if (!origin_.overlaps)
@@ -109,7 +113,7 @@ class Watch {
     return sum;
   }
 
-  /// What free bodies gain, gravity and the bodies that are not free have given.
+  /// Checks that the momentum that free bodies gain is what gravity and the bodies that are not free gave.
   void check_momentum(double carried) {
     const double dt = now_.time - before_.time;
     Vec3 expected = before_.momentum;
@@ -131,7 +135,8 @@ class Watch {
          momentum_rounding * given + impulse_rounding * pressed);
     if (!origin_.closed) return;
     const Vec3 change = now_.angular_momentum - first_.angular_momentum - now_.ledger.angular_correction;
-    // About the origin; the bodies stay within some metres of it, or fly from one another and carry more.
+    // Angular momentum is taken about the origin. The bodies stay within some metres of it, or fly apart and
+    // then carry more.
     hold("angular momentum", change.norm(),
          angular_rounding * (largest_distance() * given + spin_momentum()));
   }
@@ -153,7 +158,7 @@ class Watch {
 
   void check_bodies() {
     hold("bodies lost", static_cast<double>(std::abs(now_.bodies - first_.bodies)), 0);
-    double fastest = 0;  // energy of one body's motion over all that there can be
+    double fastest = 0;  // largest kinetic energy of one body's translation (J)
     const double there = energy_there();
     for (std::size_t k = 0; k < state_.bodies.position.size(); ++k) {
       const bool finite = state_.bodies.position[k].allFinite() && state_.bodies.velocity[k].allFinite() &&
@@ -167,8 +172,8 @@ class Watch {
     hold("energy of one body", fastest, 1.001 * there + 1e-12);
   }
 
-  /// Kinetic energy that the bodies can have: what they began with, what gravity and drivers have given
-  /// since.
+  /// Returns the kinetic energy that the bodies can have (J): what they began with, and what gravity, driven
+  /// bodies and position correction have given since.
   double energy_there() const {
     double fallen = 0;
     for (std::size_t k = 0; k < state_.bodies.position.size(); ++k) {
@@ -179,9 +184,9 @@ class Watch {
     return first_.kinetic() + fallen + std::max(now_.ledger.work, 0.0) + std::abs(now_.ledger.correction);
   }
 
-  /// Contacts are of one instant of a substep. They do not see how boxes turn in it, and how balls roll over
-  /// one another: an angle a lets surfaces come closer by a^2 / 2 of their arm. Beyond that overlaps only get
-  /// less.
+  /// Checks the overlaps. Contacts are found at one instant of a substep, and do not include how boxes turn
+  /// and balls roll over one another within it: a turn by an angle a lets surfaces come closer by a^2 / 2 of
+  /// their arm. Apart from that, overlaps only become smaller.
   void check_overlaps() {
     double turn = 0;
     double roll = 0;
@@ -197,7 +202,8 @@ class Watch {
                       0.5 * h * h * (turn * turn * largest_ratio() + roll * roll)));
   }
 
-  /// Of the sizes of two bodies: overlaps are relative to the smaller one.
+  /// Returns the largest ratio of the sizes of two free bodies, because overlaps are relative to the smaller
+  /// one.
   double largest_ratio() const {
     double smallest = HUGE_VAL;
     double largest = 0;

@@ -1,4 +1,4 @@
-// The laws that every scene obeys at every step, watched.
+// A watch over the laws that every scene must obey at every step.
 #pragma once
 
 #include "sim/scene/scene.hpp"
@@ -10,7 +10,7 @@
 
 namespace scree {
 
-/// Where a law was first broken, and how badly it was at worst. `worst` is in the unit of `bound`.
+/// The step in which a law was first broken, and the worst breach of it. `worst` is in the unit of `bound`.
 struct Breach {
   std::int64_t first_step = 0;
   std::int64_t worst_step = 0;
@@ -18,10 +18,10 @@ struct Breach {
   double bound = 0;
 };
 
-/// By the name of the law.
+/// Breaches by the name of the law.
 using Breaches = std::map<std::string, Breach>;
 
-/// Runs the scene to its end. A run that throws breaks the law `runs`.
+/// Runs the scene to its end, and returns the laws that it breaks. A run that throws breaks the law `runs`.
 Breaches watch(const Scene& scene, const RandomScene& origin);
 
 }  // namespace scree

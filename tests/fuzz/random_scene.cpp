@@ -16,7 +16,7 @@ namespace {
 
 constexpr int steps = 200;
 constexpr int most_bodies = 10;
-constexpr int tries = 200;  // to place one without overlap
+constexpr int tries = 200;  // attempts to place one body without overlap
 
 enum class Holder { none, floor, room, tube, platform };
 enum class Kind { spheres, cubes, boxes, mixed };
@@ -98,8 +98,8 @@ class Generator {
     return {};
   }
 
-  /// Where it overlaps nothing, by the balls around the bodies; anywhere after too many tries if overlaps are
-  /// wanted. False if there is no room.
+  /// Draws a position at which the bounding sphere of a body overlaps no other one; if overlaps are wanted,
+  /// the first position drawn. Returns false if no room was found.
   bool place(double radius, Vec3& position) {
     const double reach = std::max(1.0 - 1.001 * radius, 0.0) * (overlaps_ ? 0.4 : 1.0);
     for (int k = 0; k < tries; ++k) {

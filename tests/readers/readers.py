@@ -3,9 +3,9 @@
 
     readers.py SCREE RUN      RUN is the folder of a run with a trajectory of `precision: double` and `contacts: true`
 
-VTK (9.3 or newer) reads trajectory.vtkhdf and the .vtp files, ASE the extended XYZ and the dump of LAMMPS, and the tables of `scree export --to csv` are what they are held to. Neither comes
-from Debian 12: `pip install vtk ase numpy`. Where there is OVITO too (`pip install ovito`), it reads both of them with their shapes. Exit status 1 if a number
-differs; those that are computed may do so by rounding.
+VTK (9.3 or newer) reads trajectory.vtkhdf and the .vtp files; ASE reads the extended XYZ and the dump of LAMMPS. What they read is compared with the tables of
+`scree export --to csv`. Debian 12 has neither program: `pip install vtk ase numpy`. If OVITO is installed (`pip install ovito`), it also reads the XYZ file and the
+dump, with the shapes of the particles. The exit status is 1 if a number differs; numbers that are computed may differ by rounding.
 """
 import csv
 import subprocess
@@ -24,11 +24,11 @@ try:
 except ImportError:
     import_file = None
 
-# In the order of scree's shapes: the kind of a particle, 0 if it is none.
+# The particle type in XYZ files and dumps of each of scree's shapes, in their order; 0 if bodies of the shape are no particles.
 KIND = numpy.array([1, 2, 0, 0, 0, 3, 4, 5])
 TUBE, TRIANGLE, CAPSULE, CYLINDER, POLYHEDRON = 3, 4, 5, 6, 7
-ROUNDING = 1e-12  # m, of places that are computed
-SINGLE = 1e-6  # of what OVITO keeps in single numbers
+ROUNDING = 1e-12  # tolerance of positions that are computed (m)
+SINGLE = 1e-6  # tolerance of values that OVITO keeps in single precision
 
 failures = []
 
@@ -56,7 +56,7 @@ def difference(a, b):
 
 
 def compare_points(reader, data_of_frame, tables, rows_of_cell=1):
-    """Points and all data of each frame, as VTK has them, with the tables; rows to a vertex, or to a line."""
+    """Compares points and all their data, as VTK has them, with the tables, frame by frame. A cell has one row of the table (a vertex) or two (a line)."""
     worst = {}
     for frame, table in enumerate(tables):
         data = data_of_frame(frame)
@@ -102,7 +102,7 @@ def read_vtp(folder, tables, rows_of_cell):
 
 
 def outlines(table):
-    """Radius, and what OVITO calls the aspherical shape, of the particles of a frame: by their rows."""
+    """Returns radii and aspherical shapes (OVITO's term) of the particles of a frame, one for each row of the table."""
     size, shape = vector(table, "size"), table["shape"]
     radius = numpy.where(numpy.isin(shape, (0, CAPSULE, CYLINDER)), size[:, 0] / 2, 0)
     outline = size / 2
@@ -136,7 +136,7 @@ def read_xyz(folder, tables):
 
 
 def read_dump(folder, tables):
-    """What ASE takes of it: in the order of the numbers."""
+    """Compares what ASE reads of the dump (positions and types), sorted by particle number."""
     frames = ase.io.read(folder / "trajectory.lammpstrj", index=":", format="lammps-dump-text")
     worst = {"position": 0, "type": 0}
     for atoms, table in zip(frames, tables, strict=True):
@@ -149,7 +149,7 @@ def read_dump(folder, tables):
 
 
 def read_with_ovito(file, tables):
-    """Numbers of a dump begin at 1, and spheres have a shape in it."""
+    """Compares what OVITO reads. In a dump, particle numbers begin at 1, and spheres have an aspherical shape."""
     names = {"position": "Position", "id": "Particle Identifier", "type": "Particle Type", "aspherical_shape": "Aspherical Shape", "velo": "Velocity",
              "orientation": "Orientation", "radius": "Radius"}
     is_dump = file.suffix == ".lammpstrj"
@@ -166,26 +166,26 @@ def read_with_ovito(file, tables):
         for name, numbers in expected.items():
             worst[name] = max(worst.get(name, 0), difference(particles[names[name]][...], numbers))
     for name, most in worst.items():
-        allowed = {"id": 0, "type": 0, "position": ROUNDING}.get(name, SINGLE)  # it reads numbers to rounding
+        allowed = {"id": 0, "type": 0, "position": ROUNDING}.get(name, SINGLE)  # OVITO rounds the numbers that it reads
         report("OVITO", f"{file.suffix} {name}", len(tables), most, allowed)
 
 
 def turned(table, rows, local):
-    """Places in the frames of bodies (rows x points x 3), in the world's."""
+    """Returns points that are given in the frames of bodies (rows x points x 3) in the frame of the world."""
     w, u = vector(table, "orientation", "w")[rows][:, None], vector(table, "orientation")[rows][:, None]
     twice = 2 * numpy.cross(u, local)
     return vector(table, "position")[rows][:, None] + local + w * twice + numpy.cross(u, twice)
 
 
 def corners_of(table, rows):
-    """Of triangles."""
+    """Returns the corners of triangles."""
     a, b, c = (vector(table, "size")[rows] / 2).T
     zero = numpy.zeros_like(a)
     return turned(table, rows, numpy.stack([numpy.stack(x, 1) for x in ((-a, -c, zero), (a, -c, zero), (b, c, zero))], 1))
 
 
 def read_collection(file):
-    """Of each frame, its parts."""
+    """Returns the parts of each frame."""
     frames = {}
     for entry in ElementTree.parse(file).getroot().iter("DataSet"):
         reader = vtk.vtkXMLPolyDataReader()
@@ -196,7 +196,7 @@ def read_collection(file):
 
 
 def cells_of(part, cells):
-    """Places of the corners of each cell, and the number of its body."""
+    """Returns the positions of the corners of each cell."""
     if part.GetNumberOfPoints() == 0:
         return []
     x = vtk_to_numpy(part.GetPoints().GetData())
@@ -205,7 +205,7 @@ def cells_of(part, cells):
 
 
 def read_surfaces(file, tables):
-    """Triangles have the corners that their rows say; polyhedra are closed, look outward and fill their size."""
+    """Checks that triangles have the corners that their rows say, and that polyhedra are closed, face outward and have the size of their rows."""
     worst = {"triangles": 0.0, "polyhedra": 0.0}
     for parts, table in zip(read_collection(file), tables, strict=True):
         row_of = {int(number): row for row, number in enumerate(table["id"])}

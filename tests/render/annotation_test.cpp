@@ -13,7 +13,7 @@ constexpr int width = 640, height = 360;
 
 Image blank() { return {width, height, std::vector<std::uint8_t>(std::size_t{3} * width * height, 128)}; }
 
-// Pixels that differ from the blank, within columns [from, to).
+// Returns the number of pixels in columns [from, to) that differ from the blank picture.
 int written(Image& image, int from, int to) {
   int count = 0;
   for (int y = 0; y < height; ++y) {

@@ -35,14 +35,15 @@ TEST(CameraPath, PassesThroughItsKeysAndRestsOutside) {
 TEST(CameraPath, HasNoJumpInVelocity) {
   const CameraPath path = way();
   const double h = 1e-6;
-  // One-sided differences err by h/2 of the second derivatives: some 20 m/s^2, and 240 degrees/s^2.
+  // One-sided differences err by h/2 times the second derivatives, which are about 20 m/s^2 and
+  // 240 degrees/s^2.
   for (const double t : {0.0, 1.0, 4.0}) {
     const Vec3 before = (path.at(t).from - path.at(t - h).from) / h;
     const Vec3 after = (path.at(t + h).from - path.at(t).from) / h;
     EXPECT_LT((after - before).norm(), 1e-4) << t;
     EXPECT_NEAR((path.at(t + h).fov - path.at(t - h).fov) / h, 0, 1e-3) << t;
   }
-  // Catmull and Rom's tangent at the inner key.
+  // The velocity at the inner key is the tangent of Catmull and Rom.
   const Vec3 velocity = (path.at(1 + h).from - path.at(1 - h).from) / (2 * h);
   EXPECT_LT((velocity - Vec3(-2, 0, 0)).norm(), 1e-5);
 }

@@ -11,8 +11,9 @@
 namespace scree::render {
 namespace {
 
-// Largest angle between the view and the far side of a ball, over the frustum's half angle, per axis of the
-// picture; 1: the ball touches the edge. Written with angles, unlike the planes of frame_all.
+// Returns the largest angle between the view direction and the far side of a ball as a multiple of the
+// frustum's half angle, over both axes of the picture; at 1 the ball touches the edge. The test works with
+// angles, whereas frame_all works with planes.
 double reach_in_picture(const Camera& camera, double aspect, const Vec3& center, double radius) {
   const Mat3 axes = axes_of(camera);
   const Vec3 p = axes.transpose() * (center - camera.from);

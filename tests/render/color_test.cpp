@@ -9,7 +9,7 @@ namespace scree::render {
 namespace {
 
 TEST(Color, SrgbHasItsKnownValues) {
-  // IEC 61966-2-1: half of the code values is 21.4 % of the light.
+  // IEC 61966-2-1: half of the largest code value stands for 21.4 % of the light.
   EXPECT_NEAR(linear_of(Color::Constant(0.5f)).x(), 0.21404114, 1e-6);
   EXPECT_NEAR(linear_of(Color::Constant(0.04f)).x(), 0.04 / 12.92, 1e-7);
   for (float v = 0; v <= 1; v += 0.01f) {
@@ -19,7 +19,7 @@ TEST(Color, SrgbHasItsKnownValues) {
 
 TEST(Color, OklabHasItsKnownValues) {
   EXPECT_NEAR((oklab_of(Color::Ones()) - Vec3f(1, 0, 0)).norm(), 0, 1e-4);
-  // Red, from the table of the colour module of CSS (oklab(0.628 0.225 0.126)).
+  // The value for red is in the table of the CSS Color Module (oklab(0.628 0.225 0.126)).
   EXPECT_NEAR((oklab_of(Color(1, 0, 0)) - Vec3f(0.628f, 0.225f, 0.126f)).norm(), 0, 1e-3);
   const Color color(0.2f, 0.5f, 0.7f);
   EXPECT_NEAR((linear_of_oklab(oklab_of(color)) - color).norm(), 0, 1e-5);

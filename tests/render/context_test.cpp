@@ -1,4 +1,4 @@
-// Every way to OpenGL draws the same pictures, as far as the rounding of their drivers goes.
+// Tests that every kind of OpenGL context draws the same pictures, except for the rounding of its driver.
 #include "render/gl/context.hpp"
 
 #include "core/error.hpp"
@@ -19,18 +19,18 @@ namespace {
 
 constexpr int width = 320, height = 240;
 
-/// How far apart two pictures are, in steps of 8-bit sRGB.
+/// The difference of two pictures, in steps of 8-bit sRGB.
 struct Difference {
-  int largest = 0;   ///< of all channels
-  double mean = 0;   ///< of all channels
-  double share = 0;  ///< of the pixels, those with a channel more than `seen` apart
+  int largest = 0;   ///< largest difference over all channels
+  double mean = 0;   ///< mean difference over all channels
+  double share = 0;  ///< share of the pixels with a channel that differs by more than `seen`
 
   static constexpr int seen = 8;
 };
 
-// Coverage is sampled four times a pixel, so at an edge that passes next to a sample the two may differ by a
-// quarter of the contrast, or two samples by half; there are few such pixels, and elsewhere a step or two is
-// what rounding makes.
+// Returns whether two pictures differ only as drivers may. Coverage has four samples per pixel, so that at an
+// edge that passes next to a sample the pictures may differ by a quarter of the contrast, or by half of it
+// next to two samples. Such pixels are few; elsewhere rounding makes a difference of one or two steps.
 bool is_same_picture(const Difference& d) { return d.mean < 0.1 && d.share < 2e-3; }
 
 Difference difference(const Image& a, const Image& b) {
@@ -51,8 +51,8 @@ Difference difference(const Image& a, const Image& b) {
   return d;
 }
 
-/// Of a colour scale with its legend, lines over bodies, a pile with shadows between walls, a drum with its
-/// contents; and the pile from a hundredth of its size further to the side.
+/// Pictures of a colour scale with its legend, of lines over bodies, of a pile with shadows between walls, of
+/// a drum with its contents, and of the pile seen from a hundredth of its size further to the side.
 struct Pictures {
   Image speeds, lines, pile, drum, aside;
 };
@@ -92,7 +92,7 @@ TEST(Contexts, DrawTheSamePictures) {
   }
   std::printf("%s\n", egl->name().c_str());
   const Pictures theirs = draw_all(*egl);
-  egl.reset();  // one way at a time
+  egl.reset();  // only one context exists at a time
   const Pictures ours = draw_all(*make_renderer(ContextChoice::osmesa, width, height));
   const auto expect_same = [&](const char* name, const Image Pictures::*picture) {
     const Difference d = difference(ours.*picture, theirs.*picture);
@@ -104,7 +104,7 @@ TEST(Contexts, DrawTheSamePictures) {
   expect_same("lines", &Pictures::lines);
   expect_same("pile", &Pictures::pile);
   expect_same("drum", &Pictures::drum);
-  // Half a pixel aside is no longer the same.
+  // A picture that is shifted by half a pixel no longer counts as the same.
   const Difference aside = difference(ours.pile, theirs.aside);
   std::printf("half a pixel aside: largest %d, mean %.4f, share %.5f\n", aside.largest, aside.mean,
               aside.share);
@@ -112,7 +112,7 @@ TEST(Contexts, DrawTheSamePictures) {
   EXPECT_FALSE(is_same_picture(difference(ours.pile, ours.lines)));
 }
 
-/// The processor's, which says that it is a GPU's.
+/// An OSMesa context, on the processor, that claims to be a GPU's.
 class AsIfHardware : public gl::Context {
  public:
   void make_current() override { context_->make_current(); }

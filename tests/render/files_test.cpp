@@ -16,7 +16,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// A folder of its own for each test.
+// Gives each test its own folder.
 class Files : public ::testing::Test {
  protected:
   void SetUp() override {
@@ -83,7 +83,7 @@ TEST_F(Files, PngToNowhereSaysWhy) {
 
 TEST_F(Files, PngOnAFullDiskSaysSoAndLeavesNothing) {
   if (access("/dev/full", W_OK) != 0) GTEST_SKIP() << "skipped: no /dev/full here";
-  // The aside file's name leads to the device on which every write fails.
+  // The name of the temporary file is a link to the device on which every write fails.
   fs::create_symlink("/dev/full", folder_ / "a.png.part");
   for (const int size : {4, 400}) {
     if (!fs::is_symlink(folder_ / "a.png.part")) fs::create_symlink("/dev/full", folder_ / "a.png.part");
@@ -104,7 +104,7 @@ TEST_F(Files, MovieHoldsEveryFrame) {
   const fs::path movie = folder_ / "movie.mp4";
   make_movie(frames, 24, movie);
   EXPECT_EQ(files(), 2u);
-  // ffprobe comes with ffmpeg and counts what can be decoded.
+  // ffprobe comes with ffmpeg and counts the frames that can be decoded.
   const fs::path counted = folder_ / "counted";
   const std::string probe =
       "ffprobe -v error -count_frames -show_entries stream=nb_read_frames,width,pix_fmt,codec_name"

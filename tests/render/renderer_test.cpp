@@ -1,4 +1,5 @@
-// Pictures against closed forms. Shapes are told from the background by its flat colour, which no body has.
+// Tests of pictures against closed forms. The background has a flat colour that no body has, which tells it
+// apart from shapes.
 #include "render/renderer.hpp"
 
 #include "tests/render/scenes.hpp"
@@ -17,7 +18,8 @@ Renderer& renderer() {
   return *shared;
 }
 
-// A background of green alone, and bodies without any: how much of a pixel a body covers shows in green.
+// Returns a style with a purely green background and bodies without green, so that the green of a pixel shows
+// how much of it a body covers.
 Style masked() {
   Style style;
   style.zenith = style.horizon = Color(0, 0.8f, 0);
@@ -32,7 +34,8 @@ Color pixel(const Image& image, int x, int y) {
 
 double brightness(const Image& image, int x, int y) { return linear_of(pixel(image, x, y)).sum() / 3; }
 
-// At least half of the pixel: of the background's light, 0.6, or 0.45 near the bottom of the picture.
+// Returns whether the background covers about half of the pixel or more. Its full light in green is 0.6, or
+// 0.45 near the bottom of the picture.
 bool is_background(const Image& image, int x, int y) { return linear_of(pixel(image, x, y)).y() > 0.26f; }
 
 struct Blob {
@@ -74,7 +77,7 @@ Blob projected_sphere(const Camera& camera, const Vec3& center, double radius) {
 class Silhouette : public ::testing::TestWithParam<Vec3> {};
 
 TEST_P(Silhouette, IsTheEllipseOfTheTangentCone) {
-  // The second is as far from the origin as a float would lose the sphere's size.
+  // The second origin is so far away that single precision would lose the sphere's size.
   for (const Vec3& origin : {Vec3(0, 0, 0), Vec3(3e7, -2e7, 1e7)}) {
     Snapshot snapshot;
     const Vec3 center = origin + GetParam();
@@ -82,7 +85,7 @@ TEST_P(Silhouette, IsTheEllipseOfTheTangentCone) {
     const Camera camera{origin + Vec3(0, -4, 0), origin, Vec3::UnitZ(), 60};
     const Blob seen = silhouette(renderer().draw({snapshot}, camera, masked()));
     const Blob expected = projected_sphere(camera, center, 0.8);
-    // A quarter of a pixel of the radius.
+    // The tolerance of the area is a quarter of a pixel in the radius.
     EXPECT_NEAR(seen.area, expected.area, 0.25 * std::sqrt(4 * pi * expected.area));
     EXPECT_NEAR(seen.x, expected.x, 0.3);
     EXPECT_NEAR(seen.y, expected.y, 0.3);
@@ -100,15 +103,16 @@ TEST(Renderer, DrawsAFrameOf4K) {
   ASSERT_EQ(image.rgb.size(), 3u * 3840 * 2160);
   const Blob seen = silhouette(image);
   const double area = std::pow(2160.0 / height, 2) * projected_sphere(camera, Vec3::Zero(), 0.8).area;
-  // A quarter of a pixel of the radius.
+  // The tolerance of the area is a quarter of a pixel in the radius.
   EXPECT_NEAR(seen.area, area, 0.25 * std::sqrt(4 * pi * area));
   EXPECT_NEAR(seen.x, 1920, 0.3);
   EXPECT_NEAR(seen.y, 1080, 0.3);
 }
 
 TEST(Renderer, NearerSurfaceHidesTheOther) {
-  // A box with its front face at y = -0.5 and a sphere of radius 0.75 about the same centre: seen from y =
-  // -oo the sphere stands out of the face within the circle of radius sqrt(0.75^2 - 0.5^2) around the middle.
+  // The box has its front face at y = -0.5, and the sphere of radius 0.75 has the same centre. Seen from
+  // y = -oo, the sphere sticks out of the face within a circle of radius sqrt(0.75^2 - 0.5^2) about the
+  // middle.
   Snapshot snapshot;
   add_body(snapshot, Shape::box, Vec3::Zero(), Vec3(1, 0.5, 1));
   add_sphere(snapshot, Vec3::Zero(), 0.75);
@@ -134,7 +138,7 @@ TEST(Renderer, BoxFaceHasItsSize) {
   add_body(snapshot, Shape::box, Vec3::Zero(), Vec3(0.5, 1, 0.25));
   const Camera camera{{0, -5, 0}, Vec3::Zero(), Vec3::UnitZ(), 40};
   const Blob seen = silhouette(renderer().draw({snapshot}, camera, masked()));
-  const double scale = height / (2 * 4 * std::tan(20 * pi / 180));  // of the front face, 4 m away
+  const double scale = height / (2 * 4 * std::tan(20 * pi / 180));  // pixels/m on the front face, 4 m away
   EXPECT_NEAR(seen.area, scale * 1 * scale * 0.5, 0.5 * 2 * scale * 1.5);
 }
 
@@ -154,8 +158,8 @@ TEST(Renderer, SameInputGivesTheSameBytes) {
 }
 
 TEST(Renderer, ShadowDarkensTheGround) {
-  // The picture differs from that of the bare ground where the sphere is and where its shadow falls: to the
-  // right.
+  // The picture differs from that of the bare ground where the sphere is and where its shadow falls, which is
+  // on the right.
   Snapshot bare;
   add_plane(bare, Vec3::UnitZ(), 0);
   Snapshot shaded = bare;
@@ -183,8 +187,8 @@ TEST(Renderer, ShadowDarkensTheGround) {
 }
 
 TEST(Renderer, ShadowsSoftenWithTheHeightOfWhatCastsThem) {
-  // A fixed plate at a height, looked at from beside: of its shadow on the ground, the share of pixels that
-  // are neither dark nor lit grows with the height.
+  // A fixed plate casts a shadow on the ground. The share of the shadow's pixels that are neither dark nor
+  // fully lit grows with the plate's height.
   Snapshot bare;
   add_plane(bare, Vec3::UnitZ(), 0);
   Style style;
@@ -193,8 +197,8 @@ TEST(Renderer, ShadowsSoftenWithTheHeightOfWhatCastsThem) {
   for (const double plate : {0.3, 1.2, 4.8}) {
     Snapshot shaded = bare;
     add_body(shaded, Shape::box, {0, 0, plate}, {0.5, 0.5, 0.05}, Mobility::fixed);
-    // Light goes down by 1, right by 0.62 and ahead by 0.38. The camera looks down on the shadow from below
-    // the plate.
+    // For each metre down, the light goes 0.62 m to the right and 0.38 m ahead. The camera looks down on the
+    // shadow from below the plate.
     const Vec3 middle(0.62 * plate, 0.38 * plate, 0);
     const Camera camera{middle + Vec3(2, -3, 0.29), middle, Vec3::UnitZ(), 40};
     const Image before = renderer().draw({bare}, camera, style);
@@ -223,7 +227,7 @@ TEST(Renderer, TubeShowsItsContentsAndItsTurn) {
   EXPECT_TRUE(is_background(empty, x, y)) << "through both end caps";
   EXPECT_FALSE(is_background(full, x, y));
   EXPECT_NE(renderer().draw({drum(0.1)}, camera, masked()).rgb, empty.rgb);
-  // Radius 1 at some 6 m: the wall ends where the circle of its rim does.
+  // The drum has a radius of 1 m at a distance of about 6 m: its wall ends at the circle of its rim.
   EXPECT_TRUE(is_background(empty, width / 2 + 100, height / 2));
 }
 
@@ -236,13 +240,13 @@ TEST(Renderer, LinesAreAsWideAsTheySay) {
   int rows = 0;
   for (int y = 0; y < height; ++y) rows += is_background(image, width / 2, y) ? 0 : 1;
   EXPECT_NEAR(rows, 12.0 * height / 720, 1);
-  // Behind a body it shows as much as it says.
+  // Behind a body the line shows with the opacity `where_hidden`.
   add_sphere(frame.snapshot, Vec3::Zero(), 0.5);
   frame.lines[0].where_hidden = 0;
   const Image hidden = renderer().draw(frame, camera, masked());
   const Image alone = renderer().draw({frame.snapshot}, camera, masked());
   EXPECT_EQ(pixel(hidden, width / 2, height / 2), pixel(alone, width / 2, height / 2));
-  // One that passes the eye is cut, and one behind it is not seen.
+  // A line that passes the camera is clipped, and a line behind the camera is not drawn.
   frame.lines = {{.from = {0, -8, 0.01}, .to = {0, 8, 0.01}}, {.from = {-1, -9, 0}, .to = {1, -9, 0}}};
   EXPECT_NE(renderer().draw(frame, camera, masked()).rgb, std::vector<std::uint8_t>());
 }

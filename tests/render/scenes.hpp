@@ -1,4 +1,4 @@
-// Small snapshots to draw.
+// Small snapshots for the tests of drawing.
 #pragma once
 
 #include "core/rng.hpp"
@@ -27,13 +27,13 @@ inline void add_sphere(Snapshot& snapshot, const Vec3& position, double radius) 
   add_body(snapshot, Shape::sphere, position, Vec3::Constant(radius));
 }
 
-/// The half space under `normal`.x = offset.
+/// Adds the half space `normal`.x <= offset.
 inline void add_plane(Snapshot& snapshot, const Vec3& normal, double offset) {
   add_body(snapshot, Shape::plane, offset * normal, Vec3::Zero(), Mobility::fixed,
            Quat::FromTwoVectors(Vec3::UnitZ(), normal));
 }
 
-/// Spheres and boxes over a ground, between walls.
+/// Returns spheres and boxes above a ground, between walls.
 inline Snapshot small_pile() {
   Snapshot snapshot;
   add_plane(snapshot, Vec3::UnitZ(), 0);
@@ -48,7 +48,7 @@ inline Snapshot small_pile() {
   return snapshot;
 }
 
-/// A tube, its axis along y.
+/// Returns a tube with its axis along y, turned about that axis by an angle (rad).
 inline Snapshot drum(double turn) {
   Snapshot snapshot;
   const Quat lying = Quat::FromTwoVectors(Vec3::UnitZ(), Vec3::UnitY());

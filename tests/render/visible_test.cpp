@@ -12,7 +12,8 @@ namespace {
 
 constexpr int width = 160, height = 120;
 
-// Discs whose near and far sides differ, as spheres have them, over a region larger than the picture.
+// Returns random discs over a region larger than the picture. As for spheres, their near and far sides
+// differ.
 std::vector<Disc> crowd(std::uint64_t seed, int count, double least, double most) {
   std::vector<Disc> discs;
   for (int k = 0; k < count; ++k) {
@@ -33,7 +34,8 @@ bool holds(const Disc& disc, float radius, double x, double y) {
   return std::hypot(x - disc.x, y - disc.y) < radius;
 }
 
-// At a point of the picture, the disc may show unless another covers it from in front of its nearest side.
+// Returns whether a disc may show at a point of the picture: it holds the point, and no disc in front of its
+// nearest side covers the point for certain.
 bool may_show_at(const std::vector<Disc>& discs, const Disc& disc, double x, double y) {
   if (!holds(disc, disc.outer, x, y)) return false;
   return std::none_of(discs.begin(), discs.end(), [&](const Disc& other) {
