@@ -31,7 +31,7 @@ ARROWS = {
                   "sim/contacts/", "sim/response/", "sim/model/", "sim/step/"],
     "sim/record/": ["core/", "sim/observe/", "sim/model/model.hpp", "sim/scene/", "sim/record/"],
     "sim/library/": ["core/", "scree/", "sim/record/", "sim/scene/", "sim/step/simulation.hpp", "sim/library/"],
-    "sim/cli/": ["core/", "broadphase/", "narrowphase/", "render/", "sim/observe/", "sim/model/model.hpp", "sim/scene/", "sim/step/simulation.hpp",
+    "sim/cli/": ["core/", "broadphase/", "narrowphase/", "render/", "sim/observe/", "sim/laws/", "sim/model/", "sim/scene/", "sim/step/simulation.hpp",
                  "sim/step/step_failure.hpp", "sim/record/", "sim/cli/"],
     "bench/": ["core/", "broadphase/", "narrowphase/", "sim/", "render/", "bench/"],
     "tests/": [""],

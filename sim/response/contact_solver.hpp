@@ -12,6 +12,7 @@
 #include "sim/contacts/slots.hpp"
 #include "sim/contacts/sweeps.hpp"
 #include "sim/contacts/visit_kernels.hpp"
+#include "sim/laws/heap.hpp"
 #include "sim/laws/response_parameters.hpp"
 #include "sim/observe/observation.hpp"
 #include "sim/response/accuracy.hpp"

@@ -31,15 +31,6 @@ SCREE_HD inline ImpulseChange natural_residual(const Contact& contact, const Con
   return residual;
 }
 
-/// Returns whether there are so many points that solving them until convergence in every substep is not worth
-/// its cost. Then the residual is left to the next substeps, which start from the impulses found.
-SCREE_HD inline bool is_heap(std::int64_t points) {
-  constexpr std::int64_t fewest = 2500;
-  return points >= fewest;
-}
-/// Returns whether contacts have several points. Load moves slowly between the points of one contact.
-SCREE_HD inline bool shares_loads(std::int64_t contacts, std::int64_t points) { return points > contacts; }
-
 struct ContactCounts {
   std::int64_t contacts = 0;
   std::int64_t points = 0;  ///< points of all contacts

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "core/tolerances.hpp"
+#include "sim/laws/heap.hpp"
 #include "sim/laws/response_parameters.hpp"
 #include "sim/response/direct_contact.hpp"
 
