@@ -62,7 +62,8 @@ struct BinOfBody {
 std::string complaint(std::int32_t body, const Aabb& box) {
   std::ostringstream text;
   text << "the bounds of body " << body << " are not a finite box: from (" << box.lo[0] << ", " << box.lo[1]
-       << ", " << box.lo[2] << ") to (" << box.hi[0] << ", " << box.hi[1] << ", " << box.hi[2] << ") m";
+       << ", " << box.lo[2] << ") to (" << box.hi[0] << ", " << box.hi[1] << ", " << box.hi[2]
+       << ") m; its position, speed or size is too large";
   return text.str();
 }
 

@@ -204,7 +204,7 @@ DeviceInfo device_info() {
 
 #else
 
-DeviceInfo device_info() { return {.name = "built without nvcc"}; }
+DeviceInfo device_info() { return {.name = "this program was built without CUDA"}; }
 
 #endif
 

@@ -69,7 +69,8 @@ class Simulation {
   // The scene.
 
   const std::string& scene_name() const;
-  /// Returns the scene as YAML with every default and override written out; it can be loaded as it is.
+  /// Returns the scene as YAML with defaults (but not `response.quality` at 1) and overrides written out; it
+  /// can be loaded as it is.
   const std::string& resolved_scene() const;
   /// Returns the number of each body that has a name; bodies of a `repeat` are named name[0], name[1], ...
   const std::map<std::string, std::int32_t>& body_names() const;

@@ -1,4 +1,4 @@
-// scree bench: the benchmarks that were built with this program, by their names.
+// scree bench: runs one of the benchmarks that were built with this program.
 #include "core/error.hpp"
 #include "sim/cli/commands.hpp"
 #include "sim/record/outcome.hpp"
@@ -18,7 +18,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The programs named scree_bench_NAME beside this one, and where the build makes them: BUILD/bench/*, if
+/// Returns the programs named scree_bench_NAME, by NAME: those beside this one, and those in BUILD/bench/* if
 /// this one is in BUILD/bin.
 std::map<std::string, fs::path> benchmarks() {
   constexpr std::string_view prefix = "scree_bench_";

@@ -2,14 +2,15 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 
 namespace scree::cli {
 
 namespace {
 
-/// In the order of Verdict.
-constexpr std::array<const char*, 4> verdict_words = {"pass", "FAIL", "ERROR", "seeds"};
+/// The words in the order of Verdict.
+constexpr std::array<const char*, 5> verdict_words = {"pass", "FAIL", "ERROR", "-", "seeds"};
 constexpr const char* row = "  {:<5}  {:<48}  {:>16}  {:>24}  {:>10}  {:>10}";
 
 std::string words_of_measured(const CheckResult& check) {
@@ -27,7 +28,7 @@ std::vector<std::string> check_lines(const std::vector<CheckResult>& checks) {
   std::vector<std::string> lines;
   for (const CheckResult& check : checks) {
     const char* verdict = verdict_words[static_cast<std::size_t>(check.verdict)];
-    if (check.verdict == Verdict::not_evaluated) {
+    if (!check.problem.empty()) {
       lines.push_back(fmt::format("  {:<5}  {:<48}  {}", verdict, check.check, check.problem));
       continue;
     }
@@ -36,6 +37,18 @@ std::vector<std::string> check_lines(const std::vector<CheckResult>& checks) {
                                 fmt::format("{:.3g}", check.margin)));
   }
   return lines;
+}
+
+std::string check_counts(const std::vector<CheckResult>& checks) {
+  const auto count = [&](Verdict verdict) {
+    return std::ranges::count(checks, verdict, &CheckResult::verdict);
+  };
+  std::string words = fmt::format("{} passed, {} failed", count(Verdict::passed),
+                                  count(Verdict::failed) + count(Verdict::not_evaluated));
+  if (const auto n = count(Verdict::not_reached); n > 0) words += fmt::format(", {} not reached", n);
+  if (const auto n = count(Verdict::of_seeds); n > 0)
+    words += fmt::format(", {} need{} all seeds: use scree verify", n, n == 1 ? "s" : "");
+  return words;
 }
 
 }  // namespace scree::cli

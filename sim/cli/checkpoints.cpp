@@ -16,6 +16,13 @@ namespace {
   throw InputError(fmt::format("--resume: {}; --overwrite starts from the beginning", why));
 }
 
+[[noreturn]] void refuse_pictures(bool saved_draws) {
+  throw InputError(fmt::format(
+      "--resume: the checkpoint is of a run {} --no-render; {} --no-render to continue it, or give "
+      "--overwrite instead of --resume to start from the beginning",
+      saved_draws ? "without" : "with", saved_draws ? "leave out" : "add"));
+}
+
 }  // namespace
 
 Checkpoints::Checkpoints(const RunFolder& folder, double every, RunIdentity identity, bool draws)
@@ -37,8 +44,7 @@ bool Checkpoints::find(std::vector<std::string>& warnings) {
   archive.part("run", saved);
   archive("draws", saved_draws);
   if (const std::string difference = difference_of(saved, identity_); !difference.empty()) refuse(difference);
-  if (saved_draws != draws_)
-    refuse(fmt::format("the checkpoint is of a run {} --no-render", saved_draws ? "without" : "with"));
+  if (saved_draws != draws_) refuse_pictures(saved_draws);
   if (saved.commit != identity_.commit)
     warnings.push_back(
         fmt::format("the checkpoint is of commit {}, and this is {}: bits may differ from here on",

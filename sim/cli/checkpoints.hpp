@@ -1,4 +1,4 @@
-// When a run saves what it can be continued from, and how it is continued.
+// The checkpoints of a run: when they are taken, and how a run is continued from one.
 #pragma once
 
 #include "sim/cli/recorder.hpp"
@@ -17,26 +17,29 @@
 
 namespace scree::cli {
 
-/// States are copied by the thread that drives the run, and written by one of their own.
+/// The checkpoints of a run. The thread that drives the run copies a state, and another thread writes it.
 class Checkpoints {
  public:
-  /// `every`: wall time between them (s). `draws`: whether the run makes pictures.
+  /// `every`: wall time between two checkpoints (s). `draws`: whether the run makes pictures.
   Checkpoints(const RunFolder& folder, double every, RunIdentity identity, bool draws);
 
-  /// Looks for the newest that is whole; false if there is none. Throws InputError if it is of another run.
-  /// `warnings`: what is wrong with newer ones, and what may differ from here on.
+  /// Looks for the newest checkpoint that is whole; returns false if there is none. Throws InputError if it
+  /// belongs to another run. Adds to `warnings` what is wrong with newer ones, and what may differ from here
+  /// on.
   bool find(std::vector<std::string>& warnings);
-  /// Goes on from what find() has found.
+  /// Continues from the checkpoint that find() has found.
   void resume(Simulation& simulation, Recorder& recorder);
-  /// The steps at which the run was resumed.
+  /// Returns the steps at which the run was resumed.
   const std::vector<std::int64_t>& resumed_at() const { return resumed_at_; }
 
-  /// Takes one if it is time. Throws once, RunError as a rule, if an earlier one could not be written.
+  /// Takes a checkpoint if one is due. If an earlier one could not be written, throws that error (as a rule a
+  /// RunError) once.
   void take_if_due(Simulation& simulation, Recorder& recorder);
-  /// Takes one of the present state, unless it is saved already; complete on return. An earlier one that
-  /// could not be written no longer matters then. Throws if this one cannot be written.
+  /// Takes a checkpoint of the present state, unless there is one, and waits until it is written. Throws if
+  /// it cannot be written; that an earlier one could not be written no longer matters then.
   void take_last(Simulation& simulation, Recorder& recorder);
-  /// Nobody will go on from here: removes all, and forgets what could not be written.
+  /// Removes all checkpoints, as the run will not be continued. Errors of checkpoints that could not be
+  /// written are forgotten.
   void drop();
 
  private:
@@ -60,8 +63,8 @@ class Checkpoints {
   Clock::time_point last_time_ = Clock::now();
   std::int64_t last_step_ = -1;
   std::mutex failure_mutex_;
-  // Why a checkpoint could not be written, until the driving thread has seen it: the success of the next one,
-  // which may wait already, must not hide it.
+  // The error of a checkpoint that could not be written, until the driving thread has seen it. The success of
+  // the next checkpoint, which may wait already, must not hide it.
   std::exception_ptr failure_;
   Worker<Saved> writer_;
 };

@@ -1,4 +1,5 @@
-// The commands of the program: plain arguments in, exit status out. They throw InputError and RunError.
+// The commands of the program: functions that take plain arguments and return the exit status. They throw
+// InputError and RunError.
 #pragma once
 
 #include "render/renderer.hpp"
@@ -20,22 +21,22 @@ struct RunArguments {
   std::vector<Override> overrides;
   SimulationOptions simulation;
   std::optional<double> until;      ///< s
-  std::optional<double> max_hours;  ///< of wall time
+  std::optional<double> max_hours;  ///< wall time after which the run stops (h)
   bool draw = true;
   render::ContextChoice context = render::ContextChoice::automatic;
   bool overwrite = false;
   bool resume = false;
-  std::filesystem::path reproduce;  ///< a manifest; empty: a run of its own
+  std::filesystem::path reproduce;  ///< manifest of the run to repeat; empty: none
 };
 int run(const RunArguments& arguments);
 
-/// The part of run() that runs what a manifest tells of again, writes nothing, and compares the states.
+/// Repeats the run of a manifest, writes nothing, and compares the states; run() calls it.
 int reproduce(const RunArguments& arguments);
 
 struct CompareArguments {
   std::filesystem::path first, second;  ///< run folders
-  double tolerance = 0;                 ///< relative to the largest magnitude in a column
-  double absolute = 0;                  ///< in each column's unit: what is no more is no difference
+  double tolerance = 0;                 ///< tolerance relative to the largest magnitude in a column
+  double absolute = 0;                  ///< tolerance in the unit of each column
 };
 int compare(const CompareArguments& arguments);
 
@@ -46,7 +47,7 @@ struct ExportArguments {
 };
 int export_trajectory(const ExportArguments& arguments);
 
-/// Makes report.html of a run folder again.
+/// Makes the report.html of a run folder again.
 int report(const std::filesystem::path& run);
 
 struct RenderArguments {
@@ -54,7 +55,7 @@ struct RenderArguments {
   std::filesystem::path output;  ///< empty: the run folder's name and -render
   std::vector<Override> overrides;
   render::ContextChoice context = render::ContextChoice::automatic;
-  int jobs = 0;  ///< processes; 0: as many as suit the machine
+  int jobs = 0;  ///< number of processes; 0: as many as suit the machine
   bool overwrite = false;
 };
 int render_again(const RenderArguments& arguments);
@@ -62,11 +63,11 @@ int render_again(const RenderArguments& arguments);
 struct VerifyArguments {
   std::vector<std::filesystem::path> paths;
   std::vector<Override> overrides;
-  std::vector<Variation> variations;  ///< each scene runs with every combination
-  SimulationOptions simulation;       ///< of each run
-  std::filesystem::path json;         ///< empty: none
+  std::vector<Variation> variations;  ///< settings to vary: each scene runs with every combination
+  SimulationOptions simulation;       ///< options of each run
+  std::filesystem::path json;         ///< file for the table; empty: none
   std::string label;                  ///< only scenes with this label; empty: all but the long ones
-  bool all = false;                   ///< whatever the label
+  bool all = false;                   ///< whether scenes of every label run
 };
 int verify(const VerifyArguments& arguments);
 
@@ -75,8 +76,8 @@ struct StudyArguments {
   std::filesystem::path output;  ///< empty: output/NAME-study
   std::vector<Override> overrides;
   std::vector<Variation> variations;
-  SimulationOptions simulation;  ///< of each run
-  int repeats = 3;               ///< of each timing
+  SimulationOptions simulation;  ///< options of each run
+  int repeats = 3;               ///< number of runs of each timing
   bool overwrite = false;
 };
 int study(const StudyArguments& arguments);
@@ -86,20 +87,20 @@ struct PlanArguments {
   std::vector<Override> overrides;
 };
 int plan(const PlanArguments& arguments);
-/// The JSON Schema, or the reference page, of the scene language.
+/// Prints the JSON Schema, or the reference page, of the scene language.
 int print_schema();
 int print_reference();
 
 struct NewArguments {
-  std::filesystem::path name;  ///< of the scene file, .yaml or not; empty: list the templates
-  std::string from;            ///< a template; empty: the one that the scene is named after
+  std::filesystem::path name;  ///< name of the scene file, with or without .yaml; empty: list the templates
+  std::string from;            ///< name of a template; empty: that of the scene
 };
-/// Writes a scene to start from; refuses a file that is there.
+/// Writes a scene to start from. Throws InputError if the file exists.
 int write_new_scene(const NewArguments& arguments);
 std::vector<std::string> template_names();
 
-/// A benchmark's name, and what it is given; without any, lists those that there are. Becomes that program:
-/// returns only if it starts none.
+/// Replaces this process by a benchmark; `arguments` are its name and its own arguments. Returns only if it
+/// starts none: without arguments it lists the benchmarks.
 int bench(const std::vector<std::string>& arguments);
 std::vector<std::string> benchmark_names();
 

@@ -1,4 +1,4 @@
-// scree compare: two run folders beside each other.
+// scree compare: compares the numbers of two run folders.
 #include "sim/cli/commands.hpp"
 #include "sim/record/comparison.hpp"
 #include "sim/record/outcome.hpp"
@@ -11,20 +11,30 @@
 
 namespace scree::cli {
 
+namespace {
+
+/// Returns the end of the last line: why the comparison has failed, or that the differences are allowed.
+const char* verdict_on(const Comparison& found, const CompareArguments& arguments) {
+  if (!found.differences_are_within(arguments.tolerance, arguments.absolute))
+    return ", more than --tolerance and --absolute allow";
+  if (!found.unlike.empty()) return "; something is in one run alone";
+  return found.differences.empty() ? "" : ", all within what was allowed";
+}
+
+}  // namespace
+
 int compare(const CompareArguments& arguments) {
   Comparison found = compare_runs(arguments.first, arguments.second);
   for (const std::string& what : found.unlike) fmt::print("{}\n", printable(what));
   std::ranges::sort(found.differences, std::greater(), &ColumnDifference::relative);
   if (!found.differences.empty())
-    fmt::print("{:>12}  {:>12}  {:>8}  {:<20}  column\n", "largest", "relative", "row", "beside");
+    fmt::print("{:>12}  {:>12}  {:>8}  {:<20}  column\n", "largest", "relative", "row", "first cell");
   for (const ColumnDifference& d : found.differences)
     fmt::print("{:>12.4g}  {:>12.4g}  {:>8}  {:<20}  {}\n", d.largest, d.relative, d.row, printable(d.key),
                printable(d.column));
-  const bool within = found.is_within(arguments.tolerance, arguments.absolute);
   fmt::print("{} columns, {} rows: {} columns differ{}\n", found.columns, found.rows,
-             found.differences.size(),
-             within && !found.differences.empty() ? ", all within what was allowed" : "");
-  return within ? status_done : status_check_failed;
+             found.differences.size(), verdict_on(found, arguments));
+  return found.is_within(arguments.tolerance, arguments.absolute) ? status_done : status_check_failed;
 }
 
 }  // namespace scree::cli

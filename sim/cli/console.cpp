@@ -3,8 +3,10 @@
 #include "core/error.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <cerrno>
+#include <cstdint>
 #include <cstdio>
 #include <cstring>
 #include <sys/ioctl.h>
@@ -15,10 +17,10 @@ namespace scree::cli {
 
 namespace {
 using namespace std::chrono_literals;
-constexpr auto terminal_cadence = 200ms;  // smooth to the eye, cheap over a network
-constexpr auto plain_cadence = 10s;       // a night's run stays readable
+constexpr auto terminal_cadence = 200ms;  // looks smooth, and is cheap over a network
+constexpr auto plain_cadence = 10s;       // keeps the log of a night's run readable
 
-/// A longer line would wrap, and only its last row could be replaced.
+/// Returns the longest progress line: a longer one would wrap, and only its last row could be replaced.
 std::size_t terminal_width() {
   winsize size = {};
   const bool known = ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0;
@@ -38,7 +40,7 @@ void Console::print(std::string_view text) {
 
 void Console::clear_progress() {
   if (!std::exchange(showing_progress_, false)) return;
-  print("\r\x1b[K");  // to the start of the line; erase it
+  print("\r\x1b[K");  // goes to the start of the line and erases it
 }
 
 void Console::log(const std::function<void()>& act) {
@@ -75,17 +77,34 @@ bool Console::wants_progress() const {
   return terminal_ ? since >= terminal_cadence : since >= plain_cadence;
 }
 
-void Console::progress(std::string_view line) {
+void Console::progress(const std::vector<std::string>& parts) {
   last_progress_ = Clock::now();
-  if (!terminal_) return say(line);
+  if (!terminal_) return say(fmt::format("{}", fmt::join(parts, ", ")));
   clear_progress();
-  print(line.substr(0, terminal_width()));
+  print(parts_within(parts, terminal_width()));
   showing_progress_ = is_heard_;
 }
 
 void Console::close() {
   clear_progress();
   log([&] { log_.commit(); });
+}
+
+std::string parts_within(const std::vector<std::string>& parts, std::size_t width) {
+  std::string line;
+  for (const std::string& part : parts) {
+    const std::string with_part = line.empty() ? part : line + ", " + part;
+    if (with_part.size() > width) break;
+    line = with_part;
+  }
+  return line;
+}
+
+std::string duration_words(double seconds) {
+  if (seconds < 60) return fmt::format("{:.3g} s", seconds);
+  const auto whole = static_cast<std::int64_t>(seconds);
+  if (whole < 3600) return fmt::format("{} min {} s", whole / 60, whole % 60);
+  return fmt::format("{} h {} min", whole / 3600, whole / 60 % 60);
 }
 
 void print_error(std::string_view message) {

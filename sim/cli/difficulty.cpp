@@ -9,10 +9,10 @@ namespace scree::cli {
 
 namespace {
 
-/// Where things end along gravity, and the planes that stop a fall.
+/// The places at which a fall ends: the planes, and the lowest point of the bodies.
 struct Ground {
   Vec3 up;
-  double lowest = HUGE_VAL;  ///< of all spheres and boxes, along `up` (m)
+  double lowest = HUGE_VAL;  ///< lowest height of all bodies but surfaces, along `up` (m)
   std::vector<std::size_t> planes;
 
   Ground(const BodyTable& bodies, const Vec3& gravity) : up(-gravity.normalized()) {
@@ -24,7 +24,8 @@ struct Ground {
     }
   }
 
-  /// How far the body can fall until a plane stops it, or it is as low as the lowest body was (m).
+  /// Returns how far the body can fall until a plane stops it, or until it is as low as the lowest body was
+  /// (m).
   double fall(const BodyTable& bodies, std::size_t k) const {
     const double radius = smallest_size(bodies.shape[k], bodies.size[k]);
     double way = HUGE_VAL;
@@ -38,7 +39,7 @@ struct Ground {
   }
 };
 
-/// Of the fastest point of the body.
+/// Returns the speed of the fastest point of the body (m/s).
 double speed_of(const BodyTable& bodies, std::size_t k) {
   const double arm = bodies.shape[k] == Shape::sphere ? 0 : bounding_radius(bodies.shape[k], bodies.size[k]);
   return bodies.velocity[k].norm() + bodies.spin[k].norm() * arm;
@@ -65,11 +66,11 @@ Difficulty difficulty_of(const Scene& scene) {
     heaviest = std::max(heaviest, 1 / bodies.inverse_mass[k]);
     lightest = std::min(lightest, 1 / bodies.inverse_mass[k]);
     if (g == 0) continue;
-    const double fall = ground.fall(bodies, k);
+    // A body falls no longer than the run lasts.
+    const double farthest = (speed + 0.5 * g * scene.time.end) * scene.time.end;
+    const double fall = std::min(ground.fall(bodies, k), farthest);
     d.fall = std::max(d.fall, fall);
-    // v^2 = v0^2 + 2 g fall, but no longer than the run lasts.
-    d.speed =
-        std::max(d.speed, std::min(std::sqrt(speed * speed + 2 * g * fall), speed + g * scene.time.end));
+    d.speed = std::max(d.speed, std::sqrt(speed * speed + 2 * g * fall));
   }
   for (const Motion& motion : scene.motions) {
     const auto k = static_cast<std::size_t>(motion.body);

@@ -1,4 +1,4 @@
-// scree export: the trajectory of a run in the formats of other programs.
+// scree export: writes the trajectory of a run in the formats of other programs.
 #include "core/error.hpp"
 #include "sim/cli/commands.hpp"
 #include "sim/cli/output_folder.hpp"
@@ -25,10 +25,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// In the order of ExportFormat.
+// The words in the order of ExportFormat.
 constexpr std::array<const char*, 4> format_words = {"vtp", "xyz", "lammps", "csv"};
 
-/// Of the run's space; only xyz and lammps can say it.
+/// Returns the period of the run's space if the format can hold it: only xyz and lammps can.
 Period period_of_run(const ExportArguments& arguments) {
   if (arguments.format != ExportFormat::xyz && arguments.format != ExportFormat::lammps) return {};
   return read_period(arguments.run / "scene.yaml");
@@ -40,7 +40,7 @@ void print_particles(const LeftOut& left_out) {
     fmt::print("left out:  {}, which are no particles (vtp and csv have them)\n", left_out.words());
 }
 
-/// The hulls of a run's scene, which is read if there are any.
+/// The hulls of a run's scene, which is read only if there are any.
 class Hulls {
  public:
   Hulls(const ExportArguments& arguments, TrajectoryReader& trajectory)

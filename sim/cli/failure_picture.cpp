@@ -9,14 +9,14 @@ namespace scree::cli {
 
 namespace {
 
-constexpr double sizes_around = 16;  // of the body, over the height of the picture
+constexpr double sizes_around = 16;  // height of the picture, in sizes of the body
 
-/// The smallest ball around the body's centre that holds it (m).
+/// Returns the radius of the smallest ball around the body's centre that holds the body (m).
 double radius_of(const BodyTable& bodies, std::size_t k) {
   return bounding_radius(bodies.shape[k], bodies.size[k]);
 }
 
-/// Looks at the place from where the scene's camera would.
+/// Returns a camera that looks at the place from the direction of the scene's camera.
 render::Camera camera_at(const Vec3& place, double radius, const render::Camera& usual) {
   const double distance = sizes_around * radius / (2 * std::tan(usual.fov * pi / 360));
   render::Camera camera = usual;
@@ -25,7 +25,7 @@ render::Camera camera_at(const Vec3& place, double radius, const render::Camera&
   return camera;
 }
 
-/// The edges of a cube around the body.
+/// Marks a body with the edges of a cube around it.
 void mark(const BodyTable& bodies, std::size_t k, render::Frame& frame) {
   const double half = 1.1 * radius_of(bodies, k);
   for (int axis = 0; axis < 3; ++axis) {

@@ -1,4 +1,4 @@
-// A picture of the place where a run has failed.
+// The picture of the bodies with which a run has failed.
 #pragma once
 
 #include "render/renderer.hpp"
@@ -10,8 +10,8 @@
 
 namespace scree::cli {
 
-/// Draws the bodies, marked, and what is around the first of them, in the present state. `bodies` holds one
-/// at least. Throws RunError if that cannot be drawn or written.
+/// Draws the bodies, with marks, and the surroundings of the first of them, in the present state. `bodies`
+/// has at least one. Throws RunError if the picture cannot be drawn or written.
 void draw_failure(const Scene& scene, Simulation& simulation, const std::vector<std::int32_t>& bodies,
                   render::ContextChoice context, const std::filesystem::path& file);
 

@@ -18,7 +18,7 @@ constexpr std::size_t most_waiting = 2;
 
 }  // namespace
 
-/// What draws: made, used and deleted by one thread, as OpenGL wants it.
+/// The renderer. OpenGL requires that the same thread makes, uses and deletes it.
 class Film::Studio {
  public:
   Studio(const RenderSettings& render, const FilmLook& look, render::ContextChoice context)
@@ -58,7 +58,7 @@ void Film::record(std::int64_t step, const std::function<render::Frame()>& frame
   const std::int64_t due = frames_due_.due(step);
   if (due > 0) say_trouble();
   if (due == 0 || stopped_ || failed_) return;
-  // Where frames come faster than steps one picture stands for several, so that the movie keeps its pace.
+  // If frames are due faster than steps, one picture stands for several, so that the movie keeps its pace.
   Shot shot{frame_at(), due};
   const timing::Region region("render.wait");
   try {
@@ -70,7 +70,7 @@ void Film::record(std::int64_t step, const std::function<render::Frame()>& frame
 }
 
 void Film::draw(std::shared_ptr<Studio>& studio, const Shot& shot) {
-  // Only this thread writes it.
+  // No lock is needed: only this thread writes it.
   if (!trouble_.empty()) return;
   render::Image image;
   try {

@@ -1,6 +1,6 @@
-// The frames of a run and the movie made of them. They are drawn and written by two threads while the run
-// goes on. Trouble with pictures never costs the numbers: it is said, noted in the manifest, and the run goes
-// on without them; only a frame that cannot be written ends it, as any other file would.
+// The pictures of a run and the movie made from them. Two threads draw and write them while the run goes on.
+// A problem with pictures never stops the run: it is reported, noted in the manifest, and the run goes on
+// without pictures. Only a picture that cannot be written ends the run, as any other file would.
 #pragma once
 
 #include "sim/cli/film_look.hpp"
@@ -21,31 +21,35 @@ namespace scree::cli {
 
 class Film {
  public:
-  /// `warn` is told of trouble, by the thread that calls.
+  /// `warn` is called with each problem, by the thread that calls the functions of the film.
   using Warn = std::function<void(std::string_view)>;
   Film(const Scene& scene, const RunFolder& folder, render::ContextChoice context, Warn warn);
 
   /// Takes the frames that are due at the present state: frame k at the step nearest to k / fps. Waits while
-  /// two others have not been begun: none is left out. Throws RunError if an earlier one could not be
+  /// two others have not been begun, so that none is left out. Throws RunError if an earlier one could not be
   /// written.
   void record(Simulation& simulation);
-  /// The same, of a state that need not be present: frame_at() makes it, if one is due at the step.
+  /// Takes the frames that are due at a step, of a state that need not be present: frame_at() makes the frame
+  /// if one is due.
   void record(std::int64_t step, const std::function<render::Frame()>& frame_at);
-  /// Leaves what is due at the step to others. Not once a frame is recorded.
+  /// Counts the frames that are due at the step as made by others. Must not be called after a frame was
+  /// recorded.
   void pass_over(std::int64_t step) { frames_ += frames_due_.due(step); }
   const FilmLook& look() const { return look_; }
-  /// Waits until all is drawn and written. Throws like record(), unless that has.
+  /// Waits until all pictures are drawn and written. Throws RunError like record(), unless record() has
+  /// thrown it.
   void finish_frames();
-  /// Makes the movie of the frames; all are there.
+  /// Makes the movie from the pictures, all of which must be there.
   void make_movie();
 
-  /// What was due until the state was saved is drawn and written; what was drawn since is removed on loading.
+  /// Saves how many pictures there are, after drawing and writing those that were due; on loading, removes
+  /// the pictures that were drawn later.
   void archive(Archive& archive);
 
   std::int64_t frames() const { return frames_; }
-  /// What has drawn them, as render::Renderer::name() has it, once they are finished.
+  /// Returns the name of the renderer (see render::Renderer::name()), once the pictures are finished.
   const std::string& renderer() const { return renderer_; }
-  /// File name; empty if there is none.
+  /// Returns the file name of the movie; empty if there is none.
   const std::string& movie() const { return movie_; }
 
  private:
@@ -68,16 +72,16 @@ class Film {
   Warn warn_;
   FilmLook look_;
   Cadence frames_due_;
-  bool stopped_ = false;  ///< no more frames: drawing has failed, and it has been said
-  bool failed_ = false;   ///< nor here: one could not be written, and record() has thrown
+  bool stopped_ = false;  ///< whether drawing has failed and this was reported: no more frames are taken
+  bool failed_ = false;   ///< whether record() has thrown since a picture could not be written: none follow
   std::atomic<std::int64_t> frames_ = 0;
   std::string movie_;
-  // Of the threads. Each time is touched by one of them, and read when both have ended.
+  // Data of the threads. Each time is changed by one of them, and read when both have ended.
   double draw_seconds_ = 0, write_seconds_ = 0;
   std::string renderer_;
   std::mutex trouble_mutex_;
   std::string trouble_;
-  // The first hands its pictures to the second, so it is made later and ends before.
+  // The drawing thread hands its pictures to the writing thread, so it is made later and ends first.
   Worker<Picture> writer_;
   Worker<Shot> drawer_;
 };

@@ -65,7 +65,7 @@ std::function<render::Camera(double)> camera_of(const Scene& scene) {
   return [start = still_camera(scene), turn](double time) { return render::orbited(start, turn * time); };
 }
 
-// The largest speed to expect of all but a few bodies (m/s).
+// Returns the largest speed to expect of all but a few bodies (m/s).
 double expected_speed(const Scene& scene, const render::Frame& start) {
   double speed = render::value_range(start, render::ColorBy::speed)[1];
   const BodyTable& bodies = scene.bodies;
@@ -79,7 +79,7 @@ double expected_speed(const Scene& scene, const render::Frame& start) {
   if (highest > lowest) speed = std::max(speed, std::sqrt(2 * (highest - lowest)));
   for (const Motion& motion : scene.motions) {
     const auto k = static_cast<std::size_t>(motion.body);
-    // The far end of a turning body.
+    // The far end of a turning body is its fastest point.
     const MotionBounds bounds = bounds_of(motion);
     speed = std::max(speed, bounds.speed + bounds.spin * bounding_radius(bodies.shape[k], bodies.size[k]));
   }
@@ -96,8 +96,8 @@ double mean_mass(const BodyTable& bodies) {
   return count > 0 ? sum / count : 1;
 }
 
-// The weight of as many bodies of mean mass as lie along an edge of a cube of all; without gravity, the force
-// that takes the speed of one of them in a step (N).
+// Returns the weight of as many bodies of mean mass as lie along an edge of a cube of all bodies; without
+// gravity, the force that stops one of them from `speed` in a step (N).
 double expected_force(const Scene& scene, double speed) {
   const double mass = mean_mass(scene.bodies);
   if (scene.gravity.norm() == 0) return mass * speed / scene.time.step;
@@ -106,7 +106,7 @@ double expected_force(const Scene& scene, double speed) {
 
 std::array<double, 2> range_of(const Scene& scene, const render::Frame& start, render::ColorBy color) {
   if (scene.render.range) return *scene.render.range;
-  // Of a scene at rest without gravity.
+  // A scene at rest without gravity has no speed to scale by.
   const double speed = std::max(expected_speed(scene, start), 1e-6);
   switch (color) {
     case render::ColorBy::speed:
@@ -127,7 +127,7 @@ void append_forces(double widest, std::vector<ContactForce> contacts, render::Fr
   for (ContactForce& c : contacts) {
     bodies.period.wrap(c.point);
     const auto width = static_cast<float>(std::min(10 * strength(c) / widest, 10.0));
-    if (width < 0.1f) continue;  // cannot be seen
+    if (width < 0.1f) continue;  // such a line cannot be seen
     frame.lines.push_back({.from = contact_end(bodies, c.i, c.point),
                            .to = contact_end(bodies, c.j, c.point),
                            .width = width,
@@ -140,7 +140,7 @@ void append_pairs(const std::vector<BodyPair>& pairs, render::Frame& frame) {
   const BodyTable& bodies = frame.snapshot.bodies;
   for (const auto& [i, j] : pairs) {
     const auto a = static_cast<std::size_t>(i), b = static_cast<std::size_t>(j);
-    // The centre of a plane is nowhere in particular.
+    // The centre of a plane has no meaning.
     if (bodies.shape[a] == Shape::plane || bodies.shape[b] == Shape::plane) continue;
     Vec3 to = bodies.position[b];
     bodies.period.bring_near(bodies.position[a], to);
@@ -171,7 +171,8 @@ void append_cells(const GridOccupancy& grid, render::Frame& frame) {
   }
 }
 
-/// Without the images of what sticks out of a periodic space: those come last.
+/// Returns the frame without the images of bodies that reach through the ends of a periodic cell, which are
+/// added last.
 render::Frame begun_frame(const Scene& scene, const FilmLook& look, Snapshot snapshot,
                           const std::vector<ContactForce>& contacts) {
   render::Frame frame;
@@ -190,7 +191,7 @@ render::Frame begun_frame(const Scene& scene, const FilmLook& look, Snapshot sna
   return frame;
 }
 
-/// What the broad phase knows of the present state.
+/// Adds the pairs and the grid of the broad phase in the present state.
 void append_broad_phase(const RenderSettings& render, Simulation& simulation, render::Frame& frame) {
   if (has(render, Overlay::pairs)) append_pairs(simulation.pairs(), frame);
   if (render.color != ColorBy::level && !has(render, Overlay::grid)) return;

@@ -1,5 +1,5 @@
-// Help and completion from one table, so that the two cannot part; keys of --set from that of the scene
-// language. The shells' sides are in packaging/.
+// Help and completion are made from one table, so that they always agree; the keys of --set come from the
+// table of the scene language. The scripts of the shells are in packaging/.
 #include "sim/cli/help.hpp"
 
 #include "sim/cli/commands.hpp"
@@ -27,7 +27,7 @@ std::vector<std::string> names_of(const CLI::Option& option) {
 
 class Help : public CLI::Formatter {
  public:
-  // CLI11 writes --no-render{false}, and -o,--output, which help2man takes for one name.
+  // CLI11 would write --no-render{false}, and -o,--output, which help2man takes for one name.
   std::string make_option_name(const CLI::Option* option, bool is_positional) const override {
     if (is_positional) return option->get_type_name();
     return fmt::format("{}", fmt::join(names_of(*option), ", "));
@@ -55,7 +55,7 @@ class Help : public CLI::Formatter {
   }
   std::string make_help(const CLI::App* app, std::string name, CLI::AppFormatMode mode) const override {
     const std::string text = CLI::Formatter::make_help(app, name, mode);
-    // The manual page tells of the exit status in a section of its own.
+    // The manual page has a section of its own for the exit status.
     return mode == CLI::AppFormatMode::All ? text.substr(0, text.rfind(app->get_footer())) : text;
   }
 
@@ -65,7 +65,7 @@ class Help : public CLI::Formatter {
   }
 };
 
-/// What is asked for where a value of this type is.
+/// The completions for a value of some type: files, as the first line of complete() names them, and words.
 struct Offer {
   std::string files = "none";
   std::vector<std::string> words = {};
@@ -90,7 +90,8 @@ void print_offer(const Offer& offer, std::string_view typed, const std::string& 
   for (const std::string& word : offer.words) print_word(typed, before + word, "");
 }
 
-/// `before` stands before what is typed of the option's value.
+/// Prints the completions of an option's value of which `typed` is there. `before` is the text before it in
+/// the same word: the option's name and `=`.
 void print_values(const std::string& type, std::string_view typed, const std::string& before = "") {
   if (!type.starts_with("KEY=")) return print_offer(offer_of(type), before + std::string(typed), before);
   fmt::print("{}\n", typed.find('=') == typed.npos ? "keys" : "none");
@@ -108,12 +109,13 @@ void print_options(const CLI::App& command, std::string_view typed) {
     for (const std::string& name : names_of(*option)) print_word(typed, name, option->get_description());
 }
 
-/// The positional that comes after the words that are there; the last one takes all that follow.
+/// Returns the completions of the positional argument that comes after the words `before`; the last
+/// positional argument takes all further words.
 Offer positional_after(const CLI::App& command, const std::vector<std::string>& before) {
   std::ptrdiff_t given = 0;
   for (std::size_t i = 0; i < before.size(); ++i) {
     if (option_named(command, before[i]) != nullptr)
-      ++i;  // its value
+      ++i;  // skips the option's value
     else if (!before[i].starts_with('-'))
       ++given;
   }
@@ -138,6 +140,27 @@ void complete_in(const CLI::App& command, const std::vector<std::string>& before
 
 std::vector<const CLI::App*> commands_of(const CLI::App& app) {
   return app.get_subcommands([](const CLI::App*) { return true; });
+}
+
+/// Returns CLI11's message with A and B in other words, if it is "A`between`B`end`"; else as it is.
+std::string reworded(const std::string& message, std::string_view between, std::string_view end,
+                     fmt::format_string<std::string, std::string> words) {
+  const std::size_t at = message.find(between);
+  if (at == std::string::npos || !message.ends_with(end)) return message;
+  const std::size_t second = at + between.size();
+  return fmt::format(words, message.substr(0, at),
+                     message.substr(second, message.size() - end.size() - second));
+}
+
+std::string words_of(const CLI::ParseError& error) {
+  const std::string message = error.what();
+  if (dynamic_cast<const CLI::ExcludesError*>(&error) != nullptr)
+    return reworded(message, " excludes ", "", "give {} or {}, not both");
+  if (dynamic_cast<const CLI::RequiresError*>(&error) != nullptr)
+    return reworded(message, " requires ", "", "{} needs {}");
+  if (dynamic_cast<const CLI::ArgumentMismatch*>(&error) != nullptr)
+    return reworded(message, ": 1 required ", " missing", "{}: needs a value, {}");
+  return message;
 }
 
 void complete_command(const CLI::App& app, const std::string& typed) {
@@ -168,6 +191,12 @@ int complete(const CLI::App& app, const std::vector<std::string>& words) {
   else
     fmt::print("none\n");
   return status_done;
+}
+
+std::string complaint_of(const CLI::App& app, const CLI::ParseError& error) {
+  const std::vector<CLI::App*> given = app.get_subcommands();
+  return fmt::format("{}; see scree {}--help", words_of(error),
+                     given.empty() ? "" : given.front()->get_name() + " ");
 }
 
 }  // namespace scree::cli

@@ -1,5 +1,5 @@
-// What the program tells of its own command line, from CLI11's tables: help, which the manual page is made
-// of, and the completion of words in a shell.
+// The texts about the command line that are made from CLI11's tables: the help, from which the manual page is
+// made, the completion of words in a shell, and complaints about arguments.
 #pragma once
 
 #include <string>
@@ -7,17 +7,24 @@
 
 namespace CLI {
 class App;
-}
+class ParseError;
+}  // namespace CLI
 
 namespace scree::cli {
 
-/// Help of the program and of its commands: options by all of their names, values by what they are.
-/// --help-all tells of every command, each under a heading that help2man takes for one.
+/// Sets the format of the help of the program and of its commands: an option is shown with all of its names,
+/// and a value with the name of its kind. --help-all shows every command, each under a heading that help2man
+/// recognises.
 void set_help(CLI::App& app);
 
-/// Prints what the last word, as far as it is typed, may become after the others (without the program's
-/// name): first a line that says what files there may be (`none`, `folders`, `files`, or `files EXTENSION`),
-/// or that the words go on (`keys`); then a line for each word: the word, a tab, what it means.
+/// Prints how the last of the words, which may be incomplete, can be completed after the others (which do not
+/// include the program's name). The first line says which files may come (`none`, `folders`, `files`, or
+/// `files EXTENSION`), or that a word may be continued after its completion (`keys`); each further line is a
+/// word, a tab, and its meaning.
 int complete(const CLI::App& app, const std::vector<std::string>& words);
+
+/// Returns CLI11's complaint about the arguments in the names that the help shows, and the command whose help
+/// has more.
+std::string complaint_of(const CLI::App& app, const CLI::ParseError& error);
 
 }  // namespace scree::cli

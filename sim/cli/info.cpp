@@ -1,4 +1,4 @@
-// scree info: what this program is and what it finds here.
+// scree info: prints the identity of this program and what it finds on this machine.
 #include "core/error.hpp"
 #include "core/space.hpp"
 #include "render/renderer.hpp"

@@ -16,7 +16,7 @@ void catch_interrupts() {
   for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
     struct sigaction before = {};
     sigaction(signal, nullptr, &before);
-    // What nohup, or a shell's background, has set to be ignored stays so.
+    // Signals that nohup or a shell's background has set to be ignored stay ignored.
     if (before.sa_handler != SIG_IGN) sigaction(signal, &action, nullptr);
   }
   std::signal(SIGPIPE, SIG_IGN);

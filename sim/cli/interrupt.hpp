@@ -1,12 +1,12 @@
-// SIGINT, SIGTERM and SIGHUP (its terminal is gone) ask a run to stop after its present step, but for those
-// that were to be ignored when it was started. A second one ends the process at once. SIGPIPE does not end
-// it: that nobody reads what a run says is told by the write, and is no reason to stop.
+// The signals that stop a run. SIGINT, SIGTERM and SIGHUP (the terminal is gone) make a run stop after its
+// present step, unless they were ignored when the program was started. A second one ends the process at once.
+// SIGPIPE does not end it: the write itself reports that the output is not read, which is no reason to stop.
 #pragma once
 
 namespace scree::cli {
 
 void catch_interrupts();
-/// Whether one has come since.
+/// Whether a signal has come since catch_interrupts().
 bool interrupted();
 
 }  // namespace scree::cli

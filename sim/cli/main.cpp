@@ -1,4 +1,4 @@
-// The command line: arguments to commands, errors to exit statuses.
+// The command line: its commands and options, which become calls, and its errors, which become exit statuses.
 #include "core/error.hpp"
 #include "core/timing.hpp"
 #include "sim/cli/commands.hpp"
@@ -6,6 +6,7 @@
 #include "sim/cli/help.hpp"
 #include "sim/record/build_info.hpp"
 #include "sim/record/outcome.hpp"
+#include "sim/scene/reader.hpp"
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
@@ -13,6 +14,7 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <cmath>
 #include <cstdio>
 #include <cstring>
 #include <exception>
@@ -21,6 +23,7 @@
 #include <map>
 #include <new>
 #include <ranges>
+#include <string>
 #include <tuple>
 #include <unistd.h>
 #include <vector>
@@ -47,20 +50,47 @@ void add_overrides(CLI::App& command, std::vector<Override>& overrides) {
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
 }
 
-/// The value is one of these names, which help and completion show.
+/// Requires the value of an option to be one of the names, which help and completion show. `choices` must
+/// outlive the option.
 template <class T>
 void choose(CLI::Option* option, const std::map<std::string, T>& choices) {
-  option->transform(CLI::Transformer(choices).description(""))
+  const auto number_of = [&choices](std::string& word) -> std::string {
+    const auto found = choices.find(word);
+    if (found == choices.end())
+      return fmt::format("must be one of {}, not {}", fmt::join(choices | std::views::keys, ", "),
+                         printable(word));
+    word = std::to_string(static_cast<int>(found->second));
+    return {};
+  };
+  option->transform(CLI::Validator(number_of, ""))
       ->type_name(fmt::format("{}", fmt::join(choices | std::views::keys, "|")));
+}
+
+/// Requires a finite number >= 0. CLI11's own validators tell the user the largest double, digit by digit.
+CLI::Validator not_negative() {
+  const auto complaint = [](const std::string& word) -> std::string {
+    double number = 0;
+    if (CLI::detail::lexical_cast(word, number) && number >= 0 && std::isfinite(number)) return {};
+    return fmt::format("must be a number >= 0, not {}", printable(word));
+  };
+  return {complaint, ""};
+}
+
+/// Requires a whole number > 0 that an int can hold.
+CLI::Validator positive() {
+  const auto complaint = [](const std::string& word) -> std::string {
+    int number = 0;
+    if (CLI::detail::lexical_cast(word, number) && number > 0) return {};
+    return fmt::format("must be a whole number > 0, not {}", printable(word));
+  };
+  return {complaint, ""};
 }
 
 void add_simulation(CLI::App& command, SimulationOptions& options, const char* threads) {
   static const std::map<std::string, SpaceChoice> spaces = {
       {"auto", SpaceChoice::automatic}, {"host", SpaceChoice::host}, {"cuda", SpaceChoice::cuda}};
   choose(command.add_option("--device", options.space, "Where to run"), spaces);
-  command.add_option("--threads", options.threads, threads)
-      ->check(CLI::Validator(CLI::PositiveNumber).description(""))
-      ->type_name("N");
+  command.add_option("--threads", options.threads, threads)->check(positive())->type_name("N");
 }
 
 void add_context(CLI::App& command, render::ContextChoice& context) {
@@ -77,7 +107,7 @@ void add_context(CLI::App& command, render::ContextChoice& context) {
 
 CLI::App* add_run(CLI::App& app, RunArguments& arguments) {
   CLI::App* command = app.add_subcommand("run", "Run a scene; writes output/NAME/");
-  CLI::Option* scene = command->add_option("scene", arguments.scene, "Scene file")->type_name("SCENE");
+  CLI::Option* scene = command->add_option("SCENE", arguments.scene, "Scene file")->type_name("SCENE");
   CLI::Option* reproduce =
       command
           ->add_option("--reproduce", arguments.reproduce,
@@ -87,24 +117,33 @@ CLI::App* add_run(CLI::App& app, RunArguments& arguments) {
   command->final_callback([=] {
     if (scene->count() + reproduce->count() != 1) throw CLI::RequiredError("SCENE");
   });
-  command->add_option("-o,--output", arguments.output, "Run folder instead of output/NAME")->type_name("DIR");
+  command->add_option("-o,--output", arguments.output, "Run folder instead of output/NAME")
+      ->excludes(reproduce)
+      ->type_name("DIR");
   add_overrides(*command, arguments.overrides);
   add_simulation(*command, arguments.simulation,
                  "Threads to use (default: all cores); never changes the result");
   command->add_option("--until", arguments.until, "Stop at this time (s) instead of the scene's end")
-      ->check(CLI::Validator(CLI::NonNegativeNumber).description(""))
+      ->check(not_negative())
+      ->excludes(reproduce)
       ->type_name("T");
   command->add_flag("!--no-render", arguments.draw, "Draw nothing");
   add_context(*command, arguments.context);
   command->add_flag_callback(
       "--profile", [] { timing::time_calls(true); }, "Time every parallel call too, into the manifest");
-  command->add_flag("--overwrite", arguments.overwrite, "Replace an earlier run in the folder");
-  command->add_flag("--resume", arguments.resume,
-                    "Continue from the newest checkpoint in the folder; from the start if there is none");
+  CLI::Option* resume =
+      command
+          ->add_flag("--resume", arguments.resume,
+                     "Continue from the newest checkpoint in the folder; from the start if there is none")
+          ->excludes(reproduce);
+  command->add_flag("--overwrite", arguments.overwrite, "Replace an earlier run in the folder")
+      ->excludes(resume)
+      ->excludes(reproduce);
   command
       ->add_option("--max-hours", arguments.max_hours,
                    "Stop after so long, with a checkpoint to resume from (exit status 130)")
-      ->check(CLI::Validator(CLI::NonNegativeNumber).description(""))
+      ->check(not_negative())
+      ->excludes(reproduce)
       ->type_name("H");
   return command;
 }
@@ -112,7 +151,7 @@ CLI::App* add_run(CLI::App& app, RunArguments& arguments) {
 CLI::App* add_plan(CLI::App& app, PlanArguments& arguments, bool& schema, bool& reference) {
   CLI::App* command =
       app.add_subcommand("plan", "Say what a scene will model and what it needs; runs nothing");
-  CLI::Option* scene = command->add_option("scene", arguments.scene, "Scene file")->type_name("SCENE");
+  CLI::Option* scene = command->add_option("SCENE", arguments.scene, "Scene file")->type_name("SCENE");
   add_overrides(*command, arguments.overrides);
   CLI::Option* schema_flag =
       command->add_flag("--schema", schema, "Print the JSON Schema of the scene language");
@@ -133,7 +172,7 @@ CLI::App* add_export(CLI::App& app, ExportArguments& arguments) {
                                                               {"csv", ExportFormat::csv}};
   CLI::App* command =
       app.add_subcommand("export", "Write the trajectory of a run in the format of other programs");
-  command->add_option("run", arguments.run, "Run folder with a trajectory")->required()->type_name("DIR");
+  command->add_option("DIR", arguments.run, "Run folder with a trajectory")->required()->type_name("DIR");
   choose(command->add_option("--to", arguments.format, "vtp (ParaView), xyz or lammps (OVITO), or csv")
              ->required(),
          formats);
@@ -144,7 +183,7 @@ CLI::App* add_export(CLI::App& app, ExportArguments& arguments) {
 CLI::App* add_render(CLI::App& app, RenderArguments& arguments) {
   CLI::App* command =
       app.add_subcommand("render", "Draw the trajectory of a run again, with another camera, colour or size");
-  command->add_option("run", arguments.run, "Run folder with a trajectory")->required()->type_name("DIR");
+  command->add_option("DIR", arguments.run, "Run folder with a trajectory")->required()->type_name("DIR");
   add_overrides(*command, arguments.overrides);
   command->add_option("-o,--output", arguments.output, "Folder instead of DIR-render")->type_name("DIR");
   add_context(*command, arguments.context);
@@ -153,7 +192,7 @@ CLI::App* add_render(CLI::App& app, RenderArguments& arguments) {
           "--jobs", arguments.jobs,
           "Processes that draw (default: one for each core, as far as memory goes); never changes the "
           "result")
-      ->check(CLI::Validator(CLI::PositiveNumber).description(""))
+      ->check(positive())
       ->type_name("N");
   command->add_flag("--overwrite", arguments.overwrite, "Replace earlier pictures in the folder");
   return command;
@@ -161,24 +200,24 @@ CLI::App* add_render(CLI::App& app, RenderArguments& arguments) {
 
 CLI::App* add_report(CLI::App& app, std::filesystem::path& run) {
   CLI::App* command = app.add_subcommand("report", "Make the page that tells of a run again");
-  command->add_option("run", run, "Run folder")->required()->type_name("DIR");
+  command->add_option("DIR", run, "Run folder")->required()->type_name("DIR");
   return command;
 }
 
 CLI::App* add_compare(CLI::App& app, CompareArguments& arguments) {
   CLI::App* command =
       app.add_subcommand("compare", "Say how far the numbers of two runs differ, column by column");
-  command->add_option("first", arguments.first, "Run folder")->required()->type_name("DIR_A");
-  command->add_option("second", arguments.second, "Run folder")->required()->type_name("DIR_B");
+  command->add_option("DIR_A", arguments.first, "Run folder")->required()->type_name("DIR_A");
+  command->add_option("DIR_B", arguments.second, "Run folder")->required()->type_name("DIR_B");
   command
       ->add_option("--tolerance", arguments.tolerance,
                    "Relative to the largest magnitude in a column (default: 0)")
-      ->check(CLI::Validator(CLI::NonNegativeNumber).description(""))
+      ->check(not_negative())
       ->type_name("T");
   command
       ->add_option("--absolute", arguments.absolute,
                    "No more than this, in a column's unit, is within any tolerance (default: 0)")
-      ->check(CLI::Validator(CLI::NonNegativeNumber).description(""))
+      ->check(not_negative())
       ->type_name("A");
   return command;
 }
@@ -198,7 +237,7 @@ void add_variations(CLI::App& command, std::vector<Variation>& variations) {
 
 CLI::App* add_verify(CLI::App& app, VerifyArguments& arguments) {
   CLI::App* command = app.add_subcommand("verify", "Run every scene that has checks; writes no run folder");
-  command->add_option("paths", arguments.paths, "Scene files, or folders to search")
+  command->add_option("PATH", arguments.paths, "Scene files, or folders to search")
       ->required()
       ->type_name("PATH");
   add_overrides(*command, arguments.overrides);
@@ -215,14 +254,14 @@ CLI::App* add_verify(CLI::App& app, VerifyArguments& arguments) {
 CLI::App* add_study(CLI::App& app, StudyArguments& arguments) {
   CLI::App* command = app.add_subcommand(
       "study", "Speed against error: run a scene with checks in all combinations of settings");
-  command->add_option("scene", arguments.scene, "Scene file, with checks")->required()->type_name("SCENE");
+  command->add_option("SCENE", arguments.scene, "Scene file, with checks")->required()->type_name("SCENE");
   add_variations(*command, arguments.variations);
   add_overrides(*command, arguments.overrides);
   command->add_option("-o,--output", arguments.output, "Folder instead of output/NAME-study")
       ->type_name("DIR");
   add_simulation(*command, arguments.simulation, "Threads for each run (default: 1)");
   command->add_option("--repeats", arguments.repeats, "Runs of which each time is the median (default: 3)")
-      ->check(CLI::Validator(CLI::PositiveNumber).description(""))
+      ->check(positive())
       ->type_name("N");
   command->add_flag("--overwrite", arguments.overwrite, "Replace an earlier study in the folder");
   return command;
@@ -231,7 +270,7 @@ CLI::App* add_study(CLI::App& app, StudyArguments& arguments) {
 CLI::App* add_new(CLI::App& app, NewArguments& arguments) {
   CLI::App* command = app.add_subcommand("new", "Write a commented scene to start from, NAME.yaml");
   CLI::Option* name =
-      command->add_option("name", arguments.name, "What to call it; without, lists the templates")
+      command->add_option("NAME", arguments.name, "What to call it; without, lists the templates")
           ->type_name("NAME");
   command->add_option("--from", arguments.from, "Template to copy (default: the one called NAME)")
       ->needs(name)
@@ -239,7 +278,7 @@ CLI::App* add_new(CLI::App& app, NewArguments& arguments) {
   return command;
 }
 
-/// What follows the command is for the command to read, help included.
+/// Adds a command that reads the words after it itself, --help included.
 CLI::App* add_prefix(CLI::App& app, const char* name, const char* description) {
   CLI::App* command = app.add_subcommand(name, description);
   command->prefix_command();
@@ -247,25 +286,27 @@ CLI::App* add_prefix(CLI::App& app, const char* name, const char* description) {
   return command;
 }
 
-/// Where one of the three is closed a file of the run would get its number, and what is said would go there.
+/// Opens /dev/null for each of the three standard streams that is closed: else a file of the run would get
+/// its number, and messages would go into that file.
 void open_standard_streams() {
   for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO})
     if (::fcntl(stream, F_GETFD) < 0) std::ignore = ::open("/dev/null", O_RDWR);
 }
 
-/// What a command prints is its result, so it fails if that did not get out. A run has its folder.
+/// Throws RunError if the output could not be written: for commands whose result is what they print. A run
+/// does not need this, as its results are in its folder.
 int after_printing(int status) {
   if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return status;
   throw RunError(fmt::format("cannot write to standard output: {}", std::strerror(errno)));
 }
 
-/// A command, and what it does once its options are known; the result is the exit status.
+/// A command, and the function that carries it out once its options are known and returns the exit status.
 struct Command {
   const CLI::App* app;
   std::function<int()> run;
 };
 
-/// The options of all commands.
+/// The values of the options of all commands.
 struct Arguments {
   RunArguments run;
   PlanArguments plan;
@@ -307,13 +348,13 @@ std::vector<Command> add_commands(CLI::App& app, Arguments& all) {
   return commands;
 }
 
-/// Says what an exception of a command means to the user, and returns the exit status.
+/// Tells the user what an exception of a command means. Returns the exit status.
 int status_of_failure(const CLI::App& app, const std::exception_ptr& failure) {
   try {
     std::rethrow_exception(failure);
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() == 0) return app.exit(error);  // --help
-    print_error(fmt::format("{}; see scree --help", error.what()));
+    print_error(complaint_of(app, error));
     return status_bad_input;
   } catch (const InputError& error) {
     print_error(error.what());
@@ -343,7 +384,7 @@ int main(int argc, char** argv) {
   set_help(app);
   try {
     app.parse(argc, argv);
-    // require_subcommand(1): exactly one was given.
+    // Exactly one command was given, by require_subcommand(1).
     return std::ranges::find_if(commands, [](const Command& c) { return c.app->parsed(); })->run();
   } catch (const std::exception&) {
     return status_of_failure(app, std::current_exception());

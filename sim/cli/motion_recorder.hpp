@@ -1,5 +1,5 @@
-// The trajectory of a run, and its contacts if they are asked for, compressed and written by a thread of its
-// own while the run goes on.
+// The recorder of a run's trajectory, and of its contacts if the scene wants them. They are compressed and
+// written by another thread while the run goes on.
 #pragma once
 
 #include "core/archive.hpp"
@@ -18,21 +18,22 @@ namespace scree::cli {
 
 class MotionRecorder {
  public:
-  /// The scene has a trajectory. `threads` compress.
+  /// The scene must have a trajectory. `threads`: number of threads that compress.
   MotionRecorder(const Scene& scene, const RunFolder& folder, AtomicFile::Opening opening, int threads);
 
   /// Takes the frame that is due at the present state, if one is: frame k at the step nearest to k periods,
-  /// and never two of one step. Waits while two others have not been begun: none is left out. Throws RunError
-  /// if an earlier one could not be written.
+  /// and never two frames at one step. Waits while two others have not been begun, so that none is left out.
+  /// Throws RunError if an earlier one could not be written.
   void record(const Simulation& simulation);
-  /// What was due until the state was saved is on the disk; what was added since is gone on loading.
+  /// Saves how far the files are written, after bringing that to the disk; on loading, removes what was added
+  /// after the state was saved.
   void archive(Archive& archive);
   /// Writes trajectory.vtkhdf, and contacts.vtkhdf.
   void finish();
-  /// Nobody will go on with the run.
+  /// Removes the journals, as the run will not be continued.
   void drop();
 
-  std::int64_t frames() const { return writer_.frames(); }  ///< once it is finished
+  std::int64_t frames() const { return writer_.frames(); }  ///< number of frames, once finish() was called
 
  private:
   struct Moment {
@@ -43,7 +44,7 @@ class MotionRecorder {
   Cadence due_;
   TrajectoryWriter writer_;
   std::optional<ContactWriter> contacts_;
-  double seconds_ = 0;  ///< of the thread
+  double seconds_ = 0;  ///< time that the thread has spent (s)
   Worker<Moment> worker_;
 };
 

@@ -1,4 +1,4 @@
-// scree new: a commented scene to start from.
+// scree new: writes a commented scene to start from.
 #include "core/error.hpp"
 #include "sim/cli/commands.hpp"
 #include "sim/cli/templates.hpp"
@@ -10,6 +10,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <string_view>
 
 namespace scree::cli {
 
@@ -17,7 +18,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The words of the first line, which is a comment.
+/// Returns the text of the first line, which is a comment.
 std::string_view summary(const Template& scene) { return scene.text.substr(2, scene.text.find('\n') - 2); }
 
 int list_templates() {
@@ -35,7 +36,18 @@ const Template& template_named(const std::string& name) {
                                suggestion(name, names), fmt::join(names, ", ")));
 }
 
-/// The file of that name; NAME and NAME.yaml are the same.
+/// Returns the text as one word of a shell, in quotes if it needs them.
+std::string in_shell(const std::string& text) {
+  constexpr std::string_view plain =
+      "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_./-+=,:@%";
+  if (text.find_first_not_of(plain) == std::string::npos) return text;
+  std::string quoted = "'";
+  for (const char c : text) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return quoted + '\'';
+}
+
+/// Returns the file of the scene; NAME and NAME.yaml mean the same file. Throws InputError if it cannot be
+/// written.
 fs::path scene_file(fs::path name) {
   if (name.extension() != ".yaml") name += ".yaml";
   if (name.stem().string().starts_with('.') || name.filename() == ".yaml")
@@ -61,8 +73,8 @@ int write_new_scene(const NewArguments& arguments) {
   const fs::path file = scene_file(arguments.name);
   const Template& scene = template_named(arguments.from.empty() ? file.stem().string() : arguments.from);
   write_file(file, scene.text);
-  fmt::print("{}: {}\nNext: scree plan {}, scree run {}\n", file.string(), summary(scene), file.string(),
-             file.string());
+  const std::string word = in_shell(file.string());
+  fmt::print("{}: {}\nNext: scree plan {}, scree run {}\n", file.string(), summary(scene), word, word);
   return status_done;
 }
 

@@ -8,7 +8,8 @@ namespace scree::cli {
 
 namespace {
 
-/// Where a body has to be once more to be seen at both ends, along each axis (m); 0: nowhere.
+/// Returns by how much the image of a body is shifted along each axis to be seen at both ends of the cell
+/// (m); 0: the body does not reach through an end.
 Vec3 shift_of(const BodyTable& bodies, std::size_t k) {
   Vec3 shift = Vec3::Zero();
   const Period& period = bodies.period;
@@ -51,7 +52,7 @@ void append_images(render::Frame& frame) {
   for (std::size_t k = 0; k < count; ++k) {
     if (is_boundary(bodies.shape[k]) || bodies.mobility[k] == Mobility::absent) continue;
     const Vec3 shift = shift_of(bodies, k);
-    // Each part of the axes along which it sticks out.
+    // There is an image for each combination of the axes along which the body reaches through an end.
     for (int axes = 1; axes < 8; ++axes) {
       Vec3 by = Vec3::Zero();
       bool all = true;

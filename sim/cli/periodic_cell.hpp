@@ -1,4 +1,5 @@
-// A periodic space as it is shown and written: its cell, in pictures with what sticks out of it at both ends.
+// A periodic space as it is shown and written: its cell, and in pictures also the bodies that reach through
+// its ends, at both ends.
 #pragma once
 
 #include "render/frame.hpp"
@@ -8,8 +9,8 @@ namespace scree::cli {
 /// Moves every body of a periodic space to its image in the cell; boundaries stay.
 void move_into_cell(BodyTable& bodies);
 
-/// Draws bodies that reach through an end of the cell at the other one too. Lines and what the colours know
-/// of bodies must be there already.
+/// Adds an image of each body that reaches through an end of the cell, at the other end. Lines, and the data
+/// by which bodies are coloured, must be in the frame already.
 void append_images(render::Frame& frame);
 
 }  // namespace scree::cli

@@ -9,7 +9,7 @@ namespace scree::cli {
 
 namespace {
 
-/// Empty if it draws.
+/// Returns the error of the renderer; empty if it draws.
 std::string trouble_with(render::ContextChoice context) {
   try {
     render::make_renderer(context, 16, 16);
@@ -24,7 +24,7 @@ std::string trouble_with(render::ContextChoice context) {
 void expect_context(render::ContextChoice context) {
   if (context == render::ContextChoice::automatic) return;
   const char* name = context == render::ContextChoice::egl ? "egl" : "osmesa";
-  // In a child: a driver may crash, and does not survive a later fork.
+  // The renderer is tried in a child process, because a driver may crash, and does not survive a later fork.
   in_processes(
       1, 1, [context](int) { return trouble_with(context); },
       [name](int, const ProcessResult& result) {

@@ -1,12 +1,13 @@
-// The way to OpenGL that the command line asks for.
+// The check of the way to OpenGL that --context chooses.
 #pragma once
 
 #include "render/renderer.hpp"
 
 namespace scree::cli {
 
-/// Throws InputError if --context names a way that does not draw here. Left to scree, pictures are worth no
-/// run, and only a warning. Not while threads or a GPU are in use, which it leaves unused.
+/// Throws InputError if --context names a way that does not draw on this machine. With `auto` it does
+/// nothing: then missing pictures are only a warning. Must not be called while threads or a GPU are in use,
+/// and leaves none in use.
 void expect_context(render::ContextChoice context);
 
 }  // namespace scree::cli

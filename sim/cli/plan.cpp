@@ -1,8 +1,9 @@
-// scree plan: what a scene will model and what it needs, before anything runs.
+// scree plan: says what a scene will model and what it needs, without running it.
 #include "core/tolerances.hpp"
 #include "sim/cli/commands.hpp"
 #include "sim/cli/difficulty.hpp"
 #include "sim/cli/trial.hpp"
+#include "sim/laws/heap.hpp"
 #include "sim/model/model.hpp"
 #include "sim/record/contact_writer.hpp"
 #include "sim/record/metrics.hpp"
@@ -24,7 +25,7 @@ namespace scree::cli {
 
 namespace {
 
-// In the order of Shape and Mobility.
+// The words in the order of Shape and of Mobility.
 constexpr std::array<const char*, 8> shape_words = {"spheres",   "boxes",    "planes",    "tubes",
                                                     "triangles", "capsules", "cylinders", "polyhedra"};
 constexpr std::array<const char*, 3> mobility_words = {"free", "fixed", "prescribed"};
@@ -71,13 +72,14 @@ void print_emitters(const Scene& scene) {
   }
 }
 
-/// A little less than x, in two digits.
+/// Returns x rounded down to two digits.
 double rounded_down(double x) {
   const double unit = std::pow(10, std::floor(std::log10(x)) - 1);
   return std::floor(x / unit) * unit;
 }
 
-/// Of what oscillates, how many steps follow the fastest swing: each sees it as a straight piece.
+/// Prints the number of steps in the shortest period of a body that oscillates: the body moves straight in
+/// each step.
 void print_motion(const Scene& scene) {
   constexpr double few_steps = 20;
   double frequency = 0;
@@ -92,10 +94,12 @@ void print_motion(const Scene& scene) {
                                             : ""));
   }
   if (!scene.servos.empty())
-    print_row("servos", fmt::format("{} that hold a force: steps are taken on Host", scene.servos.size()));
+    print_row("servos",
+              fmt::format("{} that hold a force: steps are taken on the processor", scene.servos.size()));
 }
 
-/// The cell, and how fast bodies may be in it: faster ones cost smaller substeps, or fail.
+/// Prints the periodic cell, and how fast bodies may be in it: with faster ones steps need smaller substeps,
+/// or fail.
 void print_period(const Scene& scene) {
   const Period& period = scene.bodies.period;
   if (!period.exists) return;
@@ -111,9 +115,9 @@ void print_period(const Scene& scene) {
                             period.most_margin / (tolerance::travel_factor * h), h));
 }
 
-/// Past these a run goes on, but a newcomer should know what to expect of it. Contacts reach as far as bodies
-/// travel in a substep: single impacts on a wall as thick as the ball hold to a travel of 4, and some fail
-/// from 8 on; two bodies meet at twice the speed.
+/// Beyond these values a run goes on, but its results may be poor. Contacts are found as far away as bodies
+/// travel in a substep: single impacts on a wall as thick as the ball are right up to a travel of 4, and some
+/// fail from 8 on; two bodies meet at twice the speed.
 constexpr double largest_travel = 2;
 constexpr double advised_travel = 1;
 constexpr double large_mass_ratio = 100;
@@ -125,6 +129,10 @@ void print_difficulty(const Scene& scene) {
     print_row("sizes", fmt::format("{:.3g} m (smallest radius or half edge) to {:.3g} m (largest radius)",
                                    d.least_size, d.largest_size));
   if (d.smallest_size == 0 || d.speed == 0) return;
+  if (!std::isfinite(d.speed)) {
+    print_row("speed", "too large to compute with: check velocities and spins, since a run fails at once");
+    return;
+  }
   const double travel = d.travel(scene.time.step / scene.time.substeps.value_or(1));
   print_row("speed", fmt::format("up to {:.3g} m/s{}", d.speed,
                                  d.fall > 0 ? fmt::format(", after a fall of {:.3g} m", d.fall) : ""));
@@ -132,17 +140,17 @@ void print_difficulty(const Scene& scene) {
                             travel > largest_travel
                                 ? fmt::format(": bodies may pass through each other; try step <= {:.2g}",
                                               rounded_down(scene.time.step * advised_travel / travel))
-                                : ": contacts are met in time"));
+                                : ": small enough"));
   if (d.mass_ratio > large_mass_ratio)
-    print_row("stiff",
-              fmt::format("mass ratio {:.3g}: heavy on light needs many sweeps; raise response.iterations or "
-                          "time.substeps if penetration is large",
+    print_row("mass ratio",
+              fmt::format("{:.3g}: heavy bodies on light ones need many sweeps; raise response.iterations or "
+                          "time.substeps if overlaps are large",
                           d.mass_ratio));
   if (d.largest_size > large_size_ratio * d.least_size)
-    print_row(
-        "stiff",
-        fmt::format("size ratio {:.3g}: the small bodies set the step, the large ones have many contacts",
-                    d.largest_size / d.least_size));
+    print_row("size ratio",
+              fmt::format("{:.3g}: the small bodies need a short time.step, and the large ones have many "
+                          "contacts",
+                          d.largest_size / d.least_size));
 }
 
 void print_model(const ModelPlan& plan) {
@@ -151,12 +159,12 @@ void print_model(const ModelPlan& plan) {
     print_row("", fmt::format("{:<16} {:<4} {}", f.name, f.on ? "on" : "off", f.reason));
   if (plan.restitution.on) {
     const RestitutionThreshold& threshold = plan.restitution_threshold;
-    print_row("",
-              threshold.any > 0
-                  ? fmt::format("contacts bounce that close faster than {:.4g} m/s", threshold.any)
-              : threshold.lossy > 0
-                  ? fmt::format("contacts bounce that close faster than (1 - e) {:.4g} m/s", threshold.lossy)
-                  : "every contact bounces, however slow");
+    print_row(
+        "",
+        threshold.any > 0 ? fmt::format("contacts bounce if they close faster than {:.4g} m/s", threshold.any)
+        : threshold.lossy > 0
+            ? fmt::format("contacts bounce if they close faster than (1 - e) * {:.4g} m/s", threshold.lossy)
+            : "every contact bounces, however slow");
   }
 }
 
@@ -193,7 +201,8 @@ const char* convex_words(ConvexMethod method) {
   return "separating axes and GJK";
 }
 
-/// Triangles, and the ways of contacts that boxes and spheres do not take; both on Host.
+/// Returns the number of triangles, and the method for shapes other than boxes and spheres; empty if there
+/// are neither. The contacts of both are found on Host.
 std::string general_words(const Scene& scene) {
   std::string words;
   if (const std::int64_t triangles = count_shape(scene, Shape::triangle))
@@ -202,7 +211,7 @@ std::string general_words(const Scene& scene) {
           count_shape(scene, Shape::polyhedron) >
       0)
     words += fmt::format("; capsules, cylinders and polyhedra by {}", convex_words(scene.narrowphase.convex));
-  return words.empty() ? words : words + "; on the host";
+  return words.empty() ? words : words + "; on the processor";
 }
 
 std::string mesh_words(const MeshBodies& mesh) {
@@ -233,11 +242,11 @@ std::string box_words(const Scene& scene) {
     case BoxBoxMethod::sat:
       return "closed forms; boxes by separating axes";
     case BoxBoxMethod::ccd_gjk:
-      return "closed forms; boxes by libccd's GJK and EPA, on the host";
+      return "closed forms; boxes by libccd's GJK and EPA, on the processor";
     case BoxBoxMethod::ccd_mpr:
-      return "closed forms; boxes by libccd's MPR, on the host";
+      return "closed forms; boxes by libccd's MPR, on the processor";
   }
-  return "closed forms; boxes by the measured best way";
+  return "closed forms; boxes by the fastest method measured";
 }
 
 std::string narrow_phase_words(const Scene& scene) { return box_words(scene) + general_words(scene); }
@@ -262,14 +271,15 @@ std::string memory_words(const Scene& scene) {
 }
 
 std::string response_words(const ResponseSettings& settings) {
-  const std::string sweeps = settings.iterations ? fmt::format("at most {} sweeps", *settings.iterations)
-                                                 : std::string("sweeps by the number of contact points");
-  const std::string tolerance =
-      settings.tolerance ? fmt::format("{:g} of their size", *settings.tolerance)
-                         : fmt::format("{:g} of their size, of a heap's {:g} (at most {:g} where it flows)",
-                                       tolerance::response_change, tolerance::heap_change / settings.quality,
-                                       tolerance::heap_change_in_flow / settings.quality);
-  return fmt::format("{}, until the impulses change by less than {}", sweeps, tolerance);
+  std::string words =
+      settings.iterations ? fmt::format("at most {} sweeps,", *settings.iterations) : "sweeps";
+  words += fmt::format(" until the impulses change by less than {:g} of their size",
+                       settings.tolerance.value_or(tolerance::response_change));
+  if (!settings.tolerance && settings.mode != ResponseMode::accurate)
+    words += fmt::format("; from {} contact points on, by less than {:g} ({:g} where they flow)",
+                         fewest_heap_points, tolerance::heap_change / settings.quality,
+                         tolerance::heap_change_in_flow / settings.quality);
+  return words;
 }
 
 struct OutputPlan {
@@ -279,31 +289,32 @@ struct OutputPlan {
   double bytes = 0;
 };
 
-/// Of a frame of the trajectory, before it is made smaller: by little while everything moves.
+/// Returns the bytes of a frame of the trajectory before compression, which saves little while everything
+/// moves.
 double trajectory_frame_bytes(const Scene& scene) {
   double row = 0;
   for (const BodyColumnSource& source : body_columns_of(*scene.record.trajectory))
     row += source.is_constant ? 0 : source.column.type.row();
-  constexpr int contacts_of_a_body = 3;  // of spheres in a dense heap
+  constexpr int contacts_of_a_body = 3;  // contacts per sphere in a dense heap
   if (scene.record.trajectory->contacts.value_or(false)) row += contacts_of_a_body * contact_bytes(scene);
   return row * static_cast<double>(scene.bodies.count());
 }
 
 OutputPlan plan_output(const Scene& scene, const TimeGrid& grid) {
   constexpr double bytes_per_number = 20;
-  constexpr double bytes_per_timing_row = 2000;  // some 30 stages
-  constexpr double bytes_per_pixel = 1.1;  // PNG of a scene full of small bodies, and its share of the movie
+  constexpr double bytes_per_timing_row = 2000;  // for some 30 stages
+  constexpr double bytes_per_pixel = 1.1;  // in a PNG full of small bodies, and in its share of the movie
   OutputPlan plan{.rows = Cadence(grid, scene.record.metrics_every).due(grid.last())};
   const double row =
       bytes_per_number * static_cast<double>(metric_names(scene).size()) + bytes_per_timing_row;
   constexpr double bytes_per_final_row = 300;
-  constexpr double bytes_per_saved_body = 600;  // of settled spheres, docs/reliability.md
-  constexpr int checkpoints = 3;                // the two that are kept, and the one that is written
+  constexpr double bytes_per_saved_body = 600;  // for settled spheres, docs/reliability.md
+  constexpr int checkpoints = 3;                // two are kept while a third one is written
   plan.bytes =
       row * static_cast<double>(plan.rows) +
       (bytes_per_final_row + checkpoints * bytes_per_saved_body) * static_cast<double>(scene.bodies.count());
   if (scene.record.trajectory) {
-    constexpr int copies = 2;  // the journal goes when the file is there
+    constexpr int copies = 2;  // the journal is removed only when the file is there
     plan.trajectory_frames = Cadence(grid, trajectory_period(scene)).due(grid.last());
     plan.bytes += copies * trajectory_frame_bytes(scene) * static_cast<double>(plan.trajectory_frames);
   }
@@ -322,6 +333,12 @@ std::string output_words(const Scene& scene, const OutputPlan& plan) {
   return words + fmt::format(", {} frames of {} x {}", plan.frames, scene.render.width, scene.render.height);
 }
 
+std::string substep_words(const Scene& scene) {
+  if (!scene.time.substeps)
+    return fmt::format("1 to {} substeps each, chosen by the overlaps", most_substeps(scene));
+  return fmt::format("{} substep{} each", *scene.time.substeps, *scene.time.substeps == 1 ? "" : "s");
+}
+
 }  // namespace
 
 int plan(const PlanArguments& arguments) {
@@ -335,11 +352,8 @@ int plan(const PlanArguments& arguments) {
   print_meshes(scene);
   print_emitters(scene);
   print_period(scene);
-  const std::string substeps = scene.time.substeps
-                                   ? std::to_string(*scene.time.substeps)
-                                   : fmt::format("1 to {}, as overlaps ask", most_substeps(scene));
-  print_row("time", fmt::format("{} s in {} steps of {} s, substeps {}", scene.time.end, grid.last(),
-                                scene.time.step, substeps));
+  print_row("time", fmt::format("{} s in {} steps of {} s, {}", scene.time.end, grid.last(), scene.time.step,
+                                substep_words(scene)));
   print_difficulty(scene);
   print_motion(scene);
   print_model(plan_model(scene));

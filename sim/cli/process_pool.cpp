@@ -36,23 +36,24 @@ void write_all(int descriptor, std::string_view text) {
   while (!text.empty()) {
     const ssize_t written = ::write(descriptor, text.data(), text.size());
     if (written < 0 && errno == EINTR) continue;
-    if (written < 0) _exit(1);  // the parent is gone
+    if (written < 0) _exit(1);  // the parent no longer reads
     text.remove_prefix(static_cast<std::size_t>(written));
   }
 }
 
-/// Noexcept: an exception that left the child's work would unwind into a copy of the parent.
+/// Runs the work and ends the process. It is noexcept, because an exception that left the work would unwind
+/// into a copy of the parent.
 [[noreturn]] void run_child(int k, const std::function<std::string(int)>& work, pid_t parent,
                             int pipe) noexcept {
   ::prctl(PR_SET_PDEATHSIG, SIGKILL);
-  if (getppid() != parent) _exit(1);  // it died before the line above
+  if (getppid() != parent) _exit(1);  // the parent died before the line above
   write_all(pipe, work(k));
   _exit(0);
 }
 
 Child start(int k, const std::function<std::string(int)>& work) {
   int ends[2];
-  std::fflush(nullptr);  // or the child would print it again
+  std::fflush(nullptr);  // otherwise the child would print it again
   if (::pipe(ends) != 0) throw RunError(fmt::format("cannot make a pipe: {}", std::strerror(errno)));
   const pid_t parent = getpid();
   const pid_t pid = ::fork();
@@ -65,7 +66,7 @@ Child start(int k, const std::function<std::string(int)>& work) {
   return {k, pid, ends[0], Clock::now(), {}};
 }
 
-/// Appends what has come from a child; false at its end.
+/// Appends the output that has come from a child; returns false at its end.
 bool receive(Child& child) {
   char buffer[4096];
   const ssize_t got = ::read(child.pipe, buffer, sizeof buffer);
@@ -103,7 +104,7 @@ void in_processes(int count, int at_once, const std::function<std::string(int)>&
                   const std::function<void(int, const ProcessResult&)>& done) {
   std::list<Child> children;
   std::vector<pollfd> waits;
-  std::map<int, ProcessResult> finished;  // waiting for those before them
+  std::map<int, ProcessResult> finished;  // results that wait for those before them
   int started = 0, handed = 0;
   while (handed < count) {
     while (started < count && static_cast<int>(children.size()) < at_once) {

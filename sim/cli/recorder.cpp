@@ -5,7 +5,7 @@
 namespace scree::cli {
 
 namespace {
-/// Few enough to cost nothing where the state has to come from a GPU.
+/// Number of recorded states: few enough to cost nothing even if the state has to be copied from a GPU.
 constexpr int states_of_a_run = 16;
 }  // namespace
 
@@ -49,7 +49,7 @@ void Recorder::record(Simulation& simulation) {
 
 void Recorder::record_last(Simulation& simulation) {
   if (last_row_ != simulation.steps()) return write_rows(simulation);
-  // The row may be one of before the run was resumed.
+  // The row may have been written before the run was resumed.
   newest_ = simulation.observe(true);
 }
 

@@ -1,4 +1,4 @@
-// Everything that a run writes as it goes: metrics, timing and frames at their cadences, and the checks.
+// The recorder of a run: it writes metrics, timing and frames when they are due, and evaluates the checks.
 #pragma once
 
 #include "sim/cli/console.hpp"
@@ -17,37 +17,41 @@
 
 namespace scree::cli {
 
-/// The present state of a simulation, as checks and metrics ask for it.
+/// Returns access to the present state of a simulation, for checks and metrics.
 Probe probe_of(Simulation& simulation);
 
 class Recorder {
  public:
-  /// Starts the files in the folder, or goes on with those that are there, once archive() has said up to
-  /// where. `draws`: what makes frames; none without. `threads` may help.
+  /// Starts the files in the folder, or continues those that are there, once archive() has said up to where.
+  /// `draws`: the way to OpenGL for pictures; without it there are none. `threads`: number of threads that
+  /// may compress.
   Recorder(const Scene& scene, const RunFolder& folder, Console& console,
            std::optional<render::ContextChoice> draws, int threads, AtomicFile::Opening opening);
 
-  /// What is due at the present state. To be called at t = 0 and after every step.
+  /// Records what is due at the present state. Must be called at t = 0 and after every step.
   void record(Simulation& simulation);
-  /// The last step of which all that was due is recorded.
+  /// Returns the last step of which everything that was due is recorded.
   std::int64_t recorded() const { return recorded_; }
-  /// A row for the present state, unless it has one; the newest observation is of it.
+  /// Writes a row for the present state, unless there is one. The newest observation is then that of this
+  /// state.
   void record_last(Simulation& simulation);
-  /// All that was recorded until the state was saved is on the disk; what came after is gone on loading.
+  /// Saves how far everything is written, after bringing that to the disk; on loading, removes what was
+  /// written after the state was saved.
   void archive(Archive& archive);
-  /// Every file gets its final name, and the frames become a movie.
+  /// Gives every file its final name, and makes the movie.
   void finish();
-  /// Nobody will go on with the run.
+  /// Removes what is only needed to continue the run.
   void drop();
 
-  /// The newest observation made: at most one row of the metrics old.
+  /// Returns the newest observation, which is at most one row of the metrics old.
   const Observation& newest() const { return newest_; }
-  double worst_penetration() const { return worst_penetration_; }  ///< of all rows so far (m)
+  double worst_penetration() const { return worst_penetration_; }  ///< deepest overlap of all rows so far (m)
   const WorstOverlap& worst_overlap() const { return worst_overlap_; }
   std::vector<CheckResult> check_results() const { return checks_.results(newest_.energy_scale); }
-  const std::vector<StateMark>& states() const { return states_; }  ///< some, all over the run
-  double wall() const { return timing_.wall(); }  ///< of the whole run, whatever stopped it (s)
-  /// Of the trajectory, once it is finished.
+  const std::vector<StateMark>& states() const { return states_; }  ///< some states, spread over the run
+  /// Returns the wall time of the whole run, without the time in which it was stopped (s).
+  double wall() const { return timing_.wall(); }
+  /// Returns the number of frames of the trajectory, once it is finished.
   std::int64_t trajectory_frames() const { return motion_ ? motion_->frames() : 0; }
   const Film* film() const { return film_ ? &*film_ : nullptr; }
 
@@ -62,7 +66,7 @@ class Recorder {
   std::optional<MotionRecorder> motion_;
   Observation newest_;
   std::int64_t recorded_ = -1;
-  std::int64_t last_row_ = -1;  ///< its step
+  std::int64_t last_row_ = -1;  ///< step of the last row
   double worst_penetration_ = 0;
   WorstOverlap worst_overlap_;
   std::vector<StateMark> states_;

@@ -1,4 +1,4 @@
-// scree render: the pictures of a run again, from its trajectory.
+// scree render: draws the pictures of a run again, from its trajectory.
 #include "core/error.hpp"
 #include "sim/cli/commands.hpp"
 #include "sim/cli/console.hpp"
@@ -18,40 +18,51 @@
 #include <filesystem>
 #include <optional>
 #include <unistd.h>
+#include <vector>
 
 namespace scree::cli {
 
 namespace {
 
-/// What pictures need of a body, and where the trajectory has it.
+/// The columns of the trajectory that pictures need; -1 for one that the trajectory does not have.
 struct StateColumns {
   int position, id, mobility, orientation, velocity;
 };
 
-/// Throws InputError where the pictures that the scene asks for show what the trajectory does not have.
-/// `contacts`: whether they are beside it.
+/// Returns the columns for the pictures of the scene. Throws InputError if the pictures show what the
+/// trajectory does not have. `contacts`: whether the run has a file of contacts.
 StateColumns columns_for(const Scene& scene, const TrajectoryReader& trajectory, bool contacts) {
-  const auto refuse = [](const char* what) {
-    throw InputError(fmt::format("the trajectory has no {}, which these pictures show", what));
+  const auto refuse = [](const char* what, const char* advice) {
+    throw InputError(fmt::format("the trajectory has no {}, which these pictures show; {}", what, advice));
   };
   const StateColumns columns{trajectory.column("position"), trajectory.column("id"),
                              trajectory.column("mobility"), trajectory.column("orientation"),
                              trajectory.column("velocity")};
-  if (shows_broad_phase(scene.render)) refuse("pairs and no grid");
-  if (shows_contacts(scene.render) && !contacts) refuse("contacts (record.trajectory.contacts)");
+  if (shows_broad_phase(scene.render))
+    refuse("pairs and no grid",
+           "only scree run can draw these, so choose another render.color or render.overlay");
+  if (shows_contacts(scene.render) && !contacts)
+    refuse("contacts",
+           "choose another render.color or render.overlay, or run the scene again with "
+           "record.trajectory.contacts=true");
   const bool shows_speed =
       scene.render.color == ColorBy::speed || scene.render.color == ColorBy::kinetic_energy;
-  if (shows_speed && columns.velocity < 0) refuse("velocity");
+  if (shows_speed && columns.velocity < 0)
+    refuse("velocity",
+           "choose another render.color, or run the scene again with record.trajectory.velocity=true");
   const bool has_more_than_spheres = std::ranges::any_of(
       scene.bodies.shape, [](Shape shape) { return shape != Shape::sphere && shape != Shape::plane; });
-  if (has_more_than_spheres && columns.orientation < 0) refuse("orientation");
-  if (columns.position < 0 || columns.id < 0 || columns.mobility < 0) refuse("places");
+  if (has_more_than_spheres && columns.orientation < 0)
+    refuse("orientation", "run the scene again with record.trajectory.orientation=true");
+  if (columns.position < 0 || columns.id < 0 || columns.mobility < 0)
+    refuse("positions, ids and mobilities", "run the scene again");
   return columns;
 }
 
+/// The states of a trajectory as frames to draw.
 class States {
  public:
-  /// Of the run in the folder.
+  /// `run`: the folder of the run.
   States(const Scene& scene, const std::filesystem::path& run)
       : scene_(scene), trajectory_(run / trajectory_name) {
     if (has_contacts(run)) contacts_.emplace(run / contacts_name);
@@ -107,18 +118,19 @@ class States {
   StateColumns columns_;
 };
 
-/// The frames of a trajectory in order, cut into as many parts as there are processes.
+/// The frames that a process draws: part k of all frames in their order.
 struct Part {
-  std::size_t first, last;  ///< the latter is the next part's
+  std::size_t first, last;  ///< first frame of this part and of the next one
 
   Part(std::size_t frames, int k, int parts)
       : first(frames * static_cast<std::size_t>(k) / static_cast<std::size_t>(parts)),
         last(frames * static_cast<std::size_t>(k + 1) / static_cast<std::size_t>(parts)) {}
 };
 
-/// What a process tells: what it drew with, and what it could not do.
+/// The message of a process to its parent.
 struct PartResult {
-  std::string renderer, trouble;
+  std::string renderer;  ///< the renderer that it has used
+  std::string trouble;   ///< the error that stopped it; empty if there was none
 
   std::string text() const { return renderer + '\n' + trouble; }
   static PartResult from(const ProcessResult& result) {
@@ -128,8 +140,8 @@ struct PartResult {
   }
 };
 
-/// In a child process: never throws. The trajectory is opened here, since processes that share an open file
-/// share its position.
+/// Draws part k of the frames. Runs in a child process and never throws. The trajectory is opened here, since
+/// processes that share an open file share its position.
 PartResult draw_part(const Scene& scene, const RenderArguments& arguments, const RunFolder& folder, int k,
                      int parts) {
   PartResult result;
@@ -150,8 +162,9 @@ PartResult draw_part(const Scene& scene, const RenderArguments& arguments, const
   return result;
 }
 
-/// A process for each core, but no more than there are frames or than have room in half of the free memory:
-/// each holds a few states, those being read, drawn and waiting, of some 200 bytes a body.
+/// Returns the number of processes: one for each core, but no more than there are frames, or than half of the
+/// free memory has room for. A process holds a few states, which are read, drawn or waiting, of some 200
+/// bytes a body.
 int jobs_for(const RenderArguments& arguments, const Scene& scene, std::size_t frames) {
   const double room =
       0.5 * static_cast<double>(sysconf(_SC_AVPHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGESIZE));
@@ -161,20 +174,30 @@ int jobs_for(const RenderArguments& arguments, const Scene& scene, std::size_t f
   return std::clamp(wanted, 1, std::max(static_cast<int>(frames), 1));
 }
 
+/// Returns the overrides for the run's scene. Another colour goes without the range of the run's colours,
+/// which is one of another quantity. Throws InputError if a key outside of `render` is to change.
+std::vector<Override> render_overrides(const RenderArguments& arguments) {
+  std::vector<Override> overrides = arguments.overrides;
+  for (const Override& override : arguments.overrides) {
+    if (override.path != "render" && !override.path.starts_with("render."))
+      throw InputError(
+          fmt::format("--set {}: only keys of `render` can change for a run that is done", override.path));
+    if (override.path == "render.color") overrides.insert(overrides.begin(), {"render.range", "auto"});
+  }
+  return overrides;
+}
+
 }  // namespace
 
 int render_again(const RenderArguments& arguments) {
-  for (const Override& override : arguments.overrides) {
-    if (override.path != "render" && !override.path.starts_with("render."))
-      throw InputError(fmt::format("--set {}: pictures of a run that is done can have another render alone",
-                                   override.path));
-  }
+  const std::vector<Override> overrides = render_overrides(arguments);
   const TrajectoryReader trajectory(arguments.run / trajectory_name);
-  const Scene scene = read_scene(arguments.run / "scene.yaml", arguments.overrides);
+  const Scene scene = read_scene(arguments.run / "scene.yaml", overrides);
   columns_for(scene, trajectory, States::has_contacts(arguments.run));
   expect_context(arguments.context);
-  const RunFolder folder(output_folder(arguments.output, arguments.run, "render"),
-                         arguments.overwrite ? RunFolder::Earlier::replaced : RunFolder::Earlier::refused);
+  const RunFolder folder(
+      output_folder(arguments.output, arguments.run, "render"),
+      arguments.overwrite ? RunFolder::Earlier::replaced : RunFolder::Earlier::refused_results);
   Console console(folder / "log.txt", AtomicFile::Opening::anew);
 
   const std::vector<TrajectoryFrame>& frames = trajectory.index().frames();

@@ -1,4 +1,4 @@
-// scree report: the page of a run, made again.
+// scree report: makes the page of a run again.
 #include "sim/record/report/report.hpp"
 
 #include "sim/cli/commands.hpp"

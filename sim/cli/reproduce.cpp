@@ -1,4 +1,4 @@
-// scree run --reproduce: a run again, its states beside those that its manifest has.
+// scree run --reproduce: runs a recorded run again and compares its states with those of its manifest.
 #include "core/error.hpp"
 #include "sim/cli/commands.hpp"
 #include "sim/cli/console.hpp"
@@ -32,7 +32,8 @@ int reproduce(const RunArguments& arguments) {
     fmt::print("{:>10}  {:>10.6g}  {}  {}{}\n", simulation.steps(), simulation.time(), hex(state.hash),
                hex(hash), same ? "" : "  DIFFERENT");
   }
-  fmt::print("{} states, {} different\n", recorded.states.size(), different);
+  fmt::print("{} states, {} different{}\n", recorded.states.size(), different,
+             different == 0 ? ": every state is the same to the last bit" : "");
   return different == 0 ? status_done : status_check_failed;
 }
 

@@ -1,4 +1,4 @@
-// scree run: a scene from its file to a run folder.
+// scree run: runs a scene file and writes a run folder.
 #include "core/error.hpp"
 #include "sim/cli/check_table.hpp"
 #include "sim/cli/checkpoints.hpp"
@@ -26,6 +26,7 @@
 #include <string_view>
 #include <thread>
 #include <utility>
+#include <vector>
 
 namespace scree::cli {
 
@@ -37,25 +38,22 @@ double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
-std::string duration_words(double seconds) {
-  if (seconds < 60) return fmt::format("{:.3g} s", seconds);
-  const auto whole = static_cast<std::int64_t>(seconds);
-  if (whole < 3600) return fmt::format("{}:{:02} min", whole / 60, whole % 60);
-  return fmt::format("{}:{:02} h", whole / 3600, whole / 60 % 60);
-}
-
-std::string progress_line(const Simulation& simulation, const Recorder& recorder, std::int64_t first_step,
-                          std::int64_t last_step, double end, double elapsed) {
+/// Returns the parts of a progress line, the most important one first.
+std::vector<std::string> progress_of(const Simulation& simulation, const Recorder& recorder,
+                                     std::int64_t first_step, std::int64_t last_step, double end,
+                                     double elapsed) {
   const Observation& seen = recorder.newest();
   const double rate = static_cast<double>(simulation.steps() - first_step) / elapsed;
   const double left = static_cast<double>(last_step - simulation.steps()) / rate;
-  return fmt::format(
-      "t {:.4g}/{:.4g} s, {:.3g} steps/s, {} left, {} contacts, penetration {:.2g} m, energy error {:.2g}",
-      simulation.time(), end, rate, duration_words(left), seen.contacts, recorder.worst_penetration(),
-      seen.unexplained);
+  return {fmt::format("t {:.4g}/{:.4g} s", simulation.time(), end),
+          fmt::format("{} left", duration_words(left)),
+          fmt::format("{} contacts", seen.contacts),
+          fmt::format("overlap {:.2g} m", recorder.worst_penetration()),
+          fmt::format("energy err. {:.2g}", seen.unexplained),
+          fmt::format("{:.3g} steps/s", rate)};
 }
 
-/// Steps until `last_step`, an interrupt, or the end of the wall time.
+/// Takes steps until `last_step` is done, an interrupt comes, or the wall time is used up.
 void advance(Simulation& simulation, Recorder& recorder, Checkpoints& checkpoints, Console& console,
              const RunArguments& arguments, std::int64_t last_step, double end) {
   const auto start = Clock::now();
@@ -69,25 +67,37 @@ void advance(Simulation& simulation, Recorder& recorder, Checkpoints& checkpoint
     recorder.record(simulation);
     checkpoints.take_if_due(simulation, recorder);
     if (console.wants_progress()) {
-      console.progress(progress_line(simulation, recorder, first_step, last_step, end, seconds_since(start)));
+      console.progress(progress_of(simulation, recorder, first_step, last_step, end, seconds_since(start)));
     }
   }
 }
 
+void say_checks(const std::vector<CheckResult>& checks, Console& console) {
+  if (checks.empty()) return;
+  console.say(check_header());
+  for (const std::string& line : check_lines(checks)) console.say(line);
+  console.say(check_counts(checks));
+}
+
+/// Says how a run whose last state is not the end of its scene goes on.
+void say_how_to_continue(const RunSummary& summary, Console& console) {
+  if (summary.steps >= summary.steps_total) return;
+  if (summary.status == "interrupted") console.say("to continue: the same command with --resume");
+  if (summary.status == "done")
+    console.say("to continue: the same command with --resume and without --until");
+}
+
 void say_summary(const Scene& scene, const RunSummary& summary, const RunFolder& folder, Console& console) {
-  console.say(fmt::format("{}: {} at t = {:.6g} s, {} steps in {} on {}, state {}", scene.name,
-                          summary.status, summary.time, summary.steps, duration_words(summary.wall),
+  const std::string of_all =
+      summary.steps < summary.steps_total ? fmt::format(" of {:.6g} s", scene.time.end) : "";
+  console.say(fmt::format("{}: {} at t = {:.6g} s{}, {} steps in {} on {}, state {}", scene.name,
+                          summary.status, summary.time, of_all, summary.steps, duration_words(summary.wall),
                           summary.space, hex(summary.state_hash)));
-  if (!summary.checks.empty()) {
-    const auto passed = std::ranges::count(summary.checks, Verdict::passed, &CheckResult::verdict);
-    console.say(check_header());
-    for (const std::string& line : check_lines(summary.checks)) console.say(line);
-    const auto failed = std::ranges::count_if(summary.checks, is_failure, &CheckResult::verdict);
-    const std::ptrdiff_t of_seeds = std::ssize(summary.checks) - passed - failed;
-    console.say(fmt::format(
-        "{} passed, {} failed{}", passed, failed,
-        of_seeds > 0 ? fmt::format(", {} told by many seeds alone: scree verify", of_seeds) : ""));
-  }
+  say_checks(summary.checks, console);
+  const auto [requested, emitted] = std::pair(summary.last.requested, summary.last.emitted);
+  if (requested > emitted)
+    console.say(fmt::format("emitters: {} of {} bodies found room; the others waited until the end", emitted,
+                            requested));
   if (summary.frames > 0) {
     console.say(fmt::format("pictures: {} frames in {}{}", summary.frames, folder.frames().string(),
                             summary.movie.empty() ? "" : ", " + (folder / summary.movie.c_str()).string()));
@@ -97,6 +107,7 @@ void say_summary(const Scene& scene, const RunSummary& summary, const RunFolder&
                             (folder / trajectory_name).string()));
   console.say(fmt::format("numbers:  {}", (folder / "metrics.csv").string()));
   console.say(fmt::format("report:   {}", (folder / report_name).string()));
+  say_how_to_continue(summary, console);
 }
 
 BodyTable state_of(const Simulation& simulation) {
@@ -109,7 +120,7 @@ constexpr const char* out_of_memory =
     "out of memory; --resume goes on from the last checkpoint where there is more, `scree plan` says how "
     "much";
 
-/// The step that failed as the manifest has it, and a picture of the place.
+/// Adds the bodies of the step that failed to the summary, and draws them.
 void say_failure(const StepFailure& failure, const Scene& scene, Simulation& simulation,
                  const RunFolder& folder, render::ContextChoice context, RunSummary& summary,
                  Console& console) {
@@ -121,37 +132,39 @@ void say_failure(const StepFailure& failure, const Scene& scene, Simulation& sim
   const std::filesystem::path file = folder / "failure.png";
   try {
     draw_failure(scene, simulation, failure.bodies(), context, file);
-    console.say(fmt::format("the place, as it was before: {}", file.string()));
+    console.say(fmt::format("picture:  the bodies named, before the step that failed: {}", file.string()));
   } catch (const RunError& error) {
-    console.warn(fmt::format("no picture of the place: {}", error.what()));
+    console.warn(fmt::format("there is no picture of the failure: {}", error.what()));
   }
 }
 
 GuardedRun about_guards(const Scene& scene, const WorstOverlap& worst) {
-  GuardedRun run{.worst = worst,
-                 .bodies = words_for({worst.bodies[0], worst.bodies[1]}, scene),
-                 .accurate = scene.response.mode == ResponseMode::accurate};
+  GuardedRun run{
+      .worst = worst,
+      .bodies = words_for({worst.bodies[0]}, scene) + " and " + words_for({worst.bodies[1]}, scene),
+      .accurate = scene.response.mode == ResponseMode::accurate};
   for (const ContactLaw& law : scene.laws) run.restitution = std::max(run.restitution, law.restitution);
   return run;
 }
 
-/// What guards and bounds have counted, where that changes whether to trust the run. The report has the rest.
-void say_guards(const RunSummary& summary, Console& console) {
+/// Says what guards and limits have counted where that changes whether to trust the run; the report has the
+/// rest. Warns of a large overlap that none of these lines names.
+void say_guards(const RunSummary& summary, const GuardedRun& run, Console& console) {
   for (const GuardCount& guard : summary.guards)
-    if (guard.count > 0 && guard.matters)
-      console.say(
-          fmt::format("guard: {} {}: {}; fewer by {}", guard.count, guard.what, guard.effect, guard.setting));
+    if (guard.count > 0 && guard.matters) console.say("warning: " + line_of(guard));
+  if (const std::string overlap = overlap_warning(summary.guards, run); !overlap.empty())
+    console.warn(overlap);
 }
 
-/// Whether the present state is one to go on from: no row or frame of it is missing. Where memory ran out,
-/// what contacts remember went with the step that was undone: going on from there would give other bits,
-/// while the checkpoint before it gives those of a run that nothing disturbed.
+/// Whether a run can be continued from the present state: no row or frame of it is missing. Where memory ran
+/// out, the step was undone and with it the values that contacts keep from step to step: a run continued from
+/// there would give other bits, while the checkpoint before it gives those of an undisturbed run.
 bool is_whole(const RunSummary& summary, const Simulation& simulation, const Recorder& recorder) {
   if (summary.error.empty()) return true;
   return summary.error != out_of_memory && recorder.recorded() == simulation.steps();
 }
 
-/// A page of what is there already: without it the run has come out no worse.
+/// Writes the report, which shows what other files hold: that it cannot be written does not fail the run.
 void try_report(const RunFolder& folder) {
   try {
     write_report(folder.path());
@@ -170,7 +183,8 @@ RunFolder::Earlier what_becomes_of_an_earlier_run(const RunArguments& arguments)
   return arguments.overwrite ? RunFolder::Earlier::replaced : RunFolder::Earlier::refused;
 }
 
-/// Threads that may help the run: where it is on a GPU the processor has nothing else to do.
+/// Returns the number of threads that may compress what the run writes: all cores if the steps are taken on a
+/// GPU, since the processor then has nothing else to do.
 int helpers_of(const Simulation& simulation, const RunArguments& arguments) {
   const auto cores = static_cast<int>(std::thread::hardware_concurrency());
   return simulation.space_name() == std::string_view("cuda") && arguments.simulation.threads == 0
@@ -178,7 +192,16 @@ int helpers_of(const Simulation& simulation, const RunArguments& arguments) {
              : 1;
 }
 
-/// A run whose folder is open: its steps, and what is written when they end, in whichever way they do.
+/// Refuses --resume if the finished run in the folder is one of another scene.
+void expect_same_scene(const Scene& scene, const RunFolder& folder) {
+  if (read_manifest(folder / "manifest.json").scene_hash != scene_hash_of(scene))
+    throw InputError(fmt::format(
+        "--resume: the run in {} is finished, and its scene is another one; use -o DIR, or --overwrite",
+        folder.path().string()));
+}
+
+/// A run whose folder is open: takes its steps, and writes what is to be written when they end, in whichever
+/// way they do.
 class Run {
  public:
   Run(const RunArguments& arguments, const Scene& scene, const RunFolder& folder, Simulation& simulation,
@@ -204,7 +227,7 @@ class Run {
     finish_files();
     complete_summary();
     say_summary(scene_, summary_, folder_, console_);
-    say_guards(summary_, console_);
+    say_guards(summary_, about_guards(scene_, recorder_.worst_overlap()), console_);
     console_.close();
     summary_.warnings = console_.warnings();
     write_file(folder_ / "manifest.json", manifest_of(scene_, summary_));
@@ -217,8 +240,8 @@ class Run {
   }
 
  private:
-  /// Does a part of the run. If it fails the run has failed, but the other parts are still done; the first
-  /// error is the one that counts.
+  /// Does a part of the run. If the part fails, the run has failed, but the other parts are still done; the
+  /// first error is the one that the manifest has.
   void attempt(const std::function<void()>& part) {
     const auto fail = [&](const char* why) {
       if (summary_.error != why) console_.error(why);
@@ -298,10 +321,13 @@ int run(const RunArguments& arguments) {
   if (draws) expect_context(*draws);
   Simulation simulation(scene, arguments.simulation);
 
-  // Only now is the input known to be good, and something is written.
+  // The folder is opened only now that the input is known to be good: bad input writes nothing.
   const RunFolder folder(arguments.output.empty() ? "output/" + scene.name : arguments.output.string(),
                          what_becomes_of_an_earlier_run(arguments));
-  if (arguments.resume && steps_done(folder / "manifest.json") >= last_step) {
+  const std::optional<std::int64_t> done =
+      arguments.resume ? steps_done(folder / "manifest.json") : std::nullopt;
+  if (done >= last_step) {
+    expect_same_scene(scene, folder);
     fmt::print("{}: done, there is nothing to resume\n", folder.path().string());
     return status_done;
   }
@@ -309,7 +335,10 @@ int run(const RunArguments& arguments) {
                           draws.has_value());
   std::vector<std::string> warnings;
   const bool resumes = arguments.resume && checkpoints.find(warnings);
-  if (arguments.resume && !resumes) folder.clear();
+  if (arguments.resume && !resumes) {
+    if (done) expect_same_scene(scene, folder);
+    folder.clear();
+  }
   const auto opening = resumes ? AtomicFile::Opening::again : AtomicFile::Opening::anew;
   Console console(folder / "log.txt", opening);
   for (const std::string& warning : warnings) console.warn(warning);
@@ -321,7 +350,7 @@ int run(const RunArguments& arguments) {
     folder.remove_results();
     console.say(fmt::format("resumed at t = {:.6g} s, step {}", simulation.time(), simulation.steps()));
   } else if (arguments.resume) {
-    console.say("no checkpoint: from the beginning");
+    console.say("no checkpoint: from the beginning, which replaces what was in the folder");
   }
 
   return Run(arguments, scene, folder, simulation, checkpoints, console, recorder).to_end(last_step, end);

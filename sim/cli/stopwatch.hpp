@@ -1,11 +1,11 @@
-// Time that a thread spends on something.
+// The measurement of the time that a thread spends on something.
 #pragma once
 
 #include <chrono>
 
 namespace scree::cli {
 
-/// Adds its own lifetime to an account (s).
+/// Adds its own lifetime to `seconds` (s).
 class Stopwatch {
  public:
   explicit Stopwatch(double& seconds) : seconds_(seconds) {}

@@ -1,5 +1,5 @@
-// scree study: a scene in every combination of some settings, its errors and its speed; tables, plots, and
-// the settings that no others beat.
+// scree study: runs a scene in every combination of some settings, and writes tables and plots of its errors
+// and its speed, with the settings that no others beat.
 #include "sim/record/study.hpp"
 
 #include "core/error.hpp"
@@ -31,7 +31,7 @@ std::vector<Override> with(const std::vector<Override>& settings, const StudyArg
   return all;
 }
 
-/// In a child process: never throws.
+/// Runs the scene with some settings for its errors. Runs in a child process and never throws.
 SceneOutcome find_errors(const std::vector<Override>& settings, const StudyArguments& arguments) {
   SceneOutcome outcome{.scene = arguments.scene.string()};
   try {
@@ -43,7 +43,8 @@ SceneOutcome find_errors(const std::vector<Override>& settings, const StudyArgum
   return outcome;
 }
 
-/// Likewise; by `wall` (s per simulated second).
+/// Runs the scene with some settings for its cost, which it returns as `wall` (s per simulated second). Runs
+/// in a child process and never throws.
 SceneOutcome find_cost(const std::vector<Override>& settings, const StudyArguments& arguments) {
   SceneOutcome outcome{.scene = arguments.scene.string()};
   try {
@@ -66,14 +67,14 @@ double median(std::vector<double> values) {
   return *middle;
 }
 
-/// Errors of several combinations at once, then the time of each by itself: all once, then all again, so that
-/// a machine that slows down slows all alike.
+/// Finds the errors, several combinations at a time, and then the times, one run at a time. All combinations
+/// are timed once, then all again: so a machine that slows down slows all of them alike.
 Study carry_out(const StudyArguments& arguments, int at_once) {
   Study study{.scene = arguments.scene.stem().string(), .variations = arguments.variations, .points = {}};
   for (const auto& settings : combinations(arguments.variations)) study.points.push_back({settings});
   const int count = static_cast<int>(study.points.size());
   const auto point = [&study](int k) -> StudyPoint& { return study.points[static_cast<std::size_t>(k)]; };
-  fmt::print("{} combinations; errors, {} at a time:\n", count, at_once);
+  fmt::print("{} combinations. Measuring errors, {} runs at a time:\n", count, at_once);
   in_processes(
       count, at_once, [&](int k) { return to_json(find_errors(point(k).settings, arguments)); },
       [&](int k, const ProcessResult& result) {
@@ -84,7 +85,7 @@ Study carry_out(const StudyArguments& arguments, int at_once) {
                    outcome.message.empty() ? fmt::format("{:.3g} s", result.wall) : outcome.message);
         std::fflush(stdout);
       });
-  fmt::print("times, one at a time, median of {}:\n", arguments.repeats);
+  fmt::print("Measuring times, one run at a time, median of {}:\n", arguments.repeats);
   std::vector<std::vector<double>> times(study.points.size());
   in_processes(
       count * arguments.repeats, 1,
@@ -106,14 +107,18 @@ Study carry_out(const StudyArguments& arguments, int at_once) {
 }
 
 void print_check(const Study& study, std::size_t check) {
-  fmt::print("\nerror of {}\n  {:>10}  {:>12}  settings (* on the front)\n", study.checks()[check], "error",
-             "s per sim. s");
+  if (study.has_no_error(check)) {
+    fmt::print("\nno error of {}: a check with `above` has one only with `expect`\n", study.checks()[check]);
+    return;
+  }
+  fmt::print("\nerror of {}\n  {:>10}  {:>12}  settings (* = no other is faster and as exact)\n",
+             study.checks()[check], "error", "s per sim. s");
   const std::vector<std::size_t> front = pareto_front(study, check);
   for (std::size_t k = 0; k < study.points.size(); ++k) {
     const StudyPoint& point = study.points[k];
     const bool best = std::ranges::find(front, k) != front.end();
     fmt::print("{} {:>10}  {:>12}  {}\n", best ? '*' : ' ',
-               std::isfinite(point.error(check)) ? fmt::format("{:.2e}", point.error(check)) : "outside",
+               std::isfinite(point.error(check)) ? fmt::format("{:.2e}", point.error(check)) : "no result",
                std::isfinite(point.cost) ? fmt::format("{:.4g}", point.cost) : "-", describe(point.settings));
   }
   for (const Curve& curve : curves_of(study)) {
@@ -130,7 +135,7 @@ void print_check(const Study& study, std::size_t check) {
 }
 
 void draw(const Study& study, const RunFolder& folder) {
-  std::string place;  // in gnuplot's quotes, where two of them are one
+  std::string place;  // the folder for gnuplot's single quotes, in which two of them are one
   for (const char c : folder.path().string()) place += c == '\'' ? std::string("''") : std::string(1, c);
   for (std::size_t k = 0; k < study.checks().size(); ++k) {
     if (pareto_front(study, k).empty()) continue;
@@ -148,18 +153,22 @@ void draw(const Study& study, const RunFolder& folder) {
 }  // namespace
 
 int study(const StudyArguments& arguments) {
-  if (arguments.variations.empty()) throw InputError("study: nothing varies; give --vary KEY=V1,V2,...");
+  if (arguments.variations.empty())
+    throw InputError("--vary KEY=V1,V2,... is missing: study needs at least one setting to vary");
   std::string name;
   // Every combination is read before the first one runs: bad input writes nothing.
   for (const auto& settings : combinations(arguments.variations)) {
     const Scene scene = read_scene(arguments.scene, with(settings, arguments));
-    if (scene.checks.empty())
+    if (std::ranges::none_of(scene.checks, gives_error))
       throw InputError(
-          fmt::format("{}: has no checks, so that nothing says what its error is", arguments.scene.string()));
+          fmt::format("{}: has no check with `expect`, or with `below` alone, so that nothing says "
+                      "what its error is",
+                      arguments.scene.string()));
     name = scene.name;
   }
-  const RunFolder folder(arguments.output.empty() ? "output/" + name + "-study" : arguments.output.string(),
-                         arguments.overwrite ? RunFolder::Earlier::replaced : RunFolder::Earlier::refused);
+  const RunFolder folder(
+      arguments.output.empty() ? "output/" + name + "-study" : arguments.output.string(),
+      arguments.overwrite ? RunFolder::Earlier::replaced : RunFolder::Earlier::refused_results);
   const int threads = std::max(arguments.simulation.threads, 1);
   const int at_once = std::max(static_cast<int>(machine_info().cores) / threads, 1);
   const Study result = carry_out(arguments, at_once);

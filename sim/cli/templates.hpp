@@ -1,4 +1,4 @@
-// The scenes of `scree new`: the files of sim/cli/templates, built into the program.
+// The scenes of `scree new`: the files of sim/cli/templates, which are built into the program.
 #pragma once
 
 #include <string_view>
@@ -11,7 +11,7 @@ struct Template {
   std::string_view text;  ///< a scene file; its first line is a comment that says what it is
 };
 
-/// By name.
+/// Returns the templates, sorted by name.
 const std::vector<Template>& templates();
 
 }  // namespace scree::cli

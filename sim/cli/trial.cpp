@@ -43,7 +43,7 @@ void check_seeds(const Scene& scene, const std::vector<Override>& overrides) {
 std::vector<CheckResult> run_checks(const Scene& scene, const std::vector<Override>& overrides,
                                     const SimulationOptions& options) {
   if (scene.seeds == 1) return run_once(scene, options);
-  // Before the first run, which may take long.
+  // The seeds are checked before the first run, which may take long.
   check_seeds(scene, overrides);
   std::vector<std::vector<CheckResult>> runs;
   for (int k = 0; k < scene.seeds; ++k) runs.push_back(run_once(read_seed(scene, overrides, k), options));

@@ -1,4 +1,4 @@
-// One run of a scene for its checks or its time alone: no folder, no pictures.
+// A run of a scene only for its checks or its time: without a folder and without pictures.
 #pragma once
 
 #include "sim/record/checks.hpp"
@@ -13,12 +13,12 @@ namespace scree::cli {
 /// seed.
 void check_seeds(const Scene& scene, const std::vector<Override>& overrides);
 
-/// The checks of a scene that was read with the `overrides`, of all its seeds together. Throws what
-/// check_seeds() and a run may.
+/// Runs a scene with each of its seeds and returns the results of its checks, combined over the seeds.
+/// `overrides`: those with which the scene was read. Throws the errors of check_seeds() and of a run.
 std::vector<CheckResult> run_checks(const Scene& scene, const std::vector<Override>& overrides,
                                     const SimulationOptions& options);
 
-/// Wall time of all steps, with nothing measured on the way (s).
+/// Returns the wall time of all steps, without any measurement between them (s).
 double time_steps(const Scene& scene, const SimulationOptions& options);
 
 }  // namespace scree::cli

@@ -1,5 +1,5 @@
-// scree verify: every scene that has checks, several at once; the table of what was measured and what was
-// expected.
+// scree verify: runs every scene that has checks, several at a time, and prints a table of what was measured
+// and what was expected.
 #include "core/error.hpp"
 #include "sim/cli/check_table.hpp"
 #include "sim/cli/commands.hpp"
@@ -9,11 +9,15 @@
 #include "sim/record/build_info.hpp"
 #include "sim/record/files.hpp"
 #include "sim/record/outcome.hpp"
+#include "sim/scene/reader.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <cstdio>
+#include <cstring>
+#include <unistd.h>
 
 namespace scree::cli {
 
@@ -23,8 +27,8 @@ namespace fs = std::filesystem;
 
 bool is_scene(const fs::path& file) { return file.extension() == ".yaml" || file.extension() == ".yml"; }
 
-/// The scene files under the paths, each once, sorted within each path so that the table does not depend on
-/// the disk.
+/// Returns the scene files under the paths, each once, sorted within each path so that the table does not
+/// depend on the order in which the disk has them.
 std::vector<fs::path> scenes_under(const std::vector<fs::path>& paths) {
   std::vector<fs::path> scenes;
   const auto add = [&scenes](const fs::path& file) {
@@ -62,7 +66,7 @@ struct Job {
   SceneOutcome outcome() const { return {.scene = file.string(), .settings = describe(settings)}; }
 };
 
-/// In a child process: never throws.
+/// Runs a scene for its checks. Runs in a child process and never throws.
 SceneOutcome verify_scene(const Job& job, const VerifyArguments& arguments) {
   SceneOutcome outcome = job.outcome();
   try {
@@ -110,7 +114,8 @@ void print_outcome(const SceneOutcome& outcome) {
   std::fflush(stdout);
 }
 
-/// A line for each settings, if they vary: what passed, and how long it took in all.
+/// Prints a line for each combination of settings, if they vary: the number of checks that passed and failed,
+/// and the sum of the wall times.
 void print_matrix(const std::vector<SceneOutcome>& outcomes) {
   const auto groups = by_settings(outcomes);
   if (groups.size() < 2) return;
@@ -123,9 +128,30 @@ void print_matrix(const std::vector<SceneOutcome>& outcomes) {
   }
 }
 
+/// Throws InputError if the table could not be written after the scenes have run, which may take hours.
+void expect_writable(const fs::path& file) {
+  if (file.empty()) return;
+  const fs::path folder = file.has_parent_path() ? file.parent_path() : ".";
+  if (!fs::is_directory(folder))
+    throw InputError(fmt::format("--json: {}: there is no such folder", folder.string()));
+  if (access(folder.c_str(), W_OK) != 0)
+    throw InputError(fmt::format("--json: cannot write in {}: {}", folder.string(), std::strerror(errno)));
+  if (fs::is_directory(file)) throw InputError(fmt::format("--json: {}: is a folder", file.string()));
+}
+
+/// Throws InputError if every scene was left out: a misspelt label is no success.
+void expect_some_run(const std::vector<SceneOutcome>& outcomes, const std::string& label) {
+  const auto was_run = [](const SceneOutcome& outcome) { return outcome.left_out.empty(); };
+  if (std::ranges::any_of(outcomes, was_run)) return;
+  throw InputError("no scene was run: " + (label.empty()
+                                               ? std::string("all were left out")
+                                               : "none with checks has the label " + printable(label)));
+}
+
 }  // namespace
 
 int verify(const VerifyArguments& arguments) {
+  expect_writable(arguments.json);
   std::vector<Job> jobs;
   for (const fs::path& file : scenes_under(arguments.paths)) {
     for (const auto& settings : combinations(arguments.variations)) jobs.push_back({file, settings});
@@ -149,6 +175,7 @@ int verify(const VerifyArguments& arguments) {
       tally.left_out == 0 ? "" : fmt::format(", scenes left out: {}", tally.left_out);
   fmt::print("{} passed, {} failed{}\n", tally.passed, tally.failed, left_out);
   if (!arguments.json.empty()) write_file(arguments.json, to_json(outcomes));
+  expect_some_run(outcomes, arguments.label);
   return std::ranges::max(outcomes, {}, &SceneOutcome::status).status;
 }
 

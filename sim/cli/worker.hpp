@@ -16,18 +16,18 @@ template <class Item>
 class Worker {
  public:
   /// `work` runs on the thread, and is destroyed there once no more items can come. At most `most_waiting`
-  /// items wait for it.
+  /// items wait in the queue.
   Worker(std::size_t most_waiting, std::function<void(Item&)> work)
       : most_waiting_(most_waiting), thread_([this, work = std::move(work)]() mutable {
           run(work);
           work = nullptr;
         }) {}
-  /// Items that still wait are given up; finish() comes first unless something has failed.
+  /// Drops items that still wait; finish() must be called before, unless something has failed.
   ~Worker() { stop(true); }
   Worker(const Worker&) = delete;
   Worker& operator=(const Worker&) = delete;
 
-  /// Hands over an item; waits while there is no room. Throws what the work has thrown.
+  /// Hands over an item; waits while there is no room. Throws the exception that the work has thrown.
   void push(Item item) {
     std::unique_lock lock(mutex_);
     changed_.wait(lock, [this] { return items_.size() < most_waiting_ || failure_; });
@@ -36,14 +36,14 @@ class Worker {
     changed_.notify_all();
   }
 
-  /// Waits until everything is done. Throws what the work has thrown.
+  /// Waits until everything is done. Throws the exception that the work has thrown.
   void drain() {
     std::unique_lock lock(mutex_);
     changed_.wait(lock, [this] { return (items_.empty() && !busy_) || failure_; });
     if (failure_) std::rethrow_exception(failure_);
   }
 
-  /// Waits until everything is done; no more items can come. Throws what the work has thrown.
+  /// Waits until everything is done; no more items can come. Throws the exception that the work has thrown.
   void finish() {
     stop(false);
     if (failure_) std::rethrow_exception(failure_);
@@ -90,9 +90,9 @@ class Worker {
   std::condition_variable changed_;
   std::deque<Item> items_;
   bool stopping_ = false;
-  bool busy_ = false;  // with an item that no longer waits
+  bool busy_ = false;  // whether the thread works on an item, which is no longer in the queue
   std::exception_ptr failure_;
-  std::thread thread_;  // last: it uses all the others
+  std::thread thread_;  // declared last, since it uses all the others
 };
 
 }  // namespace scree::cli

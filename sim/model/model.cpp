@@ -123,7 +123,7 @@ ModelPlan plan_model(const Scene& scene) {
   plan.restitution = choose("restitution", scene.model.restitution, any_law(&ContactLaw::restitution),
                             "some pair bounces", "no pair bounces");
   plan.continuous = choose("continuous", scene.model.continuous, true,
-                           "in substeps where some body is fast for the sizes", "");
+                           "in substeps in which a body moves far for its size", "");
   plan.gravity = {"gravity", gravity > 0,
                   gravity == 0         ? "none"
                   : scene.gravity_turn ? "bodies have weight, which turns"

@@ -111,10 +111,12 @@ void require_one_image(const Period& period, const Array<double, Space>& contact
   if (!period.exists) return;
   const double margin = largest_margin<Space>(contact_margin);
   if (margin <= period.most_margin) return;
-  throw RunError(fmt::format(
-      "a body may travel {:.3g} m within a substep, but in this period no more than {:.3g} m can be looked "
-      "over without meeting a body through two of its images; try a smaller time.step or a longer period",
-      margin, period.most_margin));
+  throw RunError(
+      fmt::format("a body may travel {:.3g} m within a substep, but the periodic cell is so short that at "
+                  "most {:.3g} m is "
+                  "allowed: farther, it could meet one body through two images; try a smaller time.step or a "
+                  "longer period",
+                  margin, period.most_margin));
 }
 
 }  // namespace

@@ -38,7 +38,7 @@ std::uint64_t checksum_of(const SavedField& field) {
   return hash_of(field.bytes.data(), static_cast<std::size_t>(field.bytes.size()));
 }
 
-/// Returns the place of its bytes in the file; that of no bytes is 0.
+/// Writes a field. Returns the position of its bytes in the file; 0 if it has none.
 haddr_t write_field(hid_t file, hid_t links, const SavedField& field) {
   const std::array<hsize_t, 2> extent = {static_cast<hsize_t>(field.rows()),
                                          static_cast<hsize_t>(field.type.columns)};
@@ -61,7 +61,8 @@ std::string first_line_of(std::string_view rest) {
   return fmt::format("{}{:016x}\n", head_words, hash_of(rest.data(), rest.size()));
 }
 
-/// A line for each field. Their lengths do not depend on `head`, the bytes before the HDF5 file.
+/// Returns the directory, with a line for each field. The lengths of the lines do not depend on `head`, the
+/// number of bytes before the HDF5 part.
 std::string directory_of(const SavedState& state, const std::vector<haddr_t>& places, std::size_t head) {
   std::string lines;
   for (std::size_t k = 0; k < places.size(); ++k) {
@@ -72,15 +73,15 @@ std::string directory_of(const SavedState& state, const std::vector<haddr_t>& pl
   return lines + '\n';
 }
 
-/// The whole file in memory: so a disk that is full is told by the system's words, and never by the library
-/// half way.
+/// Returns the whole file. It is made in memory, so that a full disk is reported in the words of the system,
+/// and never by the library half way.
 std::string file_of(const SavedState& state) {
   const hdf5::Session session;
   constexpr std::size_t most_overhead = 1 << 20;
-  constexpr std::size_t least_head = 512;  // HDF5's readers look there, and wherever it is twice as far
+  constexpr std::size_t least_head = 512;  // HDF5's readers look there, and at every larger power of two
   const std::size_t most = state.bytes() + most_overhead;
-  // The library does not always look whether it was given memory, so what it and the copy take is asked for
-  // before.
+  // The library does not always check whether it was given memory, so the memory for it and for the copy is
+  // taken once before.
   Host::deallocate(Host::allocate(2 * most));
   const Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose, "make settings");
   check(H5Pset_fapl_core(access, most, false), "work in memory");
@@ -114,7 +115,7 @@ std::string bytes_of(const fs::path& file) {
   return bytes;
 }
 
-/// A field by its line of the directory, its bytes from the file's.
+/// Returns the field that a line of the directory describes, with its bytes from the file.
 SavedField field_of(std::string_view line, std::string_view file) {
   const auto size = std::ssize(file);
   SavedField field{{}, take_type(line), {}};
@@ -128,18 +129,19 @@ SavedField field_of(std::string_view line, std::string_view file) {
   return field;
 }
 
-/// The fields by the directory. HDF5 does not look at what may be hostile.
+/// Returns the fields that the directory describes. The HDF5 part is not read, since HDF5 does not check
+/// input that may be hostile.
 SavedState state_of(std::string_view file) {
   SavedState state;
-  std::int64_t left = std::ssize(file);  // bytes are of one field, or of none
+  std::int64_t left = std::ssize(file);  // a byte belongs to at most one field
   for (std::size_t at = first_line_bytes;;) {
     const std::size_t end = file.find('\n', at);
-    if (end == std::string_view::npos) throw RunError("is none: its directory has no end");
+    if (end == std::string_view::npos) throw RunError("is not valid: its directory has no end");
     if (end == at) return state;
     state.fields.push_back(field_of(file.substr(at, end - at), file));
     at = end + 1;
     left -= state.fields.back().bytes.size();
-    if (left < 0) throw RunError("is none: its fields have more bytes than the file");
+    if (left < 0) throw RunError("is not valid: its fields have more bytes than the file");
   }
 }
 
@@ -161,7 +163,7 @@ SavedState read_checkpoint(const fs::path& file) try {
   if (all.size() < first_line_bytes || !all.starts_with(head_words))
     throw RunError("is no checkpoint of this version");
   if (!all.starts_with(first_line_of(all.substr(first_line_bytes))))
-    throw RunError("is damaged: its checksum is another");
+    throw RunError("is damaged: its checksum is wrong");
   return state_of(all);
 } catch (const RunError& error) {
   throw RunError(fmt::format("{}: {}", file.string(), error.what()));
@@ -173,7 +175,7 @@ std::vector<fs::path> CheckpointFolder::files() const {
   for (const auto& entry : fs::directory_iterator(folder_, none)) {
     if (entry.path().extension() == ".h5") files.push_back(entry.path());
   }
-  // Their numbers are as wide.
+  // The names sort by their numbers, which all have the same width.
   std::ranges::sort(files, std::greater());
   return files;
 }

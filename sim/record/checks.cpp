@@ -17,7 +17,7 @@ namespace {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
-/// In the order of Reduce.
+/// The words in the order of Reduce.
 constexpr std::array<const char*, 7> reduce_words = {"",          "max of ",   "min of ",      "mean of ",
                                                      "drift of ", "range of ", "crossings of "};
 
@@ -39,12 +39,13 @@ std::string describe_expectation(const Check& check) {
 
 bool is_energy(const Measure& measure) { return measure.info->unit == "J"; }
 
-/// The larger of the tolerances given; none means equality to the bit.
+/// Returns the larger of the tolerances given; without any it is 0, so that the value must be equal to the
+/// bit.
 double allowance(const Check& check, double unit) {
   return std::max(check.tolerance.value_or(0), check.relative.value_or(0) * unit);
 }
 
-/// Sets margin, error and verdict by what was measured, within its interval if it has one.
+/// Sets margin, error and verdict from the measured value, and from its confidence interval if it has one.
 void decide(const Check& check, CheckResult& result) {
   double margin = std::numeric_limits<double>::infinity();
   bool passed = true;
@@ -60,13 +61,12 @@ void decide(const Check& check, CheckResult& result) {
   if (check.below) limit(*check.below - result.measured);
   if (check.above) limit(result.measured - *check.above);
   result.margin = margin;
-  result.error = check.expect  ? std::abs(result.measured - *check.expect)
-                 : check.below ? std::abs(result.measured)
-                               : std::max(*check.above - result.measured, 0.0);
+  result.error = gives_error(check) ? std::abs(result.measured - check.expect.value_or(0)) : nan;
   result.verdict = passed ? Verdict::passed : Verdict::failed;
 }
 
-/// Half the width of the interval that holds the mean of what the values are drawn from, by Student's t.
+/// Returns half the width of the confidence interval of the mean of the distribution from which the values
+/// are drawn, by Student's t.
 double half_width_of_mean(const std::vector<double>& values, double mean, double confidence) {
   const auto n = static_cast<double>(values.size());
   double squares = 0;
@@ -75,7 +75,7 @@ double half_width_of_mean(const std::vector<double>& values, double mean, double
   return boost::math::quantile(distribution, 0.5 * (1 + confidence)) * std::sqrt(squares / (n * (n - 1)));
 }
 
-/// Of the runs, as the mean that they are samples of.
+/// Returns the result of a check of the mean over all runs, of which each run is a sample.
 CheckResult pooled_mean(const Check& check, const std::vector<CheckResult>& runs) {
   std::vector<double> values;
   double tolerance = 0;
@@ -109,7 +109,8 @@ void Series::add(double time, double value) {
   min_ = std::min(min_, value);
   max_ = std::max(max_, value);
   sum_ += value;
-  // A value on the level is on neither side: touching it and turning back is no crossing.
+  // A value on the level is on neither side: a measure that touches the level and turns back does not cross
+  // it.
   const int side = (value > level_) - (value < level_);
   if (side != 0 && side_ != 0 && side != side_) ++crossings_;
   if (side != 0) side_ = side;
@@ -188,11 +189,12 @@ CheckResult Checks::judge(const Watch& watch, double energy_scale) {
   } else if (const auto time = watch.series.bad_time()) {
     result.problem = fmt::format("not a finite number at {} s", *time);
   } else if (watch.series.count() < watch.last - watch.first + 1) {
+    result.verdict = Verdict::not_reached;
     result.problem = "the run stopped before that";
   }
   if (!result.problem.empty()) return result;
 
-  // Energies have no natural zero to be relative to: they compare relative to the run's energy scale.
+  // Energies have no natural zero, so relative tolerances of energies are relative to the run's energy scale.
   double unit = std::abs(check.expect.value_or(0));
   result.measured = watch.series.result();
   if (is_energy(watch.measure)) {
@@ -213,7 +215,8 @@ std::vector<CheckResult> pooled(const std::vector<Check>& checks,
   for (std::size_t c = 0; c < checks.size(); ++c) {
     std::vector<CheckResult> of_check;
     for (const auto& run : runs) of_check.push_back(run[c]);
-    const auto silent = std::ranges::find(of_check, Verdict::not_evaluated, &CheckResult::verdict);
+    const auto silent =
+        std::ranges::find_if(of_check, [](const CheckResult& result) { return !result.problem.empty(); });
     if (silent != of_check.end()) {
       results.push_back(*silent);
     } else if (checks[c].confidence) {

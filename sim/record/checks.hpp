@@ -1,4 +1,4 @@
-// The scene's own acceptance test, evaluated as the run goes on.
+// The checks of a scene, which are evaluated during the run.
 #pragma once
 
 #include "core/archive.hpp"
@@ -14,7 +14,7 @@
 
 namespace scree {
 
-/// Access to the present state. What is not asked for is not computed: `overlaps` cost a narrow phase.
+/// Access to the present state. Only what is requested is computed: `overlaps` need a narrow phase.
 struct Probe {
   std::function<const Observation&(bool overlaps)> observe;
   std::function<BodyState(std::int32_t)> body;
@@ -22,30 +22,35 @@ struct Probe {
   double value(const Measure& measure) const;
 };
 
-/// of_seeds: a single run cannot tell; see pooled().
-enum class Verdict { passed, failed, not_evaluated, of_seeds };
+/// The outcome of a check. not_evaluated: its values are not finite, or no step lies in its interval.
+/// not_reached: the run stopped before its time. of_seeds: a single run cannot decide it; see pooled().
+enum class Verdict { passed, failed, not_evaluated, not_reached, of_seeds };
 
-/// What could not be evaluated has not passed.
+/// Whether the check fails the run: one that could not be evaluated, or was not reached, has not passed.
 inline bool is_failure(Verdict verdict) {
-  return verdict == Verdict::failed || verdict == Verdict::not_evaluated;
+  return verdict == Verdict::failed || verdict == Verdict::not_evaluated || verdict == Verdict::not_reached;
 }
 
-/// How one check came out.
+/// Whether a check says which value would be exact: the one that it expects, or 0 if it has `below` alone. A
+/// check with `above` and no expected value does not.
+inline bool gives_error(const Check& check) { return check.expect || (check.below && !check.above); }
+
+/// The result of one check.
 struct CheckResult {
-  std::string check;                      ///< in words: "max of penetration.max over 1 to 6"
-  std::string expected;                   ///< in words: "1.428571", "below 1e-05"
-  std::optional<double> tolerance = {};   ///< absolute, in the unit of `measured`
-  double measured = 0;                    ///< NaN if not evaluated
-  std::optional<double> half_width = {};  ///< of the confidence interval about `measured`
-  double margin = 0;  ///< to the nearest limit, in the unit of `measured`; negative: beyond it
-  /// How far from ideal, in the unit of `measured`: from what is expected; if that is only `below`, from 0;
-  /// if only `above`, what is missing. NaN if not evaluated.
+  std::string check;                      ///< the check in words: "max of penetration.max over 1 to 6"
+  std::string expected;                   ///< the expectation in words: "1.428571", "below 1e-05"
+  std::optional<double> tolerance = {};   ///< absolute tolerance, in the unit of `measured`
+  double measured = 0;                    ///< measured value; NaN if not evaluated
+  std::optional<double> half_width = {};  ///< half width of the confidence interval about `measured`
+  double margin = 0;  ///< distance to the nearest limit, in the unit of `measured`; negative beyond it
+  /// Distance from the exact value, in the unit of `measured`. NaN if the check was not evaluated, or if
+  /// gives_error() is false for it.
   double error = 0;
   Verdict verdict = Verdict::not_evaluated;
-  std::string problem = {};  ///< why it could not be evaluated
+  std::string problem = {};  ///< the reason why the check could not be evaluated
 };
 
-/// The values of one measure, reduced as they come.
+/// The reduction of the values of one measure, updated with each value.
 class Series {
  public:
   Series() = default;
@@ -53,9 +58,9 @@ class Series {
 
   void add(double time, double value);
   std::int64_t count() const { return count_; }
-  /// NaN if there was no value.
+  /// Returns the reduced value; NaN if there was no value.
   double result() const;
-  /// Time of the first value that was NaN or infinite.
+  /// Returns the time of the first value that was NaN or infinite.
   std::optional<double> bad_time() const { return bad_time_; }
 
  private:
@@ -63,7 +68,7 @@ class Series {
   double level_ = 0;
   std::int64_t count_ = 0;
   double first_ = 0, latest_ = 0, min_ = 0, max_ = 0, sum_ = 0;
-  int side_ = 0;  ///< of the level on which the last value that was off it lay
+  int side_ = 0;  ///< side of the level on which the last value lay that was not on the level
   std::int64_t crossings_ = 0;
   std::optional<double> bad_time_;
 };
@@ -73,12 +78,10 @@ class Checks {
   /// Throws InputError if a measure does not exist in the scene.
   Checks(const Scene& scene, const TimeGrid& grid);
 
-  /// To be called after every step, and at step 0; asks of the probe only what a check needs there.
+  /// Must be called at step 0 and after every step. Requests from the probe only what a check needs then.
   void record(std::int64_t step, const Probe& probe);
 
-  /// One for each check of the scene, in order. A check whose time the run did not reach, or whose values are
-  /// not all finite, has not been evaluated, which is not a pass. `energy_scale` is that of the whole run
-  /// (J).
+  /// Returns a result for each check of the scene, in order. `energy_scale` is that of the whole run (J).
   std::vector<CheckResult> results(double energy_scale) const;
   void archive(Archive& archive);
 
@@ -86,8 +89,8 @@ class Checks {
   struct Watch {
     Check check;
     Measure measure;
-    std::int64_t first, last;  ///< steps that count; none if first > last
-    bool within_run;           ///< false: asks for a time after the end
+    std::int64_t first, last;  ///< first and last step that count; none counts if first > last
+    bool within_run;           ///< whether its time is not after the scene's end
     Series series;
   };
   static CheckResult judge(const Watch& watch, double energy_scale);
@@ -96,9 +99,10 @@ class Checks {
   std::vector<Watch> watches_;
 };
 
-/// The results of an ensemble's runs, each of all checks, as one: of a check with a confidence the mean of
-/// the runs and its interval by Student's t, of others the run with the least margin; where some run could
-/// not evaluate a check, that.
+/// Combines the results of an ensemble's runs, each of which has a result for every check, into one result
+/// for each check. A check with a confidence gets the mean of the runs and its interval by Student's t,
+/// another one the result of the run with the least margin. If a run could not evaluate a check, the result
+/// is that of this run.
 std::vector<CheckResult> pooled(const std::vector<Check>& checks,
                                 const std::vector<std::vector<CheckResult>>& runs);
 

@@ -20,7 +20,7 @@ namespace fs = std::filesystem;
 
 constexpr double infinite = std::numeric_limits<double>::infinity();
 
-/// A column that both have.
+/// A column that both tables have.
 struct Common {
   std::size_t in_a, in_b;
   double scale = 0;
@@ -43,7 +43,7 @@ struct Common {
   }
 };
 
-/// The columns that both have; those that one has alone are unlike.
+/// Returns the columns that both tables have. Adds a line to `unlike` for each of the others.
 std::vector<Common> common_columns(const Table& a, const Table& b, const std::string& name, Comparison& out) {
   std::vector<Common> common;
   for (std::size_t k = 0; k < a.columns().size(); ++k) {
@@ -51,10 +51,10 @@ std::vector<Common> common_columns(const Table& a, const Table& b, const std::st
     if (const std::optional<std::size_t> other = b.find(column))
       common.push_back({k, *other, 0, {.column = name + ' ' + column}});
     else
-      out.unlike.push_back(fmt::format("{} {}: in the first alone", name, column));
+      out.unlike.push_back(fmt::format("{} {}: only in the first run", name, column));
   }
   for (const std::string& column : b.columns()) {
-    if (!a.find(column)) out.unlike.push_back(fmt::format("{} {}: in the second alone", name, column));
+    if (!a.find(column)) out.unlike.push_back(fmt::format("{} {}: only in the second run", name, column));
   }
   return common;
 }
@@ -71,7 +71,7 @@ void compare_tables(const fs::path& file_a, const fs::path& file_b, Comparison& 
   }
   if (more_a != more_b)
     out.unlike.push_back(
-        fmt::format("{}: the {} has more rows than {}", name, more_a ? "first" : "second", row));
+        fmt::format("{}: the {} run has more rows than {}", name, more_a ? "first" : "second", row));
   out.rows += row;
   out.columns += std::ssize(common);
   for (Common& column : common) {
@@ -83,10 +83,14 @@ void compare_tables(const fs::path& file_a, const fs::path& file_b, Comparison& 
 
 }  // namespace
 
+bool Comparison::differences_are_within(double relative, double absolute) const {
+  return std::ranges::all_of(differences, [=](const ColumnDifference& difference) {
+    return difference.relative <= relative || difference.largest <= absolute;
+  });
+}
+
 bool Comparison::is_within(double relative, double absolute) const {
-  return unlike.empty() && std::ranges::all_of(differences, [=](const ColumnDifference& difference) {
-           return difference.relative <= relative || difference.largest <= absolute;
-         });
+  return unlike.empty() && differences_are_within(relative, absolute);
 }
 
 Comparison compare_runs(const fs::path& a, const fs::path& b) {
@@ -95,7 +99,7 @@ Comparison compare_runs(const fs::path& a, const fs::path& b) {
   const bool final_a = fs::exists(a / "final.csv"), final_b = fs::exists(b / "final.csv");
   if (final_a && final_b) compare_tables(a / "final.csv", b / "final.csv", comparison);
   if (final_a != final_b)
-    comparison.unlike.push_back(fmt::format("final.csv: in the {} alone", final_a ? "first" : "second"));
+    comparison.unlike.push_back(fmt::format("final.csv: only in the {} run", final_a ? "first" : "second"));
   return comparison;
 }
 

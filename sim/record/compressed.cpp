@@ -1,4 +1,4 @@
-// zlib is included here alone.
+// The compression, in the only file that includes zlib.
 #include "sim/record/compressed.hpp"
 
 #include "core/error.hpp"
@@ -11,7 +11,7 @@ namespace scree {
 
 namespace {
 
-/// Byte b of number k stands at [b][k] of the one, and at [k][b] of the other.
+/// Transposes a matrix of bytes: the byte at [b][k] of `from` comes to [k][b] of `to`.
 void transpose(const std::byte* from, std::byte* to, std::size_t rows, std::size_t columns) {
   for (std::size_t column = 0; column < columns; ++column) {
     for (std::size_t row = 0; row < rows; ++row) to[column * rows + row] = from[row * columns + column];
@@ -23,7 +23,8 @@ const Bytef* input(const std::byte* bytes) { return reinterpret_cast<const Bytef
 }  // namespace
 
 std::string compressed(std::span<const std::byte> numbers, int width) {
-  // The fastest: the slowest takes three times as long for 2 % of the size (docs/decisions/0032).
+  // This is the fastest level: the slowest takes three times as long for 2 % of the size
+  // (docs/decisions/0032).
   constexpr int level = 1;
   const auto bytes = static_cast<std::size_t>(width);
   std::vector<std::byte> shuffled(numbers.size());
@@ -32,7 +33,7 @@ std::string compressed(std::span<const std::byte> numbers, int width) {
   std::string out(size, '\0');
   const int status =
       compress2(reinterpret_cast<Bytef*>(out.data()), &size, input(shuffled.data()), shuffled.size(), level);
-  if (status != Z_OK) throw std::bad_alloc();  // all else that it could say is ruled out
+  if (status != Z_OK) throw std::bad_alloc();  // all other errors are ruled out here
   out.resize(size);
   return out;
 }

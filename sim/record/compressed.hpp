@@ -1,5 +1,4 @@
-// Numbers made smaller as HDF5's filters `shuffle` and `deflate` do it, so that it reads what is written
-// here.
+// Compression of numbers as by the filters `shuffle` and `deflate` of HDF5, so that HDF5 can read the result.
 #pragma once
 
 #include <cstddef>
@@ -8,10 +7,11 @@
 
 namespace scree {
 
-/// Numbers of `width` bytes each; the bytes of the same significance come together, then RFC 1950.
+/// Compresses numbers of `width` bytes each: the bytes of the same significance are put together, and the
+/// result is compressed as in RFC 1950.
 std::string compressed(std::span<const std::byte> numbers, int width);
 
-/// The other way. Throws RunError unless it gives exactly as many bytes as there is room for.
+/// Decompresses into `numbers`. Throws RunError unless the result has exactly the size of `numbers`.
 void decompress(std::span<const std::byte> from, int width, std::span<std::byte> numbers);
 
 }  // namespace scree

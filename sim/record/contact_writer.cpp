@@ -14,7 +14,7 @@ namespace scree {
 
 namespace {
 
-/// One row: a contact as one of its bodies feels it.
+/// One row: a contact as it acts on one of its bodies.
 struct ContactEnd {
   Vec3 position, force, point;
   std::int32_t id, other;
@@ -53,7 +53,8 @@ ContactEnd end_of(const BodyTable& bodies, const ContactForce& contact, bool sec
           .other = second ? contact.i : contact.j};
 }
 
-/// Ends of a few contacts a body: what is left of a chunk is zeros, which take next to nothing.
+/// Expected number of rows for each body, from a few contacts. The unused rest of a chunk is zeros, which
+/// take hardly any space.
 constexpr std::int64_t expected_ends = 8;
 
 }  // namespace
@@ -110,7 +111,7 @@ std::vector<ContactForce> contact_forces(TrajectoryReader& contacts, std::size_t
     return static_cast<std::int32_t>(number);
   };
   std::vector<ContactForce> found;
-  // The second row of each is as the second body feels it.
+  // The second row of each contact has the force on its second body.
   for (std::size_t row = 1; row < id.size(); row += 2)
     found.push_back({body(other[row]), body(id[row]), Eigen::Map<const Vec3>(&force[3 * row]),
                      Eigen::Map<const Vec3>(&point[3 * row])});

@@ -1,5 +1,5 @@
-// The contacts that carry a force, as they are written to contacts.vtkhdf: lines from body to body, which are
-// the force chains of a packing.
+// The writer of contacts.vtkhdf: the contacts that carry a force, as lines from body to body, which are the
+// force chains of a packing.
 #pragma once
 
 #include "core/archive.hpp"
@@ -15,27 +15,27 @@
 
 namespace scree {
 
-/// In the folder of a run.
+/// The name of the file in the folder of a run.
 inline constexpr const char* contacts_name = "contacts.vtkhdf";
 
-/// Where the line of a contact ends at one of its bodies (m): at its centre, in a periodic space that of the
-/// image that touches there, or at the contact if the body does not move, for the centre of a floor is
-/// nowhere near.
+/// Returns the point at which the line of a contact ends at one of its bodies (m). It is the centre of the
+/// body, in a periodic space that of the image that touches there. If the body does not move it is the
+/// contact point, since the centre of a floor may be far away.
 Vec3 contact_end(const BodyTable& bodies, std::int32_t body, const Vec3& point);
 
-/// What a contact takes in a frame, before it is made smaller (bytes).
+/// Returns the number of bytes of a contact in a frame, before compression.
 double contact_bytes(const Scene& scene);
 
-/// Two rows for each contact, one as each of its two bodies feels it; a line joins them. Columns: `position`
-/// (m), where the line ends; `force` on the body (N); `point`, where it acts (m); `id` of the body, and
-/// `other`, that of the one that it touches.
-/// contact_forces() reads them again.
+/// The writer of a frame's contacts. A contact has two rows, one for each of its two bodies; a line joins
+/// them. The columns are `position` (m), the end of the line; `force` on the body (N); `point`, at which the
+/// force acts (m); `id` of the body, and `other`, the id of the body that it touches. contact_forces() reads
+/// them again.
 class ContactWriter {
  public:
-  /// See FrameJournal.
+  /// The parameters are those of FrameJournal.
   ContactWriter(const Scene& scene, std::filesystem::path file, AtomicFile::Opening opening, int threads);
 
-  /// Adds a frame: the contacts of the last substep before the snapshot.
+  /// Adds a frame of the contacts of the last substep before the snapshot.
   void append(const Snapshot& snapshot, const std::vector<ContactForce>& contacts);
   void archive(Archive& archive) { journal_.archive(archive); }
   void finish() { journal_.finish(); }
@@ -46,8 +46,8 @@ class ContactWriter {
   FrameJournal journal_;
 };
 
-/// The contacts of a frame that ContactWriter has written, among bodies fewer than `bodies`. Throws
-/// InputError if they cannot be read, or are of others.
+/// Returns the contacts of a frame that ContactWriter has written. `bodies` is the number of bodies of the
+/// scene. Throws InputError if the contacts cannot be read, or if they are those of other bodies.
 std::vector<ContactForce> contact_forces(TrajectoryReader& contacts, std::size_t frame, std::int64_t bodies);
 
 }  // namespace scree

@@ -1,4 +1,4 @@
-// A frame of a trajectory with all its columns, as exports take it, and its numbers as text.
+// A frame of a trajectory with all its columns, for exports, and its numbers as text.
 #pragma once
 
 #include "core/bodies.hpp"
@@ -15,11 +15,11 @@ namespace scree {
 struct ExportFrame {
   TrajectoryFrame frame;
   const std::vector<TrajectoryColumn>& about;
-  std::vector<std::vector<double>> numbers;  ///< of each column, row by row
+  std::vector<std::vector<double>> numbers;  ///< numbers of each column, row by row
 
   std::size_t rows() const { return static_cast<std::size_t>(frame.rows); }
   std::optional<std::size_t> find(std::string_view name) const;
-  /// Throws InputError if there is none of that name.
+  /// Returns the number of the column of this name. Throws InputError if there is none.
   std::size_t require(std::string_view name) const;
   double number(std::size_t column, std::size_t row, std::size_t component = 0) const {
     return numbers[column][row * static_cast<std::size_t>(about[column].type.columns) + component];
@@ -27,17 +27,17 @@ struct ExportFrame {
   Vec3 vector(std::size_t column, std::size_t row) const {
     return {number(column, row, 0), number(column, row, 1), number(column, row, 2)};
   }
-  /// Throws InputError if it is none of this version's.
+  /// Returns the shape of the body in a row. Throws InputError if it is not a shape of this version.
   Shape shape(std::size_t column, std::size_t row) const;
 };
 
-/// All columns of a frame, in the order of the trajectory. Throws InputError if they cannot be read.
+/// Reads all columns of a frame, in the order of the trajectory. Throws InputError if they cannot be read.
 ExportFrame read_export_frame(TrajectoryReader& trajectory, std::size_t frame);
 
-/// The shortest text that reads back to the same number of its type.
+/// Appends the shortest text that reads back to the same number of its type.
 void append_number(std::string& text, double number, const FieldType& type);
 
-/// All components of a column in a row, each after `separator`.
+/// Appends all components of a column in a row, each after `separator`.
 void append_row(std::string& text, const ExportFrame& frame, std::size_t column, std::size_t row,
                 char separator);
 

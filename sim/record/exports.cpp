@@ -25,7 +25,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// position_x, ... orientation_w, ... shape: as the columns are.
+/// Returns a table of the columns in their order: position_x, ... orientation_w, ... shape.
 std::string csv_of(const ExportFrame& frame) {
   constexpr std::string_view vector = "xyz", quaternion = "wxyz";
   std::string text;
@@ -47,8 +47,8 @@ std::string csv_of(const ExportFrame& frame) {
   return text;
 }
 
-/// The first column as points, each a vertex, or each two that follow one another a line. Takes the frame's
-/// numbers: there may be many.
+/// Returns PolyData with the first column as points. Each point is a vertex, or each two consecutive points
+/// are the ends of a line. Consumes the numbers of the frame, as there may be many.
 template <Cells cells>
 std::string vtp_of(ExportFrame& frame) {
   constexpr bool lines = cells == Cells::lines;
@@ -69,7 +69,7 @@ std::string vtp_of(ExportFrame& frame) {
 
 using TextOf = std::function<std::string(ExportFrame&)>;
 
-/// Every frame into one file.
+/// Writes all frames into one file.
 fs::path export_to_file(TrajectoryReader& trajectory, const fs::path& file, const TextOf& text_of) {
   AtomicFile out(file);
   for (std::size_t f = 0; f < trajectory.index().frames().size(); ++f) {
@@ -87,7 +87,7 @@ fs::path make_folder(fs::path folder) {
   return folder;
 }
 
-/// A file for each frame, named by its number.
+/// Writes a file for each frame, named by its number.
 fs::path export_to_files(TrajectoryReader& trajectory, const fs::path& folder, const char* ending,
                          const TextOf& text_of) {
   make_folder(folder);
@@ -98,7 +98,7 @@ fs::path export_to_files(TrajectoryReader& trajectory, const fs::path& folder, c
   return folder;
 }
 
-/// A collection of files: which are there at which time, in parts.
+/// A PVD file: a list of files with their times, in parts.
 class PvdFile {
  public:
   void add(double time, std::optional<std::size_t> part, const std::string& file) {
@@ -118,7 +118,7 @@ class PvdFile {
   std::string sets_;
 };
 
-/// A file for each frame in the folder `name`, and `collection`, which names them.
+/// Writes a file for each frame in the folder `name`, and the file `collection` with their names.
 fs::path export_to_vtp(TrajectoryReader& trajectory, const fs::path& folder, const char* name,
                        const char* collection, const TextOf& text_of) {
   export_to_files(trajectory, folder / name, "vtp", text_of);
@@ -128,7 +128,7 @@ fs::path export_to_vtp(TrajectoryReader& trajectory, const fs::path& folder, con
   return pvd.write(folder / collection);
 }
 
-/// What one file shows in all frames, and how it is made.
+/// The files of one kind of shapes in all frames, and how they are made.
 struct ShapeFiles {
   const char* name;
   bool (*holds)(Shape shape);
@@ -136,9 +136,9 @@ struct ShapeFiles {
 };
 constexpr std::array<ShapeFiles, 2> shape_files = {
     {{"surfaces", has_surface, surfaces_of}, {"axes", has_axis, axes_of}}};
-constexpr std::array<const char*, 2> movement_words = {"fixed", "moving"};  // in the order of Movement
+constexpr std::array<const char*, 2> movement_words = {"fixed", "moving"};  // words in the order of Movement
 
-/// Whether bodies of such shapes are in any frame, by Movement.
+/// Returns, for each Movement, whether any frame has bodies of such shapes.
 std::array<bool, 2> census(TrajectoryReader& trajectory, bool (*holds)(Shape)) {
   std::array<bool, 2> found{};
   const int shape = trajectory.column("shape"), mobility = trajectory.column("mobility");
@@ -155,8 +155,8 @@ std::array<bool, 2> census(TrajectoryReader& trajectory, bool (*holds)(Shape)) {
   return found;
 }
 
-/// A part of the collection for each kind of movement that there is. A frame that is as the one before has no
-/// file of its own.
+/// Writes a part of the collection for each kind of movement that there is. A frame that is equal to the one
+/// before has no file of its own.
 fs::path export_shape_files(TrajectoryReader& trajectory, const ShapeFiles& files,
                             const std::array<bool, 2>& found, const HullOf& hull_of, const fs::path& folder) {
   make_folder(folder / files.name);

@@ -21,7 +21,7 @@ namespace fs = std::filesystem;
   throw RunError(fmt::format("cannot {} {}: {}", what, file.string(), std::strerror(errno)));
 }
 
-/// A rename is on the disk only once its folder is.
+/// Brings a folder to the disk: a rename is on the disk only once its folder is.
 void sync_folder(const fs::path& folder) {
   const int descriptor = ::open(folder.c_str(), O_RDONLY | O_CLOEXEC);
   if (descriptor < 0) fail("open", folder);
@@ -69,7 +69,7 @@ void AtomicFile::write(std::string_view text) {
 
 void AtomicFile::take_back(std::size_t bytes) const {
   const off_t length = ::lseek(descriptor_, 0, SEEK_END);
-  // Where even that fails nothing is left to try: the caller fails anyway.
+  // If even this fails there is nothing left to try: the caller fails anyway.
   if (length >= 0) std::ignore = ::ftruncate(descriptor_, length - static_cast<off_t>(bytes));
 }
 
@@ -97,8 +97,10 @@ void AtomicFile::archive(Archive& archive) {
   const std::int64_t found = length;
   archive("length", length);
   if (found < length)
-    throw RunError(fmt::format("{}: {} bytes of {} are left; --overwrite starts from the beginning",
-                               part_of(file_).string(), found, length));
+    throw RunError(
+        fmt::format("{}: {} bytes of {} are left, so the run cannot be continued; --overwrite starts from "
+                    "the beginning",
+                    part_of(file_).string(), found, length));
   if (::ftruncate(descriptor_, length) != 0) fail("shorten", part_of(file_));
 }
 

@@ -1,5 +1,5 @@
-// Files that appear under their name only when complete: written aside as NAME.part, brought to the disk,
-// renamed. A reader, or a run that died half way, never leaves or sees half a file under a final name.
+// Files that appear under their name only when they are complete: they are written as NAME.part, brought to
+// the disk, and renamed. So a run that died leaves no half file under a final name, and no reader sees one.
 #pragma once
 
 #include "core/archive.hpp"
@@ -10,29 +10,31 @@
 
 namespace scree {
 
-/// A text file that grows while it is written. Everything throws RunError with the path and the system's
-/// reason (disk full, no permission...).
+/// A text file that is written piece by piece. Every function throws RunError with the path and the system's
+/// reason (disk full, no permission...) if it fails.
 class AtomicFile {
  public:
   enum class Opening {
     anew,
-    again  ///< to go on with what is there, complete or not, if anything; archive() says up to where
+    again  ///< continues the file that is there, complete or not, if any; archive() says up to which byte
   };
   explicit AtomicFile(std::filesystem::path file, Opening opening = Opening::anew);
-  /// Without commit() the part stays: it may be all that is left of a run that died.
+  /// Leaves NAME.part if commit() was not called: it may be all that is left of a run that died.
   ~AtomicFile();
   AtomicFile(const AtomicFile&) = delete;
   AtomicFile& operator=(const AtomicFile&) = delete;
 
-  /// Unbuffered, so that a run can be watched as it goes. All of it or, where that fails, nothing: no half
-  /// row is left.
+  /// Appends the text without a buffer, so that a run can be watched while it writes. If not all of it can be
+  /// written, none of it is: no half row is left.
   void write(std::string_view text);
+  /// Brings the file to the disk and gives it its name.
   void commit();
-  /// What it is called until then.
+  /// Returns the name of the file before commit().
   std::filesystem::path part() const;
-  /// Removes it instead.
+  /// Removes the file; for use instead of commit().
   void discard();
-  /// What was written until the state was saved is on the disk; what was written since is gone after loading.
+  /// Saves how far the file is written, after bringing that to the disk; on loading, removes what was written
+  /// after the state was saved.
   void archive(Archive& archive);
 
  private:
@@ -42,7 +44,7 @@ class AtomicFile {
   int descriptor_ = -1;
 };
 
-/// A whole file at once.
+/// Writes a whole file at once.
 void write_file(const std::filesystem::path& file, std::string_view text);
 
 }  // namespace scree

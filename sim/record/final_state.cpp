@@ -23,7 +23,7 @@ void append(std::string& text, const Vec3& v) {
   fmt::format_to(std::back_inserter(text), ",{},{},{}", v.x(), v.y(), v.z());
 }
 
-/// Vertices in the hull's own frame, in their order, and its faces.
+/// Returns an OBJ file with the vertices in the hull's own frame, in their order, and its faces.
 std::string obj_of(const Hull& hull) {
   std::string text;
   const auto out = std::back_inserter(text);
@@ -36,7 +36,8 @@ std::string obj_of(const Hull& hull) {
   return text;
 }
 
-/// Rows of bodies, in the order of BodyColumn. The columns from `hull` on are there where a body needs them.
+/// The rows of the table, with the columns in the order of BodyColumn. Columns from `hull` on are written
+/// only if a body needs them.
 class Rows {
  public:
   Rows(const BodyTable& bodies, const Scene& scene, fs::path folder)
@@ -80,7 +81,8 @@ class Rows {
   }
 
  private:
-  /// To the bit. A polyhedron's never does: its hull's volume is made anew.
+  /// Whether the mass follows from the density to the bit. That of a polyhedron never does, as the volume of
+  /// its hull is computed anew.
   bool follows_from_density(std::size_t k, double density) const {
     return bodies_.shape[k] != Shape::polyhedron &&
            1 / (density * volume_of(bodies_.shape[k], bodies_.size[k])) == bodies_.inverse_mass[k];
@@ -107,7 +109,8 @@ class Rows {
     }
   }
 
-  /// Written when its first body is; empty of other bodies.
+  /// Returns the name of the body's hull file, which is written for the first body that has the hull; empty
+  /// for other shapes.
   std::string hull_file(std::size_t k) {
     if (bodies_.shape[k] != Shape::polyhedron) return {};
     const Hull* hull = scene_.geometry->of_body[index_of(bodies_.id[k])].hull;
@@ -137,7 +140,7 @@ class Rows {
   const Scene& scene_;
   fs::path folder_;
   bool has_hulls_ = false, has_servos_ = false;
-  std::map<BodyNumber, const Servo*> servos_;  ///< by their bodies
+  std::map<BodyNumber, const Servo*> servos_;  ///< servos by their bodies
   std::map<const Hull*, std::string> hull_files_;
 };
 

@@ -1,5 +1,5 @@
-// Frames of rows in columns, as they are written: to a journal, which becomes a VTKHDF file when all are
-// there. So a run that dies half way can go on with it, and readers never see half a file.
+// The frames of a trajectory while they are written: to a journal, from which a VTKHDF file is made when all
+// are there. So a run that dies half way can be continued, and readers never see half a file.
 #pragma once
 
 #include "core/archive.hpp"
@@ -16,35 +16,38 @@
 
 namespace scree {
 
-/// Simulated time and size of a frame, and where its numbers come from.
+/// The simulated time and the size of a frame, and the source of its numbers.
 struct FrameSource {
   TrajectoryFrame frame;
-  /// Sets the numbers of rows first, first + 1, ... of a column, as its type has them. From several threads.
+  /// Sets the numbers of rows first, first + 1, ... of a column, in the column's type. It is called from
+  /// several threads.
   std::function<void(std::size_t column, std::int64_t first, std::int64_t rows, std::span<std::byte> out)>
       write;
-  /// Whether a column is that of the frame before, which then has as many rows: it is not written again.
+  /// Whether a column is equal to that of the frame before, which then has as many rows: it is not written
+  /// again.
   std::function<bool(std::size_t column)> is_kept;
 };
 
 class FrameJournal {
  public:
-  /// `expected_rows`: of a large frame. `threads` compress. Everything throws RunError with the path and the
-  /// reason if the disk does not take it.
+  /// `expected_rows`: number of rows of a large frame. `threads`: number of threads that compress. All
+  /// functions throw RunError with the path and the reason if the disk does not take the data.
   FrameJournal(std::vector<TrajectoryColumn> columns, std::int64_t expected_rows, Cells cells,
                std::filesystem::path file, AtomicFile::Opening opening, int threads);
 
   void append(const FrameSource& source);
-  /// What was added until the state was saved is on the disk; what was added since is gone on loading.
+  /// Saves how far the journal is written, after bringing that to the disk; on loading, removes what was
+  /// added after the state was saved.
   void archive(Archive& archive);
-  /// Writes the file. The journal stays until drop(): the run may have to go on with it.
+  /// Writes the file. The journal stays until drop(), since the run may have to be continued.
   void finish();
-  /// Nobody will go on with it: removes the journal.
+  /// Removes the journal, as the run will not be continued.
   void drop();
 
   std::int64_t frames() const { return std::ssize(index_.frames()); }
 
  private:
-  /// Of these columns, one after another.
+  /// Returns the compressed chunks of these columns, one column after another.
   std::vector<std::string> chunks_of(const FrameSource& source,
                                      const std::vector<std::size_t>& columns) const;
 

@@ -2,20 +2,25 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 namespace scree {
 
 namespace {
 
-// Where what the loops left undone changes whether to trust a run.
-constexpr double deep_overlap = 0.05;  // of the smaller body's size: a picture shows it
+// Above these values, what the loops left undone changes whether to trust a run.
+constexpr double deep_overlap = 0.05;  // share of the smaller body's size: a picture shows it
 constexpr double bouncing = 0.3;       // restitution: an impact gives back a tenth of its energy
 constexpr double often = 0.01;         // share of the substeps
 
 std::string words_of(const GuardedRun& run) {
   if (run.worst.relative == 0) return "no bodies overlapped in the states that were measured";
-  return fmt::format("the deepest overlap was {:.2g} % of the smaller body, of {} at {:.4g} s",
-                     100 * run.worst.relative, run.bodies, run.worst.time);
+  return fmt::format(
+      "the deepest overlap was {} of the smaller body's radius or half edge, between {}, at t = {:.4g} s",
+      percent_words(run.worst.relative), run.bodies, run.worst.time);
 }
+
+bool is_deep(const GuardedRun& run) { return run.worst.relative > deep_overlap; }
 
 }  // namespace
 
@@ -28,29 +33,51 @@ void WorstOverlap::include(const Observation& seen) {
 
 std::vector<GuardCount> guards_of(const Observation& last, const GuardedRun& run) {
   const Counters& c = last.counters;
-  const bool is_deep = run.worst.relative > deep_overlap;
   const bool loses_bounces = run.restitution > bouncing && static_cast<double>(c.unfinished_impacts) >
                                                                often * static_cast<double>(c.substeps);
-  // What the sweeps left undone shows as overlap; the accurate mode promises more, and measures it.
+  // The error that the sweeps leave shows as overlap; the accurate mode promises more, and measures it.
   const std::string overlap = words_of(run);
   const std::string rest =
       run.accurate ? fmt::format("a residual of {:.2g} was left at worst; {}", c.residual, overlap) : overlap;
+  const bool unsolved_matters = run.accurate || is_deep(run);
   return {
       {"redone", c.redone, "steps that failed and were taken again in smaller substeps",
-       "a smaller time.step", "what came of them was judged like any other step", false},
-      {"left", last.left, "bodies that left the world and were taken out", "world.from and world.to",
-       "they are not in what was measured afterwards", true},
-      {"sweeps", c.unconverged, "substeps that used all their sweeps", "more response.iterations", rest,
-       run.accurate || is_deep},
-      {"impacts", c.unfinished_impacts, "substeps whose chains of impacts hit their bound",
+       "a smaller time.step", "the repeated steps passed the same tests as all others", false},
+      {"left", last.left, "bodies that left the world and were taken out",
+       "a larger box in world.from and world.to", "later measurements do not include them", true},
+      {"sweeps", c.unconverged, "substeps that used all their sweeps",
+       "more response.iterations, or a smaller time.step", rest, unsolved_matters},
+      {"impacts", c.unfinished_impacts, "substeps whose chains of impacts reached the limit",
        "a smaller time.step",
-       fmt::format("of {}; the rest of their impacts did not bounce; {}", c.substeps, overlap),
-       is_deep || loses_bounces},
-      {"newton", c.patient_failed, "groups of contacts that no method has solved",
-       "a smaller time.step or more response.iterations", rest, run.accurate || is_deep},
-      {"gjk", c.narrowphase.ccd_stopped, "calls of libccd that hit their bound",
+       fmt::format("that is {} of {} substeps; their remaining impacts did not bounce; {}",
+                   c.unfinished_impacts, c.substeps, overlap),
+       is_deep(run) || loses_bounces},
+      {"newton", c.patient_failed,
+       "groups of contacts that neither the direct solver nor all sweeps have solved",
+       "a smaller time.step or more response.iterations", rest, unsolved_matters},
+      {"gjk", c.narrowphase.ccd_stopped, "calls of libccd that reached their limit",
        "narrowphase.box_box: sat, convex: axes", "another method has answered them", false},
   };
+}
+
+std::string percent_words(double share) {
+  const double percent = 100 * share;
+  return percent < 1000 ? fmt::format("{:.3g} %", percent) : fmt::format("{:.0f} %", percent);
+}
+
+std::string line_of(const GuardCount& guard) {
+  return fmt::format("{}: {}; {}. To have fewer: {}.", guard.what, guard.count, guard.effect, guard.setting);
+}
+
+std::string overlap_warning(const std::vector<GuardCount>& guards, const GuardedRun& run) {
+  if (!is_deep(run)) return {};
+  const std::string overlap = words_of(run);
+  const bool is_told = std::ranges::any_of(guards, [&](const GuardCount& guard) {
+    return guard.count > 0 && guard.matters && guard.effect.ends_with(overlap);
+  });
+  if (is_told) return {};
+  return overlap + (run.worst.time == 0 ? ": the scene places these bodies into each other"
+                                        : "; try a smaller time.step");
 }
 
 }  // namespace scree

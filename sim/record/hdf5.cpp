@@ -12,7 +12,7 @@ namespace scree::hdf5 {
 
 namespace {
 
-/// Throws what the library's failure was for want of.
+/// Throws std::bad_alloc if the library ran out of memory, else RunError.
 [[noreturn]] void fail(const char* what) {
   bool lacks_memory = false;
   H5Ewalk2(
@@ -28,7 +28,7 @@ namespace {
   throw RunError(fmt::format("HDF5 cannot {}", what));
 }
 
-/// Held by the one Session that there is.
+/// The mutex that a Session holds.
 std::mutex of_all_threads;
 
 }  // namespace
@@ -59,7 +59,7 @@ Handle type_of(const FieldType& type) {
   if (type.kind != Kind::real) {
     const auto bytes = static_cast<std::size_t>(type.width);
     check(H5Tset_size(id, bytes), "make a type");
-    check(H5Tset_precision(id, 8 * bytes), "make a type");  // or all but 8 bits would be padding
+    check(H5Tset_precision(id, 8 * bytes), "make a type");  // else all but 8 bits would be padding
   }
   return {id, H5Tclose, "make a type"};
 }

@@ -1,14 +1,21 @@
 #include "sim/record/json.hpp"
 
+#include "core/error.hpp"
+#include "sim/scene/reader.hpp"
+
+#include <fmt/format.h>
+
 #include <array>
+#include <fstream>
 #include <limits>
 
 namespace scree {
 
 namespace {
 
-/// In the order of Verdict.
-constexpr std::array<const char*, 4> verdict_words = {"passed", "failed", "not evaluated", "of seeds"};
+/// The words in the order of Verdict.
+constexpr std::array<const char*, 5> verdict_words = {"passed", "failed", "not evaluated", "not reached",
+                                                      "of seeds"};
 
 double number_or_nan(const Json& json) {
   return json.is_null() ? std::numeric_limits<double>::quiet_NaN() : json.get<double>();
@@ -41,6 +48,19 @@ CheckResult check_result_from(const Json& json) {
   }
   result.problem = json.value("problem", "");
   return result;
+}
+
+Json parsed_manifest(const std::filesystem::path& file) {
+  if (!std::filesystem::exists(file)) {
+    const std::filesystem::path folder = file.has_parent_path() ? file.parent_path() : ".";
+    throw InputError(printable(
+        fmt::format("{}: there is no such file; is {} a run folder?", file.string(), folder.string())));
+  }
+  return Json::parse(std::ifstream(file));
+}
+
+std::string not_a_manifest(const std::filesystem::path& file) {
+  return printable(fmt::format("{}: is not the manifest of a run", file.string()));
 }
 
 }  // namespace scree

@@ -47,14 +47,14 @@ Json json_of(const Observation& o) {
             {"relative_max", o.penetration.relative_max},
             {"relative_mean", o.penetration.relative_mean}}},
           {"gap_mean", o.gap_mean},
-          {"contacts", o.contacts},
+          {"contacts", o.contacts < 0 ? Json(nullptr) : Json(o.contacts)},
           {"pairs", o.pairs},
           {"bodies", o.bodies},
           {"speed", {{"max", o.speed_max}, {"rms", o.speed_rms}, {"kurtosis", o.speed_kurtosis}}},
           {"coordination_mean", o.coordination_mean}};
 }
 
-/// By decade, named by its lower end; those without any are left out.
+/// Returns the counts by decade, each named by its lower end; decades without a count are left out.
 Json json_of(const Disagreements& d) {
   Json json = Json::object();
   double from = Disagreements::least;
@@ -134,14 +134,14 @@ Json times(const std::vector<timing::Entry>& entries) {
   return json;
 }
 
-/// Throws an exception unless it is one.
+/// Returns a number of a step. Throws an exception if the value is not one.
 std::int64_t step_in(const Json& json) {
   const std::int64_t step = json.is_number_integer() ? json.get<std::int64_t>() : -1;
-  if (step < 0) throw std::range_error("a step is no number of one");
+  if (step < 0) throw std::range_error("the number of a step is none");
   return step;
 }
 
-/// What hex() has written. Throws an exception unless it is that.
+/// Returns a hash that hex() has written. Throws an exception if the value is not one.
 std::uint64_t hash_in(const Json& json) {
   const auto& text = json.get_ref<const std::string&>();
   std::uint64_t hash = 0;
@@ -153,7 +153,7 @@ std::uint64_t hash_in(const Json& json) {
 }  // namespace
 
 RecordedRun read_manifest(const std::filesystem::path& file) try {
-  const Json json = Json::parse(std::ifstream(file));
+  const Json json = parsed_manifest(file);
   RecordedRun run{.scene_hash = json.at("scene").at("hash"),
                   .commit = json.at("program").at("commit"),
                   .space = json.at("space"),
@@ -163,9 +163,14 @@ RecordedRun read_manifest(const std::filesystem::path& file) try {
   };
   for (const Json& state : json.at("states")) add(state.at("step"), state.at("hash"));
   add(json.at("steps"), json.at("state_hash"));
+  // The state of the end is usually one of `states`, too.
+  const std::size_t n = run.states.size();
+  if (n > 1 && run.states[n - 2] == run.states[n - 1]) run.states.pop_back();
   return run;
-} catch (const std::exception& error) {
-  throw InputError(printable(fmt::format("{}: is no manifest of a run: {}", file.string(), error.what())));
+} catch (const InputError&) {
+  throw;
+} catch (const std::exception&) {
+  throw InputError(not_a_manifest(file));
 }
 
 std::string scene_hash_of(const Scene& scene) {

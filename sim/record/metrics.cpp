@@ -21,11 +21,11 @@ std::vector<std::string> single_bodies(const Scene& scene) {
   return names;
 }
 
-// What can be nothing but 0 in a scene has no column.
+// Measures that can only be 0 in a scene have no column.
 bool is_of_emission(const MeasureInfo& info) { return info.name.starts_with("emission."); }
 bool is_of_removal(const MeasureInfo& info) { return info.name.starts_with("removed"); }
 
-/// The names of a measure's values: itself, or its components.
+/// Appends the names of the columns of a measure: its own, or those of its components.
 void append_names(std::vector<std::string>& names, const std::string& measure, bool is_vector) {
   if (!is_vector) return names.push_back(measure);
   for (const char* component : {".x", ".y", ".z"}) names.push_back(measure + component);
@@ -89,7 +89,7 @@ void TimingFile::archive(Archive& archive) {
 void TimingFile::write_rows(double time) {
   const double wall = this->wall();
   const std::vector<timing::Entry>& entries = timing::entries();
-  written_.resize(entries.size());  // accounts are only ever added, at the end
+  written_.resize(entries.size());  // accounts are only added, and only at the end
   std::string rows;
   for (std::size_t k = 0; k < entries.size(); ++k) {
     const std::int64_t calls = entries[k].calls - written_[k].calls;

@@ -1,4 +1,4 @@
-// metrics.csv: what the run measured, in the same bytes whatever the machine; timing.csv: what it cost there.
+// metrics.csv: the measures of a run, in the same bytes on every machine; timing.csv: their cost on this one.
 #pragma once
 
 #include "core/timing.hpp"
@@ -14,13 +14,13 @@
 
 namespace scree {
 
-/// The measures of a scene's columns: all of the whole run; those of each region; then position, velocity and
-/// spin of each body that was named on its own, in the order of the scene. Members of a repeat have no
-/// columns: they can be a million.
+/// Returns the measures that are columns of a scene: all measures of the whole run; those of each region;
+/// then position, velocity and spin of each body that has a name of its own, in the order of the scene.
+/// Members of a repeat have no columns, as there can be a million of them.
 std::vector<std::string> metric_names(const Scene& scene);
 
-/// One row per call: time, step, then the measures, with _ for . in their names. Numbers are the shortest
-/// that read back to the same double; nan for a body that is not there.
+/// The writer of metrics.csv. A row has the time, the step, and the measures, with _ for . in their names.
+/// Numbers are the shortest that read back to the same double; nan for a body that is absent.
 class MetricsFile {
  public:
   MetricsFile(const Scene& scene, const std::filesystem::path& file,
@@ -34,8 +34,8 @@ class MetricsFile {
   std::vector<Measure> measures_;
 };
 
-/// Rows of time, wall, stage, seconds, calls: what each stage took since the row before (s). One stage per
-/// row, because a stage can run for the first time late in a run.
+/// The writer of timing.csv, with rows of time, wall, stage, seconds, calls: the time that each stage took
+/// since the row before (s). A row has one stage, because a stage can run for the first time late in a run.
 class TimingFile {
  public:
   explicit TimingFile(const std::filesystem::path& file,
@@ -43,13 +43,13 @@ class TimingFile {
   void write_rows(double time);
   void commit() { file_.commit(); }
   void archive(Archive& archive);
-  /// Since the run began, but for the time in which it was stopped (s).
+  /// Returns the wall time since the run began, without the time in which it was stopped (s).
   double wall() const;
 
  private:
   AtomicFile file_;
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
-  double wall_before_ = 0;  // of what the run was continued from (s)
+  double wall_before_ = 0;  // wall time before the run was resumed (s)
   std::vector<timing::Entry> written_;
 };
 

@@ -1,4 +1,5 @@
-// How a run came out, as one process tells another and as `scree verify --json` writes it.
+// The outcome of a run, in the form in which a process sends it to another, and `scree verify --json` writes
+// it.
 #pragma once
 
 #include "sim/record/checks.hpp"
@@ -8,7 +9,7 @@
 
 namespace scree {
 
-/// Exit statuses of the program; where several apply the greatest is the worst.
+/// Exit statuses of the program. Where several apply, the greatest one is the worst.
 enum ExitStatus {
   status_done = 0,
   status_check_failed = 1,
@@ -18,35 +19,35 @@ enum ExitStatus {
 };
 
 struct SceneOutcome {
-  std::string scene;          ///< path, as found
-  std::string settings = {};  ///< that this run varied, in words
+  std::string scene;          ///< path of the scene, as it was found
+  std::string settings = {};  ///< settings that this run varied, in words
   int status = status_done;
-  std::string message = {};             ///< of the error, if one ended it
-  std::string left_out = {};            ///< why it was not run; empty if it was
-  std::vector<std::string> notes = {};  ///< of the scene's reader
-  double wall = 0;                      ///< s
+  std::string message = {};             ///< the error that ended the run; empty if none did
+  std::string left_out = {};            ///< the reason why the scene was not run; empty if it was
+  std::vector<std::string> notes = {};  ///< notes of the reader of the scene
+  double wall = 0;                      ///< wall time (s)
   std::vector<CheckResult> checks = {};
 };
 
-/// Done, or a check failed.
+/// Returns the exit status of a run with these results: done, or a check failed.
 int status_of(const std::vector<CheckResult>& checks);
 
 std::string to_json(const SceneOutcome& outcome);
-/// Of a text made by to_json. Throws RunError if it is not one.
+/// Reads an outcome from a text that to_json() has made. Throws RunError if it is not one.
 SceneOutcome outcome_from_json(const std::string& text);
 
-/// Counts of checks; a scene that could not be run counts as one failure.
+/// Counts of checks. A scene that could not be run counts as one failure.
 struct Tally {
   int passed = 0;
   int failed = 0;
-  int left_out = 0;  ///< scenes
+  int left_out = 0;  ///< number of scenes that were not run
 };
 Tally tally_of(const std::vector<SceneOutcome>& outcomes);
 
-/// Those of each settings apart, in the order in which they first come.
+/// Groups the outcomes by their settings, in the order in which these first occur.
 std::vector<std::vector<SceneOutcome>> by_settings(const std::vector<SceneOutcome>& outcomes);
 
-/// The table of `scree verify` for other programs to read.
+/// Returns the table of `scree verify` for other programs.
 std::string to_json(const std::vector<SceneOutcome>& outcomes);
 
 }  // namespace scree

@@ -13,7 +13,7 @@ namespace scree {
 
 namespace {
 
-/// What particle formats need of a frame: the rows that are particles, and where their columns are.
+/// The particles of a frame: the rows that are particles, and the numbers of their columns.
 struct Particles {
   const ExportFrame& frame;
   std::vector<std::size_t> rows;
@@ -21,7 +21,7 @@ struct Particles {
   std::optional<std::size_t> orientation, velocity, spin;
   LeftOut left_out;
 
-  /// Of the numbers that are made of others.
+  /// Returns the type of numbers that are computed from others.
   const FieldType& real() const { return frame.about[size].type; }
 };
 
@@ -47,9 +47,9 @@ Particles particles_of(const ExportFrame& frame) {
   return particles;
 }
 
-/// As OVITO takes the two (manual, "Particles"; its kinds sphere, box, spherocylinder and cylinder): a sphere
-/// by its radius, a box by its half extents, and what is round along z by its radius and, in the third place,
-/// the whole length of its cylinder.
+/// The size of a particle as OVITO reads it (manual, "Particles"; its kinds sphere, box, spherocylinder and
+/// cylinder): a sphere has a radius, a box its half extents, and a shape that is round along z its radius
+/// and, as third number, the whole length of its cylinder.
 struct Outline {
   double radius = 0;
   Vec3 shape = Vec3::Zero();
@@ -73,7 +73,7 @@ Outline outline_of(const Particles& particles, std::size_t row) {
   return outline_of(particles.frame.shape(particles.shape, row), particles.frame.vector(particles.size, row));
 }
 
-/// Corners of the cell: of the period along its axes, else of the centres.
+/// The corners of the cell: those of the period along periodic axes, else those of a box around the centres.
 struct Cell {
   Vec3 low = Vec3::Zero(), high = Vec3::Zero();
 };
@@ -120,7 +120,7 @@ void LeftOut::include(const LeftOut& other) {
   triangles = std::max(triangles, other.triangles);
 }
 
-// Quaternions are x, y, z, w there (OVITO's manual, "Extended XYZ").
+// OVITO has quaternions in the order x, y, z, w (manual, "Extended XYZ").
 std::string xyz_of(const ExportFrame& frame, const Period& period, LeftOut& left_out) {
   const Particles particles = particles_of(frame);
   left_out = particles.left_out;
@@ -173,7 +173,7 @@ std::string lammps_of(const ExportFrame& frame, const Period& period, LeftOut& l
   std::string text = fmt::format(
       "ITEM: TIMESTEP\n{}\nITEM: TIME\n{}\nITEM: NUMBER OF ATOMS\n{}\nITEM: BOX BOUNDS {} {} {}\n",
       frame.frame.step, frame.frame.time, particles.rows.size(), flag(0), flag(1), flag(2));
-  const Cell cell = cell_of(particles, period);  // LAMMPS needs one
+  const Cell cell = cell_of(particles, period);  // LAMMPS needs a cell
   for (int a = 0; a < 3; ++a) {
     append_number(text, cell.low[a], particles.real());
     text += ' ';
@@ -187,13 +187,13 @@ std::string lammps_of(const ExportFrame& frame, const Period& period, LeftOut& l
   text += " mobility\n";
   for (const std::size_t row : particles.rows) {
     const Shape shape = frame.shape(particles.shape, row);
-    // Numbers of atoms and of types begin at 1 there.
+    // LAMMPS counts atoms and types from 1.
     fmt::format_to(std::back_inserter(text), "{} {}", frame.number(particles.id, row) + 1, kind_of(shape));
     append_row(text, frame, 0, row, ' ');
     const Outline outline = outline_of(particles, row);
     text += ' ';
     append_number(text, outline.radius, particles.real());
-    // LAMMPS's are diameters, of which OVITO takes half.
+    // LAMMPS has diameters, of which OVITO takes half.
     append(text, shape == Shape::sphere ? Vec3::Constant(2 * outline.radius) : Vec3(2 * outline.shape),
            particles.real());
     if (particles.orientation) append_row(text, frame, *particles.orientation, row, ' ');

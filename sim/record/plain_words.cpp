@@ -14,10 +14,10 @@ namespace scree {
 
 namespace {
 
-/// In the order of FieldType::Kind.
+/// The words in the order of FieldType::Kind.
 constexpr std::array<std::string_view, 4> kind_words = {"integer", "natural", "real", "bytes"};
 
-/// Whether all of the word is a number, which is set.
+/// Reads a number. Returns whether the whole word is one.
 template <class T>
 bool reads_as(std::string_view word, T& number) {
   const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), number);
@@ -36,7 +36,7 @@ std::int64_t take_number(std::string_view& line, std::int64_t least, std::int64_
   const std::string_view word = take_word(line);
   std::int64_t number = 0;
   if (!reads_as(word, number) || number < least || number > most)
-    throw RunError(fmt::format("is none: {:?} is no number from {} to {}", word, least, most));
+    throw RunError(fmt::format("is not valid: {:?} is no number from {} to {}", word, least, most));
   return number;
 }
 
@@ -44,7 +44,7 @@ double take_real(std::string_view& line) {
   const std::string_view word = take_word(line);
   double number = 0;
   if (!reads_as(word, number) || !std::isfinite(number))
-    throw RunError(fmt::format("is none: {:?} is no number", word));
+    throw RunError(fmt::format("is not valid: {:?} is no number", word));
   return number;
 }
 
@@ -57,14 +57,14 @@ FieldType take_type(std::string_view& line) {
   constexpr std::int64_t most_columns = 1 << 16;
   const auto kind =
       static_cast<std::size_t>(std::ranges::find(kind_words, take_word(line)) - kind_words.begin());
-  if (kind == kind_words.size()) throw RunError("is none: a field is of no kind");
+  if (kind == kind_words.size()) throw RunError("is not valid: a field is of no kind");
   const auto width = static_cast<int>(take_number(line, 1, sizeof(double)));
   const auto columns = static_cast<int>(take_number(line, 1, most_columns));
   const FieldType type{static_cast<Kind>(kind), width, columns};
   const int least = type.kind == Kind::real ? 4 : 1;
   const int most = type.kind == Kind::bytes ? 1 : 8;
   if (type.width < least || type.width > most || !std::has_single_bit(static_cast<unsigned>(type.width)))
-    throw RunError(fmt::format("is none: a number is {} bytes wide", type.width));
+    throw RunError(fmt::format("is not valid: a number is {} bytes wide", type.width));
   return type;
 }
 

@@ -31,7 +31,7 @@ constexpr std::array<std::string_view, 15> file_names = {
     "trajectory.vtkhdf", "trajectory.journal", "movie.mp4",   "log.txt",    "failure.png",
     "contacts.vtkhdf",   "contacts.journal",   "report.html", "study.csv",  "study.json"};
 
-/// Of a study: error_1.gp, error_1.svg, error_1.png, ...
+/// Whether a study has written a file of this name: error_1.gp, error_1.svg, error_1.png, ...
 bool is_plot(std::string_view name) {
   return name.starts_with("error_") &&
          (name.ends_with(".gp") || name.ends_with(".svg") || name.ends_with(".png"));
@@ -41,15 +41,14 @@ bool is_folder_of_a_run(std::string_view name) {
   return name == "frames" || name == "checkpoint" || name == hulls_name;
 }
 
-/// Whether a run or a study wrote this entry of its folder: a final name, or the part of one that did not get
-/// that far.
+/// Whether a run or a study wrote this entry of its folder, under its final name or as an incomplete part.
 bool is_written_by_a_run(const fs::path& entry) {
   std::string name = entry.filename().string();
   if (name.ends_with(".part")) name.resize(name.size() - std::strlen(".part"));
   return std::ranges::find(file_names, name) != file_names.end() || is_folder_of_a_run(name) || is_plot(name);
 }
 
-/// A picture, a saved state or a hull, complete or not.
+/// Whether the entry is a picture, a saved state or a hull, complete or not.
 bool is_numbered(const fs::path& entry) {
   const std::string name = entry.filename().string();
   return name.ends_with(".png") || name.ends_with(".png.part") || name.ends_with(".h5") ||
@@ -89,6 +88,9 @@ RunFolder::RunFolder(fs::path folder, Earlier earlier) : folder_(std::move(folde
       throw InputError(fmt::format("{}: holds {}, which no run has written; give another folder with -o",
                                    folder_.string(), foreign->filename().string()));
     }
+    if (!found.empty() && earlier == Earlier::refused_results)
+      throw InputError(fmt::format(
+          "{}: holds earlier results; --overwrite replaces them, -o DIR writes elsewhere", folder_.string()));
     if (!found.empty() && earlier == Earlier::refused) {
       throw InputError(fmt::format(
           "{}: holds an earlier run; --resume continues it, --overwrite replaces it, -o DIR keeps it",
@@ -96,7 +98,7 @@ RunFolder::RunFolder(fs::path folder, Earlier earlier) : folder_(std::move(folde
     }
     fs::create_directories(folder_);
   } catch (const fs::filesystem_error& error) {
-    // Another folder would not help.
+    // If memory ran out, another folder would not help.
     if (error.code() == std::errc::not_enough_memory) throw std::bad_alloc();
     throw InputError(fmt::format("cannot make the run folder {}: {}; give another one with -o",
                                  folder_.string(), error.code().message()));
@@ -146,7 +148,7 @@ void RunFolder::remove_frames_from(std::int64_t number) const {
 
 void RunFolder::lock() {
   const fs::path file = folder_ / lock_name;
-  // Close-on-exec: ffmpeg, started by a run, must not keep the lock of a run that died.
+  // With close-on-exec, so that ffmpeg, which a run starts, does not keep the lock of a run that died.
   lock_ = ::open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
   if (lock_ < 0)
     throw InputError(fmt::format("cannot create {}: {}; give another folder with -o", file.string(),

@@ -1,4 +1,5 @@
-// The folder that a run writes: made, guarded against a second run, and cleared of an earlier one when asked.
+// The folder that a run writes: it is made, locked against a second run, and cleared of an earlier one on
+// request.
 #pragma once
 
 #include <cstdint>
@@ -9,8 +10,9 @@ namespace scree {
 
 class RunFolder {
  public:
-  /// What becomes of an earlier run in the folder.
-  enum class Earlier { refused, replaced, continued };
+  /// What becomes of an earlier run in the folder. `refused_results` is for commands that cannot continue
+  /// what is there: their error does not mention --resume.
+  enum class Earlier { refused, refused_results, replaced, continued };
 
   /// Makes the folder and locks it until this object or its process dies. Throws InputError if the folder
   /// holds an earlier run that is refused, if it holds anything else, if another run is at work in it, or if
@@ -21,15 +23,15 @@ class RunFolder {
   RunFolder& operator=(const RunFolder&) = delete;
 
   const std::filesystem::path& path() const { return folder_; }
-  /// Removes what runs write, and nothing else.
+  /// Removes the files that runs write, and nothing else.
   void clear() const;
-  /// Of that, what a run writes when it ends.
+  /// Removes the files that a run writes when it ends.
   void remove_results() const;
-  /// The folder of the pictures, made by the first call. Throws RunError if it cannot be.
+  /// Returns the folder of the pictures, and makes it if there is none. Throws RunError if it cannot be made.
   std::filesystem::path frames() const;
-  /// The file of a picture there.
+  /// Returns the file of a picture.
   std::filesystem::path frame(std::int64_t number) const;
-  /// Removes that of this number, and all that follow it.
+  /// Removes the picture of this number and all later ones.
   void remove_frames_from(std::int64_t number) const;
   std::filesystem::path operator/(const char* name) const { return folder_ / name; }
 

@@ -12,7 +12,7 @@ namespace scree {
 
 namespace {
 
-/// The first line in which two texts differ, of each.
+/// Returns the first line in which two texts differ, as it is in each of them.
 std::pair<std::string, std::string> first_difference(const std::string& a, const std::string& b) {
   std::istringstream lines_a(a), lines_b(b);
   std::string line_a, line_b;
@@ -49,9 +49,10 @@ std::string difference_of(const RunIdentity& saved, const RunIdentity& present) 
     return fmt::format("the checkpoint is of version {}, and this is {}", saved.version, present.version);
   if (saved.scene != present.scene) {
     const auto [was, is] = first_difference(saved.scene, present.scene);
-    return fmt::format("the checkpoint is of another scene: there `{}`, here `{}`", was, is);
+    return fmt::format("the checkpoint is of another scene: it has `{}`, this one `{}`", was, is);
   }
-  if (saved.bodies != present.bodies) return "the scene's bodies are others, so a file of theirs has changed";
+  if (saved.bodies != present.bodies)
+    return "the bodies differ from those of the checkpoint: a file they are read from has changed";
   if (saved.space != present.space)
     return fmt::format("the checkpoint is of a run on {0}, and this is one on {1} (--device {0})",
                        saved.space, present.space);

@@ -1,4 +1,4 @@
-// Of which run a checkpoint is.
+// The identity of a run, by which a checkpoint is recognised as one of the same run.
 #pragma once
 
 #include "core/archive.hpp"
@@ -9,18 +9,18 @@
 
 namespace scree {
 
-/// What must be the same for a run to go on, and the commit, which should be.
+/// The properties that must be the same for a run to be continued, and the commit, which should be the same.
 struct RunIdentity {
   std::string version, commit, space;
-  std::string scene;         ///< resolved
-  std::uint64_t bodies = 0;  ///< checksum of the bodies that it starts with, which may come from files
+  std::string scene;         ///< the resolved scene
+  std::uint64_t bodies = 0;  ///< checksum of the bodies at the start, which may come from files
 
   void archive(Archive& archive);
 };
 
 RunIdentity identity_of(const Scene& scene, const std::string& space);
 
-/// In what a checkpoint is of another run than the present one; empty if it is of the same.
+/// Returns in words how the run of a checkpoint differs from the present one; empty if it is the same run.
 std::string difference_of(const RunIdentity& saved, const RunIdentity& present);
 
 }  // namespace scree

@@ -15,7 +15,8 @@ namespace scree {
 namespace {
 
 constexpr double no_number = std::numeric_limits<double>::quiet_NaN();
-/// Errors under this are rounding: they say nothing of the order, and are drawn at it.
+/// Errors below this value are rounding: they are left out of the fit of the order, and are drawn at this
+/// value.
 constexpr double rounding = 1e-12;
 
 double number_of(const std::string& text) {
@@ -24,12 +25,12 @@ double number_of(const std::string& text) {
   return problem == std::errc() && end == text.data() + text.size() ? value : no_number;
 }
 
-/// Errors that are rounding are equal.
+/// Returns the error for comparisons and plots, in which all errors that are rounding are equal.
 double seen_error(const StudyPoint& point, std::size_t check) {
   return std::max(point.error(check), rounding);
 }
 
-/// A field of a CSV file; quoted where it must be.
+/// Returns the text as a field of a CSV file, in quotes if it needs them.
 std::string field(const std::string& text) {
   if (text.find_first_of(",\"\n") == std::string::npos) return text;
   std::string quoted = "\"";
@@ -37,7 +38,7 @@ std::string field(const std::string& text) {
   return quoted + '"';
 }
 
-/// Text in a gnuplot string in single quotes.
+/// Returns the text so that it can be put between single quotes in a gnuplot script.
 std::string plain(std::string text) {
   std::ranges::replace(text, '\'', ' ');
   return text;
@@ -56,6 +57,13 @@ std::vector<std::string> Study::checks() const {
   if (ran == points.end()) return words;
   for (const CheckResult& check : ran->checks) words.push_back(check.check);
   return words;
+}
+
+bool Study::has_no_error(std::size_t check) const {
+  return std::ranges::any_of(points, [check](const StudyPoint& point) {
+    return check < point.checks.size() && std::isfinite(point.checks[check].measured) &&
+           !std::isfinite(point.checks[check].error);
+  });
 }
 
 std::vector<std::size_t> pareto_front(const Study& study, std::size_t check) {
@@ -112,7 +120,7 @@ std::vector<Reached> cheapest_to(const Study& study, std::size_t check) {
   const std::vector<std::size_t> front = pareto_front(study, check);
   if (front.empty()) return reached;
   for (const std::size_t k : front) {
-    // The least power of ten that it reaches and that the cheaper ones do not.
+    // The least power of ten that this point reaches and that the cheaper points do not.
     const double error = std::pow(10.0, std::ceil(std::log10(seen_error(study.points[k], check))));
     if (reached.empty() || error < reached.back().error) reached.push_back({error, k});
   }

@@ -9,7 +9,7 @@ namespace scree {
 
 namespace {
 
-/// Where the columns are that say a body's shape.
+/// The numbers of the columns that give the shape of a body.
 struct Places {
   explicit Places(const ExportFrame& of)
       : frame(of),
@@ -23,7 +23,7 @@ struct Places {
     const bool fixed = frame.number(mobility, row) == static_cast<double>(Mobility::fixed);
     return fixed == (movement == Movement::fixed);
   }
-  /// From the body's frame to the world's.
+  /// Transforms a point from the body's frame to the world's.
   Vec3 place(std::size_t row, const Vec3& local) const {
     const auto q = [&](std::size_t k) { return frame.number(orientation, row, k); };
     return frame.vector(0, row) + Quat(q(0), q(1), q(2), q(3)).normalized() * local;
@@ -34,7 +34,7 @@ struct Places {
   std::size_t id, shape, mobility, size, orientation;
 };
 
-/// Points, and cells between them, each with its body's row.
+/// Points, and cells between them, each with the row of its body.
 class Builder {
  public:
   Builder(const Places& places, VtkPolyData::Kind kind) : places_(places) {
@@ -49,7 +49,7 @@ class Builder {
   }
   void add_cell(std::span<const std::int64_t> points) { data_.add_cell(points); }
 
-  /// Of rows of bodies: the columns that do not say their shape.
+  /// Returns the columns that do not give the shape, for these rows of bodies.
   std::vector<VtkPolyData::Array> columns(const std::vector<std::size_t>& rows) const {
     std::vector<VtkPolyData::Array> arrays;
     const ExportFrame& frame = places_.frame;

@@ -1,5 +1,6 @@
-// What stands in no glyph: the surfaces of meshes and polyhedra, and the axes of what is round along one, as
-// VTK's PolyData, frame by frame. Spheres and boxes are glyphs of the trajectory's points.
+// The shapes that glyphs do not show, as PolyData of VTK, frame by frame: the surfaces of meshes and
+// polyhedra, and the axes of shapes that are round along an axis. Spheres and boxes are glyphs at the points
+// of the trajectory.
 #pragma once
 
 #include "core/geometry.hpp"
@@ -11,22 +12,24 @@
 
 namespace scree {
 
-/// The hull of a body, by its number in the scene. May throw InputError.
+/// Returns the hull of a body, by its number in the scene. May throw InputError.
 using HullOf = std::function<const Hull&(std::int32_t body)>;
 
-/// Whether the bodies of a shape are in surfaces_of(), or in axes_of().
+/// Whether bodies of a shape are in surfaces_of(), or in axes_of().
 bool has_surface(Shape shape);
 bool has_axis(Shape shape);
 
-/// Which of the two kinds of bodies a file is about: what does not move is written once.
+/// The kinds of bodies, each of which has files of its own: bodies that do not move are written once.
 enum class Movement { fixed, not_fixed };
 
-/// Triangles of meshes and faces of polyhedra. Data of the cells: the frame's columns, but for place, size
-/// and orientation. Throws InputError where the trajectory does not have what it needs.
+/// Returns the triangles of meshes and the faces of polyhedra. The data of the cells are the columns of the
+/// frame without position, size and orientation. Throws InputError if the trajectory does not have what is
+/// needed.
 std::string surfaces_of(const ExportFrame& frame, Movement movement, const HullOf& hull_of);
 
-/// Of capsules, cylinders and tubes a line along the z axis between the ends of the cylinder, of a capsule
-/// the centres of its two balls. Data of the points: their `radius` (m), and the frame's columns, as above.
+/// Returns a line along the z axis of each capsule, cylinder and tube, between the ends of the cylinder, or
+/// between the centres of the two balls of a capsule. The data of the points are their `radius` (m) and the
+/// columns of the frame, as above.
 std::string axes_of(const ExportFrame& frame, Movement movement, const HullOf& hull_of);
 
 }  // namespace scree

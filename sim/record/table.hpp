@@ -1,4 +1,5 @@
-// Tables of comma-separated values, as runs write them: a line of names, then a line of cells for each row.
+// The reader of tables of comma-separated values that runs have written: a line of names, then a line of
+// cells for each row.
 #pragma once
 
 #include <cstddef>
@@ -13,19 +14,19 @@
 
 namespace scree {
 
-/// A cell that is a number and nothing else.
+/// Returns the number in a cell; nothing if the cell holds anything else.
 std::optional<double> number_in(std::string_view cell);
 
-/// One line at a time: a table may be larger than memory. Throws InputError, with the file and the line,
-/// where it is no table.
+/// A table, read line by line, since it may be larger than memory. Functions throw InputError, with the file
+/// and the line, where the file is not a table.
 class Table {
  public:
   explicit Table(const std::filesystem::path& file);
 
   const std::vector<std::string>& columns() const { return columns_; }
-  /// Of a column, if there is one of that name.
+  /// Returns the number of the column of that name, if there is one.
   std::optional<std::size_t> find(const std::string& name) const;
-  /// Goes on to the next row; false at the end.
+  /// Reads the next row; returns false at the end.
   bool next();
   std::string_view cell(std::size_t column) const { return cells_[column]; }
 

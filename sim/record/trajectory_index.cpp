@@ -15,12 +15,13 @@ namespace scree {
 
 namespace {
 
-// No byte of a deflated stream gives more (zlib's technical details); so an index asks for no more memory
-// than a file of its size can hold numbers.
+// A byte of a deflated stream gives at most this many bytes (zlib's technical details), so an index cannot
+// make scree take more memory than a file of its size can fill.
 constexpr std::int64_t most_from_a_byte = 1032;
 constexpr std::int64_t most_rows = std::numeric_limits<std::int32_t>::max();
 
-/// Numbers in a row of the column of this name; 0 if no trajectory of this version has it.
+/// Returns the number of numbers in a row of the column of this name; 0 if no trajectory of this version has
+/// such a column.
 int components_of(std::string_view name) {
   constexpr std::array<std::pair<std::string_view, int>, 12> columns = {{{"position", 3},
                                                                          {"orientation", 4},
@@ -38,17 +39,18 @@ int components_of(std::string_view name) {
   return found == columns.end() ? 0 : found->second;
 }
 
-/// The rest of a text, line by line.
+/// The rest of a text, read line by line.
 class Lines {
  public:
   explicit Lines(std::string_view text) : text_(text) {}
 
-  /// The words after the first, which says what the line is about. Throws RunError if it is of another kind.
+  /// Takes a line and returns the words after the first one, which gives the kind of the line. Throws
+  /// RunError if the line is of another kind.
   std::string_view take(std::string_view kind) {
     const std::size_t end = text_.find('\n');
     std::string_view line = text_.substr(0, end);
     if (end == std::string_view::npos || take_word(line) != kind)
-      throw RunError(fmt::format("is none: its index has no line of a {} where one should be", kind));
+      throw RunError(fmt::format("is not valid: its index has no line of a {} where one should be", kind));
     text_.remove_prefix(end + 1);
     return line;
   }
@@ -58,7 +60,7 @@ class Lines {
   std::string_view text_;
 };
 
-/// A count can be no more than the lines that follow.
+/// Takes a count. It is at most the length of the text, as each counted item has a line.
 std::int64_t take_count(Lines& lines, std::string_view kind, std::string_view text) {
   std::string_view line = lines.take(kind);
   return take_number(line, 0, std::ssize(text));
@@ -102,7 +104,7 @@ TrajectoryIndex TrajectoryIndex::parse(std::string_view text, std::int64_t bytes
   for (std::int64_t left = take_count(lines, "columns", text); left > 0; --left) {
     line = lines.take("column");
     const FieldType type = take_type(line);
-    if (type.columns != components_of(line)) throw RunError("is none: a column is one that none has");
+    if (type.columns != components_of(line)) throw RunError("is not valid: a column is one that none has");
     index.columns_.push_back({std::string(line), type});
   }
   for (std::int64_t left = take_count(lines, "frames", text); left > 0; --left) {
@@ -119,30 +121,31 @@ TrajectoryIndex TrajectoryIndex::parse(std::string_view text, std::int64_t bytes
     index.chunks_.push_back({place, take_number(line, 0, bytes - place)});
   }
   if (index.columns_.empty() || index.columns_[0].name != "position")
-    throw RunError("is none: it has no places");
-  if (!lines.is_empty()) throw RunError("is none: its index goes on after its end");
+    throw RunError("is not valid: it has no places");
+  if (!lines.is_empty()) throw RunError("is not valid: its index goes on after its end");
   index.expect_in_order(bytes);
   return index;
 }
 
 void TrajectoryIndex::expect_in_order(std::int64_t bytes) const {
-  std::int64_t left = bytes;  // a byte is of one chunk, or of none
+  std::int64_t left = bytes;  // a byte belongs to at most one chunk
   for (const TrajectoryChunk& chunk : chunks_) {
     if (chunk.place < 0 || chunk.bytes < 0 || chunk.bytes > left || chunk.place > bytes - chunk.bytes)
-      throw RunError("is none: its chunks have more bytes than the file");
+      throw RunError("is not valid: its chunks have more bytes than the file");
     left -= chunk.bytes;
   }
   for (std::size_t f = 0; f < frames_.size(); ++f) {
-    if (frames_[f].rows < 0 || frames_[f].rows > most_rows) throw RunError("is none: a frame has no rows");
+    if (frames_[f].rows < 0 || frames_[f].rows > most_rows)
+      throw RunError("is not valid: a frame has no rows");
     const std::int64_t chunks = chunks_for(frames_[f].rows);
     for (std::size_t c = 0; c < columns_.size(); ++c) {
       const std::int64_t first = first_chunk(f, c);
       if (first < 0 || first > std::ssize(chunks_) - chunks)
-        throw RunError("is none: a frame has chunks that are not there");
+        throw RunError("is not valid: a frame has chunks that are not there");
       for (std::int64_t k = first; k < first + chunks; ++k) {
         if (chunks_[static_cast<std::size_t>(k)].bytes <
             chunk_rows_ * columns_[c].type.row() / most_from_a_byte)
-          throw RunError("is none: a chunk has fewer bytes than its rows take");
+          throw RunError("is not valid: a chunk has fewer bytes than its rows take");
       }
     }
   }

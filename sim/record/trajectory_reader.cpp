@@ -56,8 +56,12 @@ TrajectoryReader::TrajectoryReader(fs::path file)
 
 TrajectoryIndex TrajectoryReader::read_index() try {
   std::error_code none;
+  if (file_.has_parent_path() && !fs::exists(file_.parent_path(), none))
+    throw InputError(fmt::format("{}: there is no such folder", file_.parent_path().string()));
   if (!fs::is_regular_file(file_, none))
-    throw RunError(fs::exists(file_, none) ? "is no file" : "there is none");
+    throw RunError(fs::exists(file_, none)
+                       ? "is no file"
+                       : "there is none; run the scene with record.trajectory: true to have one");
   const auto size = static_cast<std::int64_t>(fs::file_size(file_, none));
   std::string trailer(trailer_bytes, '\0');
   stream_.seekg(size - std::ssize(trailer));
@@ -71,7 +75,7 @@ TrajectoryIndex TrajectoryReader::read_index() try {
   stream_.seekg(before - std::ssize(lines));
   if (!stream_.read(lines.data(), std::ssize(lines)))
     throw RunError(fmt::format("cannot be read: {}", std::strerror(errno)));
-  if (trailer != last_line_of(lines)) throw RunError("is damaged: the checksum of its index is another");
+  if (trailer != last_line_of(lines)) throw RunError("is damaged: the checksum of its index is wrong");
   return TrajectoryIndex::parse(lines, before - std::ssize(lines));
 } catch (const RunError& error) {
   throw InputError(fmt::format("{}: {}", file_.string(), error.what()));

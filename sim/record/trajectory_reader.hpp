@@ -1,4 +1,4 @@
-// trajectory.vtkhdf, as it is read again: by the index at its end.
+// The reader of trajectory.vtkhdf, which uses the index at the end of the file.
 #pragma once
 
 #include "sim/record/trajectory_index.hpp"
@@ -12,21 +12,23 @@
 
 namespace scree {
 
-/// In the folder of a run.
+/// The name of the file in the folder of a run.
 inline constexpr const char* trajectory_name = "trajectory.vtkhdf";
 
-/// What a trajectory's file ends with.
+/// Returns the text with which a trajectory's file ends: its index, and a line with the checksum of the
+/// index.
 std::string trajectory_trailer(const TrajectoryIndex& index);
 
 class TrajectoryReader {
  public:
-  /// Throws InputError if the file cannot be read, or is no trajectory: it says what is wrong.
+  /// Throws InputError, which says what is wrong, if the file cannot be read or is not a trajectory.
   explicit TrajectoryReader(std::filesystem::path file);
 
   const TrajectoryIndex& index() const { return index_; }
-  /// Its place among the columns; -1 if there is none of that name.
+  /// Returns the number of the column of this name; -1 if there is none.
   int column(std::string_view name) const;
-  /// The numbers of a frame, row by row. Throws InputError if they cannot be read, or are damaged.
+  /// Returns the numbers of a column in a frame, row by row. Throws InputError if they cannot be read or are
+  /// damaged.
   std::vector<double> numbers(std::size_t frame, std::size_t column);
 
  private:

@@ -1,4 +1,4 @@
-// The motion of every body, as it is written to trajectory.vtkhdf.
+// The writer of trajectory.vtkhdf: the motion of every body.
 #pragma once
 
 #include "core/archive.hpp"
@@ -14,10 +14,10 @@ namespace scree {
 
 class TrajectoryWriter {
  public:
-  /// See FrameJournal.
+  /// The parameters are those of FrameJournal.
   TrajectoryWriter(const Scene& scene, std::filesystem::path file, AtomicFile::Opening opening, int threads);
 
-  /// Adds a frame: the bodies that are there, by ascending id.
+  /// Adds a frame of the bodies that are present, by ascending id.
   void append(const Snapshot& snapshot);
   void archive(Archive& archive);
   void finish() { journal_.finish(); }
@@ -28,7 +28,7 @@ class TrajectoryWriter {
  private:
   std::vector<BodyColumnSource> sources_;
   FrameJournal journal_;
-  std::vector<std::int32_t> rows_;  ///< bodies of the last frame
+  std::vector<std::int32_t> rows_;  ///< bodies in the rows of the last frame
 };
 
 }  // namespace scree

@@ -17,7 +17,8 @@ void append_bytes(std::string& bytes, const std::vector<double>& numbers) {
   }
 }
 
-/// VTK's name for the type, and the numbers in it, after their length.
+/// Appends the length of the numbers, and the numbers in the type, to the block. Returns VTK's name for the
+/// type.
 std::string_view append_block(std::string& block, const std::vector<double>& numbers, const FieldType& type) {
   using Kind = FieldType::Kind;
   const std::uint64_t bytes = numbers.size() * static_cast<std::uint64_t>(type.width);
@@ -30,7 +31,7 @@ std::string_view append_block(std::string& block, const std::vector<double>& num
   return append_bytes<double>(block, numbers), "Float64";
 }
 
-/// Describes arrays, and has their numbers follow in a block.
+/// Describes arrays in XML, and collects their numbers in a block that follows.
 class Writer {
  public:
   void add(std::string_view name, const FieldType& type, const std::vector<double>& numbers) {

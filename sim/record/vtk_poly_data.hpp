@@ -1,5 +1,5 @@
-// VTK's XML PolyData: points, cells of one kind between them, and data of both (VTK File Formats, "XML"; raw
-// data, appended).
+// The XML PolyData of VTK: points, cells of one kind between them, and data of both (VTK File Formats, "XML";
+// the data are raw and appended).
 #pragma once
 
 #include "core/archive.hpp"
@@ -16,18 +16,18 @@ struct VtkPolyData {
   struct Array {
     std::string name;
     FieldType type;
-    std::vector<double> numbers;  ///< row by row
+    std::vector<double> numbers;  ///< numbers, row by row
   };
 
   Kind kind = Kind::vertices;
   Array points;
   std::vector<Array> point_data, cell_data;
-  std::vector<double> connectivity;  ///< of the cells, one after another
-  std::vector<double> offsets;       ///< in that, where each cell ends
+  std::vector<double> connectivity;  ///< points of the cells, one cell after another
+  std::vector<double> offsets;       ///< end of each cell in `connectivity`
 
   /// Adds a cell between points.
   void add_cell(std::span<const std::int64_t> of_points);
-  /// The whole file.
+  /// Returns the whole file.
   std::string text() const;
 };
 

@@ -30,8 +30,8 @@ using WholeNumbers = std::vector<std::int64_t>;
 
 constexpr FieldType whole_number{FieldType::Kind::integer, sizeof(std::int64_t), 1};
 
-/// Of a file, a group or a dataset that does not say when it was made, or the same run would not leave the
-/// same bytes.
+/// Returns the settings of a file, a group or a dataset that does not record when it was made: otherwise the
+/// same run would not give the same bytes.
 Handle make_settings(hid_t kind) {
   const hid_t settings = H5Pcreate(kind);
   check(H5Pset_obj_track_times(settings, false), "make settings");
@@ -63,7 +63,7 @@ void write_attribute(hid_t of, const char* name, std::string_view word) {
   write_attribute(of, name, type, space, word.data());
 }
 
-/// A dataset of rows of numbers, in chunks if chunk_rows > 0.
+/// Makes a dataset of rows of numbers, in chunks if chunk_rows > 0.
 Handle make_dataset(hid_t in, const std::string& name, const FieldType& type, std::int64_t rows,
                     std::int64_t chunk_rows) {
   const auto width = static_cast<hsize_t>(type.columns);
@@ -82,7 +82,7 @@ Handle make_dataset(hid_t in, const std::string& name, const FieldType& type, st
           "make a dataset"};
 }
 
-/// As they are needed once, whole; `columns` to a row.
+/// Writes whole numbers as one dataset, `columns` numbers to a row.
 void write_numbers(hid_t in, const char* name, const WholeNumbers& numbers, int columns = 1) {
   constexpr std::int64_t chunk_rows = 1 << 16;
   FieldType type = whole_number;
@@ -98,10 +98,11 @@ void write_reals(hid_t in, const char* name, const std::vector<double>& numbers)
   check(H5Dwrite(data, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, numbers.data()), "write a dataset");
 }
 
-/// Of what a column's dataset consists, in its order: frames that share their chunks share their rows.
+/// The frames and chunks that a column's dataset consists of, in its order. Frames that share their chunks
+/// share their rows.
 struct Placing {
-  WholeNumbers first_rows;  ///< of each frame
-  WholeNumbers chunks;      ///< by their numbers in the index
+  WholeNumbers first_rows;  ///< first row of each frame
+  WholeNumbers chunks;      ///< chunks, by their numbers in the index
 };
 
 Placing place(const TrajectoryIndex& index, std::size_t column) {
@@ -119,7 +120,7 @@ Placing place(const TrajectoryIndex& index, std::size_t column) {
   return placing;
 }
 
-/// Copies chunks from the journal to files of HDF5, and notes where they come to lie.
+/// Copies chunks from the journal to files of HDF5, and notes where each is in the file.
 class ChunkCopier {
  public:
   ChunkCopier(const TrajectoryIndex& index, const fs::path& journal)
@@ -160,10 +161,10 @@ class ChunkCopier {
   std::vector<TrajectoryChunk> moved_;
 };
 
-/// A part is what frames with as many points share: their cells.
+/// The parts of the dataset of cells. Frames with the same number of points share a part.
 struct Parts {
-  WholeNumbers points;    ///< of each part
-  WholeNumbers of_frame;  ///< its part
+  WholeNumbers points;    ///< number of points of each part
+  WholeNumbers of_frame;  ///< part of each frame
 };
 
 Parts parts_of(const TrajectoryIndex& index) {
@@ -175,10 +176,10 @@ Parts parts_of(const TrajectoryIndex& index) {
   return parts;
 }
 
-/// The format's kinds of cells, in its order.
+/// The kinds of cells of the format, in its order.
 struct CellKind {
   const char* name;
-  std::int64_t points;  ///< of a cell; 0: there are no such cells
+  std::int64_t points;  ///< number of points of a cell; 0: there are no such cells
 };
 using CellKinds = std::array<CellKind, 4>;
 
@@ -189,7 +190,7 @@ CellKinds kinds_of(Cells cells) {
            {"Strips", 0}}};
 }
 
-/// Every point is in one cell, in order; or there are none.
+/// Writes the cells of one kind: either every point is in one cell, in order, or there are none.
 void write_cells(hid_t root, const CellKind& kind, const Parts& parts) {
   WholeNumbers cells, ids, offsets, connectivity;
   for (const std::int64_t points : parts.points) {
@@ -234,7 +235,7 @@ void write_steps(hid_t root, const TrajectoryIndex& index, const CellKinds& kind
     write_numbers(offsets, index.columns()[c].name.c_str(), placings[c].first_rows);
 }
 
-/// Returns where the chunks have come to lie.
+/// Writes the HDF5 part of the file. Returns where the chunks are in it.
 std::vector<TrajectoryChunk> write_hdf5(const fs::path& part, const TrajectoryIndex& index, Cells cells,
                                         const fs::path& journal) {
   const hdf5::Session session;
@@ -261,7 +262,8 @@ std::vector<TrajectoryChunk> write_hdf5(const fs::path& part, const TrajectoryIn
   return copier.moved();
 }
 
-/// Gives its room back at once, for what the run still has to say, though the library may keep the file open.
+/// Frees the disk space of the file at once, since the run may still have to write; the library may keep the
+/// file open.
 void discard(const fs::path& part) {
   std::error_code none;
   fs::resize_file(part, 0, none);
@@ -277,7 +279,7 @@ void write_vtkhdf(const fs::path& file, const TrajectoryIndex& index, Cells cell
     errno = 0;
     of_file.move_chunks(write_hdf5(part, index, cells, journal));
   } catch (const RunError& error) {
-    // The library says neither the file nor the reason.
+    // The library gives neither the file nor the reason.
     const std::string reason = errno != 0 ? std::strerror(errno) : error.what();
     discard(part);
     throw RunError(fmt::format("cannot write {}: {}", part.string(), reason));

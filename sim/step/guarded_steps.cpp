@@ -92,18 +92,22 @@ void GuardedSteps::judge(const Exchange& exchange, const Stepper& stepper) {
   const Energies energies = stepper.energies(origin_);
   extend_baseline(energies, exchange, stepper);
   if (energies.not_finite > 0)
-    fail(bodies_out_of_range(state_of(stepper)), "no longer finite; try a smaller time.step");
+    fail(bodies_out_of_range(state_of(stepper)),
+         "no longer finite: its position or velocity has left the range of numbers; try a smaller time.step");
   if (!(baseline_.unexplained_change() <= most_unexplained(scene_)))
     fail(by_kinetic_energy(state_of(stepper)),
-         fmt::format("the energy changed by {:.2g} of its scale more than the ledger explains, and these had "
-                     "most; try a smaller time.step",
-                     baseline_.unexplained_change()));
+         fmt::format(
+             "the energy changed by {:.2g} of its scale more than the ledger explains; the bodies named "
+             "have the most kinetic energy; try a smaller time.step",
+             baseline_.unexplained_change()));
   if (!scene_.world || scene_.world->leaving != Leaving::stop) return;
   std::vector<std::int32_t> out;
   for (const BodyNumber number : stepper.bodies_beyond(*scene_.world))
     out.push_back(static_cast<std::int32_t>(number));
   if (!out.empty())
-    fail(out, "outside of the world; world.leaving: remove takes out what leaves it, and goes on");
+    fail(
+        out,
+        "outside of the world; enlarge world, or set world.leaving=remove to take such bodies out and go on");
 }
 
 void GuardedSteps::fail(const std::vector<std::int32_t>& bodies, const std::string& how) const {

@@ -255,8 +255,10 @@ TYPED_TEST(BroadPhaseBenchTest, SaysWhatFailed) {
   copy(objects.bounds, boxes);
   const std::vector<Measurement> results = measure<TypeParam>(objects, {{}, {.levels = 1}}, {});
   ASSERT_EQ(results.size(), 2u);
-  for (const Measurement& result : results)
+  for (const Measurement& result : results) {
     EXPECT_NE(result.problem.find("the bounds of body"), std::string::npos);
+    EXPECT_TRUE(result.problem.ends_with("; its position, speed or size is too large")) << result.problem;
+  }
 }
 
 TEST(BenchInputTest, ScenesGiveTheBoxesOfTheirFirstStep) {

@@ -292,7 +292,7 @@ def out_of_memory_for_pictures(case, fault):
 def no_gpu(case):
     if "GiB" in case.harness.gpu:
         raise Skipped("there is one: " + case.harness.gpu)
-    case.ends(case.run("--device", "cuda"), 2, "--device cuda: there is no GPU to run on", case.harness.gpu.removeprefix("none: ").replace("not in this build", "nvcc"))
+    case.ends(case.run("--device", "cuda"), 2, "--device cuda: there is no GPU to run on", case.harness.gpu.removeprefix("none: ").replace("not in this build", "built without CUDA"))
     expect(not case.folder.exists(), "something was written")
     case.resume("--device", "auto", from_checkpoint=False)
 

@@ -1,5 +1,5 @@
-// The library through its interface: against closed forms, against what the program's own parts see, and
-// against the program's files.
+// Tests of the library through its interface: against closed forms, against the state of the program's own
+// parts, and against the program's files.
 #include "scree/simulation.hpp"
 
 #include "sim/step/simulation.hpp"
@@ -22,7 +22,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A ball and two crates above a floor, and a ball that comes later.
+/// A scene with a ball and two crates above a floor, and a ball that appears later.
 const std::string scene_text =
     "format: 1\n"
     "name: heap\n"
@@ -200,7 +200,7 @@ TEST_F(LibraryTest, MeasuresAreThoseOfTheBodies) {
   EXPECT_LT(simulation.measure("energy.unexplained"), 1e-9);
   EXPECT_EQ(simulation.loaded_contacts().size(), 3) << "ball, crate, crate, floor: one contact for each two";
   EXPECT_EQ(simulation.measure("contacts.count"), 9) << "points: one, and four of each crate";
-  // Last, because it is what costs.
+  // This comes last, because computing the penetration is expensive.
   EXPECT_EQ(simulation.measure("penetration.max"), simulation.observe().penetration.max);
 }
 
@@ -243,7 +243,7 @@ TEST_F(LibraryTest, RefusesTheCheckpointOfAnotherSceneAndOneThatIsDamaged) {
   simulation.step();
   const std::uint64_t hash = simulation.state_hash();
   const std::string why = refusal<InputError>([&] { simulation.load_checkpoint(folder_ / "moon.h5"); });
-  EXPECT_NE(why.find("moon.h5: the checkpoint is of another scene: there `gravity: [0, 0, -1.62]`"),
+  EXPECT_NE(why.find("moon.h5: the checkpoint is of another scene: it has `gravity: [0, 0, -1.62]`"),
             std::string::npos)
       << why;
   fs::resize_file(folder_ / "moon.h5", fs::file_size(folder_ / "moon.h5") - 1);
@@ -254,7 +254,7 @@ TEST_F(LibraryTest, RefusesTheCheckpointOfAnotherSceneAndOneThatIsDamaged) {
   EXPECT_EQ(simulation.state_hash(), hash);
 }
 
-/// A run of the program that was stopped, its numbers, and the library in between.
+/// The library gives the numbers of a run that the program stopped early, and continues from its checkpoint.
 TEST_F(LibraryTest, TakesTheProgramsCheckpointsAndSeesItsNumbers) {
   const fs::path scene = write("heap.yaml", scene_text);
   const std::string command = std::string(SCREE_PROGRAM) + " run " + scene.string() + " -o " +

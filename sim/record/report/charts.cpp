@@ -13,20 +13,20 @@ namespace scree::report {
 
 namespace {
 
-constexpr double seen = 1e-9;           // of the largest curve of a chart: less is rounding
-constexpr std::size_t most_curves = 8;  // that can be told apart in one picture
+constexpr double seen = 1e-9;  // share of the largest curve of a chart below which a curve is rounding
+constexpr std::size_t most_curves = 8;  // number of curves that can be told apart in one picture
 
-/// Makes charts of columns.
+/// Makes charts from the columns of metrics.csv.
 class Charts {
  public:
   explicit Charts(const Columns& metrics) : metrics_(metrics) {}
 
-  /// One column as it is; none if there is no such column.
+  /// Returns one column as it is; no curve if there is no such column.
   std::vector<Curve> curve(const std::string& title, const std::string& name) const {
     const Column* column = metrics_.find(name);
     return column == nullptr ? std::vector<Curve>{} : std::vector<Curve>{{title, *column}};
   }
-  /// Change since the first row.
+  /// Returns the change of a column since the first row.
   std::vector<Curve> change(const std::string& title, const std::string& name) const {
     std::vector<Curve> curves = curve(title, name);
     for (Curve& c : curves) {
@@ -38,7 +38,7 @@ class Charts {
   std::vector<Curve> components(const std::string& name) const {
     return together({curve("x", name + "_x"), curve("y", name + "_y"), curve("z", name + "_z")});
   }
-  /// The columns PREFIX name SUFFIX, called by their names.
+  /// Returns the columns PREFIX name SUFFIX, with the titles `name`.
   std::vector<Curve> each(std::string_view prefix, std::string_view suffix) const {
     std::vector<Curve> curves;
     for (const std::string& name : metrics_.names)
@@ -53,7 +53,7 @@ class Charts {
     return all;
   }
 
-  /// Those that have more than one value.
+  /// Returns the curves that have more than one value.
   static std::vector<Curve> that_change(std::vector<Curve> curves) {
     std::erase_if(curves, [](const Curve& curve) {
       double least = HUGE_VAL, greatest = -HUGE_VAL;
@@ -80,7 +80,7 @@ class Charts {
   }
 
  private:
-  /// The largest that can be drawn.
+  /// Returns the largest value that can be drawn.
   static double magnitude(const Plot& plot, const Curve& curve) {
     double largest = 0;
     for (const double value : curve.values)
@@ -96,21 +96,21 @@ Chapter energy(const Charts& of) {
   of.add(chapter,
          {.title = "Where the energy is, and where it went",
           .unit = "energy (J)",
-          .curves = Charts::together({of.curve("kinetic", "energy_kinetic"),
-                                      of.change("potential, change", "energy_potential"),
-                                      of.curve("lost in impacts", "energy_dissipated_restitution"),
-                                      of.curve("lost to friction", "energy_dissipated_friction"),
-                                      of.curve("lost to correction", "energy_dissipated_correction"),
-                                      of.curve("work done on bodies", "energy_work"),
-                                      of.curve("drift of rotation", "energy_integration"),
-                                      of.curve("come and gone", "energy_exchange")})},
-         "Each from its own definition, none as a remainder.");
+          .curves = Charts::together(
+              {of.curve("kinetic", "energy_kinetic"), of.change("potential, change", "energy_potential"),
+               of.curve("lost in impacts", "energy_dissipated_restitution"),
+               of.curve("lost to friction", "energy_dissipated_friction"),
+               of.curve("lost to correction", "energy_dissipated_correction"),
+               of.curve("work done on bodies", "energy_work"),
+               of.curve("error of free rotation", "energy_integration"),
+               of.curve("of bodies that appeared, less those removed", "energy_exchange")})},
+         "Each curve is computed by itself; none is the difference of the others.");
   of.add(chapter,
-         {.title = "Energy that nothing explains",
+         {.title = "Unexplained energy",
           .unit = "share of the largest energy",
           .is_logarithmic = true,
           .curves = of.curve("unexplained", "energy_unexplained")},
-         "What is left when all of the above is added up: the error of the books.");
+         "The part of the change that the curves above do not add up to.");
   return chapter;
 }
 
@@ -130,17 +130,18 @@ Chapter contacts(const Charts& of) {
           .is_logarithmic = true,
           .curves = Charts::together({of.curve("worst", "penetration_relative_max"),
                                       of.curve("mean", "penetration_relative_mean")})},
-         "Of a radius, or of a box's smallest half extent.");
+         "As a share of the smaller body's radius, or smallest half edge.");
   of.add(chapter,
          {.title = "Contacts and pairs",
           .unit = "number",
-          .curves = Charts::together({of.curve("contacts that carry", "contacts_count"),
-                                      of.curve("pairs of the PCS", "pairs_count")})},
-         "What the broad phase handed on, and what came of it.");
-  of.add(
-      chapter,
-      {.title = "Contacts a body", .unit = "number", .curves = of.curve("coordination", "coordination_mean")},
-      "That carry, counted for both of their bodies.");
+          .curves = Charts::together({of.curve("contact points under load", "contacts_count"),
+                                      of.curve("pairs from the broad phase", "pairs_count")})},
+         "Pairs whose bounding boxes overlap, and contact points that carry a force.");
+  of.add(chapter,
+         {.title = "Contacts per body",
+          .unit = "number",
+          .curves = of.curve("coordination", "coordination_mean")},
+         "Contacts under load; each counts for both of its bodies.");
   return chapter;
 }
 
@@ -151,14 +152,15 @@ Chapter motion(const Charts& of) {
           .unit = "speed (m/s)",
           .curves = Charts::together({of.curve("fastest", "speed_max"), of.curve("rms", "speed_rms")})},
          "Of the free bodies.");
-  of.add(
-      chapter,
-      {.title = "Bodies", .unit = "number", .curves = Charts::that_change(of.curve("there", "bodies_count"))},
-      "That have come and not gone.");
-  of.add(chapter, {.title = "Centre of mass", .unit = "place (m)", .curves = of.components("centre")},
+  of.add(chapter,
+         {.title = "Bodies",
+          .unit = "number",
+          .curves = Charts::that_change(of.curve("present", "bodies_count"))},
+         "Bodies that have appeared and were not removed.");
+  of.add(chapter, {.title = "Centre of mass", .unit = "position (m)", .curves = of.components("centre")},
          "Of the free bodies.");
   of.add(chapter, {.title = "Momentum", .unit = "momentum (kg m/s)", .curves = of.components("momentum")},
-         "Of the free bodies; what holds still takes what they lose.");
+         "Sum over the free bodies; fixed and moved bodies take the rest.");
   of.add(chapter,
          {.title = "Angular momentum",
           .unit = "about the origin (kg m²/s)",
@@ -167,7 +169,7 @@ Chapter motion(const Charts& of) {
   return chapter;
 }
 
-/// Of bodies that have a name and move.
+/// Makes the chapter of the bodies that have a name and move.
 Chapter named_bodies(const Charts& of) {
   Chapter chapter{"Bodies by name", {}};
   for (const char* axis : {"x", "y", "z"}) {
@@ -175,7 +177,9 @@ Chapter named_bodies(const Charts& of) {
       return Charts::that_change(of.each("", fmt::format("_{}_{}", quantity, axis)));
     };
     of.add(chapter,
-           {.title = fmt::format("Place along {}", axis), .unit = "place (m)", .curves = named("position")},
+           {.title = fmt::format("Position along {}", axis),
+            .unit = "position (m)",
+            .curves = named("position")},
            "Of the bodies that move.");
     of.add(chapter,
            {.title = fmt::format("Velocity along {}", axis),
@@ -202,11 +206,11 @@ Chapter sources_and_regions(const Charts& of) {
   of.add(
       chapter,
       {.title = "Mass that comes into regions", .unit = "flux (kg/s)", .curves = of.each("region_", "_flux")},
-      "Over the last step of each row; negative: it goes.");
+      "Change over the last step before each row; negative: mass leaves.");
   return chapter;
 }
 
-/// Between rows.
+/// Makes the chapter of the cost, which is measured between two rows.
 Chapter speed_of_the_run(const Charts& of, const WallTimes& wall) {
   Chapter chapter{"Cost", {}};
   Column time, cost;

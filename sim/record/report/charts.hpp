@@ -1,4 +1,4 @@
-// Which curves of a run are worth a look: those of what its scene has.
+// The charts of a run: the curves of the quantities that its scene has.
 #pragma once
 
 #include "sim/record/report/columns.hpp"
@@ -11,17 +11,17 @@ namespace scree::report {
 
 struct Chart {
   Plot plot;
-  std::string caption;  ///< what is to be seen in it
+  std::string caption;  ///< text that says what the curves show
 };
 
-/// Of a subject.
+/// The charts of one subject.
 struct Chapter {
   std::string title;
   std::vector<Chart> charts;
 };
 
-/// Curves that are zero throughout are left out, or rounding beside the largest of their chart, charts
-/// without a curve, and chapters without a chart.
+/// Makes the chapters. Curves that are zero throughout, or rounding compared with the largest one of their
+/// chart, are left out, and so are charts without a curve and chapters without a chart.
 std::vector<Chapter> chapters_of(const Columns& metrics, const WallTimes& wall);
 
 }  // namespace scree::report

@@ -33,7 +33,7 @@ WallTimes read_wall_times(const std::filesystem::path& timing) {
   const Column* time = columns.find("time");
   const Column* wall = columns.find("wall");
   if (time == nullptr || wall == nullptr) return times;
-  // There is a row for each stage.
+  // timing.csv has a row for each stage at each time.
   for (std::size_t k = 0; k < time->size(); ++k) {
     if (!times.time.empty() && times.time.back() == (*time)[k]) continue;
     times.time.push_back((*time)[k]);

@@ -1,4 +1,4 @@
-// The columns of metrics.csv and timing.csv in memory, for what is drawn of them.
+// The columns of metrics.csv and timing.csv in memory, from which the plots are made.
 #pragma once
 
 #include <cstdint>
@@ -9,23 +9,23 @@
 
 namespace scree::report {
 
-using Column = std::vector<double>;  ///< a number for each row; NaN where there is none
+using Column = std::vector<double>;  ///< a number for each row; NaN if the cell holds none
 
 struct Columns {
-  std::vector<std::string> names;  ///< in the order of the file
+  std::vector<std::string> names;  ///< names in the order of the file
   std::map<std::string, Column> values;
 
-  /// Null if there is none of that name.
+  /// Returns the column of that name; null if there is none.
   const Column* find(const std::string& name) const;
 };
 
-/// Throws InputError if there is no such table.
+/// Reads a table. Throws InputError if there is no such table.
 Columns read_columns(const std::filesystem::path& file);
 
-/// Rows of timing.csv: when each row of metrics.csv was written.
+/// The wall times at which the rows of metrics.csv were written, from timing.csv.
 struct WallTimes {
-  Column time;  ///< s, simulated
-  Column wall;  ///< s
+  Column time;  ///< simulated time (s)
+  Column wall;  ///< wall time (s)
 };
 WallTimes read_wall_times(const std::filesystem::path& timing);
 

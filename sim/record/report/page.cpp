@@ -58,7 +58,7 @@ std::string read_bytes(const std::filesystem::path& file) {
   return bytes;
 }
 
-/// RFC 4648, section 4.
+/// Encodes bytes as in RFC 4648, section 4.
 std::string base64(const std::string& bytes) {
   using namespace boost::archive::iterators;
   using Iterator = base64_from_binary<transform_width<std::string::const_iterator, 6, 8>>;

@@ -1,4 +1,4 @@
-// A page of HTML that needs nothing but itself.
+// A page of HTML that needs no other files.
 #pragma once
 
 #include <filesystem>
@@ -8,25 +8,25 @@
 
 namespace scree::report {
 
-/// Text with what HTML would take for its own written out.
+/// Returns the text with the characters that have a meaning in HTML replaced by their entities.
 std::string escaped(std::string_view text);
 
-/// The whole page: its head with the style, and the body, which is HTML.
+/// Returns the whole page: a head with the style, and the body, which is HTML.
 std::string page(std::string_view title, std::string_view body);
 
-/// A part of it under a heading; nothing if there is nothing in it.
+/// Returns a part of the page under a heading; an empty text if there is no content.
 std::string section(std::string_view title, std::string_view content);
 
-/// Cells are HTML. The first row is the head.
+/// Returns a table. Its cells are HTML, and the first row is the head.
 std::string table(const std::vector<std::vector<std::string>>& rows);
 
-/// A picture with the PNG file in it. Throws RunError if that cannot be read.
+/// Returns a figure that contains the bytes of the PNG file. Throws RunError if the file cannot be read.
 std::string picture(const std::filesystem::path& png, std::string_view caption);
 
-/// A picture with the SVG in it.
+/// Returns a figure that contains the SVG.
 std::string drawing(std::string_view svg, std::string_view title, std::string_view caption);
 
-/// What is shown when it is asked for.
+/// Returns content that is folded under a summary until the reader opens it.
 std::string folded(std::string_view summary, std::string_view content);
 
 }  // namespace scree::report

@@ -15,7 +15,7 @@ namespace scree::report {
 
 namespace {
 
-constexpr std::size_t most_rows = 1200;  // a curve; the picture is 560 pixels wide
+constexpr std::size_t most_rows = 1200;  // rows of a curve; the picture is 560 pixels wide
 
 constexpr const char* plot_style =
     "set grid lc rgb '#e6e6e6'\n"
@@ -24,11 +24,11 @@ constexpr const char* plot_style =
     "set xlabel 'time (s)'\n"
     "set format y '%g'\n";
 
-// Tell apart without their colours, too, as they are of different lightness (Okabe and Ito 2008).
+// Colours that can be told apart by their lightness too (Okabe and Ito 2008).
 constexpr const char* colors[] = {"#0072b2", "#d55e00", "#009e73", "#cc79a7",
                                   "#e69f00", "#56b4e9", "#000000", "#888888"};
 
-/// Text in single quotes.
+/// Returns the text in single quotes.
 std::string in_quotes(std::string_view text) {
   std::string out = "'";
   for (const char c : text) out += c == '\'' ? std::string("''") : std::string(1, c);
@@ -54,7 +54,7 @@ std::string script_of(const Plot& plot, std::size_t number) {
     fmt::format_to(out, "$curve{} << END\n", k);
     for (const std::size_t row : rows_to_draw(curve.values, most_rows)) {
       const double value = curve.values[row];
-      // A line that is left empty parts the curve there.
+      // An empty line makes gnuplot interrupt the curve.
       if (is_drawn(plot, value))
         fmt::format_to(out, "{} {}\n", plot.time[row], value);
       else

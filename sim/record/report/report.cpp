@@ -2,19 +2,21 @@
 
 #include "core/error.hpp"
 #include "sim/record/files.hpp"
+#include "sim/record/guards.hpp"
 #include "sim/record/json.hpp"
 #include "sim/record/report/charts.hpp"
 #include "sim/record/report/page.hpp"
-#include "sim/scene/reader.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <fstream>
 #include <iterator>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -43,7 +45,7 @@ std::string tile(std::string_view value, std::string_view words) {
   return fmt::format("<div class=\"tile\"><b>{}</b><span>{}</span></div>\n", value, words);
 }
 
-/// The greatest of the run's rows, NaN left out; 0 if there is none.
+/// Returns the greatest value of a column in all rows, without NaN; 0 if there is none.
 double worst(const Columns& metrics, const std::string& name) {
   const Column* column = metrics.find(name);
   double worst = 0;
@@ -61,10 +63,10 @@ std::string count(std::int64_t n) {
 
 std::string head(const Json& run) {
   const auto status = run.at("status").get<std::string>();
+  const char* place = run.at("space") == "cuda" ? "on the GPU (CUDA)" : "on the processor";
   return fmt::format(
-      "<h1>{} <span class=\"status {}\">{}</span></h1>\n<p class=\"lead\">{} on {}{}, {} precision</p>\n",
-      text_of(run.at("scene").at("name")), status, status, text_of(run.at("space")),
-      text_of(run.at("machine").at("cpu")),
+      "<h1>{} <span class=\"status {}\">{}</span></h1>\n<p class=\"lead\">{}: {}{}, {} precision</p>\n",
+      text_of(run.at("scene").at("name")), status, status, place, text_of(run.at("machine").at("cpu")),
       run.at("machine").contains("gpu") ? ", " + text_of(run.at("machine").at("gpu")) : "",
       text_of(run.at("precision")));
 }
@@ -80,37 +82,44 @@ std::string tiles(const Json& run, const Columns& metrics) {
          tile(count(bodies), "bodies at the end") +
          tile(fmt::format("{:.4g} s", wall), fmt::format("of wall time, {:.3g} steps a second", rate)) +
          tile(fmt::format("{:.2g} m", worst(metrics, "penetration_max")),
-              fmt::format("worst overlap, {:.2g} of a body", worst(metrics, "penetration_relative_max"))) +
+              fmt::format("largest overlap, {} of the smaller body",
+                          percent_words(worst(metrics, "penetration_relative_max")))) +
          tile(fmt::format("{:.2g}", worst(metrics, "energy_unexplained")),
-              "of the energy unexplained, at worst") +
+              "largest unexplained energy, as a share of the energy scale") +
          "</div>\n";
 }
 
-/// What to look at first.
+/// Returns the errors and warnings of the run, which come first on the page.
 std::string notices(const Json& run) {
   std::string html;
   if (run.contains("error")) html += notice("bad", "The run failed: " + text_of(run.at("error")));
   if (run.at("status") == "interrupted")
-    html += notice("", "The run was interrupted; <code>--resume</code> goes on with it.");
+    html += notice(
+        "", "The run was interrupted; run the same command with <code>--resume</code> to continue it.");
   for (const Json& check : run.at("checks")) {
     if (check.at("verdict") == "failed") html += notice("bad", "Check failed: " + text_of(check.at("check")));
     if (check.at("verdict") == "not evaluated")
       html += notice("bad", fmt::format("Check not evaluated: {}: {}", text_of(check.at("check")),
                                         text_of(check.at("problem"))));
+    if (check.at("verdict") == "not reached")
+      html += notice("", fmt::format("Check not reached: {}: {}", text_of(check.at("check")),
+                                     text_of(check.at("problem"))));
   }
   for (const Json& warning : run.at("warnings")) html += notice("", text_of(warning));
   for (const auto& [name, guard] : run.at("guards").items())
     if (guard.at("count") > 0 && guard.at("matters") == true)
-      html += notice(
-          "", fmt::format("{} {}: {}; fewer by {}.", count(guard.at("count")), text_of(guard.at("what")),
-                          text_of(guard.at("effect")), text_of(guard.at("setting"))));
-  return html.empty() ? notice("good", "No warnings, no failed checks, and no guard whose work matters.")
-                      : html;
+      html += notice("", fmt::format("{}: {}; {}. To have fewer: {}.", text_of(guard.at("what")),
+                                     count(guard.at("count")), text_of(guard.at("effect")),
+                                     text_of(guard.at("setting"))));
+  return html.empty()
+             ? notice("good",
+                      "No warnings, no failed checks, and no limit was reached that changes the result.")
+             : html;
 }
 
-/// What guards and bounds have counted, and how much it matters.
+/// Returns a table of what guards and limits have counted, and how much it matters.
 std::string guards(const Json& run) {
-  std::vector<std::vector<std::string>> rows = {{"", "what", "to the run", "fewer by"}};
+  std::vector<std::vector<std::string>> rows = {{"count", "event", "effect on the run", "to have fewer"}};
   for (const auto& [name, guard] : run.at("guards").items())
     if (guard.at("count") > 0)
       rows.push_back({count(guard.at("count")), text_of(guard.at("what")),
@@ -120,11 +129,11 @@ std::string guards(const Json& run) {
   return rows.size() > 1 ? table(rows) : std::string();
 }
 
-/// The first, the middle and the last.
+/// Returns the picture of a failure, and the first, the middle and the last frame.
 std::string pictures(const Json& run, const fs::path& folder) {
   std::string html;
   if (fs::exists(folder / "failure.png"))
-    html += picture(folder / "failure.png", "The place where the run failed");
+    html += picture(folder / "failure.png", "The bodies named by the error, before the step that failed");
   const auto frames = run.at("frames").get<std::int64_t>();
   std::vector<std::int64_t> numbers = {0, frames / 2, frames - 1};
   numbers.erase(std::unique(numbers.begin(), numbers.end()), numbers.end());
@@ -139,7 +148,7 @@ std::string pictures(const Json& run, const fs::path& folder) {
   return html;
 }
 
-/// A number of a check, or a dash.
+/// Returns a number of a check, or a dash if there is none.
 std::string number_of(const Json& check, const char* key) {
   const auto found = check.find(key);
   return found != check.end() && found->is_number() ? fmt::format("{:.6g}", found->get<double>()) : "–";
@@ -184,17 +193,30 @@ std::string model(const Json& run) {
   return table(rows);
 }
 
+/// Returns what a counter of the manifest counts, where its name does not say it; else an empty text.
+std::string_view words_of_counter(std::string_view name) {
+  constexpr std::array<std::pair<std::string_view, std::string_view>, 5> words = {
+      {{"cuts", "substeps cut where a sliding contact came to stick"},
+       {"scaled", "groups of contacts whose impulses were made smaller, since they would have gained energy"},
+       {"patient", "groups of contacts solved by a second direct solution, with higher limits"},
+       {"pcs_made", "times that the broad phase found new pairs"},
+       {"direct_failed", "groups of contacts that the direct solver left to the sweeps"}}};
+  const auto found = std::ranges::find(words, name, &std::pair<std::string_view, std::string_view>::first);
+  return found == words.end() ? "" : found->second;
+}
+
 std::string counters(const Json& run) {
-  std::vector<std::vector<std::string>> rows = {{"counter", ""}};
+  std::vector<std::vector<std::string>> rows = {{"counter", "value", ""}};
   for (const auto& [name, value] : run.at("counters").items())
-    if (value.is_number()) rows.push_back({escaped(name), text_of(value)});
+    if (value.is_number())
+      rows.push_back({escaped(name), text_of(value), std::string(words_of_counter(name))});
   return table(rows);
 }
 
 std::string provenance(const Json& run, const fs::path& folder) {
   const Json& program = run.at("program");
   const Json& machine = run.at("machine");
-  std::vector<std::vector<std::string>> rows = {{"of", ""}};
+  std::vector<std::vector<std::string>> rows = {{"item", ""}};
   const auto add = [&](const char* what, const std::string& html) {
     rows.push_back({what, "<code>" + html + "</code>"});
   };
@@ -210,12 +232,11 @@ std::string provenance(const Json& run, const fs::path& folder) {
   return table(rows) +
          "<p class=\"lead\"><code>scree run --reproduce</code> with this folder's manifest runs it again and "
          "compares the states.</p>\n" +
-         folded("The scene, every default written out",
-                "<pre>" + escaped(read_text(folder / "scene.yaml")) + "</pre>") +
-         folded("What the loops of the run have counted", counters(run));
+         folded("The scene as it was run", "<pre>" + escaped(read_text(folder / "scene.yaml")) + "</pre>") +
+         folded("Counters of the solver", counters(run));
 }
 
-/// With the plots, or with why there are none.
+/// Returns a section for each chapter with its plots, or a section that says why there are none.
 std::string plots(const std::vector<Chapter>& chapters) try {
   std::vector<Plot> all;
   for (const Chapter& chapter : chapters)
@@ -242,18 +263,17 @@ std::string plots(const std::vector<Chapter>& chapters) try {
 
 void write_report(const fs::path& folder) try {
   using namespace report;
-  const Json run = Json::parse(std::ifstream(folder / "manifest.json"));
+  const Json run = parsed_manifest(folder / "manifest.json");
   const Columns metrics = read_columns(folder / "metrics.csv");
   const WallTimes wall = read_wall_times(folder / "timing.csv");
   const std::string body =
       head(run) + notices(run) + tiles(run, metrics) + section("Pictures", pictures(run, folder)) +
       section("Checks", checks(run)) + plots(chapters_of(metrics, wall)) + section("Stages", stages(run)) +
-      section("What guards and bounds have counted", guards(run)) + section("What was modelled", model(run)) +
-      section("Where it comes from", provenance(run, folder));
+      section("Limits that were reached", guards(run)) + section("What was modelled", model(run)) +
+      section("How this run was made", provenance(run, folder));
   write_file(folder / report_name, page(run.at("scene").at("name").get<std::string>() + " – scree", body));
-} catch (const Json::exception& error) {
-  throw InputError(printable(
-      fmt::format("{}: is no manifest of a run: {}", (folder / "manifest.json").string(), error.what())));
+} catch (const Json::exception&) {
+  throw InputError(not_a_manifest(folder / "manifest.json"));
 }
 
 }  // namespace scree

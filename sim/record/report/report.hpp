@@ -1,4 +1,4 @@
-// report.html: a run on one page, warnings first, made of what else is in its folder.
+// report.html: one page about a run, warnings first, which is made from the other files of its folder.
 #pragma once
 
 #include <filesystem>
@@ -8,8 +8,8 @@ namespace scree {
 constexpr const char* report_name = "report.html";
 
 /// Reads manifest.json, metrics.csv, timing.csv, scene.yaml and frames/ of the folder, and writes the page
-/// beside them. Without gnuplot it has no plots, and says so. Throws InputError if the folder holds no run,
-/// and RunError if the page cannot be written.
+/// into the folder. Without gnuplot the page has no plots, and says so. Throws InputError if the folder holds
+/// no run, and RunError if the page cannot be written.
 void write_report(const std::filesystem::path& folder);
 
 }  // namespace scree

@@ -24,6 +24,11 @@ TEST(Difficulty, AFallEndsOnThePlane) {
   EXPECT_NEAR(d.speed, 10, 1e-14);
   EXPECT_NEAR(d.travel(0.01), 1, 1e-14);
   EXPECT_NEAR(of(floor + ball, "0.5").speed, 5, 1e-14) << "the run ends in the air";
+  EXPECT_NEAR(of(floor + ball, "0.5").fall, 1.25, 1e-14);
+  const std::string thrown =
+      "  - {sphere: {radius: 0.1}, at: [0, 0, 5.1], velocity: [0, 0, -2], material: a}\n";
+  EXPECT_NEAR(of(floor + thrown, "0.5").fall, 2.25, 1e-14);
+  EXPECT_NEAR(of(floor + thrown, "0.5").speed, 7, 1e-14);
   EXPECT_EQ(of(floor + ball, "10", "[0, 0, 0]").speed, 0);
   EXPECT_NEAR(of(floor + ball, "10", "[0, 0, 10]").fall, 0, 1e-14) << "away from the plane, past nothing";
   // Down a plane that leans by 60 degrees, straight along gravity.

@@ -39,6 +39,16 @@ TEST_F(NewTest, PicturesOfATemplateAreDrawn) {
   }
 }
 
+TEST_F(NewTest, ANameWithASpaceIsQuotedForTheShell) {
+  const Finished spaced = scree_in(folder_, {"new", "my scene", "--from", "minimal"});
+  EXPECT_TRUE(spaced.out.ends_with("\nNext: scree plan 'my scene.yaml', scree run 'my scene.yaml'\n"))
+      << spaced.out;
+  const Finished quoted = scree_in(folder_, {"new", "it's", "--from", "minimal"});
+  EXPECT_TRUE(contains(quoted.out, "Next: scree plan 'it'\\''s.yaml', ")) << quoted.out;
+  const Finished plain = scree_in(folder_, {"new", "plain", "--from", "minimal"});
+  EXPECT_TRUE(contains(plain.out, "Next: scree plan plain.yaml, ")) << plain.out;
+}
+
 TEST_F(NewTest, ListsTheTemplatesWithWhatTheyAre) {
   const Finished list = scree_in(folder_, {"new"});
   EXPECT_EQ(list.status, 0);

@@ -24,7 +24,7 @@ const std::vector<Feature> features = {
     {"a servo",
      "",
      of_stone("box: {size: 1}, at: [3, 0, 0], servo: {axis: [0, 0, 1], force: 5}"),
-     {{"servos", "1 that hold a force: steps are taken on Host"}}},
+     {{"servos", "1 that hold a force: steps are taken on the processor"}}},
     {"a mesh",
      "",
      of_stone("mesh: {file: two.obj}, fixed: true"),

@@ -147,7 +147,13 @@ TEST_F(ProgramTest, AnEarlierRunIsKeptUnlessToldToOverwriteIt) {
 TEST_F(ProgramTest, UntilStopsEarlyAndChecksBeyondItDoNotPass) {
   const Finished run = run_scene(falling_ball(no_pictures + good_check), {"--until", "0.05"});
   EXPECT_EQ(run.status, 1);
+  EXPECT_TRUE(contains(run.out, "fall: done at t = 0.05 s of 0.1 s, 5 steps in ")) << run.out;
+  EXPECT_TRUE(contains(run.out, "  -      ball.position.z at the end")) << run.out;
   EXPECT_TRUE(contains(run.out, "the run stopped before that")) << run.out;
+  EXPECT_TRUE(contains(run.out, "0 passed, 0 failed, 1 not reached\n")) << run.out;
+  EXPECT_TRUE(contains(run.out, "to continue: the same command with --resume and without --until\n"))
+      << run.out;
+  EXPECT_EQ(manifest_in(folder_ / "output/fall")["checks"][0]["verdict"], "not reached");
   EXPECT_EQ(manifest_in(folder_ / "output/fall")["status"], "done");
   EXPECT_EQ(manifest_in(folder_ / "output/fall")["steps"], 5);
 }
@@ -163,7 +169,10 @@ TEST_F(ProgramTest, ARunThatCannotGoOnExitsWith3AndSavesWhatItHas) {
   EXPECT_EQ(manifest["status"], "failed");
   EXPECT_EQ("scree: " + manifest["error"].get<std::string>() + "\n", run.error);
   EXPECT_EQ(manifest["steps"], 0);
-  EXPECT_EQ(manifest["checks"][0]["verdict"], "not evaluated");
+  EXPECT_EQ(manifest["checks"][0]["verdict"], "not reached");
+  EXPECT_TRUE(contains(run.out, "picture:  the bodies named, before the step that failed: ") ||
+              contains(run.error, "there is no picture of the failure: "))
+      << run.out << run.error;
   const std::string metrics = text_of(folder_ / "output/fall/metrics.csv");
   EXPECT_EQ(std::ranges::count(metrics, '\n'), 2) << "the row of the last good state";
   ASSERT_EQ(manifest["failed_bodies"].size(), 1u);
@@ -178,10 +187,15 @@ TEST_F(ProgramTest, ABodyThatLeavesTheWorldIsShownWhereItWas) {
   EXPECT_TRUE(contains(stopped.error, "ball (body 0): outside of the world")) << stopped.error;
   EXPECT_GT(fs::file_size(folder_ / "output/fall/failure.png"), 500u);
   EXPECT_FALSE(fs::is_empty(folder_ / "output/fall/checkpoint"));
+  EXPECT_EQ(manifest_in(folder_ / "output/fall")["observation"]["contacts"], nullptr)
+      << "they are those of the step that was undone";
   const Finished counted =
       run_scene(falling_ball(no_pictures + world), {"--overwrite", "--set", "world.leaving=remove"});
   EXPECT_EQ(counted.status, 0);
-  EXPECT_TRUE(contains(counted.out, "guard: 1 bodies that left the world")) << counted.out;
+  EXPECT_TRUE(contains(counted.out,
+                       "warning: bodies that left the world and were taken out: 1; later measurements do not "
+                       "include them. To have fewer: a larger box in world.from and world.to."))
+      << counted.out;
   EXPECT_FALSE(fs::exists(folder_ / "output/fall/failure.png"));
   EXPECT_EQ(manifest_in(folder_ / "output/fall")["guards"]["left"]["count"], 1);
 }
@@ -201,7 +215,7 @@ render: false
 )";
   const Finished run = run_scene(stack);
   EXPECT_EQ(run.status, 0) << run.error;
-  EXPECT_FALSE(contains(run.out, "guard:")) << run.out;
+  EXPECT_FALSE(contains(run.out, "warning:")) << run.out;
   const Json guard = manifest_in(folder_ / "output/fall")["guards"]["sweeps"];
   EXPECT_GT(guard["count"], 0);
   EXPECT_EQ(guard["matters"], false);
@@ -299,14 +313,15 @@ TEST_F(ProgramTest, ReproduceRunsAgainAndComparesTheStates) {
   const fs::path manifest = folder_ / "output/fall/manifest.json";
   const Finished same = scree_in(folder_, {"run", "--reproduce", manifest.string()});
   EXPECT_EQ(same.status, 0) << same.error;
-  EXPECT_TRUE(contains(same.out, "12 states, 0 different")) << same.out;
+  EXPECT_TRUE(contains(same.out, "11 states, 0 different: every state is the same to the last bit\n"))
+      << same.out;
   Json changed = manifest_in(folder_ / "output/fall");
   changed["states"][3]["hash"] = "0123456789abcdef";
   write_text(manifest, changed.dump());
   const Finished other = scree_in(folder_, {"run", "--reproduce", manifest.string()});
   EXPECT_EQ(other.status, 1);
   EXPECT_TRUE(contains(other.out, "DIFFERENT")) << other.out;
-  EXPECT_TRUE(contains(other.out, "12 states, 1 different")) << other.out;
+  EXPECT_TRUE(contains(other.out, "11 states, 1 different\n")) << other.out;
   write_text(folder_ / "output/fall/scene.yaml", falling_ball(no_pictures + "seed: 3\n"));
   EXPECT_EQ(scree_in(folder_, {"run", "--reproduce", manifest.string()}).status, 2);
   write_text(manifest, "{}");
@@ -321,11 +336,19 @@ TEST_F(ProgramTest, CompareSaysHowFarTwoRunsDiffer) {
   EXPECT_EQ(scree_in(folder_, {"compare", "one", "two"}).status, 0);
   const Finished apart = scree_in(folder_, {"compare", "one", "three"});
   EXPECT_EQ(apart.status, 1);
+  EXPECT_TRUE(contains(apart.out, " columns differ, more than --tolerance and --absolute allow\n"))
+      << apart.out;
+  EXPECT_TRUE(contains(apart.out, "  first cell            column\n")) << apart.out;
   EXPECT_TRUE(contains(apart.out, "final.csv vz")) << apart.out;
   EXPECT_EQ(scree_in(folder_, {"compare", "one", "three", "--tolerance", "1e-3"}).status, 1)
       << "what is rounding differs by all of itself";
   EXPECT_EQ(
       scree_in(folder_, {"compare", "one", "three", "--tolerance", "1e-3", "--absolute", "1e-12"}).status, 0);
+  fs::remove(folder_ / "two/final.csv");
+  const Finished alone = scree_in(folder_, {"compare", "one", "two"});
+  EXPECT_EQ(alone.status, 1);
+  EXPECT_TRUE(contains(alone.out, "final.csv: only in the first run\n")) << alone.out;
+  EXPECT_TRUE(contains(alone.out, ": 0 columns differ; something is in one run alone\n")) << alone.out;
   EXPECT_EQ(scree_in(folder_, {"compare", "one", "nowhere"}).status, 2);
 }
 
@@ -379,6 +402,10 @@ TEST_F(VerifyTest, LongScenesAreLeftOutUnlessAsked) {
   EXPECT_EQ(usual.status, 0);
   EXPECT_TRUE(contains(usual.out, "scenes left out: 1")) << usual.out;
   EXPECT_EQ(verify({"--label", "long"}).status, 1);
+  const Finished misspelt = verify({"--label", "lnog"});
+  EXPECT_EQ(misspelt.status, 2);
+  EXPECT_EQ(misspelt.error, "scree: no scene was run: none with checks has the label lnog\n");
+  EXPECT_EQ(verify({"--label", "long"}).status, 1);
   EXPECT_EQ(table()["passed"], 0);
   EXPECT_EQ(verify({"--all"}).status, 1);
   EXPECT_EQ(table()["passed"], 1);
@@ -404,7 +431,7 @@ TEST_F(VerifyTest, JudgesEnsemblesByTheirMeanAndRunsOfOneSeedNot) {
   EXPECT_EQ(verify().status, 1) << "so few seeds do not tell so much";
   const Finished one = scree_in(folder_, {"run", "scenes/a.yaml"});
   EXPECT_EQ(one.status, 0) << one.out;
-  EXPECT_TRUE(contains(one.out, "1 passed, 0 failed, 1 told by many seeds alone")) << one.out;
+  EXPECT_TRUE(contains(one.out, "1 passed, 0 failed, 1 needs all seeds: use scree verify")) << one.out;
 }
 
 TEST_F(VerifyTest, VariesSettingsAndCountsThemApart) {
@@ -421,9 +448,22 @@ TEST_F(VerifyTest, VariesSettingsAndCountsThemApart) {
   EXPECT_EQ(verify({"--vary", "time.step"}).status, 2);
 }
 
+TEST_F(VerifyTest, ATableThatCannotBeWrittenIsToldBeforeTheFirstScene) {
+  add("a.yaml", falling_ball(good_check));
+  const Finished run = scree_in(folder_, {"verify", "scenes", "--json", "nowhere/table.json"});
+  EXPECT_EQ(run.status, 2);
+  EXPECT_EQ(run.error, "scree: --json: nowhere: there is no such folder\n");
+  EXPECT_EQ(run.out, "");
+  EXPECT_EQ(scree_in(folder_, {"verify", "scenes", "--json", "scenes"}).status, 2);
+}
+
 TEST_F(VerifyTest, NoScenesAreAnErrorNotAPass) {
   fs::create_directories(folder_ / "scenes");
   EXPECT_EQ(verify().status, 2);
+  add("a.yaml", falling_ball());
+  const Finished none = verify();
+  EXPECT_EQ(none.status, 2);
+  EXPECT_EQ(none.error, "scree: no scene was run: all were left out\n");
   EXPECT_EQ(scree_in(folder_, {"verify", "nowhere"}).status, 2);
 }
 
@@ -444,10 +484,32 @@ TEST_F(ProgramTest, PlanSaysWhatWillBeModelledAndRunsNothing) {
 TEST_F(ProgramTest, PlanSaysWhatIsHardInWordsForNewcomers) {
   write_text(folder_ / "fall.yaml", falling_ball());
   Finished plan = scree_in(folder_, {"plan", "fall.yaml", "--set", "bodies[0].velocity=[1, 0, 0]"});
-  EXPECT_TRUE(contains(plan.out, "v dt / smallest size = 0.1: contacts are met in time")) << plan.out;
+  EXPECT_TRUE(contains(plan.out, "v dt / smallest size = 0.1: small enough")) << plan.out;
   EXPECT_TRUE(contains(plan.out, "this machine has ")) << plan.out;
   plan = scree_in(folder_, {"plan", "fall.yaml", "--set", "bodies[0].velocity=[80, 0, 0]"});
   EXPECT_TRUE(contains(plan.out, "bodies may pass through each other; try step <= 0.0012")) << plan.out;
+  plan = scree_in(folder_, {"plan", "fall.yaml", "--set", "bodies[0].velocity=[1e200, 0, 0]"});
+  EXPECT_EQ(plan.status, 0) << plan.error;
+  EXPECT_TRUE(contains(plan.out, "speed        too large to compute with: check velocities")) << plan.out;
+  EXPECT_FALSE(contains(plan.out, "inf") || contains(plan.out, "nan")) << plan.out;
+}
+
+TEST_F(ProgramTest, PlanSaysHowFarTheSweepsGo) {
+  write_text(folder_ / "fall.yaml", falling_ball());
+  const auto response = [this](const std::string& settings) {
+    const Finished plan = scree_in(folder_, {"plan", "fall.yaml", "--set", "response=" + settings});
+    const std::string label = "response     ";
+    const std::size_t begin = plan.out.find("\n" + label) + 1 + label.size();
+    return plan.out.substr(begin, plan.out.find('\n', begin) - begin);
+  };
+  EXPECT_EQ(
+      response("{mode: default}"),
+      "sweeps until the impulses change by less than 1e-10 of their size; from 2500 contact points on, by "
+      "less than 0.003 (0.02 where they flow)");
+  EXPECT_EQ(response("{mode: accurate, iterations: 50}"),
+            "at most 50 sweeps, until the impulses change by less than 1e-10 of their size");
+  EXPECT_EQ(response("{tolerance: 1.0e-4}"),
+            "sweeps until the impulses change by less than 0.0001 of their size");
 }
 
 TEST_F(ProgramTest, ARunStartsFromWhereAnotherEnded) {
@@ -477,7 +539,9 @@ TEST_F(ProgramTest, StudyTriesEveryCombinationAndDrawsIt) {
       "study", "fall.yaml", "--vary", "time.substeps=1,3", "--vary", "gravity=[[0, 0, -10], [0, 0, 0]]"};
   const Finished run = scree_in(folder_, command);
   EXPECT_EQ(run.status, 0) << run.out << run.error;
-  EXPECT_TRUE(contains(run.out, "4 combinations")) << run.out;
+  EXPECT_TRUE(contains(run.out, "4 combinations. Measuring errors, ")) << run.out;
+  EXPECT_TRUE(contains(run.out, "Measuring times, one run at a time, median of 3:\n")) << run.out;
+  EXPECT_TRUE(contains(run.out, "settings (* = no other is faster and as exact)\n")) << run.out;
   EXPECT_TRUE(contains(run.out, "time to reach")) << run.out;
   const std::vector<std::string> files = files_below(folder_ / "output/fall-study");
   EXPECT_EQ(std::vector<std::string>(files.begin(), files.begin() + 3),
@@ -486,9 +550,130 @@ TEST_F(ProgramTest, StudyTriesEveryCombinationAndDrawsIt) {
   ASSERT_EQ(study["points"].size(), 4u);
   EXPECT_GT(study["points"][1]["checks"][0]["error"].get<double>(), 0.01);
   EXPECT_GT(study["points"][3]["wall_s_per_simulated_s"].get<double>(), 0);
-  EXPECT_EQ(scree_in(folder_, command).status, 2);  // an earlier study is there
-  EXPECT_EQ(scree_in(folder_, {"study", "fall.yaml"}).status, 2);
+  const Finished again = scree_in(folder_, command);
+  EXPECT_EQ(again.status, 2);
+  EXPECT_EQ(again.error,
+            "scree: output/fall-study: holds earlier results; --overwrite replaces them, -o DIR writes "
+            "elsewhere\n");
+  const Finished bare = scree_in(folder_, {"study", "fall.yaml"});
+  EXPECT_EQ(bare.status, 2);
+  EXPECT_EQ(bare.error, "scree: --vary KEY=V1,V2,... is missing: study needs at least one setting to vary\n");
   EXPECT_EQ(scree_in(folder_, {"study", "fall.yaml", "--vary", "gravitty=1"}).status, 2);
+}
+
+TEST_F(ProgramTest, StudyNeedsACheckThatSaysWhatIsExact) {
+  const std::string above = "{measure: ball.position.z, above: 5}";
+  const std::string below = "{measure: energy.unexplained, below: 1.0e-9}";
+  write_text(folder_ / "fall.yaml", falling_ball("checks: [" + above + "]\n"));
+  const std::vector<std::string> command = {"study",     "fall.yaml", "--vary", "time.substeps=1,2",
+                                            "--repeats", "1"};
+  const Finished none = scree_in(folder_, command);
+  EXPECT_EQ(none.status, 2);
+  EXPECT_TRUE(contains(none.error, "has no check with `expect`, or with `below` alone")) << none.error;
+  write_text(folder_ / "fall.yaml", falling_ball("checks: [" + above + ", " + below + "]\n"));
+  const Finished run = scree_in(folder_, command);
+  EXPECT_EQ(run.status, 0) << run.error;
+  EXPECT_TRUE(contains(run.out, "\nno error of ball.position.z at the end: ")) << run.out;
+  EXPECT_TRUE(contains(run.out, "\nerror of energy.unexplained at the end\n")) << run.out;
+  const Json study = Json::parse(text_of(folder_ / "output/fall-study/study.json"));
+  EXPECT_EQ(study["points"][0]["checks"][0]["error"], nullptr);
+  EXPECT_TRUE(study["checks"][0]["front"].empty());
+}
+
+/// Returns a scene of two balls, of which the first is fixed and the second is at the place `at`.
+std::string two_balls(const std::string& at) {
+  return "format: 1\ntime: {end: 0.01, step: 0.01}\nmaterials: {stone: {}}\nrender: false\nname: "
+         "two\nbodies:\n"
+         "  - {sphere: {radius: 0.1}, name: a, fixed: true, material: stone}\n"
+         "  - {sphere: {radius: 0.1}, at: " +
+         at + ", material: stone}\n";
+}
+
+TEST_F(ProgramTest, ALargeOverlapIsAWarning) {
+  const std::string words =
+      "the deepest overlap was 150 % of the smaller body's radius or half edge, between a (body 0) and body "
+      "1, at "
+      "t = 0 s: the scene places these bodies into each other";
+  const Finished deep = run_scene(two_balls("[0.05, 0, 0]"));
+  EXPECT_EQ(deep.status, 0);
+  EXPECT_TRUE(contains(deep.error, "scree: warning: " + words + "\n")) << deep.error;
+  EXPECT_EQ(manifest_in(folder_ / "output/two")["warnings"], Json({words}));
+  EXPECT_TRUE(contains(text_of(folder_ / "output/two/report.html"), "the deepest overlap was 150 %"));
+  const Finished slight = run_scene(two_balls("[0.199, 0, 0]"), {"--overwrite"});
+  EXPECT_EQ(slight.status, 0);
+  EXPECT_EQ(slight.error, "");
+  EXPECT_TRUE(
+      contains(text_of(folder_ / "output/two/report.html"), "no limit was reached that changes the result."));
+}
+
+TEST_F(ProgramTest, EmittersWithoutRoomAreInTheSummary) {
+  const Finished run = run_scene(
+      "format: 1\ntime: {end: 0.1, step: 0.01}\nmaterials: {stone: {}}\nrender: false\nbodies:\n"
+      "  - {sphere: {radius: 0.1}, emit: {count: 5, rate: 100, from: [0, 0, 0], to: [0.01, 0.01, 0.01]}, "
+      "material: stone}\n");
+  EXPECT_EQ(run.status, 0) << run.error;
+  EXPECT_TRUE(contains(run.out, "emitters: 1 of 5 bodies found room; the others waited until the end\n"))
+      << run.out;
+}
+
+TEST_F(ProgramTest, ArgumentsThatAreWrongAreToldInTheWordsOfTheHelp) {
+  write_text(folder_ / "fall.yaml", falling_ball(no_pictures));
+  for (const auto& [words, message] : std::vector<std::pair<std::vector<std::string>, std::string>>{
+           {{"run", "fall.yaml", "--until", "-1"},
+            "--until: must be a number >= 0, not -1; see scree run --help"},
+           {{"run", "fall.yaml", "--until", "inf"},
+            "--until: must be a number >= 0, not inf; see scree run --help"},
+           {{"run", "fall.yaml", "--threads", "two"},
+            "--threads: must be a whole number > 0, not two; see scree run --help"},
+           {{"run", "fall.yaml", "--threads", "1.5"},
+            "--threads: must be a whole number > 0, not 1.5; see scree run --help"},
+           {{"run", "fall.yaml", "--until"}, "--until: needs a value, T; see scree run --help"},
+           {{"run", "fall.yaml", "--device", "tpu"},
+            "--device: must be one of auto, cuda, host, not tpu; see scree run --help"},
+           {{"export", "output/fall", "--to", "foo"},
+            "--to: must be one of csv, lammps, vtp, xyz, not foo; see scree export --help"},
+           {{"compare", "one"}, "DIR_B is required; see scree compare --help"},
+           {{"verify"}, "PATH is required; see scree verify --help"},
+           {{"new", "--from", "minimal"}, "--from needs NAME; see scree new --help"},
+           {{"run", "fall.yaml", "--reproduce", "m.json"},
+            "give SCENE or --reproduce, not both; see scree run --help"},
+           {{"run", "--reproduce", "m.json", "-o", "x"},
+            "give --reproduce or --output, not both; see scree run --help"},
+           {{"run", "--reproduce", "m.json", "--until", "1"},
+            "give --reproduce or --until, not both; see scree run --help"},
+           {{"run", "fall.yaml", "--overwrite", "--resume"},
+            "give --resume or --overwrite, not both; see scree run --help"},
+           {{"verify", "fall.yaml", "--label", "long", "--all"},
+            "give --label or --all, not both; see scree verify --help"}}) {
+    const Finished run = scree_in(folder_, words);
+    EXPECT_EQ(run.status, 2);
+    EXPECT_EQ(run.error, "scree: " + message + "\n");
+    EXPECT_EQ(run.out, "");
+  }
+  EXPECT_TRUE(scree_in(folder_, {"--nonsense"}).error.ends_with("; see scree --help\n"));
+  EXPECT_FALSE(fs::exists(folder_ / "output"));
+}
+
+TEST_F(ProgramTest, AFolderWithoutARunIsToldByItsName) {
+  fs::create_directory(folder_ / "empty");
+  for (const auto& [words, message] : std::vector<std::pair<std::vector<std::string>, std::string>>{
+           {{"report", "empty"}, "empty/manifest.json: there is no such file; is empty a run folder?"},
+           {{"run", "--reproduce", "empty/manifest.json"},
+            "empty/manifest.json: there is no such file; is empty a run folder?"},
+           {{"export", "empty", "--to", "xyz"},
+            "empty/trajectory.vtkhdf: there is none; run the scene with record.trajectory: true to have one"},
+           {{"export", "nowhere", "--to", "xyz"}, "nowhere: there is no such folder"}}) {
+    const Finished run = scree_in(folder_, words);
+    EXPECT_EQ(run.status, 2);
+    EXPECT_EQ(run.error, "scree: " + message + "\n");
+  }
+  write_text(folder_ / "empty/manifest.json", "{");
+  for (const std::vector<std::string>& words :
+       {std::vector<std::string>{"report", "empty"}, {"run", "--reproduce", "empty/manifest.json"}}) {
+    const Finished run = scree_in(folder_, words);
+    EXPECT_EQ(run.status, 2);
+    EXPECT_EQ(run.error, "scree: empty/manifest.json: is not the manifest of a run\n");
+  }
 }
 
 TEST_F(ProgramTest, InfoAndHelp) {

@@ -42,11 +42,27 @@ TEST_F(ResumeTest, OfAFinishedRunSaysSo) {
   EXPECT_EQ(text_of(folder_ / "output/fall/manifest.json"), manifest);
 }
 
+TEST_F(ResumeTest, OfAFinishedRunOfAnotherSceneIsRefused) {
+  ASSERT_EQ(run_scene(scene_).status, 0);
+  const std::string manifest = text_of(folder_ / "output/fall/manifest.json");
+  for (const char* setting : {"gravity=[0, 0, -1.62]", "time.end=0.2"}) {
+    const Finished other = run_scene(scene_, {"--resume", "--set", setting});
+    EXPECT_EQ(other.status, 2) << setting;
+    EXPECT_EQ(
+        other.error,
+        "scree: --resume: the run in output/fall is finished, and its scene is another one; use -o DIR, or "
+        "--overwrite\n");
+    EXPECT_EQ(text_of(folder_ / "output/fall/manifest.json"), manifest) << "nothing was written";
+    EXPECT_TRUE(fs::exists(folder_ / "output/fall/final.csv"));
+  }
+}
+
 TEST_F(ResumeTest, WithoutACheckpointStartsFromTheBeginning) {
   ASSERT_EQ(run_scene(scene_, {"-o", "whole"}).status, 0);
   const Finished fresh = run_scene(scene_, {"-o", "fresh", "--resume"});
   EXPECT_EQ(fresh.status, 0) << fresh.error;
-  EXPECT_TRUE(contains(fresh.out, "no checkpoint: from the beginning")) << fresh.out;
+  EXPECT_TRUE(contains(fresh.out, "no checkpoint: from the beginning, which replaces what was in the folder"))
+      << fresh.out;
   expect_same("whole", "fresh");
 }
 
@@ -62,9 +78,9 @@ TEST_F(ResumeTest, OfAnotherRunIsRefusedByName) {
     EXPECT_TRUE(contains(run.error, words)) << run.error;
     EXPECT_EQ(text_of(folder_ / "output/fall/manifest.json"), manifest) << "nothing was written";
   };
-  expect_refused({"--set", "gravity=[0, 0, -1.62]"}, "here `gravity: [0, 0, -1.62]`");
-  expect_refused({"--set", "precision=mixed"}, "there `precision: double`, here `precision: mixed`");
-  expect_refused({"--no-render"}, "without --no-render");
+  expect_refused({"--set", "gravity=[0, 0, -1.62]"}, "this one `gravity: [0, 0, -1.62]`");
+  expect_refused({"--set", "precision=mixed"}, "it has `precision: double`, this one `precision: mixed`");
+  expect_refused({"--no-render"}, "without --no-render; leave out --no-render to continue it, or give ");
 }
 
 TEST_F(ResumeTest, ADamagedCheckpointIsPassedOver) {
@@ -89,6 +105,7 @@ TEST_F(ResumeTest, WithoutTheRowsThatWereWrittenIsAnErrorWithTheNumbers) {
   const Finished run = run_scene(scene_, {"--resume"});
   EXPECT_EQ(run.status, 3);
   EXPECT_TRUE(contains(run.error, "metrics.csv.part: 0 bytes of ")) << run.error;
+  EXPECT_TRUE(contains(run.error, " are left, so the run cannot be continued; --overwrite ")) << run.error;
 }
 
 TEST_F(ResumeTest, MaxHoursStopsWithACheckpoint) {
@@ -96,6 +113,8 @@ TEST_F(ResumeTest, MaxHoursStopsWithACheckpoint) {
                                                              "time.end=1e6", "--set", "time.step=1e-4"});
   EXPECT_EQ(run.status, 130);
   EXPECT_EQ(manifest_in(folder_ / "output/fall")["status"], "interrupted");
+  EXPECT_TRUE(contains(run.out, " s of 1e+06 s, ")) << run.out;
+  EXPECT_TRUE(contains(run.out, "to continue: the same command with --resume\n")) << run.out;
   EXPECT_TRUE(fs::exists(folder_ / "output/fall/checkpoint"));
 }
 

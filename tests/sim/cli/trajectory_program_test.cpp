@@ -73,9 +73,12 @@ TEST_F(TrajectoryProgramTest, WhatItDoesNotHaveIsNotDrawn) {
     EXPECT_FALSE(fs::exists(folder_ / "output/fall-render"));
   };
   expect_refused("render={color: speed}", "no velocity");
+  expect_refused("render={color: speed}", "or run the scene again with record.trajectory.velocity=true");
   expect_refused("render={color: force}", "no contacts");
+  expect_refused("render={color: force}", "or run the scene again with record.trajectory.contacts=true");
   expect_refused("render={overlay: [pairs]}", "no pairs");
-  expect_refused("gravity=[0, 0, -1]", "another render alone");
+  expect_refused("render={overlay: [pairs]}", "only scree run can draw these");
+  expect_refused("gravity=[0, 0, -1]", "only keys of `render` can change for a run that is done");
 }
 
 /// Balls on a floor and on one another.
@@ -108,6 +111,23 @@ TEST_F(TrajectoryProgramTest, ContactsAreKeptDrawnAgainAndExported) {
             text_of(folder_ / "output/heap-render/frames/00005.png"));
 }
 
+TEST_F(TrajectoryProgramTest, AnotherColourGoesWithoutTheRangeOfTheRun) {
+  const std::string scene = falling_ball("render: {size: [64, 48], fps: 50, color: speed, range: [0, 3]}\n");
+  ASSERT_EQ(run_scene(scene, {trajectory_}).status, 0);
+  if (manifest_in(folder_ / "output/fall")["frames"] == 0) GTEST_SKIP() << "no pictures on this machine";
+  const std::vector<std::string> material = {"render", "output/fall", "-o",
+                                             "new",    "--set",       "render.color=material"};
+  const Finished drawn = scree_in(folder_, material);
+  EXPECT_EQ(drawn.status, 0) << drawn.error;
+  std::vector<std::string> with_range = material;
+  with_range.insert(with_range.end(), {"--overwrite", "--set", "render.range=[0, 1]"});
+  EXPECT_EQ(scree_in(folder_, with_range).status, 2) << "a range that is given is not left out";
+  const Finished again = scree_in(folder_, material);
+  EXPECT_EQ(again.status, 2);
+  EXPECT_EQ(again.error,
+            "scree: new: holds earlier results; --overwrite replaces them, -o DIR writes elsewhere\n");
+}
+
 TEST_F(TrajectoryProgramTest, IsExported) {
   ASSERT_EQ(run_scene(falling_ball(no_pictures), {"--set", "record.trajectory=true"}).status, 0);
   for (const char* format : {"vtp", "xyz", "lammps", "csv"}) {
@@ -119,7 +139,8 @@ TEST_F(TrajectoryProgramTest, IsExported) {
   ASSERT_EQ(run_scene(falling_ball(no_pictures), {"-o", "bare"}).status, 0);
   const Finished none = scree_in(folder_, {"export", "bare", "--to", "xyz"});
   EXPECT_EQ(none.status, 2);
-  EXPECT_TRUE(contains(none.error, "bare/trajectory.vtkhdf: there is none")) << none.error;
+  EXPECT_TRUE(contains(none.error, "bare/trajectory.vtkhdf: there is none; run the scene with "))
+      << none.error;
 }
 
 // The hulls and the period are those of scene.yaml in the run's folder.

@@ -119,7 +119,7 @@ TEST(Checkpoint, AForgedOneIsRefusedWithTheReason) {
       read_checkpoint(file);
       FAIL() << line;
     } catch (const RunError& error) {
-      EXPECT_TRUE(std::string(error.what()).starts_with(file.string() + ": is none: ")) << error.what();
+      EXPECT_TRUE(std::string(error.what()).starts_with(file.string() + ": is not valid: ")) << error.what();
       EXPECT_EQ(std::string(error.what()).find('\x1b'), std::string::npos);
     }
   }

@@ -60,6 +60,15 @@ TEST_F(CompareRuns, WhatOneLacksIsNeverWithinATolerance) {
   EXPECT_TRUE(compare("time\n0\n", "time\n0\n").is_within(0));
 }
 
+TEST_F(CompareRuns, SaysWhatOnlyOneRunHas) {
+  const Comparison found = compare("time,x\n0,1\n1,1\n", "time,y\n0,1\n");
+  EXPECT_EQ(found.unlike, (std::vector<std::string>{"metrics.csv x: only in the first run",
+                                                    "metrics.csv y: only in the second run",
+                                                    "metrics.csv: the first run has more rows than 1"}));
+  EXPECT_TRUE(found.differences_are_within(0, 0));
+  EXPECT_FALSE(found.is_within(0));
+}
+
 TEST_F(CompareRuns, RefusesWhatIsNoTable) {
   EXPECT_THROW(compare("time,x\n0,1\n0\n", "time,x\n0,1\n0,1\n"), InputError);
   EXPECT_THROW(compare_runs(folder_ / "a", folder_ / "nowhere"), InputError);

@@ -28,12 +28,13 @@ Observation busy() {
 
 TEST(Guards, SayWhichBodiesOverlappedAndHowDeep) {
   const WorstOverlap worst{.relative = 0.012, .time = 0.5, .bodies = {3, 7}};
-  const auto guards = guards_of(busy(), {worst, "ball (body 3), body 7"});
+  const auto guards = guards_of(busy(), {worst, "ball (body 3) and body 7"});
   for (const char* name : {"sweeps", "impacts", "newton"})
-    EXPECT_NE(guard_called(name, guards)
-                  .effect.find(
-                      "the deepest overlap was 1.2 % of the smaller body, of ball (body 3), body 7 at 0.5 s"),
-              std::string::npos)
+    EXPECT_NE(
+        guard_called(name, guards)
+            .effect.find("the deepest overlap was 1.2 % of the smaller body's radius or half edge, between "
+                         "ball (body 3) and body 7, at t = 0.5 s"),
+        std::string::npos)
         << name;
   EXPECT_NE(guard_called("sweeps", guards_of(busy(), {})).effect.find("no bodies overlapped"),
             std::string::npos);
@@ -57,6 +58,43 @@ TEST(Guards, MatterWhereTheRunShowsIt) {
   EXPECT_NE(guard_called("newton", guards_of(busy(), {.worst = {}, .bodies = {}, .accurate = true}))
                 .effect.find("a residual of 1e-07 was left"),
             std::string::npos);
+}
+
+TEST(Guards, AreToldWithTheirCountsAndTheSettingThatHelps) {
+  const auto guards = guards_of(busy(), {});
+  EXPECT_EQ(line_of(guard_called("left", guards)),
+            "bodies that left the world and were taken out: 2; later measurements do not include them. To "
+            "have fewer: "
+            "a larger box in world.from and world.to.");
+  EXPECT_EQ(line_of(guard_called("impacts", guards)),
+            "substeps whose chains of impacts reached the limit: 4; that is 4 of 100 substeps; their "
+            "remaining impacts "
+            "did not bounce; no bodies overlapped in the states that were measured. To have fewer: a smaller "
+            "time.step.");
+}
+
+TEST(Guards, ALargeOverlapIsToldOnce) {
+  const auto warning = [](const Observation& seen, double relative, double time) {
+    const GuardedRun run{{relative, time, {0, 1}}, "a (body 0) and body 1"};
+    return overlap_warning(guards_of(seen, run), run);
+  };
+  const std::string deep =
+      "the deepest overlap was 210 % of the smaller body's radius or half edge, between a (body 0) and body "
+      "1, at t = ";
+  EXPECT_EQ(warning({}, 2.1, 0), deep + "0 s: the scene places these bodies into each other");
+  EXPECT_EQ(warning({}, 2.1, 0.25), deep + "0.25 s; try a smaller time.step");
+  EXPECT_EQ(warning({}, 0.04, 0), "");
+  EXPECT_EQ(warning({}, 0, 0), "");
+  EXPECT_EQ(warning(busy(), 2.1, 0), "") << "the guards of the sweeps say so";
+  Observation left;
+  left.left = 1;
+  EXPECT_NE(warning(left, 2.1, 0), "") << "this guard matters, and says nothing of overlaps";
+}
+
+TEST(Guards, SharesArePercentagesWithoutExponents) {
+  EXPECT_EQ(percent_words(0.0123456), "1.23 %");
+  EXPECT_EQ(percent_words(2.1), "210 %");
+  EXPECT_EQ(percent_words(123.456), "12346 %");
 }
 
 TEST(Guards, KeepTheWorstOfWhatIsMeasured) {

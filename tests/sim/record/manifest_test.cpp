@@ -34,6 +34,31 @@ TEST_F(ReadManifest, TellsTheStatesAndTheSteps) {
   EXPECT_FALSE(steps_done(folder_ / "none.json"));
 }
 
+TEST_F(ReadManifest, TheStateOfTheEndIsThereOnce) {
+  EXPECT_EQ(read_manifest(file("{\"step\": 2, \"hash\": \"00000000000000fe\"}",
+                               "{\"step\": 5, \"hash\": \"00000000000000ff\"}"))
+                .states.size(),
+            1u);
+  EXPECT_EQ(read_manifest(file("{\"step\": 2,", "{\"step\": 5,")).states.size(), 2u) << "with another hash";
+}
+
+TEST_F(ReadManifest, SaysWhatIsWrongWithTheFile) {
+  const auto complaint = [](const std::filesystem::path& manifest) -> std::string {
+    try {
+      read_manifest(manifest);
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "no error";
+  };
+  const std::string folder = folder_.path().string();
+  EXPECT_EQ(complaint(folder_ / "manifest.json"),
+            folder + "/manifest.json: there is no such file; is " + folder + " a run folder?");
+  EXPECT_EQ(complaint(file("{", "[")), folder + "/manifest.json: is not the manifest of a run");
+  EXPECT_EQ(complaint(file("\"steps\"", "\"setps\"")),
+            folder + "/manifest.json: is not the manifest of a run");
+}
+
 TEST_F(ReadManifest, WhatIsNoStepAndNoHashIsRefused) {
   for (const char* steps : {"-1", "1e300", "5.5", "\"5\"", "18446744073709551615", "true", "null"}) {
     EXPECT_THROW(read_manifest(file("5,", std::string(steps) + ",")), InputError) << steps;

@@ -102,6 +102,9 @@ TEST(Manifest, SaysWhatRanAndHowItCameOut) {
   EXPECT_EQ(json["checks"][0]["measured"], 1.0 / 3);
   EXPECT_EQ(json["warnings"][0], "no movie");
   EXPECT_FALSE(json["program"]["commit"].get<std::string>().empty());
+  EXPECT_EQ(json["observation"]["contacts"], 0);
+  run.last.contacts = -1;
+  EXPECT_EQ(nlohmann::json::parse(manifest_of(scene, run))["observation"]["contacts"], nullptr);
 
   Scene other = scene;
   other.resolved = "format: 1\nseed: 8\n";

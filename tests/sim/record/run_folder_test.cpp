@@ -27,6 +27,13 @@ TEST(RunFolder, RefusesAnEarlierRunUnlessToldToOverwrite) {
   }
   EXPECT_THROW(RunFolder(path, Earlier::refused), InputError);
   EXPECT_EQ(text_of(path / "manifest.json"), "old");
+  try {
+    const RunFolder refused(path, Earlier::refused_results);
+    FAIL();
+  } catch (const InputError& error) {
+    EXPECT_EQ(std::string(error.what()),
+              path.string() + ": holds earlier results; --overwrite replaces them, -o DIR writes elsewhere");
+  }
 
   const RunFolder run(path, Earlier::replaced);
   EXPECT_FALSE(fs::exists(path / "manifest.json"));

@@ -75,6 +75,16 @@ TEST(Study, CheapestWayToEachPowerOfTen) {
   EXPECT_EQ(reached[1].point, 2u);
 }
 
+TEST(Study, ACheckWithoutAnExactValueHasNoError) {
+  Study study = example();
+  EXPECT_FALSE(study.has_no_error(0));
+  for (StudyPoint& each : study.points) each.checks[0].error = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_TRUE(study.has_no_error(0));
+  EXPECT_TRUE(pareto_front(study, 0).empty());
+  study.points = {failed("0.4")};
+  EXPECT_FALSE(study.has_no_error(0)) << "no run says so";
+}
+
 TEST(Study, WritesEveryCombination) {
   Study study = example();
   study.points.push_back(failed("0.2"));

@@ -145,6 +145,13 @@ TEST(Measure, EachNameHasItsValue) {
 
 TEST(Measure, TiltIsExactForSmallAngles) { EXPECT_NEAR(value("puck.tilt"), 1e-9, 1e-16); }
 
+TEST(Measure, UnknownContactsAreNoNumber) {
+  Observation unknown = numbered();
+  unknown.contacts = -1;
+  const auto none = [](std::int32_t) -> BodyState { throw std::logic_error("asked for a body"); };
+  EXPECT_TRUE(std::isnan(evaluate(parse_measure("contacts.count", Scene{}), unknown, none)));
+}
+
 TEST(Measure, OfTheRunAsksForNoBody) {
   const auto none = [](std::int32_t) -> BodyState { throw std::logic_error("asked for a body"); };
   EXPECT_EQ(evaluate(parse_measure("energy.total", Scene{}), numbered(), none), 7);

@@ -168,14 +168,18 @@ TEST_F(GuardedStepsTest, WhateverIsNotFiniteFailsAndIsNamed) {
       if (field == 2) s.bodies.velocity[0].y() = bad - bad;
       if (field == 3) s.bodies.spin[0].x() = bad - bad;
     };
-    expect_given_up("ball (body 0): no longer finite");
+    expect_given_up(
+        "ball (body 0): no longer finite: its position or velocity has left the range of numbers; ");
   }
 }
 
 TEST_F(GuardedStepsTest, EnergyThatTheLedgerDoesNotExplainFails) {
   // Each substep adds 1e-5 of the kinetic energy, which is 9 J.
   stepper_.on_substep = [](double, FakeStepper& s) { s.bodies.velocity[0] *= 1 + 0.5e-5; };
-  expect_given_up("the energy changed by 4e-05 of its scale more than the ledger explains");
+  expect_given_up(
+      "the energy changed by 4e-05 of its scale more than the ledger explains; the bodies named have the "
+      "most "
+      "kinetic energy");
   stepper_.on_substep = [](double, FakeStepper& s) {
     const double before = s.bodies.velocity[0].squaredNorm();
     s.bodies.velocity[0] *= 2;
@@ -186,7 +190,7 @@ TEST_F(GuardedStepsTest, EnergyThatTheLedgerDoesNotExplainFails) {
 
 TEST_F(GuardedStepsTest, ABodyThatLeavesTheWorldStopsTheRun) {
   stepper_.on_substep = [](double h, FakeStepper& s) { s.bodies.position[0].x() += 20 * h; };
-  expect_given_up("ball (body 0): outside of the world");
+  expect_given_up("ball (body 0): outside of the world; enlarge world, or set world.leaving=remove");
 }
 
 TEST_F(GuardedStepsTest, WhateverTheStepperThrowsIsAFailedStep) {
