@@ -26,8 +26,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::string_view head_words = "scree checkpoint 5, xxh3 of what follows: ";
-constexpr std::size_t first_line_bytes = head_words.size() + 17;
+constexpr std::size_t first_line_bytes = checkpoint_head.size() + 17;
 
 using hdf5::check;
 using hdf5::Handle;
@@ -58,7 +57,7 @@ haddr_t write_field(hid_t file, hid_t links, const SavedField& field) {
 }
 
 std::string first_line_of(std::string_view rest) {
-  return fmt::format("{}{:016x}\n", head_words, hash_of(rest.data(), rest.size()));
+  return fmt::format("{}{:016x}\n", checkpoint_head, hash_of(rest.data(), rest.size()));
 }
 
 /// Returns the directory, with a line for each field. The lengths of the lines do not depend on `head`, the
@@ -160,7 +159,7 @@ void write_checkpoint(const fs::path& file, const SavedState& state) { write_fil
 SavedState read_checkpoint(const fs::path& file) try {
   const std::string bytes = bytes_of(file);
   const std::string_view all = bytes;
-  if (all.size() < first_line_bytes || !all.starts_with(head_words))
+  if (all.size() < first_line_bytes || !all.starts_with(checkpoint_head))
     throw RunError("is no checkpoint of this version");
   if (!all.starts_with(first_line_of(all.substr(first_line_bytes))))
     throw RunError("is damaged: its checksum is wrong");

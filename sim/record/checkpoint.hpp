@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace scree {
@@ -14,6 +15,10 @@ namespace scree {
 /// Makes HDF5 take the memory that it needs besides that of a state, and keep it: without this it would crash
 /// where memory has run out. Must be called before a run.
 void prepare_checkpoints();
+
+/// How a checkpoint's file begins. The number is another one whenever the contents have changed, so that
+/// files of other versions are refused at once.
+inline constexpr std::string_view checkpoint_head = "scree checkpoint 6, xxh3 of what follows: ";
 
 /// Writes the state as HDF5: a dataset for each field, of its numbers or of records as opaque bytes, each
 /// with the attribute xxh3, the checksum of its bytes. Before the HDF5 part comes text that HDF5's readers

@@ -9,7 +9,6 @@
 #include "sim/step/stepper.hpp"
 
 #include <cstdint>
-#include <exception>
 #include <string>
 #include <vector>
 

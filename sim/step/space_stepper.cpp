@@ -16,7 +16,6 @@
 #include "sim/pairs/pair_finder.hpp"
 #include "sim/response/contact_inspection.hpp"
 #include "sim/response/contact_solver.hpp"
-#include "sim/scene/measure.hpp"
 #include "sim/step/moving_state.hpp"
 
 #include <algorithm>
@@ -24,7 +23,6 @@
 #include <cstdint>
 #include <map>
 #include <memory>
-#include <string>
 #include <type_traits>
 #include <utility>
 #include <vector>

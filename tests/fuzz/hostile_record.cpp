@@ -117,8 +117,8 @@ double largest(const Comparison& comparison) {
 }  // namespace
 
 void read_hostile_checkpoint(std::string_view bytes) {
-  const std::string file = fmt::format("scree checkpoint 4, xxh3 of what follows: {:016x}\n{}",
-                                       hash_of(bytes.data(), bytes.size()), bytes);
+  const std::string file =
+      fmt::format("{}{:016x}\n{}", checkpoint_head, hash_of(bytes.data(), bytes.size()), bytes);
   try {
     const SavedState state = read_checkpoint(file_of(file));
     if (state.bytes() > file.size()) breach("a state of more bytes than its file");

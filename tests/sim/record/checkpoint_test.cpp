@@ -101,8 +101,7 @@ TEST(Checkpoint, WhateverBitIsFlippedOrByteIsMissingItIsRefused) {
 
 /// The file with other bytes after its first line, and the checksum of those.
 void forge(const fs::path& file, const std::string& rest) {
-  write_text(file, fmt::format("scree checkpoint 5, xxh3 of what follows: {:016x}\n{}",
-                               hash_of(rest.data(), rest.size()), rest));
+  write_text(file, fmt::format("{}{:016x}\n{}", checkpoint_head, hash_of(rest.data(), rest.size()), rest));
 }
 
 TEST(Checkpoint, AForgedOneIsRefusedWithTheReason) {
