@@ -38,18 +38,16 @@ struct AssignCell {
 
 template <class Space>
 struct GatherObject {
-  static constexpr std::int64_t ahead = 16;
   ConstView<Aabb> bounds;
   ConstView<Mobility> mobility;
   ConstView<std::int32_t> body;
   GridObjects<Space> objects;
   SCREE_HD void operator()(std::int64_t k) const {
-    if (k + ahead < body.size()) {
+    SCREE_ON_HOST(constexpr std::int64_t ahead = 16; if (k + ahead < body.size()) {
       const std::int32_t next = body[k + ahead];
-      prefetch(&bounds[next]);
-      prefetch(&bounds[next].hi[2]);  // the box has 24 bytes, which may be in two cache lines
-      prefetch(&mobility[next]);
-    }
+      prefetch_whole(bounds[next]);
+      prefetch_whole(mobility[next]);
+    })
     const std::int32_t i = body[k];
     objects.set(k, boxed(bounds[i], i, mobility[i]));
   }

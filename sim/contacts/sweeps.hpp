@@ -3,6 +3,7 @@
 // contact or on several side by side (Scalar, and Lanes in visit_kernels.cpp).
 #pragma once
 
+#include "core/space_prefetch.hpp"
 #include "core/space_unroll.hpp"
 #include "sim/contacts/layout.hpp"
 
@@ -158,15 +159,15 @@ struct SweepBalls {
     const simd::V3<A> before = f.template vector<A>(C::impulse, c);
     const simd::V3<A> last = remembers ? f.template vector<A>(C::last, c) : before;
     const simd::V3<A> ahead = before + A::all(beta) * (before - last);
+    auto balls = balls_at<A>(contacts, c);
     // Many contacts are open and stay so; nothing more is done for them. Several contacts side by side are
     // seldom all open.
     if constexpr (A::width == 1) {
+      load_here(balls.arm_i, balls.arm_j, balls.friction, balls.normal_mass, balls.tangent_mass);
       if (is_zero(before) && is_zero(last) &&
-          dot(f.template vector<A>(C::normal, c), two.j.velocity - two.i.velocity) >=
-              f.template get<A>(C::target, c))
+          dot(balls.normal, two.j.velocity - two.i.velocity) >= balls.target)
         return {};
     }
-    const auto balls = balls_at<A>(contacts, c);
     const simd::V3<A> p = impulse_of(balls, ahead, two.i, two.j);
     const simd::V3<A> change = p - ahead;
     push(balls, change, two.i, two.j);
@@ -293,9 +294,11 @@ struct CorrectBalls {
     const auto gap =
         contacts.gaps.template get<A>(C::predicted_gap, c) + dot(n, two.j.velocity - two.i.velocity);
     auto pushed = contacts.gaps.template get<A>(C::pushed, c);
+    auto cap = contacts.gaps.template get<A>(C::cap, c);
+    auto mass = f.template get<A>(C::normal_mass, c);
+    if constexpr (A::width == 1) load_here(cap, mass);
     if (!A::any((gap < 0) | (pushed > 0))) return typename A::V{};
-    const auto cap = contacts.gaps.template get<A>(C::cap, c);
-    const auto more = simd::parting<A>(gap, cap, A::all(share), f.template get<A>(C::normal_mass, c), pushed);
+    const auto more = simd::parting<A>(gap, cap, A::all(share), mass, pushed);
     push_centres(more * n, two.i, two.j);
     store<A>(two, bodies, ends);
     contacts.gaps.template put<A>(C::pushed, c, pushed);
