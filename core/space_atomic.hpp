@@ -45,37 +45,33 @@ SCREE_HD void put(T* place, T value) {
 }
 
 /// Lowers the value in a place to `value`, if that is smaller. The result is exact, whatever the order of the
-/// threads. Returns true in the thread that lowered it.
+/// threads. On a GPU no thread waits for it.
 template <class T>
-SCREE_HD bool lower(T* place, T value) {
+SCREE_HD void lower(T* place, T value) {
 #if defined(__CUDA_ARCH__)
   using Word = detail::CudaWord<T>;
-  auto* word = reinterpret_cast<Word*>(place);
-  return value < *static_cast<volatile Word*>(word) && value < atomicMin(word, static_cast<Word>(value));
+  atomicMin(reinterpret_cast<Word*>(place), static_cast<Word>(value));
 #else
   const std::atomic_ref<T> shared(*place);
   T before = shared.load(std::memory_order_relaxed);
-  while (value < before) {
-    if (shared.compare_exchange_weak(before, value, std::memory_order_relaxed)) return true;
+  while (value < before && !shared.compare_exchange_weak(before, value, std::memory_order_relaxed)) {
   }
-  return false;
 #endif
 }
 
-/// Raises the value in a place to `value`, if that is larger. Returns true in the thread that raised it.
+/// Raises the value in a place to `value`, if that is larger. It reads the place first, since many threads
+/// may raise the same place to the same value.
 template <class T>
-SCREE_HD bool raise(T* place, T value) {
+SCREE_HD void raise(T* place, T value) {
 #if defined(__CUDA_ARCH__)
   using Word = detail::CudaWord<T>;
   auto* word = reinterpret_cast<Word*>(place);
-  return value > *static_cast<volatile Word*>(word) && value > atomicMax(word, static_cast<Word>(value));
+  if (value > *static_cast<volatile Word*>(word)) atomicMax(word, static_cast<Word>(value));
 #else
   const std::atomic_ref<T> shared(*place);
   T before = shared.load(std::memory_order_relaxed);
-  while (value > before) {
-    if (shared.compare_exchange_weak(before, value, std::memory_order_relaxed)) return true;
+  while (value > before && !shared.compare_exchange_weak(before, value, std::memory_order_relaxed)) {
   }
-  return false;
 #endif
 }
 

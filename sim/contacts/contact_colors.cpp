@@ -33,7 +33,8 @@ struct ColoredContacts {
   /// Returns the rank of a contact among its neighbours. It is as good as random. No two contacts have the
   /// same rank, since each step of the mixing can be undone. It depends only on the numbers of the bodies and
   /// on the surface. There are fewer than 2^30 bodies, since each takes some 100 bytes, and at most 16
-  /// surfaces of a pair.
+  /// surfaces of a pair. No rank is UncoloredContact::colored, which bodies 870,744,363 and 1,067,891,420
+  /// would give.
   SCREE_HD std::uint64_t rank(std::int64_t d) const {
     const Slot& at = slot(d);
     const auto bits_of = [&](std::int32_t body) { return static_cast<std::uint64_t>(number[body]); };
@@ -76,6 +77,16 @@ struct KeepColors {
   }
 };
 
+struct GatherUncolored {
+  ColoredContacts contacts;
+  ConstView<std::uint32_t> list;
+  View<UncoloredContact> waiting;
+  SCREE_HD void operator()(std::int64_t k) const {
+    const FreeEnds ends = contacts.ends(list[k]);
+    waiting[k] = {contacts.rank(list[k]), ends.i, ends.j};
+  }
+};
+
 /// Rounds of colouring. In the first phase of a round, the uncoloured contact of lowest rank claims each
 /// body. In the second phase, a contact that has claimed both its bodies takes the lowest colour that is free
 /// at both (Jones, Plassmann 1993, "A parallel graph coloring heuristic"). In each round at least the contact
@@ -91,8 +102,8 @@ struct ColorRounds {
   static constexpr int threads = 256;
   static constexpr int blocks_at_once = 2;
 
-  ColoredContacts contacts;
   ConstView<std::uint32_t> list;
+  View<UncoloredContact> waiting;
   View<std::uint32_t> color;
   View<std::uint64_t> standing;
   View<std::uint64_t> taken;
@@ -101,31 +112,41 @@ struct ColorRounds {
   SCREE_HD std::int64_t items(const State&, int) const { return list.size(); }
   std::int64_t most_items() const { return list.size(); }
   SCREE_HD Sum operator()(const State&, int phase, std::int64_t item) const {
-    const std::int64_t d = list[item];
-    if (color[d] != no_color) return {};
-    const FreeEnds ends = contacts.ends(d);
-    const std::uint64_t rank = contacts.rank(d);
+    const UncoloredContact contact = waiting[item];
+    if (contact.rank == UncoloredContact::colored) return {};
     if (phase == 0) {
-      if (ends.i >= 0) lower(&standing[ends.i], rank);
-      if (ends.j >= 0) lower(&standing[ends.j], rank);
+      if (contact.i >= 0) lower(&standing[contact.i], contact.rank);
+      if (contact.j >= 0) lower(&standing[contact.j], contact.rank);
       return {};
     }
-    if ((ends.i >= 0 && standing[ends.i] != rank) || (ends.j >= 0 && standing[ends.j] != rank)) return {1};
-    const std::uint64_t used = (ends.i >= 0 ? taken[ends.i] : 0) | (ends.j >= 0 ? taken[ends.j] : 0);
+    const BodyColors at_i = colors_at(contact.i, contact.rank);
+    const BodyColors at_j = colors_at(contact.j, contact.rank);
+    if (!at_i.is_claimed || !at_j.is_claimed) return {1};
     std::uint32_t lowest = 0;
-    while ((used >> lowest & 1) != 0) ++lowest;
-    color[d] = lowest;
-    if (ends.i >= 0) leave(ends.i, lowest);
-    if (ends.j >= 0) leave(ends.j, lowest);
+    while (((at_i.taken | at_j.taken) >> lowest & 1) != 0) ++lowest;
+    color[list[item]] = lowest;
+    waiting[item].rank = UncoloredContact::colored;
+    leave(contact.i, at_i, lowest);
+    leave(contact.j, at_j, lowest);
     return {};
   }
   SCREE_HD State judge(const State&, const Sum& sum) const { return {sum.left == 0}; }
 
  private:
+  /// The colours that are taken at a body, and whether the contact that asks has claimed the body.
+  struct BodyColors {
+    bool is_claimed;
+    std::uint64_t taken;
+  };
+  SCREE_HD BodyColors colors_at(std::int32_t end, std::uint64_t rank) const {
+    if (end < 0) return {true, 0};
+    return {standing[end] == rank, taken[end]};
+  }
   /// Marks a colour as taken at a body and clears the claim for the next round. Only the contact that has
   /// claimed the body gets here, so no other thread writes to it.
-  SCREE_HD void leave(std::int32_t end, std::uint32_t at) const {
-    taken[end] |= std::uint64_t{1} << at;
+  SCREE_HD void leave(std::int32_t end, const BodyColors& before, std::uint32_t at) const {
+    if (end < 0) return;
+    taken[end] = before.taken | std::uint64_t{1} << at;
     standing[end] = ~std::uint64_t{0};
   }
 };
@@ -188,11 +209,13 @@ void ContactColors<Space>::find(ConstView<std::int32_t> found, ConstView<Slot> s
   parallel::for_each<Space>(
       "contacts.color", n,
       KeepColors{contacts, keep, remembered, color_.view(), slot_.view(), taken_.view()});
-  if (!uncolored_.empty()) {
-    parallel::run_in_phases<Space>("contacts.color",
-                                   ColorRounds{contacts, std::as_const(uncolored_).view(), color_.view(),
-                                               standing_.view(), taken_.view()},
-                                   ColorRounds::State{false});
+  if (const ConstView<std::uint32_t> list = std::as_const(uncolored_).view(); list.size() > 0) {
+    waiting_.resize(list.size());
+    parallel::for_each<Space>("contacts.color", list.size(),
+                              GatherUncolored{contacts, list, waiting_.view()});
+    parallel::run_in_phases<Space>(
+        "contacts.color", ColorRounds{list, waiting_.view(), color_.view(), standing_.view(), taken_.view()},
+        ColorRounds::State{false});
   }
   parallel::for_each<Space>("contacts.color", remembered.size(), Fill<std::uint8_t>{remembered, no_color});
   parallel::for_each<Space>("contacts.color", n,

@@ -30,6 +30,15 @@ struct ColorStart {
   std::int64_t first, place;
 };
 
+/// A contact that has no colour yet, and what the rounds of colouring ask of it again and again.
+struct alignas(16) UncoloredContact {
+  std::uint64_t rank;  ///< rank among its neighbours; `colored` once it has got its colour
+  std::int32_t i,
+      j;  ///< the free bodies of the solver on which it acts; -1 stands for a body that is not free
+
+  static constexpr std::uint64_t colored = ~std::uint64_t{0};
+};
+
 /// The colouring of the contacts of one kind (of balls, or of several points).
 template <class Space>
 class ContactColors {
@@ -64,6 +73,7 @@ class ContactColors {
   // Temporary memory of find(): contacts without a colour, the number of contacts of each colour, and for
   // each body of the solver the lowest rank that has claimed it and the colours that are taken there.
   Array<std::uint32_t, Space> uncolored_, counts_;
+  Array<UncoloredContact, Space> waiting_;
   Array<std::uint64_t, Space> standing_, taken_;
   bool knows_slots_ = false, are_same_ = false;
   int colors_ = 0;           // number of colours after the last find()
