@@ -149,10 +149,35 @@ __device__ int phases_of_one_block(const Program& program, const typename Progra
   return phase - first;
 }
 
-/// All blocks are on the GPU at once, and wait for each other between phases. The items of a phase are dealt
-/// to the blocks warp by warp, so that a phase of few items still uses all processors. Each block has its own
-/// copy of the state and computes the next one from the sums of all blocks. There are two sets of sums,
-/// because blocks that are behind may still read one of them.
+constexpr int warp = 32;
+
+/// A program whose items go different ways, so that the threads of a warp work on them one after the other.
+template <class Program>
+concept Diverges = requires {
+  requires Program::diverges;
+};
+
+/// The items of a phase that a thread works on: `first`, and then each `stride`-th. They are dealt to the
+/// blocks warp by warp, so that a phase of few items still uses all processors. If they diverge, few items
+/// also use few threads of each warp.
+struct ItemsOfThread {
+  std::int64_t first, stride;
+
+  template <class Program>
+  __device__ static ItemsOfThread of(std::int64_t items) {
+    constexpr int warps_of_block = Program::threads / warp;
+    const std::int64_t warps = std::int64_t{gridDim.x} * warps_of_block;
+    const std::int64_t number = std::int64_t{threadIdx.x / warp} * gridDim.x + blockIdx.x;
+    const std::int64_t lane = threadIdx.x % warp;
+    std::int64_t lanes = warp;
+    if constexpr (Diverges<Program>) lanes = std::clamp((items + warps - 1) / warps, std::int64_t{1}, lanes);
+    return {lane < lanes ? number * lanes + lane : items, warps * lanes};
+  }
+};
+
+/// All blocks are on the GPU at once, and wait for each other between phases. Each block has its own copy of
+/// the state and computes the next one from the sums of all blocks. There are two sets of sums, because
+/// blocks that are behind may still read one of them.
 template <class Program>
 __global__ void __launch_bounds__(Program::threads, blocks_at_once<Program>())
     run_phases(const __grid_constant__ Program program, const typename Program::State start,
@@ -160,7 +185,6 @@ __global__ void __launch_bounds__(Program::threads, blocks_at_once<Program>())
   using Sum = typename Program::Sum;
   constexpr bool adds_up = !std::is_empty_v<Sum>;
   constexpr int threads = Program::threads;
-  constexpr int warp = 32;
   __shared__ BlockRoom<Sum, threads> room;
   __shared__ BlockRoom<typename Program::State, 1> state_room;
   typename Program::State& state = *state_room.data();
@@ -183,10 +207,9 @@ __global__ void __launch_bounds__(Program::threads, blocks_at_once<Program>())
         continue;
       }
       const std::int64_t items = program.items(state, phase);
-      const std::int64_t stride = std::int64_t{gridDim.x} * threads;
-      const std::int64_t first =
-          (std::int64_t{threadIdx.x / warp} * gridDim.x + blockIdx.x) * warp + threadIdx.x % warp;
-      for (std::int64_t i = first; i < items; i += stride) mine = mine + program(state, phase, i);
+      const auto of_thread = ItemsOfThread::of<Program>(items);
+      for (std::int64_t i = of_thread.first; i < items; i += of_thread.stride)
+        mine = mine + program(state, phase, i);
       ++phase;
     }
     if constexpr (adds_up) {
@@ -228,8 +251,8 @@ GpuRoom room_for() {
 /// few items each.
 template <class Program>
 unsigned blocks_for(std::int64_t items) {
-  constexpr std::int64_t least = 64;  // items of a block
-  constexpr std::int64_t few = 2;     // items of a thread
+  constexpr std::int64_t least = Diverges<Program> ? Program::threads / warp : 64;  // items of a block
+  constexpr std::int64_t few = 2;                                                   // items of a thread
   const GpuRoom room = room_for<Program>();
   const bool alone = items <= few * room.processors * Program::threads;
   const std::int64_t most = room.processors * (alone ? 1 : room.on_each);
@@ -264,7 +287,8 @@ typename Program::State run(Device, const char* label, Program program, typename
 /// type Program::Sum with an operator + (Sum may be empty), are added up over the pass. After a pass, state =
 /// program.judge(state, sum). The program ends when phases() is 0. More threads than program.most_items() are
 /// not used. Program::threads, a power of 2, is the size of a block: the barrier of fewer and larger blocks
-/// is quicker, if registers suffice. On Device the whole program is one launch, in which a phase costs some
+/// is quicker, if registers suffice; Program::diverges, if it is there and true, tells that the
+/// items go different ways. On Device the whole program is one launch, in which a phase costs some
 /// microseconds. The order of the additions depends on the size of the GPU, and is the same from run to run.
 template <class Space, class Program>
 typename Program::State run_in_phases(const char* label, const Program& program,

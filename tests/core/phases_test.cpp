@@ -44,6 +44,11 @@ struct Ring {
   SCREE_HD State judge(const State& state, const Sum& sum) const { return {sum, state.rounds + 1}; }
 };
 
+/// The same ring; on a GPU few of its items also use few threads of each warp.
+struct DivergingRing : Ring {
+  [[maybe_unused]] static constexpr bool diverges = true;
+};
+
 Ring::State run_on_one_thread(const Ring& ring) {
   Ring::State state;
   for (int phases = ring.phases(state); phases > 0; phases = ring.phases(state)) {
@@ -55,24 +60,30 @@ Ring::State run_on_one_thread(const Ring& ring) {
   return state;
 }
 
-TYPED_TEST(RoundsTest, PhasesWaitForOneAnother) {
-  for (const std::int64_t n : {1, 255, 257, 100000, 1000000}) {
+template <class Program, class Space>
+void expect_as_on_one_thread() {
+  for (const std::int64_t n : {1, 5, 255, 257, 1100, 100000, 1000000}) {
     std::vector<std::int64_t> numbers(static_cast<std::size_t>(n));
     std::iota(numbers.begin(), numbers.end(), 1);
-    Array<std::int64_t, TypeParam> even, odd;
+    Array<std::int64_t, Space> even, odd;
     copy(even, numbers);
     copy(odd, numbers);
     std::vector<std::int64_t> other = numbers;
     const std::int64_t never = std::numeric_limits<std::int64_t>::max();
     const Ring expected{{numbers.data(), n}, {other.data(), n}, never, 20};
     const Ring::State on_one_thread = run_on_one_thread(expected);
-    const Ring::State state =
-        parallel::run_in_phases<TypeParam>("test", Ring{even.view(), odd.view(), never, 20}, Ring::State{});
+    Program program{};
+    static_cast<Ring&>(program) = Ring{even.view(), odd.view(), never, 20};
+    const Ring::State state = parallel::run_in_phases<Space>("test", program, Ring::State{});
     EXPECT_EQ(state.rounds, 20);
     EXPECT_EQ(state.sum, on_one_thread.sum) << n;
     EXPECT_EQ(to_vector(even), numbers) << n;
   }
 }
+
+TYPED_TEST(RoundsTest, PhasesWaitForOneAnother) { expect_as_on_one_thread<Ring, TypeParam>(); }
+
+TYPED_TEST(RoundsTest, ItemsThatDivergeAreDealtOnce) { expect_as_on_one_thread<DivergingRing, TypeParam>(); }
 
 TYPED_TEST(RoundsTest, EndWhereTheSumSaysSo) {
   Array<std::int64_t, TypeParam> even(1000), odd(1000);
