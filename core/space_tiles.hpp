@@ -70,56 +70,88 @@ constexpr bool has_kinds() {
   return false;
 }
 
-/// Returns the item of its tile that a thread works on, or -1. Items of one kind are side by side, so that
-/// the threads of a warp do the same work, and items of no kind leave whole warps free.
 template <class F>
-__device__ int item_of_thread(const F& f, std::int64_t first) {
-  __shared__ std::uint32_t sums[F::kinds][tile / 32];
-  __shared__ std::uint16_t items[tile];
-  const int kind = f.kind(first + threadIdx.x);
-  std::uint32_t start = 0;
+__global__ void __launch_bounds__(tile, blocks_at_once<F>())
+    compact_tile(const __grid_constant__ F f, std::int32_t* counts) {
+  __shared__ std::uint32_t sums[tile / 32];
+  const std::int64_t first = std::int64_t{blockIdx.x} * tile;
+  typename F::Record record;
+  std::uint32_t total;
+  const bool found = f.find(first + threadIdx.x, record);
+  const std::uint32_t before = scree::detail::sum_before_in_block<tile>(found ? 1u : 0u, sums, total);
+  if (found) f.store(first + before, first + threadIdx.x, record);
+  if (threadIdx.x == 0) counts[blockIdx.x] = static_cast<std::int32_t>(total);
+}
+
+// Search kind by kind: the items of all tiles are listed kind after kind, so that the threads of a warp do
+// the same work, and items of no kind leave no thread idle. The order within a kind depends on the order of
+// the blocks. That changes nothing, since the results are stored item by item before they are compacted.
+
+/// What is known of an item: its kind, or one of these.
+enum : std::uint8_t { no_kind = 255, found_item = 254 };
+
+/// The numbers of items of each kind, and how many of them have been listed.
+template <int kinds>
+struct KindCounts {
+  std::uint32_t all[kinds], listed[kinds];
+};
+
+template <class F>
+__global__ void __launch_bounds__(tile)
+    note_kinds(const __grid_constant__ F f, std::uint8_t* kinds, KindCounts<F::kinds>* counts) {
+  const std::int64_t item = std::int64_t{blockIdx.x} * tile + threadIdx.x;
+  const int kind = f.kind(item);
+  kinds[item] = kind < 0 ? no_kind : static_cast<std::uint8_t>(kind);
   for (int k = 0; k < F::kinds; ++k) {
+    const int of_kind = __syncthreads_count(kind == k);
+    if (threadIdx.x == 0 && of_kind > 0) atomicAdd(&counts->all[k], static_cast<unsigned>(of_kind));
+  }
+}
+
+template <int kind_count>
+__global__ void __launch_bounds__(tile)
+    list_kinds(const std::uint8_t* kinds, KindCounts<kind_count>* counts, std::int32_t* list) {
+  __shared__ std::uint32_t sums[kind_count][tile / 32];
+  __shared__ std::uint32_t place;
+  const std::int64_t item = std::int64_t{blockIdx.x} * tile + threadIdx.x;
+  const int kind = kinds[item];
+  std::uint32_t begin = 0;
+  for (int k = 0; k < kind_count; ++k) {
     std::uint32_t total;
     const std::uint32_t before =
         scree::detail::sum_before_in_block<tile>(kind == k ? 1u : 0u, sums[k], total);
-    if (kind == k) items[start + before] = static_cast<std::uint16_t>(threadIdx.x);
-    start += total;
+    if (threadIdx.x == 0) place = begin + atomicAdd(&counts->listed[k], total);
+    __syncthreads();
+    if (kind == k) list[place + before] = static_cast<std::int32_t>(item);
+    __syncthreads();
+    begin += counts->all[k];
   }
-  __syncthreads();
-  return threadIdx.x < start ? items[threadIdx.x] : -1;
-}
-
-/// Returns how many items of the tile before `item` were found, in a thread that has found one; `total`
-/// becomes the number of all.
-__device__ inline std::uint32_t found_before(int item, bool found, std::uint32_t& total) {
-  __shared__ std::uint32_t sums[tile / 32];
-  __shared__ std::uint32_t of_item[tile];
-  of_item[threadIdx.x] = 0;
-  __syncthreads();
-  if (found) of_item[item] = 1;
-  __syncthreads();
-  of_item[threadIdx.x] = scree::detail::sum_before_in_block<tile>(of_item[threadIdx.x], sums, total);
-  __syncthreads();
-  return found ? of_item[item] : 0;
 }
 
 template <class F>
 __global__ void __launch_bounds__(tile, blocks_at_once<F>())
-    compact_tile(const __grid_constant__ F f, std::int32_t* counts) {
-  const std::int64_t first = std::int64_t{blockIdx.x} * tile;
+    find_listed(const __grid_constant__ F f, const std::int32_t* list, const KindCounts<F::kinds>* counts,
+                std::uint8_t* kinds) {
+  std::uint32_t all = 0;
+  for (int k = 0; k < F::kinds; ++k) all += counts->all[k];
+  const std::uint32_t place = blockIdx.x * tile + threadIdx.x;
+  if (place >= all) return;
+  const std::int64_t item = list[place];
   typename F::Record record;
+  if (!f.find(item, record)) return;
+  f.keep(item, record);
+  kinds[item] = found_item;
+}
+
+template <class F>
+__global__ void __launch_bounds__(tile)
+    compact_found(const __grid_constant__ F f, const std::uint8_t* kinds, std::int32_t* counts) {
+  __shared__ std::uint32_t sums[tile / 32];
+  const std::int64_t first = std::int64_t{blockIdx.x} * tile;
+  const bool found = kinds[first + threadIdx.x] == found_item;
   std::uint32_t total;
-  if constexpr (has_kinds<F>()) {
-    const int item = item_of_thread(f, first);
-    const bool found = item >= 0 && f.find(first + item, record);
-    const std::uint32_t before = found_before(item, found, total);
-    if (found) f.store(first + before, first + item, record);
-  } else {
-    __shared__ std::uint32_t sums[tile / 32];
-    const bool found = f.find(first + threadIdx.x, record);
-    const std::uint32_t before = scree::detail::sum_before_in_block<tile>(found ? 1u : 0u, sums, total);
-    if (found) f.store(first + before, first + threadIdx.x, record);
-  }
+  const std::uint32_t before = scree::detail::sum_before_in_block<tile>(found ? 1u : 0u, sums, total);
+  if (found) f.place(first + before, first + threadIdx.x);
   if (threadIdx.x == 0) counts[blockIdx.x] = static_cast<std::int32_t>(total);
 }
 
@@ -171,7 +203,20 @@ void visit_found(Device, const char* label, std::int64_t tiles, const std::int32
 template <class F>
 void compact(Device, const char* label, std::int64_t tiles, const F& f, std::int32_t* counts) {
   const timing::Call<Device> call(label);
-  compact_tile<<<static_cast<unsigned>(tiles), tile>>>(f, counts);
+  const auto blocks = static_cast<unsigned>(tiles);
+  if constexpr (has_kinds<F>()) {
+    using Counts = KindCounts<F::kinds>;
+    Array<std::uint8_t, Device> kinds(tiles * tile);
+    Array<std::int32_t, Device> list(tiles * tile);
+    Array<Counts, Device> of_kinds(1);
+    cudaMemsetAsync(of_kinds.data(), 0, sizeof(Counts));
+    note_kinds<<<blocks, tile>>>(f, kinds.data(), of_kinds.data());
+    list_kinds<F::kinds><<<blocks, tile>>>(kinds.data(), of_kinds.data(), list.data());
+    find_listed<<<blocks, tile>>>(f, list.data(), of_kinds.data(), kinds.data());
+    compact_found<<<blocks, tile>>>(f, kinds.data(), counts);
+  } else {
+    compact_tile<<<blocks, tile>>>(f, counts);
+  }
   scree::detail::require_launched(label);
 }
 template <class T, class F>
@@ -196,6 +241,8 @@ void add_up(Device, const char* label, std::int64_t n, const F& f, Array<T, Devi
 /// is done.
 /// If F has a number of `kinds`, then on Device f.kind(item) returns the kind of an item, from 0 on, or -1 if
 /// find() would do nothing but return false. find() is then called kind by kind, and not for kind -1.
+/// f.store() is in two parts there: f.keep(item, record) stores what was found at an item, and
+/// f.place(place, item) that it was.
 template <class Space, class F>
 void compact_tiles(const char* label, std::int64_t tiles, const F& f, std::int32_t* counts) {
   if (tiles > 0) detail::compact(Space{}, label, tiles, f, counts);

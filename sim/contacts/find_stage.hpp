@@ -245,10 +245,14 @@ struct FindSlots {
   bool is_end(std::int64_t place) const { return all.is_end(place); }
   SCREE_HD int kind(std::int64_t place) const { return all.kind(place); }
   SCREE_HD bool find(std::int64_t place, Record& record) const { return all.find(place, record); }
-  SCREE_HD void store(std::int64_t to, std::int64_t place, const Record& record) const {
-    found[to] = static_cast<std::int32_t>(place);
-    all.keep(place, record);
+  SCREE_HD void store(std::int64_t to, std::int64_t slot, const Record& record) const {
+    place(to, slot);
+    keep(slot, record);
   }
+  SCREE_HD void place(std::int64_t to, std::int64_t slot) const {
+    found[to] = static_cast<std::int32_t>(slot);
+  }
+  SCREE_HD void keep(std::int64_t slot, const Record& record) const { all.keep(slot, record); }
 };
 
 /// Makes the contacts of the slots that have been found.
@@ -275,9 +279,13 @@ struct JudgeApproach {
   ApproachList approaching;
   Judge judge;
 
+  /// The threads of a warp of a GPU go different ways and so work one after the other: the first contacts
+  /// are dealt to one thread of each warp.
   SCREE_HD void operator()(std::int64_t thread) const {
+    constexpr std::int64_t warp = 32;
     const auto count = static_cast<std::int64_t>(*approaching.count);
-    for (std::int64_t k = thread; k < count; k += stride) judge(approaching.contacts[k]);
+    const std::int64_t first = thread % warp * (stride / warp) + thread / warp;
+    for (std::int64_t k = first; k < count; k += stride) judge(approaching.contacts[k]);
   }
 };
 

@@ -29,6 +29,7 @@ struct EveryThird {
 /// Finds every third item kind by kind; an item that is not found may have no kind, or have one.
 struct EveryThirdByKind : EveryThird {
   static constexpr int kinds = 2;
+  View<std::int64_t> kept;
   SCREE_HD int kind(std::int64_t item) const {
     if (item / parallel::tile == 3 || item % 3 == 1) return -1;
     return item % 5 == 0 ? 1 : 0;
@@ -36,14 +37,19 @@ struct EveryThirdByKind : EveryThird {
   SCREE_HD bool find(std::int64_t item, Record& record) const {
     return EveryThird::find(item, record) && item / parallel::tile != 3;
   }
+  SCREE_HD void keep(std::int64_t item, const Record& record) const { kept[item] = record; }
+  SCREE_HD void place(std::int64_t to, std::int64_t item) const { out[to] = kept[item] + item; }
 };
 
 template <class Space, class Find>
 void expect_found_in_order() {
-  constexpr std::int64_t tiles = 5;
+  constexpr std::int64_t tiles = 300;
   Array<std::int64_t, Space> out(tiles * parallel::tile);
   Array<std::int32_t, Space> counts(tiles);
-  const Find find{{out.view()}};
+  Array<std::int64_t, Space> kept(out.size());
+  Find find{};
+  find.out = out.view();
+  if constexpr (requires { find.kept; }) find.kept = kept.view();
   parallel::compact_tiles<Space>("test", tiles, find, counts.data());
   const std::vector<std::int64_t> found = to_vector(out);
   const std::vector<std::int32_t> count = to_vector(counts);
