@@ -3,6 +3,8 @@
 
 #include "core/array.hpp"
 #include "core/bodies.hpp"
+#include "core/space_prefetch.hpp"
+#include "core/space_unroll.hpp"
 #include "core/tolerances.hpp"
 #include "sim/impacts/meeting.hpp"
 #include "sim/laws/contact_laws.hpp"
@@ -119,6 +121,19 @@ struct FlightStage {
     return bore_load.size() > 0 && bore_load[i] != 0 && bore_load[j] != 0;
   }
 
+  /// On a GPU, starts to load all that is known of a body: what is asked of two bodies in flight stands
+  /// behind many branches.
+  SCREE_HD void load_ahead(std::int32_t body) const {
+    if constexpr (is_gpu_code) {
+      const auto load = [body](const auto&... of) { (prefetch_whole(of[body]), ...); };
+      load(bodies.position, bodies.orientation, bodies.velocity, bodies.spin, bodies.size,
+           bodies.inverse_mass, bodies.inverse_inertia, bodies.shape, bodies.mobility, bodies.material,
+           bodies.id);
+      load(clock, budget_used, turn, top_speed, reach, extent);
+      if (bore_load.size() > 0) load(bore_load);
+    }
+  }
+
   /// Returns the part of the substep's kick that the velocity of a body contains already (m/s).
   SCREE_HD Vec3 kick_of(std::int32_t body) const {
     return terms.from > 0 && is_free(body) ? Vec3(terms.step * parameters.acceleration_of(body))
@@ -159,19 +174,19 @@ struct FlightStage {
     return pair;
   }
 
-  /// Sets the turn, the top speed, the reach and the extent of a body from its present flight.
-  SCREE_HD void bound(std::int32_t body) const {
+  /// Sets the turn, the top speed, the reach and the extent of a body in the given flight.
+  SCREE_HD void bound(std::int32_t body, const BodyFlight& in) const {
     const bool absent = bodies.mobility[body] == Mobility::absent;
-    turn[body] = absent ? 0.0 : fastest_turn(flight(body));
-    const double linear = (bodies.velocity[body] - kick_of(body)).norm();
-    const double gained = is_free(body) ? parameters.acceleration_of(body).norm() * terms.step : 0.0;
-    top_speed[body] =
-        absent ? 0.0 : linear + turn[body] + (parameters.acceleration.size() > 0 ? gained : 0.0);
-    reach[body] = absent ? 0.0 : (linear + gained + turn[body]) * (0.5 * terms.step);
-    extent[body] = is_boundary(bodies.shape[body])
-                       ? HUGE_VAL
-                       : bounding_radius(bodies.shape[body], bodies.size[body]) + reach[body];
+    const double turns = absent ? 0.0 : fastest_turn(in);
+    const double linear = in.velocity.norm();
+    const double gained = in.acceleration.norm() * terms.step;
+    const double reaches = absent ? 0.0 : (linear + gained + turns) * (0.5 * terms.step);
+    turn[body] = turns;
+    top_speed[body] = absent ? 0.0 : linear + turns + (parameters.acceleration.size() > 0 ? gained : 0.0);
+    reach[body] = reaches;
+    extent[body] = is_boundary(in.shape) ? HUGE_VAL : bounding_radius(in.shape, in.size) + reaches;
   }
+  SCREE_HD void bound(std::int32_t body) const { bound(body, flight(body)); }
 
   /// Returns the length to which the tolerances of a body are relative (m); infinite for absent bodies.
   SCREE_HD double size_of(std::int64_t body) const {

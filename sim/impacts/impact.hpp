@@ -208,15 +208,17 @@ SCREE_HD inline void keep_from_gaining(ContactRow* rows, const Vec3* before, int
   guides.hold(i, j);
 }
 
-/// Gives a body the orientation and the spin that it has at `s` after an impact, and turns it back from there
-/// to the midpoint. Returns by how much its energy at the midpoint has grown (J).
-SCREE_HD inline double turn_on(const FlightStage& stage, std::int32_t body, const BodyFlight& flown,
-                               const Quat& orientation, const Vec3& spin, double s) {
-  stage.bodies.orientation[body] = orientation;
-  stage.bodies.spin[body] = spin;
-  rotate_freely(stage.bodies.orientation[body], stage.bodies.spin[body], flown.inverse_inertia,
-                flown.midpoint - s);
-  return rotational_energy(stage.bodies.orientation[body], stage.bodies.spin[body], flown.inverse_inertia) -
+/// Gives a flight the orientation and the spin that the body has at `s` after an impact, turned back from
+/// there to the midpoint.
+SCREE_HD inline void turn_on(BodyFlight& next, const Quat& orientation, const Vec3& spin, double s) {
+  next.orientation = orientation;
+  next.spin = spin;
+  rotate_freely(next.orientation, next.spin, next.inverse_inertia, next.midpoint - s);
+}
+
+/// Returns how much larger the energy of rotation is in one flight than in another (J).
+SCREE_HD inline double energy_gained(const BodyFlight& next, const BodyFlight& flown) {
+  return rotational_energy(next.orientation, next.spin, next.inverse_inertia) -
          rotational_energy(flown.orientation, flown.spin, flown.inverse_inertia);
 }
 
@@ -391,17 +393,27 @@ SCREE_HD bool solve_impact(const FlightStage& stage, std::int32_t i, std::int32_
 SCREE_HD inline double fly_on(const FlightStage& stage, std::int32_t body, const BodyFlight& flown,
                               const BodyInstant& at, const SolverBody& after, double s) {
   if (!after.is_free()) return 0;
+  const Vec3 kick = stage.kick_of(body);
   const Vec3 velocity = after.velocity - s * flown.acceleration;
+  BodyFlight next = flown;
+  next.velocity = velocity + kick;
   stage.bodies.position[body] -= (s - flown.midpoint) * (velocity - flown.velocity);
-  stage.bodies.velocity[body] = velocity + stage.kick_of(body);
+  stage.bodies.velocity[body] = next.velocity;
   stage.clock[body] = s;
   double drift = 0;
   if (stage.parameters.rotation) {
-    const double given = rotational_energy(at.solid.orientation, after.spin, flown.inverse_inertia) -
-                         rotational_energy(at.solid.orientation, at.spin, flown.inverse_inertia);
-    drift = detail::turn_on(stage, body, flown, at.solid.orientation, after.spin, s) - given;
+    detail::turn_on(next, at.solid.orientation, after.spin, s);
+    // With equal moments the energy stays as it is in flight, and nothing drifts.
+    if (!has_equal_moments(flown.inverse_inertia)) {
+      const double given = rotational_energy(at.solid.orientation, after.spin, flown.inverse_inertia) -
+                           rotational_energy(at.solid.orientation, at.spin, flown.inverse_inertia);
+      drift = detail::energy_gained(next, flown) - given;
+    }
+    stage.bodies.orientation[body] = next.orientation;
+    stage.bodies.spin[body] = next.spin;
   }
-  stage.bound(body);
+  next.velocity -= kick;  // rounded as the kick rounds it
+  stage.bound(body, next);
   return drift;
 }
 

@@ -162,8 +162,11 @@ class ImpactGroupOutcome {
     moved.angular_correction = -back.cross(scale_ * momentum_);
     if (stage.parameters.rotation) {
       const double given = scale_ * turning_ + 0.5 * scale_ * scale_ * angular_.dot(spin_);
-      moved.integration =
-          turn_on(stage, heavy, flight_, at_.solid.orientation, at_.spin + scale_ * spin_, time_) - given;
+      BodyFlight next = flight_;
+      turn_on(next, at_.solid.orientation, at_.spin + scale_ * spin_, time_);
+      moved.integration = energy_gained(next, flight_) - given;
+      stage.bodies.orientation[heavy] = next.orientation;
+      stage.bodies.spin[heavy] = next.spin;
     }
     stage.bound(heavy);
     return moved;

@@ -5,6 +5,8 @@
 
 #include "core/array.hpp"
 #include "core/space_atomic.hpp"
+#include "core/space_prefetch.hpp"
+#include "core/space_unroll.hpp"
 #include "narrowphase/candidates.hpp"
 #include "sim/impacts/adjacency.hpp"
 #include "sim/impacts/impact.hpp"
@@ -130,6 +132,7 @@ struct ImpactProgram {
   using State = RoundsState;
   using Sum = NoSum;
   static constexpr int threads = 256;
+  static constexpr bool diverges = true;
   static constexpr std::uint32_t most_rounds = 1 << 16;
   static constexpr int chunk_size = 8;
 
@@ -259,6 +262,8 @@ struct ImpactProgram {
     if (place >= adjacency.count(of.body)) return;
     const std::int64_t k = adjacency.pair(of.body, place);
     const auto [i, j] = pairs[k];
+    load_ahead(state, i, j);
+    if (loaded.size() > 0) prefetch_whole(loaded[k]);
     if (of.body == j && was_struck(state, i)) return;
     if (stage.top_speed[i] + stage.top_speed[j] > progress->least_impact_speed) look(state, k);
   }
@@ -267,6 +272,20 @@ struct ImpactProgram {
     for (const std::int32_t body : {i, j}) put(&walls_of[body], 0u);
     if (last.time == HUGE_VAL || was_struck(state, i) || was_struck(state, j)) return;
     add_meeting(state, last);
+  }
+  /// On a GPU, starts to load all that a round asks of two bodies.
+  SCREE_HD void load_ahead(const State& state, std::int32_t i, std::int32_t j) const {
+    if constexpr (is_gpu_code) {
+      for (const std::int32_t body : {i, j}) {
+        stage.load_ahead(body);
+        prefetch_whole(first[state.round % 2][body]);
+        prefetch_whole(struck_in[body]);
+        prefetch_whole(waits_in[body]);
+        if (adjacency.is_empty()) continue;
+        prefetch_whole(adjacency.begin[body]);
+        prefetch_whole(adjacency.begin[body + 1]);
+      }
+    }
   }
   SCREE_HD bool was_struck(const State& state, std::int32_t body) const {
     return struck_in[body] == state.round - 1;
@@ -372,6 +391,7 @@ struct ImpactProgram {
     const bool is_i = item / lanes % 2 == 0;
     const std::int32_t body = is_i ? i : j;
     const std::int32_t other = is_i ? j : i;
+    load_ahead(state, i, j);
     if (lane == 0) {
       if (is_i) start_meeting(state, of, e);
       if (stage.is_heavy_to(body, other)) lower(&impact_group_of[body], static_cast<std::uint32_t>(e));
@@ -397,6 +417,7 @@ struct ImpactProgram {
     for (std::int64_t place = lane; place < own; place += lanes) {
       const std::int64_t k = adjacency.pair(body, place);
       const std::int32_t other = partner_in(k, body);
+      load_ahead(state, body, other);
       if (!stage.is_free(other)) continue;
       const std::int64_t others = adjacency.count(other);
       if (own < others || (own == others && body < other)) make_wait(state, body, other);
@@ -471,8 +492,9 @@ struct ImpactProgram {
 
   SCREE_HD void resolve_first(const State& state, std::int64_t e) const {
     PredictedMeeting& of = meeting(state, e);
-    if (!is_first(state, of)) return;
     const auto [i, j] = pairs[of.pair];
+    load_ahead(state, i, j);
+    if (!is_first(state, of)) return;
     const StruckBody before_i = before_impacts(stage, i);
     const StruckBody before_j = before_impacts(stage, j);
     SolvedImpact solved;
@@ -483,6 +505,7 @@ struct ImpactProgram {
     const bool heavy_i = stage.is_heavy_to(i, j);
     const bool heavy_j = stage.is_heavy_to(j, i);
     const auto place = static_cast<std::int64_t>(count_up(&progress->impacts));
+    mark_struck(state, {before_i, before_j}, {!heavy_i, !heavy_j});
     if (heavy_i || heavy_j) {
       const std::int32_t heavy = heavy_i ? i : j;
       ImpactGroup& with = impact_group(heavy);
@@ -492,8 +515,6 @@ struct ImpactProgram {
     } else {
       resolved[place].moved = fly_on(stage, solved, resolved[place].impact);
     }
-    if (!heavy_i) mark_struck(state, before_i);
-    if (!heavy_j) mark_struck(state, before_j);
     key[place] = key_of(state, of.pair);
     for (int k = 0; k < solved.count; ++k)
       if (solved.is_first_of_wall(k)) add_impact_of_wall(state, solved, solved.wall[k]);
@@ -562,16 +583,30 @@ struct ImpactProgram {
       key[place] = key_of(state, of.pair);
     }
   }
-  SCREE_HD void mark_struck(const State& state, const StruckBody& before) const {
-    const std::int32_t body = before.body;
-    if (!stage.is_free(body)) return;
-    if (struck_in[body] == 0) struck[static_cast<std::int64_t>(count_up(&progress->struck))] = before;
-    struck_in[body] = state.round;
-    const std::int64_t pairs_of_it = adjacency.count(body);
-    const std::int64_t needed = (pairs_of_it + chunk_size - 1) / chunk_size;
-    const auto place = static_cast<std::int64_t>(add(&progress->chunks, static_cast<std::uint64_t>(needed)));
-    for (std::int64_t c = 0; c < needed; ++c)
-      chunks[place + c] = {body, static_cast<std::int32_t>(c * chunk_size)};
+  /// Notes that free bodies have been struck, those of `before` whose `counts` is set, and lists their pairs.
+  /// They take their places in the lists together, since a thread of a GPU waits long for each addition.
+  template <int bodies>
+  SCREE_HD void mark_struck(const State& state, const StruckBody (&before)[bodies],
+                            const bool (&counts)[bodies]) const {
+    bool is_struck[bodies], is_new[bodies];
+    std::int64_t needed[bodies];
+    std::uint64_t all_new = 0, all_needed = 0;
+    for (int b = 0; b < bodies; ++b) {
+      const std::int32_t body = before[b].body;
+      is_struck[b] = counts[b] && stage.is_free(body);
+      is_new[b] = is_struck[b] && struck_in[body] == 0;
+      needed[b] = is_struck[b] ? (adjacency.count(body) + chunk_size - 1) / chunk_size : 0;
+      all_new += is_new[b] ? 1 : 0;
+      all_needed += static_cast<std::uint64_t>(needed[b]);
+    }
+    auto place = static_cast<std::int64_t>(add(&progress->struck, all_new));
+    auto chunk = static_cast<std::int64_t>(add(&progress->chunks, all_needed));
+    for (int b = 0; b < bodies; ++b) {
+      if (is_new[b]) struck[place++] = before[b];
+      if (is_struck[b]) struck_in[before[b].body] = state.round;
+      for (std::int64_t c = 0; c < needed[b]; ++c)
+        chunks[chunk++] = {before[b].body, static_cast<std::int32_t>(c * chunk_size)};
+    }
   }
 
   /// Applies each impact group to its heavy body.
@@ -583,7 +618,7 @@ struct ImpactProgram {
     impact_group_of[heavy] = no_impact_group;
     const ImpactGroup& given = impact_groups[e];
     if (given.impacts == 0) return;
-    mark_struck(state, before_impacts(stage, heavy));
+    mark_struck(state, {before_impacts(stage, heavy)}, {true});
     const ImpactGroupOutcome outcome(stage, heavy, given);
     Ledger& moved = resolved[static_cast<std::int64_t>(given.place)].moved;
     moved = moved + outcome.fly_on(stage, heavy);

@@ -41,6 +41,7 @@ namespace scree {
 /// Returns whether a plane separates the bodies during their whole flight, so that their meeting at the given
 /// time (s) does not count.
 SCREE_HD inline bool pass_by(const PairFlight& pair, double begin, double meeting) {
+  if (!have_edges(pair.i.shape, pair.j.shape)) return false;
   return separating_face(pair, begin, pair.until, instant_of(pair.i, meeting).solid,
                          instant_of(pair.j, meeting).solid)
       .exists();
