@@ -46,8 +46,9 @@ struct Ring {
 
 /// The same ring; on a GPU few of its items also use few threads of each warp.
 struct DivergingRing : Ring {
-  [[maybe_unused]] static constexpr bool diverges = true;
+  static constexpr bool diverges = true;
 };
+static_assert(DivergingRing::diverges);
 
 Ring::State run_on_one_thread(const Ring& ring) {
   Ring::State state;
