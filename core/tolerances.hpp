@@ -69,9 +69,10 @@ inline constexpr double coarser_overlap = 0.012;
 inline constexpr int wedged_steps = 32;
 /// Overlaps that the steps of a heap in motion may leave after position correction: the deepest, and the mean
 /// of all (of the smaller smallest_size). The number of substeps is chosen for them. Larger: fewer substeps,
-/// and errors grow.
+/// and errors grow. The mean is over much_overlap_in_flow, so that a heap is swept more before it takes more
+/// substeps, which cost more (docs/decisions/0059).
 inline constexpr double worst_overlap_left = 2e-2;
-inline constexpr double mean_overlap_left = 2e-4;
+inline constexpr double mean_overlap_left = 5e-4;
 /// Largest number of substeps in which a step is taken if the scene leaves it open, at response.quality 1.
 /// Larger: fast scenes cost more.
 inline constexpr int most_substeps = 4;
@@ -240,6 +241,7 @@ inline constexpr double unit_length = 1e-14;
 inline constexpr double step_count = 1e-9;
 
 static_assert(moving_power < flowing_power);
+static_assert(little_overlap_in_flow < much_overlap_in_flow && much_overlap_in_flow < mean_overlap_left);
 static_assert(least_sweeps_power < stirring_power && stirring_power < done_power);
 static_assert(done_power < residual_power);
 static_assert(closed_gap < contact_slack);

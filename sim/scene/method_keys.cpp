@@ -64,7 +64,7 @@ Codec<ResponseSettings> response_section() {
               key<T>("quality", &T::quality, quality_number(), optionally,
                      "how little is left of errors. With 1 a step of many bodies in motion takes 1 to 4 "
                      "substeps, as "
-                     "few as leave overlaps of 2e-4 of the smaller body in the mean and 2e-2 at worst; "
+                     "few as leave overlaps of 5e-4 of the smaller body in the mean and 2e-2 at worst; "
                      "what moves faster leaves more. With q these, and the changes at which sweeps and "
                      "position correction of heaps end, are divided by q. Overlaps fall with the square "
                      "of the step's length: 4 allows twice as many substeps, 0.25 half as many"),

@@ -421,13 +421,14 @@ struct LeftInFlow {
 /// A column whose wall is taken away: it keeps what docs/accuracy.md states of heaps in motion.
 TEST_P(SpaceStep, WhatFlowsOverlapsLittle) {
   const LeftInFlow left(simulate(falling_column(1)));
-  EXPECT_LT(left.mean, 2 * tolerance::mean_overlap_left);
+  EXPECT_LT(left.mean, tolerance::mean_overlap_left);
   EXPECT_LT(left.worst, tolerance::worst_overlap_left);
   // The number was 18 to 20.2, and 28 where sweeps end at the change of a heap at rest (docs/decisions/0052).
   EXPECT_LT(left.sweeps, 24 * left.substeps);
 }
 
-/// One measurement may find up to twice the worst overlap, before more substeps follow.
+/// One measurement may find up to twice the worst overlap, before more substeps follow. More sweeps may do
+/// without these.
 TEST_P(SpaceStep, QualityDividesWhatFlowsOverlaps) {
   const LeftInFlow fine(simulate(falling_column(4))), coarse(simulate(falling_column(0.25)));
   for (const auto& [left, quality] : {std::pair(&fine, 4.0), std::pair(&coarse, 0.25)}) {
@@ -435,7 +436,7 @@ TEST_P(SpaceStep, QualityDividesWhatFlowsOverlaps) {
     EXPECT_LT(left->worst, 2 * tolerance::worst_overlap_left / quality);
   }
   EXPECT_LT(2 * fine.mean, coarse.mean);
-  EXPECT_LT(coarse.substeps, fine.substeps);
+  EXPECT_LE(coarse.substeps, fine.substeps);
   EXPECT_LT(2 * coarse.sweeps, fine.sweeps);
 }
 
