@@ -1,6 +1,7 @@
 #include "sim/response/direct.hpp"
 
 #include "core/tolerances.hpp"
+#include "sim/response/anderson.hpp"
 
 #include <Eigen/SparseCholesky>
 
@@ -17,7 +18,10 @@ namespace {
 /// velocities).
 constexpr double softest = 1e2;
 constexpr double stiffest = 1e8;
-constexpr double stiffening = 10;  // factor of r from one pass to the next
+constexpr double stiffening = 10;  // greatest factor of r from one pass to the next
+/// Bound of r by the slips, which move the impulses by r times their change: relative to the impulses. Where
+/// it is larger, so many points change their state that Newton's method takes many more steps.
+constexpr double most_moved = 0.3;
 
 constexpr int most_newton_steps = 20;      // Newton steps in a pass
 constexpr int most_shortenings = 12;       // shortenings of a Newton step
@@ -164,24 +168,53 @@ class IslandSolver {
                          .derivative = Mat3::Zero()});
       }
     }
-    start_pass(1.0);
+    start_pass();
+    set_slips(present_slips());
   }
 
-  /// Starts a pass from the present velocities. The constant slips move from those of the last pass towards
-  /// the present ones, by `share` of the difference.
-  void start_pass(double share) {
+  /// Starts a pass from the present velocities. Its constant slips are to be set after it.
+  void start_pass() {
     change_.setZero();
     for (PassRow& row : rows_) {
       const Vec3& n = row.contact->normal;
       const Vec3 u =
           row.row->relative_velocity(problem_.solver[row.contact->i], problem_.solver[row.contact->j]);
       const double un = u.dot(n);
-      const double slip = row.slip + row.lag;
       row.closing = un - row.row->target;
       row.slide = u - un * n;
       row.slip = row.slide.norm();
-      row.lag = (1 - share) * (slip - row.slip);
     }
+  }
+
+  /// Sets the constant slips of the pass.
+  void set_slips(const Vector& slips) {
+    slips_ = slips;
+    Eigen::Index k = 0;
+    for (PassRow& row : rows_) row.lag = slips_[k++] - row.slip;
+  }
+
+  Vector present_slips() const {
+    Vector slips(static_cast<Eigen::Index>(rows_.size()));
+    Eigen::Index k = 0;
+    for (const PassRow& row : rows_) slips[k++] = row.slip;
+    return slips;
+  }
+
+  /// Returns the weights of rows whose product with the squares of slips compares as ImpulseChange::size (J).
+  /// Points that do not press have none.
+  Vector slip_weights() const {
+    Vector weights(slips_.size());
+    Eigen::Index k = 0;
+    for (const PassRow& row : rows_) {
+      const double mu = row.impulse.isZero(0) ? 0 : row.contact->friction;
+      weights[k++] = mu * mu * row.row->normal_mass;
+    }
+    return weights;
+  }
+
+  /// Returns the constant slips of the next pass: those at which the passes so far seem to end.
+  Vector extrapolated_slips() {
+    return acceleration_.next(slips_, present_slips(), slip_weights()).cwiseMax(0);
   }
 
   /// Lays out the lower triangle, compressed by columns. It has a block for each body, and one for each two
@@ -320,10 +353,20 @@ class IslandSolver {
       const ImpulseChange last = residual;
       residual = natural_residual(problem_);
       if (residual.within(tolerance::direct_share * tolerance)) break;
-      const double share = residual.step * last.size / (last.step * residual.size);  // reduction, squared
-      // The slips may oscillate about their solution, so they move half the way only.
-      start_pass(share > 0.25 ? 0.5 : 1.0);
-      if (share < 1) stiffness_ = std::min(stiffness_ * stiffening, stiffest);
+      const bool is_nearer = residual.step * last.size <= last.step * residual.size;
+      start_pass();
+      const Vector old_slips = slips_;
+      if (is_nearer) {
+        set_slips(extrapolated_slips());
+        stiffness_ *= stiffening;
+      } else {
+        // The slips may oscillate about their solution, so they move half the way only.
+        acceleration_.forget();
+        set_slips(0.5 * (old_slips + present_slips()));
+      }
+      const double moved = (slips_ - old_slips).cwiseAbs2().dot(slip_weights());
+      const double bound = moved > 0 ? most_moved * std::sqrt(size() / moved) : stiffest;
+      stiffness_ = std::min(stiffness_, std::clamp(bound, softest, stiffest));
     }
     return residual;
   }
@@ -386,6 +429,8 @@ class IslandSolver {
   std::vector<PassRow> rows_;
   std::vector<Mat3> inertia_;                     // inertia of each body, world frame
   std::vector<GuidedUnknowns> guides_;            // unknowns of bodies in guides
+  Vector slips_;                                  // constant slip of each row in a pass (m/s)
+  AndersonAcceleration acceleration_;             // of the slips, from pass to pass
   Vector change_;                                 // change of the velocities in a pass
   std::vector<std::vector<Eigen::Index>> below_;  // first unknowns of later bodies in contact with each body
   Eigen::SparseMatrix<double> matrix_;
@@ -413,22 +458,24 @@ DirectOutcome solve_directly(const IslandProblem& problem, double tolerance, con
 
 namespace {
 
-/// Returns whether so few solutions have failed that further ones are worth their time.
-bool mostly_succeed(std::int64_t solved, std::int64_t failed) {
+/// Returns whether at most one in `solved_per_failure` solutions has failed, so that further ones are worth
+/// their time.
+bool mostly_succeed(std::int64_t solved, std::int64_t failed, std::int64_t solved_per_failure) {
   constexpr std::int64_t failures_to_start = 2;
-  constexpr std::int64_t solved_per_failure = 4;
   return failed <= failures_to_start + solved / solved_per_failure;
 }
 
 }  // namespace
 
 bool pays_long_solution(const Counters& counters) {
-  return mostly_succeed(counters.patient, counters.patient_failed);
+  constexpr std::int64_t solved_per_failure = 20;
+  return mostly_succeed(counters.patient, counters.patient_failed, solved_per_failure);
 }
 
 int sweeps_before_direct(int most, const Counters& counters) {
   constexpr int many_sweeps = 200;
-  const int sweeps = mostly_succeed(counters.direct, counters.direct_failed)
+  constexpr std::int64_t solved_per_failure = 4;
+  const int sweeps = mostly_succeed(counters.direct, counters.direct_failed, solved_per_failure)
                          ? few_sweeps
                          : std::clamp(most / 2, few_sweeps, many_sweeps);
   return std::min(most, sweeps);

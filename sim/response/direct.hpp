@@ -19,9 +19,9 @@ struct DirectLimits {
   double products_in_all;  ///< multiplications in all factorizations
 };
 /// Limits of the first attempt: beyond these, sweeps are cheaper.
-inline constexpr DirectLimits quick_limits{.passes = 16, .products = 4e5, .products_in_all = 2e7};
+inline constexpr DirectLimits quick_limits{.passes = 16, .products = 4e5, .products_in_all = 4e7};
 /// Limits of a second attempt, where neither the first one nor the sweeps have converged.
-inline constexpr DirectLimits patient_limits{.passes = 40, .products = 1e7, .products_in_all = 1e8};
+inline constexpr DirectLimits patient_limits{.passes = 40, .products = 1e7, .products_in_all = 2e8};
 /// Limits in the accurate mode, in which a solution is worth its time.
 inline constexpr DirectLimits thorough_limits{.passes = 300, .products = 1e8, .products_in_all = 1e11};
 
