@@ -19,8 +19,9 @@ namespace {
 constexpr double softest = 1e2;
 constexpr double stiffest = 1e8;
 constexpr double stiffening = 10;  // greatest factor of r from one pass to the next
-/// Bound of r by the slips, which move the impulses by r times their change: relative to the impulses. Where
-/// it is larger, so many points change their state that Newton's method takes many more steps.
+/// Slips that change from one pass to the next move the impulses by r times that change. This bounds r: it is
+/// the largest such move, relative to the impulses. Larger: so many points change their state that Newton's
+/// method takes many more steps. Smaller: islands of boxes need more passes than there are.
 constexpr double most_moved = 0.3;
 
 constexpr int most_newton_steps = 20;      // Newton steps in a pass
@@ -458,8 +459,8 @@ DirectOutcome solve_directly(const IslandProblem& problem, double tolerance, con
 
 namespace {
 
-/// Returns whether at most one in `solved_per_failure` solutions has failed, so that further ones are worth
-/// their time.
+/// Returns whether no more than two solutions, and one for each `solved_per_failure` that succeeded, have
+/// failed, so that further ones are worth their time.
 bool mostly_succeed(std::int64_t solved, std::int64_t failed, std::int64_t solved_per_failure) {
   constexpr std::int64_t failures_to_start = 2;
   return failed <= failures_to_start + solved / solved_per_failure;
