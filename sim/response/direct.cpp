@@ -2,11 +2,12 @@
 
 #include "core/tolerances.hpp"
 #include "sim/response/anderson.hpp"
-
-#include <Eigen/SparseCholesky>
+#include "sim/response/block_factorization.hpp"
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <utility>
 #include <vector>
 
 namespace scree {
@@ -19,6 +20,10 @@ namespace {
 constexpr double softest = 1e2;
 constexpr double stiffest = 1e8;
 constexpr double stiffening = 10;  // greatest factor of r from one pass to the next
+/// The same once the slips are damped; where a pass leads away, r goes down by it.
+constexpr double stiffening_if_damped = 2;
+/// Passes that do not halve the residual; after as many the slips are damped.
+constexpr int most_in_vain = 10;
 /// Slips that change from one pass to the next move the impulses by r times that change. This bounds r: it is
 /// the largest such move, relative to the impulses. Larger: so many points change their state that Newton's
 /// method takes many more steps. Smaller: islands of boxes need more passes than there are.
@@ -30,14 +35,6 @@ constexpr double kept_slope = 0.1;         // share of the slope, reversed, that
 constexpr double least_decrement = 1e-12;  // relative Newton decrement at which the minimum is reached
 
 using Vector = Eigen::VectorXd;
-
-/// A factorization L D L^T whose cost is known beforehand. It has no square roots, so that the same scene in
-/// other units has the same motion.
-class Factorization : public Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>, Eigen::Lower> {
- public:
-  /// Returns the number of multiplications; call it after analyzePattern().
-  double cost() const { return m_nonZerosPerCol.cast<double>().squaredNorm(); }
-};
 
 /// The state of a contact row within a pass.
 struct PassRow {
@@ -96,10 +93,7 @@ class IslandSolver {
     lay_out_matrix();
   }
 
-  bool is_cheap() {
-    factor_.analyzePattern(matrix_);
-    return factor_.cost() <= limits_.products;
-  }
+  bool is_cheap() const { return matrix_.cost() <= limits_.products; }
 
   DirectOutcome solve(double tolerance) {
     const ImpulseChange before = natural_residual(problem_);
@@ -213,39 +207,22 @@ class IslandSolver {
     return weights;
   }
 
-  /// Returns the constant slips of the next pass: those at which the passes so far seem to end.
-  Vector extrapolated_slips() {
-    return acceleration_.next(slips_, present_slips(), slip_weights()).cwiseMax(0);
+  /// Returns the slips at which the passes so far, of which the last one led to `image`, seem to end.
+  Vector extrapolated_slips(const Vector& image) {
+    return acceleration_.next(slips_, image, slip_weights()).cwiseMax(0);
   }
 
-  /// Lays out the lower triangle, compressed by columns. It has a block for each body, and one for each two
-  /// bodies in contact.
   void lay_out_matrix() {
-    const auto n = static_cast<std::size_t>(change_.size() / 6);
-    below_.resize(n);
+    std::vector<std::pair<std::int32_t, std::int32_t>> entries;
     for (const PassRow& row : rows_) {
-      if (row.i < 0 || row.j < 0) continue;
-      below_[static_cast<std::size_t>(std::min(row.i, row.j) / 6)].push_back(std::max(row.i, row.j));
+      if (row.i >= 0 && row.j >= 0) entries.emplace_back(block_of(row.i), block_of(row.j));
     }
-    matrix_.resize(change_.size(), change_.size());
-    std::vector<int> entries(6 * n);
-    for (std::size_t k = 0; k < n; ++k) {
-      auto& below = below_[k];
-      std::sort(below.begin(), below.end());
-      below.erase(std::unique(below.begin(), below.end()), below.end());
-      for (std::size_t c = 0; c < 6; ++c) entries[6 * k + c] = static_cast<int>(6 - c + 6 * below.size());
-    }
-    matrix_.reserve(entries);
-    for (std::size_t k = 0; k < n; ++k) {
-      const auto first = static_cast<Eigen::Index>(6 * k);
-      for (Eigen::Index c = first; c < first + 6; ++c) {
-        for (Eigen::Index r = c; r < first + 6; ++r) matrix_.insert(r, c) = 0;
-        for (const Eigen::Index other : below_[k]) {
-          for (Eigen::Index r = other; r < other + 6; ++r) matrix_.insert(r, c) = 0;
-        }
-      }
-    }
-    matrix_.makeCompressed();
+    matrix_.lay_out(block_of(change_.size()), entries);
+  }
+
+  /// Returns the number of the block that an unknown begins.
+  static std::int32_t block_of(Eigen::Index unknown) {
+    return static_cast<std::int32_t>(unknown / BlockFactorization::size);
   }
 
   Vec3 change_at(const PassRow& row, const Vector& change) const {
@@ -293,49 +270,29 @@ class IslandSolver {
     return j;
   }
 
-  using Block = Eigen::Matrix<double, 6, 6>;
-  /// Adds to one block of the lower triangle. `row` and `column` are the first unknowns of its two bodies.
-  void add(Eigen::Index row, Eigen::Index column, const Block& block) {
-    Eigen::Index place = 0;
-    if (row != column) {
-      const auto& below = below_[static_cast<std::size_t>(column / 6)];
-      place = 6 * (std::lower_bound(below.begin(), below.end(), row) - below.begin());
-    }
-    for (Eigen::Index c = 0; c < 6; ++c) {
-      double* values = matrix_.valuePtr() + matrix_.outerIndexPtr()[column + c];
-      if (row == column) {
-        for (Eigen::Index r = c; r < 6; ++r) values[r - c] += block(r, c);
-      } else {
-        for (Eigen::Index r = 0; r < 6; ++r) values[6 - c + place + r] += block(r, c);
-      }
-    }
-  }
-
-  /// Factorizes the Hessian, with the derivatives of the rows that gradient() has set.
-  void factorize() {
-    std::fill_n(matrix_.valuePtr(), matrix_.nonZeros(), 0.0);
+  /// Factorizes the Hessian, with the derivatives of the rows that gradient() has set. Returns whether it
+  /// could be done.
+  bool factorize() {
+    matrix_.clear();
     const auto bodies = problem_.islands.bodies(problem_.island);
     for (std::int64_t k = 0; k < bodies.size(); ++k) {
-      Block mass = Block::Zero();
+      BlockFactorization::Block mass = BlockFactorization::Block::Zero();
       mass.topLeftCorner<3, 3>() = Mat3::Identity() / problem_.solver[bodies[k]].inverse_mass;
       mass.bottomRightCorner<3, 3>() = inertia_[static_cast<std::size_t>(k)];
-      add(6 * k, 6 * k, mass);
+      matrix_.add(static_cast<std::int32_t>(k), static_cast<std::int32_t>(k), mass);
     }
     for (const PassRow& row : rows_) {
       const Mat3 a = stiffness_ * row.row->normal_mass * row.derivative;
       if (a.isZero(0)) continue;
       const Jacobian ji = jacobian(row.row->arm_i, row.i);
       const Jacobian jj = jacobian(row.row->arm_j, row.j);
-      if (row.i >= 0) add(row.i, row.i, ji.transpose() * a * ji);
-      if (row.j >= 0) add(row.j, row.j, jj.transpose() * a * jj);
-      if (row.i < 0 || row.j < 0) continue;
-      if (row.i < row.j)
-        add(row.j, row.i, -jj.transpose() * a * ji);
-      else
-        add(row.i, row.j, -ji.transpose() * a * jj);
+      const std::int32_t i = block_of(row.i), j = block_of(row.j);
+      if (row.i >= 0) matrix_.add(i, i, ji.transpose() * a * ji);
+      if (row.j >= 0) matrix_.add(j, j, jj.transpose() * a * jj);
+      if (row.i >= 0 && row.j >= 0) matrix_.add(i, j, -ji.transpose() * a * jj);
     }
-    factor_.factorize(matrix_);
     ++factorizations_;
+    return matrix_.factorize();
   }
 
   /// Makes passes of the multipliers, each with the stiffness that the one before it allows. Leaves the
@@ -355,24 +312,49 @@ class IslandSolver {
       residual = natural_residual(problem_);
       if (residual.within(tolerance::direct_share * tolerance)) break;
       const bool is_nearer = residual.step * last.size <= last.step * residual.size;
+      damp_if_in_vain(residual);
       start_pass();
-      const Vector old_slips = slips_;
-      if (is_nearer) {
-        set_slips(extrapolated_slips());
-        stiffness_ *= stiffening;
-      } else {
-        // The slips may oscillate about their solution, so they move half the way only.
-        acceleration_.forget();
-        set_slips(0.5 * (old_slips + present_slips()));
-      }
-      const double moved = (slips_ - old_slips).cwiseAbs2().dot(slip_weights());
-      const double bound = moved > 0 ? most_moved * std::sqrt(size() / moved) : stiffest;
-      stiffness_ = std::min(stiffness_, std::clamp(bound, softest, stiffest));
+      prepare_pass(is_nearer);
     }
     return residual;
   }
 
-  bool can_go_on() const { return factorizations_ * factor_.cost() <= limits_.products_in_all; }
+  /// Judges whether the iteration of the slips still converges. In packings that hold each other by friction
+  /// it may amplify some change of the slips and turn it round; each slip then moves half the way, by which
+  /// such changes decay.
+  void damp_if_in_vain(const ImpulseChange& residual) {
+    constexpr double quarter = 0.25;  // of the squares
+    if (residual.step < quarter * least_residual_ * residual.size) {
+      least_residual_ = residual.step / residual.size;
+      in_vain_ = 0;
+    } else if (++in_vain_ > most_in_vain && !damped_) {
+      damped_ = true;
+      acceleration_.forget();
+    }
+  }
+
+  /// Sets the slips and the stiffness of the pass that start_pass() has started. `is_nearer`: the pass before
+  /// it has led nearer to the solution.
+  void prepare_pass(bool is_nearer) {
+    const Vector old_slips = slips_;
+    const Vector half_way = 0.5 * (slips_ + present_slips());
+    if (!is_nearer) acceleration_.forget();
+    if (damped_) {
+      set_slips(extrapolated_slips(half_way));
+      stiffness_ *= is_nearer ? stiffening_if_damped : 1 / stiffening_if_damped;
+    } else if (is_nearer) {
+      set_slips(extrapolated_slips(present_slips()));
+      stiffness_ *= stiffening;
+    } else {
+      // The slips may oscillate about their solution.
+      set_slips(half_way);
+    }
+    const double moved = (slips_ - old_slips).cwiseAbs2().dot(slip_weights());
+    const double bound = moved > 0 ? most_moved * std::sqrt(size() / moved) : stiffest;
+    stiffness_ = std::min(stiffness_, std::clamp(bound, softest, stiffest));
+  }
+
+  bool can_go_on() const { return factorizations_ * matrix_.cost() <= limits_.products_in_all; }
 
   /// Minimises the function by Newton's method. Since it is convex, a step goes too far where the slope along
   /// it has changed sign; it is then shortened until little of that slope is left. Returns false if the
@@ -380,9 +362,8 @@ class IslandSolver {
   bool minimise() {
     Vector g = gradient(change_);
     for (int step = 0; step < most_newton_steps && can_go_on(); ++step) {
-      factorize();
-      if (factor_.info() != Eigen::Success) return false;
-      const Vector direction = factor_.solve(-g);
+      if (!factorize()) return false;
+      const Vector direction = matrix_.solve(-g);
       const double slope = g.dot(direction);
       if (!(slope < 0)) return true;
       double length = 1;
@@ -428,16 +409,17 @@ class IslandSolver {
   const IslandProblem& problem_;
   const DirectLimits& limits_;
   std::vector<PassRow> rows_;
-  std::vector<Mat3> inertia_;                     // inertia of each body, world frame
-  std::vector<GuidedUnknowns> guides_;            // unknowns of bodies in guides
-  Vector slips_;                                  // constant slip of each row in a pass (m/s)
-  AndersonAcceleration acceleration_;             // of the slips, from pass to pass
-  Vector change_;                                 // change of the velocities in a pass
-  std::vector<std::vector<Eigen::Index>> below_;  // first unknowns of later bodies in contact with each body
-  Eigen::SparseMatrix<double> matrix_;
-  Factorization factor_;
-  double stiffness_ = 0;  // r divided by the normal mass
+  std::vector<Mat3> inertia_;           // inertia of each body, world frame
+  std::vector<GuidedUnknowns> guides_;  // unknowns of bodies in guides
+  Vector slips_;                        // constant slip of each row in a pass (m/s)
+  AndersonAcceleration acceleration_;   // of the slips, from pass to pass
+  Vector change_;                       // change of the velocities in a pass
+  BlockFactorization matrix_;           // Hessian; a block of unknowns for each body
+  double stiffness_ = 0;                // r divided by the normal mass
   int factorizations_ = 0;
+  double least_residual_ = HUGE_VAL;  // least relative residual so far, squared, as it was last halved
+  int in_vain_ = 0;                   // passes since then
+  bool damped_ = false;               // whether slips move half the way
 };
 
 }  // namespace

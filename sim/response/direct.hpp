@@ -87,9 +87,9 @@ enum class DirectOutcome {
 /// "A formulation of the linear discrete Coulomb friction problem via convex optimization"). With multipliers
 /// p of the rows (augmented Lagrangian) that function is
 ///   |v - v*|^2_M / 2 + sum |P_K(p - r (u - (target - s) n))|^2 / (2 r),
-/// where v* are the velocities without impulses. Newton's method finds its minimum, with a sparse Cholesky
-/// factorization over the bodies; then p <- P_K(...). The masses make its Hessian definite however redundant
-/// the points of a face are.
+/// where v* are the velocities without impulses. Newton's method finds its minimum, with a sparse
+/// factorization over the bodies (BlockFactorization); then p <- P_K(...). The masses make its Hessian
+/// definite however redundant the points of a face are.
 DirectOutcome solve_directly(const IslandProblem& problem, double tolerance,
                              const DirectLimits& limits = quick_limits);
 
