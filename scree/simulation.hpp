@@ -99,7 +99,8 @@ class Simulation {
   void save_checkpoint(const std::filesystem::path& file);
   /// Continues from a checkpoint with the same bits as if the run had never stopped; the program's
   /// checkpoints are accepted too. Throws RunError if the file is not complete; throws InputError if it is of
-  /// another scene, version or space, and says in what it differs. Then the state is as it was.
+  /// another scene, version or space, and says in what it differs, or if a field is missing or not valid. The
+  /// state is then as it was.
   void load_checkpoint(const std::filesystem::path& file);
 
   // For the program's own parts; this interface may change at any time.

@@ -64,7 +64,15 @@ void Simulation::load_checkpoint(const std::filesystem::path& file) {
   const RunIdentity present = identity_of(scene(), space_name());
   if (const std::string difference = difference_of(saved, present); !difference.empty())
     throw InputError(fmt::format("{}: {}", file.string(), difference));
-  archive.part("simulation", *this);
+  // What is wrong with a file may show only when a part of it has been loaded.
+  SavedState before;
+  Archive::saving(before).part("simulation", *this);
+  try {
+    archive.part("simulation", *this);
+  } catch (...) {
+    Archive::loading(before).part("simulation", *this);
+    throw;
+  }
 }
 
 }  // namespace scree

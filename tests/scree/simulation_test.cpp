@@ -2,6 +2,7 @@
 // parts, and against the program's files.
 #include "scree/simulation.hpp"
 
+#include "sim/record/checkpoint.hpp"
 #include "sim/step/simulation.hpp"
 
 #include <gtest/gtest.h>
@@ -252,6 +253,33 @@ TEST_F(LibraryTest, RefusesTheCheckpointOfAnotherSceneAndOneThatIsDamaged) {
   refusal<RunError>([&] { simulation.save_checkpoint(folder_ / "no/folder.h5"); });
   EXPECT_EQ(simulation.steps(), 1);
   EXPECT_EQ(simulation.state_hash(), hash);
+}
+
+TEST_F(LibraryTest, AStateStaysAsItWasWhateverFieldACheckpointLacks) {
+  const fs::path file = folder_ / "half.h5";
+  Simulation saved = heap();
+  while (saved.steps() < 40) saved.step();
+  saved.save_checkpoint(file);
+  SavedState state = read_checkpoint(file);
+  Simulation simulation = heap();
+  simulation.step();
+  const std::uint64_t hash = simulation.state_hash();
+  ASSERT_GT(state.fields.size(), 50);
+  for (std::size_t tried = 0; tried < state.fields.size(); ++tried) {
+    SavedField lacking = std::move(state.fields.front());
+    state.fields.erase(state.fields.begin());
+    write_checkpoint(file, state);
+    refusal<InputError>([&] { simulation.load_checkpoint(file); });
+    ASSERT_EQ(simulation.state_hash(), hash) << lacking.name;
+    ASSERT_EQ(simulation.steps(), 1) << lacking.name;
+    state.fields.push_back(std::move(lacking));
+  }
+  // The next step is that of a simulation that has tried nothing.
+  Simulation alone = heap();
+  alone.step();
+  alone.step();
+  simulation.step();
+  EXPECT_EQ(simulation.state_hash(), alone.state_hash());
 }
 
 /// The library gives the numbers of a run that the program stopped early, and continues from its checkpoint.
