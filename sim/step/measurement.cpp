@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <vector>
 
 namespace scree {
@@ -41,7 +42,10 @@ void measure_totals(const Totals& totals, const EnergyBaseline& baseline, const 
   const auto count = static_cast<double>(totals.count);
   out.centre = reference + totals.first_moment / totals.mass;
   out.speed_rms = totals.count > 0 ? std::sqrt(totals.speed_squared / count) : 0.0;
-  out.speed_kurtosis = count * totals.speed_fourth / (totals.speed_squared * totals.speed_squared);
+  const double fourth_of_equal = totals.speed_squared * totals.speed_squared;
+  // 0 / 0 is a NaN with a sign on some processors, which metrics.csv would show.
+  out.speed_kurtosis = fourth_of_equal > 0 ? count * totals.speed_fourth / fourth_of_equal
+                                           : std::numeric_limits<double>::quiet_NaN();
   out.energy_scale = baseline.scale();
   const double change = totals.kinetic() + totals.potential - baseline.first_total();
   const double explained = explained_energy(out.ledger, out.exchange);

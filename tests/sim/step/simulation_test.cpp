@@ -228,6 +228,22 @@ bodies:
   EXPECT_NEAR(end.kinetic(), energy, 1e-12 * energy);
 }
 
+TEST(Simulation, TheKurtosisOfSpeedsIsNoNumberAtRest) {
+  const auto kurtosis = [](const std::string& velocity) {
+    Simulation simulation = simulation_of(
+        "gravity: [0, 0, 0]\ntime: {end: 1, step: 0.1}\nbodies:\n"
+        "  - {sphere: {radius: 1}, at: [0, 0, 0], velocity: [0, 0, 0]}\n"
+        "  - {sphere: {radius: 1}, at: [9, 0, 0], velocity: " +
+        velocity + "}\n");
+    simulation.step();
+    return simulation.observe().speed_kurtosis;
+  };
+  EXPECT_DOUBLE_EQ(kurtosis("[3, 0, 0]"), 2);
+  const double at_rest = kurtosis("[0, 0, 0]");
+  EXPECT_TRUE(std::isnan(at_rest));
+  EXPECT_FALSE(std::signbit(at_rest));
+}
+
 TEST(Simulation, AppliedForcesAndTorquesDoTheirWork) {
   // A cube on ice is pulled for a while and turned all the time; another one is left alone.
   const Scene scene = scene_of(R"(
