@@ -435,7 +435,8 @@ TEST_P(SpaceStep, QualityDividesWhatFlowsOverlaps) {
     EXPECT_LT(left->worst, 2 * tolerance::worst_overlap_left / quality);
   }
   EXPECT_LT(2 * fine.mean, coarse.mean);
-  EXPECT_LT(coarse.substeps, fine.substeps);
+  // More sweeps come before more substeps, and may be enough.
+  EXPECT_LE(coarse.substeps, fine.substeps);
   EXPECT_LT(2 * coarse.sweeps, fine.sweeps);
 }
 
