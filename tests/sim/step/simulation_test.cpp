@@ -230,11 +230,13 @@ bodies:
 
 TEST(Simulation, TheKurtosisOfSpeedsIsNoNumberAtRest) {
   const auto kurtosis = [](const std::string& velocity) {
-    Simulation simulation = simulation_of(
-        "gravity: [0, 0, 0]\ntime: {end: 1, step: 0.1}\nbodies:\n"
-        "  - {sphere: {radius: 1}, at: [0, 0, 0], velocity: [0, 0, 0]}\n"
-        "  - {sphere: {radius: 1}, at: [9, 0, 0], velocity: " +
-        velocity + "}\n");
+    Simulation simulation = simulation_of(R"(
+time: {end: 1, step: 0.1}
+materials: {a: {density: 1000}}
+bodies:
+  - {sphere: {radius: 1}, at: [0, 0, 0], material: a}
+  - {sphere: {radius: 1}, at: [9, 0, 0], material: a, velocity: )" +
+                                          velocity + "}\n");
     simulation.step();
     return simulation.observe().speed_kurtosis;
   };
