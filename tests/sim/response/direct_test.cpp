@@ -369,7 +369,7 @@ Scene pressed_bed(std::uint64_t item) {
   return scene;
 }
 
-/// There the slips do not converge by themselves: the plain iteration amplifies some of their changes.
+/// Some of their contacts stick and others slide, and each hangs on all others.
 TEST(Direct, SolvesBedsThatFrictionHolds) {
   int solved = 0;
   constexpr int beds = 40;
