@@ -80,13 +80,11 @@ void BlockFactorization::lay_out(std::int32_t rows, const Entries& entries) {
     auto& parent = columns[static_cast<std::size_t>(column.front())];
     parent.insert(parent.end(), column.begin() + 1, column.end());
   }
-  below_.resize(row_.size());
-  diagonal_.resize(n);
 }
 
 double BlockFactorization::cost() const {
   double cost = 0;
-  for (std::size_t k = 0; k < diagonal_.size(); ++k) {
+  for (std::size_t k = 0; k + 1 < first_.size(); ++k) {
     const auto below = static_cast<double>(size * (first_[k + 1] - first_[k]));
     for (int c = 0; c < size; ++c) cost += (below + c) * (below + c);
   }
@@ -94,8 +92,8 @@ double BlockFactorization::cost() const {
 }
 
 void BlockFactorization::clear() {
-  for (Block& block : below_) block.setZero();
-  for (Block& block : diagonal_) block.setZero();
+  below_.assign(row_.size(), Block::Zero());
+  diagonal_.assign(first_.size() - 1, Block::Zero());
 }
 
 /// Returns the place in below_ of an entry; both numbers are places in the order of elimination.

@@ -23,13 +23,14 @@ class BlockFactorization {
   using Vector = Eigen::VectorXd;
 
   /// Lays out a matrix of `rows` x `rows` blocks. Those on its diagonal, and those at `entries` and at their
-  /// mirror images, may differ from 0. An entry may be given several times.
+  /// mirror images, may differ from 0. An entry may be given several times. The blocks take no memory before
+  /// clear(), so that cost() can be asked of a matrix that is too large.
   void lay_out(std::int32_t rows, const std::vector<std::pair<std::int32_t, std::int32_t>>& entries);
 
   /// Returns about how many multiplications a factorization takes.
   double cost() const;
 
-  /// Sets the matrix to 0. It must be set again before each factorization.
+  /// Sets the matrix to 0. Call it after lay_out() and before the matrix is set for each factorization.
   void clear();
 
   /// Adds a block at (i, j), and its transpose at (j, i). The entry must have been laid out.
