@@ -1,5 +1,5 @@
 // Tests on every scene of the repository, at the start and as it moves: the PCS of the grid, on Host and on
-// Device, is that of brute force, and the run does not depend on the space that computes it.
+// Device, is that of another method, and the run does not depend on the space that computes it.
 #include "core/space.hpp"
 #include "core/tolerances.hpp"
 #include "sim/bodies/motion.hpp"
@@ -54,12 +54,13 @@ PairSet pairs_of(BroadPhaseMethod method, bool on_device, const Snapshot& state,
 
 class ScenePairs : public testing::TestWithParam<std::filesystem::path> {
  protected:
-  /// Compares at the start and after each of a few stretches of the run. With many bodies it compares with a
-  /// uniform grid, since brute force takes their number squared.
+  /// Compares at the start and after each of a few stretches of the run. With many bodies it compares with
+  /// sweep and prune, since brute force takes their number squared, as a uniform grid does where a slab is as
+  /// long as the scene.
   void compare(bool on_device) {
     const Scene scene = read_scene(GetParam());
     const bool many = scene.bodies.count() > 10000;
-    const BroadPhaseMethod oracle = many ? BroadPhaseMethod::uniform_grid : BroadPhaseMethod::brute_force;
+    const BroadPhaseMethod oracle = many ? BroadPhaseMethod::sweep_and_prune : BroadPhaseMethod::brute_force;
     Simulation simulation(scene, {on_device ? SpaceChoice::cuda : SpaceChoice::host, 0});
     Snapshot state;
     const std::int64_t bodies = scene.bodies.count();
