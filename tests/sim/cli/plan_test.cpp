@@ -163,5 +163,50 @@ checks:
   }
 }
 
+TEST_F(ProgramTest, PlanSaysWhatWillBeModelledAndRunsNothing) {
+  write_text(folder_ / "fall.yaml", falling_ball(good_check));
+  const Finished plan = scree_in(folder_, {"plan", "fall.yaml"});
+  EXPECT_EQ(plan.status, 0) << plan.error;
+  EXPECT_TRUE(contains(plan.out, "free spheres: 1")) << plan.out;
+  EXPECT_TRUE(contains(plan.out, "friction         off")) << plan.out;
+  EXPECT_TRUE(contains(plan.out, "in 10 steps")) << plan.out;
+  EXPECT_TRUE(contains(plan.out, "6 rows of metrics, 4 frames of 1280 x 720")) << plan.out;
+  EXPECT_FALSE(fs::exists(folder_ / "output"));
+  EXPECT_TRUE(Json::accept(scree_in(folder_, {"plan", "--schema"}).out));
+  EXPECT_TRUE(contains(scree_in(folder_, {"plan", "--reference"}).out, "restitution"));
+  EXPECT_EQ(scree_in(folder_, {"plan"}).status, 2);
+}
+
+TEST_F(ProgramTest, PlanSaysWhatIsHardInWordsForNewcomers) {
+  write_text(folder_ / "fall.yaml", falling_ball());
+  Finished plan = scree_in(folder_, {"plan", "fall.yaml", "--set", "bodies[0].velocity=[1, 0, 0]"});
+  EXPECT_TRUE(contains(plan.out, "v dt / smallest size = 0.1: small enough")) << plan.out;
+  EXPECT_TRUE(contains(plan.out, "this machine has ")) << plan.out;
+  plan = scree_in(folder_, {"plan", "fall.yaml", "--set", "bodies[0].velocity=[80, 0, 0]"});
+  EXPECT_TRUE(contains(plan.out, "bodies may pass through each other; try step <= 0.0012")) << plan.out;
+  plan = scree_in(folder_, {"plan", "fall.yaml", "--set", "bodies[0].velocity=[1e200, 0, 0]"});
+  EXPECT_EQ(plan.status, 0) << plan.error;
+  EXPECT_TRUE(contains(plan.out, "speed        too large to compute with: check velocities")) << plan.out;
+  EXPECT_FALSE(contains(plan.out, "inf") || contains(plan.out, "nan")) << plan.out;
+}
+
+TEST_F(ProgramTest, PlanSaysHowFarTheSweepsGo) {
+  write_text(folder_ / "fall.yaml", falling_ball());
+  const auto response = [this](const std::string& settings) {
+    const Finished plan = scree_in(folder_, {"plan", "fall.yaml", "--set", "response=" + settings});
+    const std::string label = "response     ";
+    const std::size_t begin = plan.out.find("\n" + label) + 1 + label.size();
+    return plan.out.substr(begin, plan.out.find('\n', begin) - begin);
+  };
+  EXPECT_EQ(
+      response("{mode: default}"),
+      "sweeps until the impulses change by less than 1e-10 of their size; from 2500 contact points on, by "
+      "less than 0.003 (0.02 where they flow)");
+  EXPECT_EQ(response("{mode: accurate, iterations: 50}"),
+            "at most 50 sweeps, until the impulses change by less than 1e-10 of their size");
+  EXPECT_EQ(response("{tolerance: 1.0e-4}"),
+            "sweeps until the impulses change by less than 0.0001 of their size");
+}
+
 }  // namespace
 }  // namespace scree

@@ -1,6 +1,9 @@
 // Runs that were stopped, end to end: they go on as if they had never been, or are refused by name.
 #include "tests/sim/cli/falling_ball.hpp"
 
+#include <string_view>
+#include <utility>
+
 namespace scree {
 namespace {
 
@@ -96,6 +99,29 @@ TEST_F(ResumeTest, ADamagedCheckpointIsPassedOver) {
   EXPECT_TRUE(contains(run.error, "000000000007.h5: is damaged")) << run.error;
   EXPECT_TRUE(contains(run.out, "resumed at t = 0.03 s, step 3")) << run.out;
   expect_same("whole", "parts");
+}
+
+TEST_F(ResumeTest, WhereNoCheckpointCanBeReadTheRunIsKept) {
+  ASSERT_EQ(run_scene(scene_, {"--until", "0.05"}).status, 1);
+  const fs::path only = folder_ / "output/fall/checkpoint/000000000005.h5";
+  const std::string whole = text_of(only);
+  std::string of_another_version = whole, damaged = whole;
+  of_another_version[std::string_view("scree checkpoint ").size()] = '5';
+  damaged[damaged.size() / 2] ^= 1;
+  const auto run_folder = [this] { return files_below(folder_ / "output/fall"); };
+  const std::vector<std::string> before = run_folder();
+  for (const auto& [bytes, words] : {std::pair(of_another_version, "is no checkpoint of this version of scree"),
+                                     std::pair(damaged, "is damaged: its checksum is wrong")}) {
+    write_text(only, bytes);
+    const Finished run = run_scene(scene_, {"--resume"});
+    EXPECT_EQ(run.status, 2);
+    EXPECT_TRUE(run.error.starts_with("scree: --resume: no checkpoint can be read: ")) << run.error;
+    EXPECT_TRUE(contains(run.error, words)) << run.error;
+    EXPECT_TRUE(contains(run.error, "; --overwrite starts from the beginning\n")) << run.error;
+    EXPECT_EQ(run_folder(), before) << "nothing was removed";
+  }
+  write_text(only, whole);
+  EXPECT_EQ(run_scene(scene_, {"--resume"}).status, 0);
 }
 
 TEST_F(ResumeTest, WithoutTheRowsThatWereWrittenIsAnErrorWithTheNumbers) {
