@@ -74,12 +74,12 @@ Outline outline_of(const Particles& particles, std::size_t row) {
 }
 
 /// The corners of the cell: those of the period along periodic axes, else those of a box around the centres.
-struct Cell {
+struct CellCorners {
   Vec3 low = Vec3::Zero(), high = Vec3::Zero();
 };
 
-Cell cell_of(const Particles& particles, const Period& period) {
-  Cell cell;
+CellCorners cell_of(const Particles& particles, const Period& period) {
+  CellCorners cell;
   for (std::size_t n = 0; n < particles.rows.size(); ++n) {
     const Vec3 x = particles.frame.vector(0, particles.rows[n]);
     cell.low = n == 0 ? x : cell.low.cwiseMin(x);
@@ -134,7 +134,7 @@ std::string xyz_of(const ExportFrame& frame, const Period& period, LeftOut& left
   const auto out = std::back_inserter(text);
   fmt::format_to(out, " Time={} Timestep={}", frame.frame.time, frame.frame.step);
   if (period.exists) {
-    const Cell cell = cell_of(particles, period);
+    const CellCorners cell = cell_of(particles, period);
     const Vec3 edge = cell.high - cell.low;
     fmt::format_to(out, " Lattice=\"{} 0 0 0 {} 0 0 0 {}\" Origin=\"{} {} {}\"", edge.x(), edge.y(), edge.z(),
                    cell.low.x(), cell.low.y(), cell.low.z());
@@ -173,7 +173,7 @@ std::string lammps_of(const ExportFrame& frame, const Period& period, LeftOut& l
   std::string text = fmt::format(
       "ITEM: TIMESTEP\n{}\nITEM: TIME\n{}\nITEM: NUMBER OF ATOMS\n{}\nITEM: BOX BOUNDS {} {} {}\n",
       frame.frame.step, frame.frame.time, particles.rows.size(), flag(0), flag(1), flag(2));
-  const Cell cell = cell_of(particles, period);  // LAMMPS needs a cell
+  const CellCorners cell = cell_of(particles, period);  // LAMMPS needs a cell
   for (int a = 0; a < 3; ++a) {
     append_number(text, cell.low[a], particles.real());
     text += ' ';
