@@ -17,6 +17,7 @@
 #include "sim/response/contact_inspection.hpp"
 #include "sim/response/contact_solver.hpp"
 #include "sim/step/moving_state.hpp"
+#include "sim/step/wall_impacts.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -64,7 +65,7 @@ class SpaceStepper final : public Stepper {
     copy(laws_, pair_laws_of(scene));
     materials_ = static_cast<std::int64_t>(scene.materials.size());
     find_shapes();
-    find_walls(scene.bodies.id, scene.bodies.mobility);
+    wall_impacts_.find_walls(scene.bodies.id, scene.bodies.mobility);
     start_.save(bodies_);
   }
 
@@ -107,7 +108,7 @@ class SpaceStepper final : public Stepper {
     copy_bodies(on_host, bodies_);
     change(on_host);
     copy_bodies(bodies_, on_host);
-    find_walls(to_vector(on_host.id), to_vector(on_host.mobility));
+    wall_impacts_.find_walls(to_vector(on_host.id), to_vector(on_host.mobility));
     forget_pairs();
   }
   BodyTable take_out(const std::vector<BodyNumber>& numbers) override {
@@ -180,14 +181,9 @@ class SpaceStepper final : public Stepper {
     find_shapes();
     find_guides();
   }
-  void find_walls(const std::vector<BodyNumber>& numbers, const std::vector<Mobility>& mobility) {
-    is_wall_.resize(numbers.size());
-    for (std::size_t k = 0; k < numbers.size(); ++k)
-      is_wall_[index_of(numbers[k])] = mobility[k] != Mobility::free && mobility[k] != Mobility::absent;
-  }
   void clear_wall_impulses() {
     contacts_.wall_sums().start_step(bodies_.count());
-    struck_walls_.clear();
+    wall_impacts_.clear();
   }
   void find_guides() {
     std::vector<Guide> guides;
@@ -262,8 +258,7 @@ class SpaceStepper final : public Stepper {
   ConstView<std::int64_t> known(ConstView<Pair> pairs);
   ConstView<LoadedParts> loads_of(ConstView<Pair> pairs);
   bool resolve_impacts(double h, double from, double foresight, double reach);
-  void add_impulse_on_walls(const Impact& impact);
-  void archive_wall_impulses(Archive& archive);
+  Vec3 arm_on_wall(const Impact& impact, BodyNumber wall) const;
 
   /// Finds the pairs for the present state. If the step's pairs no longer cover it, others are made apart,
   /// because the pairs that the step keeps must not depend on observations.
@@ -300,9 +295,7 @@ class SpaceStepper final : public Stepper {
   MovingState<Space> start_;
   Ledger start_ledger_;
   Vec3 start_gravity_ = Vec3::Zero();
-  // For bodies that are not free:
-  std::map<BodyNumber, solver::WallImpulse> struck_walls_;  // impulses of impacts in the step
-  std::vector<std::uint8_t> is_wall_;                       // by number
+  WallImpacts wall_impacts_;  // of the step
   /// The data that the first half of a substep changes, besides what contacts remember.
   struct Restart {
     MovingState<Space> state;
@@ -310,7 +303,7 @@ class SpaceStepper final : public Stepper {
     Ledger ledger;
     std::int64_t impacts = 0, unfinished_impacts = 0;
     Array<solver::WallImpulse, Space> on_walls;
-    std::map<BodyNumber, solver::WallImpulse> struck_walls;
+    WallImpacts wall_impacts;
 
     void save(const SpaceStepper& now);
     void restore(SpaceStepper& now) const;
@@ -405,7 +398,7 @@ void SpaceStepper<Space, Real>::Restart::save(const SpaceStepper& now) {
   impacts = now.counters.impacts;
   unfinished_impacts = now.counters.unfinished_impacts;
   copy(on_walls, now.contacts_.wall_sums().totals());
-  struck_walls = now.struck_walls_;
+  wall_impacts = now.wall_impacts_;
 }
 
 template <class Space, class Real>
@@ -416,7 +409,7 @@ void SpaceStepper<Space, Real>::Restart::restore(SpaceStepper& now) const {
   now.counters.impacts = impacts;
   now.counters.unfinished_impacts = unfinished_impacts;
   now.contacts_.wall_sums().restore_totals(on_walls);
-  now.struck_walls_ = struck_walls;
+  now.wall_impacts_ = wall_impacts;
   now.contacts_.recall_memory();
 }
 
@@ -434,11 +427,12 @@ void SpaceStepper<Space, Real>::archive(Archive& archive) {
     find_places<Space>(bodies_);
     find_shapes();
     find_guides();
-    find_walls(to_vector(bodies_.id), to_vector(bodies_.mobility));
+    wall_impacts_.find_walls(to_vector(bodies_.id), to_vector(bodies_.mobility));
   }
   archive("velocity_before", start_.velocity);
   archive.expect(start_.velocity.size() == bodies_.count(), "velocity_before");
-  archive_wall_impulses(archive);
+  if (archive.is_loading()) clear_wall_impulses();
+  wall_impacts_.archive(archive, by_number(to_vector(contacts_.wall_sums().totals())));
   archive.part("kept_pairs", kept_pairs_);
   archive.part("seen_pairs", seen_pairs_);
   archive("sees_kept", sees_kept_);
@@ -523,45 +517,17 @@ bool SpaceStepper<Space, Real>::resolve_impacts(double h, double from, double fo
   struck_.resize(before + static_cast<std::size_t>(impacts_.impacts().size()));
   copy_bytes<Host, Space>(struck_.data() + before, impacts_.impacts().data(),
                           (struck_.size() - before) * sizeof(Impact));
-  for (std::size_t k = before; k < struck_.size(); ++k) add_impulse_on_walls(struck_[k]);
+  for (std::size_t k = before; k < struck_.size(); ++k)
+    wall_impacts_.add(struck_[k], [&](BodyNumber wall) { return arm_on_wall(struck_[k], wall); });
   return true;
 }
 
+/// Returns the arm of an impact about the centre of a wall; zero if moments are not needed, as without
+/// meshes.
 template <class Space, class Real>
-void SpaceStepper<Space, Real>::add_impulse_on_walls(const Impact& impact) {
-  for (const auto& [number, sign] : {std::pair(impact.i, -1.0), std::pair(impact.j, 1.0)}) {
-    if (is_wall_[static_cast<std::size_t>(number)] == 0) continue;
-    solver::WallImpulse& on = struck_walls_[BodyNumber{number}];
-    on.impulse += sign * impact.impulse;
-    if (!geometry_) continue;  // moments are needed for meshes alone
-    const Vec3 centre = value_at(bodies_.position, place(BodyNumber{number}));
-    on.moment += sign * bodies_.period.nearest(impact.point - centre).cross(impact.impulse);
-  }
-}
-
-/// Saves or loads the impulses on bodies that are not free, for those that have any.
-template <class Space, class Real>
-void SpaceStepper<Space, Real>::archive_wall_impulses(Archive& archive) {
-  std::vector<BodyNumber> walls;
-  std::vector<Vec3> impulses;
-  if (!archive.is_loading()) {
-    std::vector<solver::WallImpulse> on_walls = by_number(to_vector(contacts_.wall_sums().totals()));
-    on_walls.resize(is_wall_.size());
-    for (const auto& [number, on] : struck_walls_)
-      on_walls[index_of(number)] = on_walls[index_of(number)] + on;
-    for (std::size_t k = 0; k < on_walls.size(); ++k) {
-      if (on_walls[k].impulse.isZero(0) && on_walls[k].moment.isZero(0)) continue;
-      walls.push_back(BodyNumber{static_cast<std::int32_t>(k)});
-      impulses.insert(impulses.end(), {on_walls[k].impulse, on_walls[k].moment});
-    }
-  }
-  archive("walls", walls);
-  archive("on_walls", impulses);
-  archive.expect(impulses.size() == 2 * walls.size(), "on_walls");
-  if (!archive.is_loading()) return;
-  clear_wall_impulses();
-  for (std::size_t k = 0; k < walls.size(); ++k)
-    struck_walls_[walls[k]] = {impulses[2 * k], impulses[2 * k + 1]};
+Vec3 SpaceStepper<Space, Real>::arm_on_wall(const Impact& impact, BodyNumber wall) const {
+  if (!geometry_) return Vec3::Zero();
+  return bodies_.period.nearest(impact.point - value_at(bodies_.position, place(wall)));
 }
 
 template <class Space, class Real>
@@ -581,16 +547,15 @@ SteppedBody SpaceStepper<Space, Real>::body(BodyNumber number) const {
   // Gravity has no effect on a body with a servo, whose drive bears its weight.
   if (!servo_axis_.contains(number))
     body.acceleration += gravity_.excess_of_mean(grid_.length(step_ + 1), parameters_);
-  if (is_wall_[index_of(number)] == 0) return body;
+  if (!wall_impacts_.is_wall(number)) return body;
   if (const auto& totals = contacts_.wall_sums().totals(); totals.size() > 0) {
     const auto on = value_at(totals, k);
     body.contact_impulse = on.impulse;
     body.contact_moment = on.moment;
   }
-  if (const auto on = struck_walls_.find(number); on != struck_walls_.end()) {
-    body.contact_impulse += on->second.impulse;
-    body.contact_moment += on->second.moment;
-  }
+  const solver::WallImpulse struck = wall_impacts_.of(number);
+  body.contact_impulse += struck.impulse;
+  body.contact_moment += struck.moment;
   return body;
 }
 
