@@ -36,6 +36,8 @@ Checkpoints::Checkpoints(const RunFolder& folder, double every, RunIdentity iden
 
 bool Checkpoints::find(std::vector<std::string>& warnings) {
   found_ = folder_.newest(warnings);
+  if (!found_ && !warnings.empty())
+    refuse(fmt::format("no checkpoint can be read: {}", fmt::join(warnings, "; ")));
   for (std::string& damaged : warnings) damaged += "; the one before it is taken";
   if (!found_) return false;
   RunIdentity saved;

@@ -23,9 +23,9 @@ class Checkpoints {
   /// `every`: wall time between two checkpoints (s). `draws`: whether the run makes pictures.
   Checkpoints(const RunFolder& folder, double every, RunIdentity identity, bool draws);
 
-  /// Looks for the newest checkpoint that is whole; returns false if there is none. Throws InputError if it
-  /// belongs to another run. Adds to `warnings` what is wrong with newer ones, and what may differ from here
-  /// on.
+  /// Looks for the newest checkpoint that is whole; returns false if there is none at all. Throws InputError
+  /// if it belongs to another run, or if all that there are cannot be read. Adds to `warnings` what is wrong
+  /// with newer ones, and what may differ from here on.
   bool find(std::vector<std::string>& warnings);
   /// Continues from the checkpoint that find() has found.
   void resume(Simulation& simulation, Recorder& recorder);

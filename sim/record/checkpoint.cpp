@@ -160,7 +160,7 @@ SavedState read_checkpoint(const fs::path& file) try {
   const std::string bytes = bytes_of(file);
   const std::string_view all = bytes;
   if (all.size() < first_line_bytes || !all.starts_with(checkpoint_head))
-    throw RunError("is no checkpoint of this version");
+    throw RunError("is no checkpoint of this version of scree");
   if (!all.starts_with(first_line_of(all.substr(first_line_bytes))))
     throw RunError("is damaged: its checksum is wrong");
   return state_of(all);
