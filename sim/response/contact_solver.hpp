@@ -121,7 +121,7 @@ class ContactSolver {
   JoinHubs<Record> join_hubs(Array<Record, Space>& bodies);
   void list_guided(ConstView<Guide> guides);
   bool fits_on_host() const;
-  void find_impulses(const ConstBodyView& bodies, const ResponseParameters& parameters, double share,
+  bool find_impulses(const ConstBodyView& bodies, const ResponseParameters& parameters, double share,
                      Counters& counters);
   bool sweep(const SweepPlan& plan, Counters& counters);
   bool solve_islands(const ConstBodyView& bodies, const SweepPlan& plan, bool accurate, Counters& counters);

@@ -52,8 +52,9 @@ SweepState ContactSolver<Space, Real>::run_impulse_phases(const SweepPlan& plan)
       SweepState{});
 }
 
+/// Finds the impulses. Returns whether they have converged.
 template <class Space, class Real>
-void ContactSolver<Space, Real>::find_impulses(const ConstBodyView& bodies,
+bool ContactSolver<Space, Real>::find_impulses(const ConstBodyView& bodies,
                                                const ResponseParameters& parameters, double share,
                                                Counters& counters) {
   SweepPlan plan =
@@ -69,6 +70,7 @@ void ContactSolver<Space, Real>::find_impulses(const ConstBodyView& bodies,
   const bool converged =
       islands ? solve_islands(bodies, plan, parameters.accurate, counters) : sweep(plan, counters);
   counters.unconverged += !converged;
+  return converged;
 }
 
 template <class Space, class Real>
@@ -329,7 +331,7 @@ Ledger ContactSolver<Space, Real>::solve(const FlightStage& flight, bool any_lat
   slip_end_ = 1;
   parallel::fill("accounts.loads", next_loads_, 0u);
   if (counts_.contacts > 0) {
-    find_impulses(bodies, parameters, share, counters);
+    const bool converged = find_impulses(bodies, parameters, share, counters);
     if (parameters.accurate) counters.residual = std::max(counters.residual, residual());
     AccountStage<Real> stage = account_stage(bodies, parameters);
     account(stage);
@@ -346,7 +348,9 @@ Ledger ContactSolver<Space, Real>::solve(const FlightStage& flight, bool any_lat
     ledger.friction = totals_.friction;
     ledger.work = totals_.work;
     sweep_count_.judge(totals_.gap_power, totals_.kick_power, totals_.restitution + totals_.friction);
-    if (parameters.accurate && parameters.friction && !has_heap()) slip_end_ = find_slip_end(stage);
+    // Impulses that have not converged do not tell when a contact comes to stick.
+    if (converged && parameters.accurate && parameters.friction && !has_heap())
+      slip_end_ = find_slip_end(stage);
   }
   if (parameters.torque.size() > 0) {
     ledger.work += parallel::sum_by_tiles<double, Space>(

@@ -24,6 +24,9 @@ constexpr double stiffening = 10;  // greatest factor of r from one pass to the 
 constexpr double stiffening_if_damped = 2;
 /// Passes that do not halve the residual; after as many the slips are damped.
 constexpr int most_in_vain = 10;
+/// The same; after as many the solution ends, since five of six that need more fail in the end.
+/// patient_limits has fewer passes, so that it ends the solutions of the accurate mode alone.
+constexpr int most_in_vain_if_damped = 60;
 /// Slips that change from one pass to the next move the impulses by r times that change. This bounds r: it is
 /// the largest such move, relative to the impulses. Larger: so many points change their state that Newton's
 /// method takes many more steps. Smaller: islands of boxes need more passes than there are.
@@ -313,6 +316,7 @@ class IslandSolver {
       if (residual.within(tolerance::direct_share * tolerance)) break;
       const bool is_nearer = residual.step * last.size <= last.step * residual.size;
       damp_if_in_vain(residual);
+      if (in_vain_ > most_in_vain_if_damped) break;
       start_pass();
       prepare_pass(is_nearer);
     }

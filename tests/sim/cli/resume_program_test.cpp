@@ -110,8 +110,9 @@ TEST_F(ResumeTest, WhereNoCheckpointCanBeReadTheRunIsKept) {
   damaged[damaged.size() / 2] ^= 1;
   const auto run_folder = [this] { return files_below(folder_ / "output/fall"); };
   const std::vector<std::string> before = run_folder();
-  for (const auto& [bytes, words] : {std::pair(of_another_version, "is no checkpoint of this version of scree"),
-                                     std::pair(damaged, "is damaged: its checksum is wrong")}) {
+  for (const auto& [bytes, words] :
+       {std::pair(of_another_version, "is no checkpoint of this version of scree"),
+        std::pair(damaged, "is damaged: its checksum is wrong")}) {
     write_text(only, bytes);
     const Finished run = run_scene(scene_, {"--resume"});
     EXPECT_EQ(run.status, 2);
