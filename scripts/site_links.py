@@ -1,9 +1,12 @@
-"""Hooks for mkdocs, which does not treat link targets without an extension as files. A link to a folder of the sources
-goes to a page that lists its contents, and a link that leads nowhere causes a warning, as other links do."""
+"""Hooks for mkdocs. It does not treat link targets without an extension as files: a link to a folder of the sources goes to a
+page that lists its contents, and a link that leads nowhere causes a warning, as other links do. It shows a list as text if
+no blank line stands before it, as other readers of Markdown do not: this causes a warning, too."""
 import logging
 import re
 from pathlib import Path
 
+FENCE = re.compile(r"^ *```.*?^ *```$", re.M | re.S)
+LIST_IN_TEXT = re.compile(r"^(?![-*#|>\s]|\d+\. ).*\n(?:[-*]|\d+\.) .*", re.M)
 LINK = re.compile(r"(?<=\]\()([^)#:\s]+?)/?(?=\))")
 
 log = logging.getLogger("mkdocs.plugins.site_links")
@@ -38,4 +41,6 @@ def on_page_markdown(markdown, page, **_):
             log.warning("Documentation file '%s' contains a link to '%s', which is not there", page.file.src_path, link[1])
         return link[0]
 
+    for text in LIST_IN_TEXT.findall(FENCE.sub("", markdown)):
+        log.warning("Documentation file '%s' has a list without a blank line before it: %s", page.file.src_path, text)
     return LINK.sub(corrected, markdown)
