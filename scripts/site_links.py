@@ -6,7 +6,7 @@ import re
 from pathlib import Path
 
 FENCE = re.compile(r"^ *```.*?^ *```$", re.M | re.S)
-LIST_IN_TEXT = re.compile(r"^(?![-*#|>\s]|\d+\. ).*\n(?:[-*]|\d+\.) .*", re.M)
+LIST_IN_TEXT = re.compile(r"^(?![-*] |[#|>\s]|\d+\. ).*\n(?:[-*]|\d+\.) .*", re.M)
 LINK = re.compile(r"(?<=\]\()([^)#:\s]+?)/?(?=\))")
 
 log = logging.getLogger("mkdocs.plugins.site_links")
