@@ -17,11 +17,12 @@ HEAD = """# Performance
 
 <!-- Written by scripts/performance.py; run it again rather than edit this page. -->
 
-How fast whole steps are, and at which error: a speed counts only beside the error that it comes with. A step is everything: motion,
-candidates, contacts, impacts, impulses, correction, ledger. All bodies are awake; nothing is damped, put to sleep or cut off. Times are
-medians over steps, 100 where a run had the time, once the scene has settled for as long as its table says. Overlaps are of the true
-shapes at the end of a step, by the smaller body's size, the mean over all that overlap. Each table names the program that measured it
-(`scripts/performance.py`), the commit and the hardware; the files linked hold every run with its own command line.
+This page says how fast whole steps are, and how large their errors are, since a speed counts only beside its error. A step is all of motion,
+candidate pairs, contacts, impacts, impulses, position correction and energy ledger. All bodies are awake, and nothing is damped, put to sleep
+or cut off. Times are medians of 100 steps, or of fewer where a run had no time for them, after the scene has settled for as long as its table
+says. Overlaps are of the true shapes at the end of a step, relative to the size of the smaller body. The mean is over all pairs that overlap.
+Each table names the program that measured it (`scripts/performance.py`), the commit and the hardware. The files that it links to have each run
+with its own command line.
 """
 
 
@@ -129,8 +130,9 @@ def scaling(number):
     if not rows:
         return []
     lines = [f"## {number}. Speed against the number of bodies", "",
-             "Spheres of +-20 % at rest in a box ([scene](../configs/bench/settled_spheres.yaml)), friction 0.5, step 1/240 s: as deep as wide up to a "
-             "million, which are 100 layers; more are as deep, and wider. Not all are at rest when they are timed: the median speed says it.", ""]
+             "The scene is a heap of spheres in a box, with radii that differ by up to 20 % from their mean, friction 0.5 and steps of 1/240 s "
+             "([scene](../configs/bench/settled_spheres.yaml)). Up to a million spheres, the heap is as deep as it is wide; a million are 100 layers. "
+             "Larger heaps are as deep, and wider. Some heaps are not quite at rest when they are timed. The column of the median speed shows it.", ""]
     lines += over_bodies("steps", rows, lambda row: row.steps_per_s, "steps/s")
     lines += over_bodies("body_steps", rows, lambda row: row.body_steps_per_s, "body-steps/s")
     lines += table_of(rows, WHERE | SPEED | ERROR | SETTLED) + left_out(failed) + caption(rows)
@@ -138,7 +140,7 @@ def scaling(number):
     if not wide:
         return lines
     in_order = sorted(wide, key=lambda row: (row.precision != "mixed", row.bodies))
-    return lines + ["The same in 20 layers, whatever their number:", "", *table_of(in_order, WHERE | SPEED | ERROR | MEMORY | SETTLED)] + left_out(failed) + caption(wide)
+    return lines + ["The next table is of heaps that have 20 layers, whatever the number of spheres.", "", *table_of(in_order, WHERE | SPEED | ERROR | MEMORY | SETTLED)] + left_out(failed) + caption(wide)
 
 
 def stages_of(row):
@@ -154,8 +156,8 @@ def stages(number):
     if not rows:
         return []
     lines = [f"## {number}. Where the time goes", "",
-             "Shares of the stages ([method](method.md)) in the runs of section 1, which has their commands and commits. On Device from ten steps more in which each parallel call is waited for, "
-             "without which calls run side by side with those that come after.", ""]
+             "The pictures show the shares of the stages ([method](method.md)) in the runs of section 1, which has their commands and commits. On Device the shares are of ten further "
+             "steps, in which the program waits for each parallel call. Otherwise a call may overlap with the next ones.", ""]
     for k, name in enumerate(dict.fromkeys(row.curve for row in rows)):
         of_curve = [row for row in rows if row.curve == name]
         bars = []
@@ -165,7 +167,7 @@ def stages(number):
         lines += picture(f"stages_{k}", f"set title '{name}'\nset xlabel 'bodies'\nset ylabel '% of a step'\nset yrange [0:100]\n", bars)
         row = min(of_curve, key=lambda row: abs(math.log(row.bodies / 1e6)))
         calls = sorted(row.by_calls["calls_ms"].items(), key=lambda call: -call[1])[:8]
-        lines += [f"The longest calls of {count(row.bodies)} bodies, {name}, each waited for:", "",
+        lines += [f"These are the longest calls in a step of {count(row.bodies)} bodies ({name}), measured with a wait after each call.", "",
                   *table(["call", "ms/step", "%"], [[f"`{call}`", three(ms), f"{100 * ms / row.by_calls['mean_ms']:.0f}"] for call, ms in calls])]
     return lines
 
@@ -175,9 +177,9 @@ def memory(number):
     if not rows:
         return []
     lines = [f"## {number}. Memory", "",
-             "On Device what the bodies, their contacts and all buffers have in use; on Host what the process has resident, the program (30 MB) and "
-             "the scene included. The runs, with their commands and commits, are those of section 1; the peak is that of a whole run up to the end of the "
-             "steps that are timed.", ""]
+             "On Device, the memory is what the bodies, their contacts and all buffers have in use. On Host, it is the resident memory of the process, "
+             "with the program (30 MB) and the scene. The runs, with their commands and commits, are those of section 1. The peak is that of a whole run "
+             "up to the end of the steps that are timed.", ""]
     lines += over_bodies("memory", rows, lambda row: row.memory_peak_bytes / row.bodies, "bytes per body at the peak", "x")
     columns = WHERE | {"bodies": SPEED["bodies"], "bytes/body": lambda row: three(row.memory_bytes / row.bodies),
                        "at the peak": lambda row: three(row.memory_peak_bytes / row.bodies), "peak (GB)": lambda row: three(row.memory_peak_bytes / 1e9)}
@@ -190,8 +192,8 @@ def other_scenes(number):
         return []
     rows.sort(key=lambda row: (row.scene, row.space != "cuda", row.machine, row.precision != "mixed", row.bodies))
     return [f"## {number}. Other scenes", "",
-            "Boxes at rest; balls with radii over two decades; a drum with a ball that thousands touch. Each scene says what it is, and how its number is "
-            "changed.", "", *table_of(rows, SCENE | WHERE | SPEED | ERROR | SETTLED), *left_out(failed), *caption(rows)]
+            "These scenes are boxes at rest, balls whose radii range over two decades, and a drum with a ball that thousands of others touch. The file of each scene "
+            "describes it, and says how to change the number of its bodies.", "", *table_of(rows, SCENE | WHERE | SPEED | ERROR | SETTLED), *left_out(failed), *caption(rows)]
 
 
 MACROSCOPIC = {"centre (m)": lambda row: f"{row.centre_z:.5f}", "rms speed (m/s)": lambda row: three(row.speed_rms)}
@@ -203,7 +205,7 @@ def in_motion(number):
         return []
     rows.sort(key=lambda row: (row.scene, row.space != "cuda", row.machine, row.bodies))
     return [f"## {number}. In motion", "",
-            "Scenes in which most bodies move. The height of the centre of mass and the rms speed are what a coarser step would change.", "",
+            "In these scenes most bodies move. The height of the centre of mass and the rms speed would change first if steps were too coarse.", "",
             *table_of(rows, SCENE | WHERE | SPEED | {"impacts/step": lambda row: three(row.impacts)} | ERROR | MACROSCOPIC | SETTLED), *left_out(failed), *caption(rows)]
 
 
@@ -212,7 +214,7 @@ def motion_against_error(number):
     if not rows:
         return []
     lines = [f"## {number}. In motion: speed against error", "",
-             "Scenes in motion by `response.quality`, from the start of the scene on: the number of substeps follows it, and the ends of sweeps and of position correction.", ""]
+             "Here scenes in motion run with different values of `response.quality`, from the start of the scene on. The number of substeps follows this key, and so do the errors at which sweeps and position correction end.", ""]
     for scene in dict.fromkeys(row.scene for row in rows):
         of_scene = sorted((row for row in rows if row.scene == scene), key=lambda row: (row.machine, row.quality))
         lines += picture(f"motion_{scene}", "set logscale xy\nset xlabel 'ms/step'\nset ylabel 'mean overlap (of the size)'\nset format y '10^{%T}'\n",
@@ -246,9 +248,9 @@ def crossover(number):
         return []
     rows.sort(key=lambda row: (row.bodies, row.space, row.precision))
     lines = [f"## {number}. Host against Device", "",
-             "Spheres at rest, as in section 1, by the processor and by the GPU of one machine, which take the same step "
-             "([decision 0046](decisions/0046-one-step.md)); the figures are of before that, when Host in double precision took another. Scenes of under 2,500 contact points are solved until they converge, "
-             "in more sweeps ([decision 0005](decisions/0005-sweeps-by-contacts.md)).", ""]
+             "The processor and the GPU of one machine simulate spheres at rest, as in section 1. Both take the same step ([decision 0046](decisions/0046-one-step.md)), but the "
+             "figures were measured before that decision, when Host in double precision took another one. Scenes with fewer than 2,500 contact points are solved until they converge, which takes more sweeps "
+             "([decision 0005](decisions/0005-sweeps-by-contacts.md)).", ""]
     lines += over_bodies("crossover", rows, lambda row: row.median_ms, "ms/step") + crossings(rows)
     return lines + table_of(rows, WHERE | SPEED | ERROR) + left_out(failed) + caption(rows)
 
@@ -258,9 +260,9 @@ def speed_against_error(number):
     if not rows:
         return []
     lines = [f"## {number}. Speed against error", "",
-             "Spheres at rest, as in section 1, in every combination of 1, 2 and 4 substeps with 3, 6, 12 and 24 sweeps "
-             "(`time.substeps`, `response.iterations`) and both precisions. `response.tolerance` is out of reach, so that sweeps end at their number, or, "
-             "mixed, where floats end. A line is a number of substeps, and sweeps go on along it.", ""]
+             "Spheres at rest, as in section 1, run in every combination of 1, 2 and 4 substeps (`time.substeps`) with 3, 6, 12 and 24 sweeps "
+             "(`response.iterations`), in both precisions. `response.tolerance` is too small to be reached. So sweeps end at their largest number, or in mixed "
+             "precision where floats no longer change. Each line in the pictures is of one number of substeps, and the number of sweeps grows along it.", ""]
     rows.sort(key=lambda row: (row.space != "cuda", row.machine, row.precision != "mixed", row.substeps, row.iterations))
     key = lambda row: f"{row.curve}, {row.substeps} to a step"
     words = {"overlap": (lambda row: row.penetration_relative_mean, "mean overlap (of the radius)"),
@@ -271,7 +273,7 @@ def speed_against_error(number):
     best = [row for row in rows if not any(other.median_ms < row.median_ms and other.penetration_relative_mean <= row.penetration_relative_mean and
                                            other.machine == row.machine for other in rows)]
     best.sort(key=lambda row: (row.machine, row.median_ms))
-    return [*lines, "Those that none beats in both time and mean overlap:", "",
+    return [*lines, "The table has the settings that no other one beats in both time and mean overlap.", "",
             *table_of(best, WHERE | {"bodies": SPEED["bodies"], "substeps": SPEED["substeps"], "sweeps asked": lambda row: row.iterations,
                                         "sweeps of a step": SPEED["sweeps"], "ms/step": SPEED["ms/step"]} | ERROR),
             *left_out(failed), *caption(rows)]
@@ -297,9 +299,9 @@ def peers(number):
         return []
     machine = PEERS.read_text().split(": ")[1].split(",")[0]
     lines = [f"## {number}. Beside other engines", "",
-             "Two heaps as [the table of bench/peers](../bench/results/epyc-2-cores/peers.md) has them: 8,000 spheres at rest and 2,000 boxes that still topple. "
-             "The others are on one thread of the machine of that table; rows with * were measured earlier, on another machine. scree is on all cores or on the GPU, "
-             "after 2.5 s; on one thread it is in that table.", ""]
+             "The two heaps are those of [the table of bench/peers](../bench/results/epyc-2-cores/peers.md): 8,000 spheres at rest, and 2,000 boxes that still topple. "
+             "The other engines run on one thread of the machine of that table. Rows with * were measured earlier, on another machine. scree runs on all cores or on the GPU, "
+             "and is timed after 2.5 s. That table has scree on one thread.", ""]
     for case, bodies in HEAP_BODIES.items():
         here = [row for row in rows if row.scene == case]
         others = peers_of(case)
