@@ -55,8 +55,8 @@ PairSet pairs_of(BroadPhaseMethod method, bool on_device, const Snapshot& state,
 class ScenePairs : public testing::TestWithParam<std::filesystem::path> {
  protected:
   /// Compares at the start and after each of a few stretches of the run. With many bodies it compares with
-  /// sweep and prune, since brute force takes their number squared, as a uniform grid does where a slab is as
-  /// long as the scene.
+  /// sweep and prune. Brute force takes their number squared, and nearly so does a uniform grid where sizes
+  /// differ much, since its cells are as wide as the largest body.
   void compare(bool on_device) {
     const Scene scene = read_scene(GetParam());
     const bool many = scene.bodies.count() > 10000;
