@@ -24,8 +24,8 @@ class Checkpoints {
   Checkpoints(const RunFolder& folder, double every, RunIdentity identity, bool draws);
 
   /// Looks for the newest checkpoint that is whole; returns false if there is none at all. Throws InputError
-  /// if it belongs to another run, or if all that there are cannot be read. Adds to `warnings` what is wrong
-  /// with newer ones, and what may differ from here on.
+  /// if it belongs to another run, or if there are some and none can be read. Adds to `warnings` what is
+  /// wrong with newer ones, and what may differ from here on.
   bool find(std::vector<std::string>& warnings);
   /// Continues from the checkpoint that find() has found.
   void resume(Simulation& simulation, Recorder& recorder);

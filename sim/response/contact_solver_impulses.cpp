@@ -331,7 +331,9 @@ Ledger ContactSolver<Space, Real>::solve(const FlightStage& flight, bool any_lat
   slip_end_ = 1;
   parallel::fill("accounts.loads", next_loads_, 0u);
   if (counts_.contacts > 0) {
+    const std::int64_t failed_before = counters.direct_failed;
     const bool converged = find_impulses(bodies, parameters, share, counters);
+    const bool newton_failed = !converged && counters.direct_failed > failed_before;
     if (parameters.accurate) counters.residual = std::max(counters.residual, residual());
     AccountStage<Real> stage = account_stage(bodies, parameters);
     account(stage);
@@ -348,8 +350,8 @@ Ledger ContactSolver<Space, Real>::solve(const FlightStage& flight, bool any_lat
     ledger.friction = totals_.friction;
     ledger.work = totals_.work;
     sweep_count_.judge(totals_.gap_power, totals_.kick_power, totals_.restitution + totals_.friction);
-    // Impulses that have not converged do not tell when a contact comes to stick.
-    if (converged && parameters.accurate && parameters.friction && !has_heap())
+    // Where Newton's method has failed, the impulses do not tell when a contact comes to stick.
+    if (parameters.accurate && parameters.friction && !has_heap() && !newton_failed)
       slip_end_ = find_slip_end(stage);
   }
   if (parameters.torque.size() > 0) {

@@ -6,12 +6,27 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <string>
 #include <utility>
 
 namespace scree {
 namespace {
 
 class HeapStep : public SpaceStep {};
+
+/// Returns interleaved layers of spheres of two sizes, each `count` ("x, y, z") times.
+std::string layers_of_two_sizes(const std::string& count) {
+  return fmt::format(R"(
+  - sphere: {{radius: {{uniform: [0.05, 0.06]}}}}
+    at: [0.0608, 0.0608, 0.0605]
+    repeat: {{count: [{0}], spacing: [0.1206, 0.1206, 0.1428], jitter: 0.0003}}
+    material: stone
+  - sphere: {{radius: {{uniform: [0.04, 0.05]}}}}
+    at: [0.1211, 0.1211, 0.1319]
+    repeat: {{count: [{0}], spacing: [0.1206, 0.1206, 0.1428], jitter: 0.0003}}
+    material: stone)",
+                     count);
+}
 
 /// In each way to take a step, the heap has the same centre of mass within what chaos leaves, and hardly any
 /// overlap.
@@ -52,15 +67,8 @@ bodies:
   - {plane: {normal: [1, 0, 0], offset: 0}, material: wall}
   - {plane: {normal: [-1, 0, 0], offset: -0.655}, material: wall}
   - {plane: {normal: [0, 1, 0], offset: 0}, material: wall}
-  - {plane: {normal: [0, -1, 0], offset: -0.655}, material: wall}
-  - sphere: {radius: {uniform: [0.05, 0.06]}}
-    at: [0.0608, 0.0608, 0.0605]
-    repeat: {count: [5, 5, 30], spacing: [0.1206, 0.1206, 0.1428], jitter: 0.0003}
-    material: stone
-  - sphere: {radius: {uniform: [0.04, 0.05]}}
-    at: [0.1211, 0.1211, 0.1319]
-    repeat: {count: [5, 5, 30], spacing: [0.1206, 0.1206, 0.1428], jitter: 0.0003}
-    material: stone)");
+  - {plane: {normal: [0, -1, 0], offset: -0.655}, material: wall})" +
+                            layers_of_two_sizes("5, 5, 30"));
   run_to_end(run);
   const Observation& seen = run.observe();
   EXPECT_LT(seen.penetration.relative_mean, 3e-4);
@@ -77,15 +85,8 @@ time: {end: 1, step: 0.004166666666666667}
 periodic: {x: [0, 0.4824], y: [0, 0.4824]}
 materials: {stone: {density: 1000, restitution: 0.1, friction: 0.5}}
 bodies:
-  - {plane: {normal: [0, 0, 1], offset: 0}, material: stone}
-  - sphere: {radius: {uniform: [0.05, 0.06]}}
-    at: [0.0608, 0.0608, 0.0605]
-    repeat: {count: [4, 4, 50], spacing: [0.1206, 0.1206, 0.1428], jitter: 0.0003}
-    material: stone
-  - sphere: {radius: {uniform: [0.04, 0.05]}}
-    at: [0.1211, 0.1211, 0.1319]
-    repeat: {count: [4, 4, 50], spacing: [0.1206, 0.1206, 0.1428], jitter: 0.0003}
-    material: stone)");
+  - {plane: {normal: [0, 0, 1], offset: 0}, material: stone})" +
+                            layers_of_two_sizes("4, 4, 50"));
   run_to_end(run);
   const Observation& seen = run.observe();
   EXPECT_LT(seen.penetration.relative_mean, 1e-3);
