@@ -173,6 +173,7 @@ struct FindBalls {
     put_gap(C::gap, record.gap);
     put_gap(C::predicted_gap, record.gap + opened);
     put_gap(C::pushed, 0);
+    put_gap(C::pushed_before, 0);
     put_gap(C::cap, tolerance::correction_cap * at.size());
   }
 

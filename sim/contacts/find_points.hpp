@@ -180,6 +180,7 @@ struct FindPoints {
       put_gap(C::gap, point.gap);
       put_gap(C::predicted_gap, point.gap + stage.opened_by_then(pair, m.normal, curvature, delay));
       put_gap(C::pushed, 0);
+      put_gap(C::pushed_before, 0);
     }
     if (approaches && !loads[slot.candidate].is_loaded(m.part)) approaching.add(to);
   }

@@ -180,7 +180,8 @@ struct BallContacts {
   enum GapField {
     gap,            ///< at the midpoint (m)
     predicted_gap,  ///< at the end of the substep, without correction (m)
-    pushed,
+    pushed,         ///< push of the position correction (kg m)
+    pushed_before,  ///< the push before the last sweep of the correction
     cap,
     gap_count
   };
@@ -215,7 +216,7 @@ struct PointContacts {
     last = impulse + 3,
     point_count = last + 3
   };
-  enum GapField { gap, predicted_gap, pushed, gap_count };
+  enum GapField { gap, predicted_gap, pushed, pushed_before, gap_count };
 
   Ends* ends;
   View<std::int32_t> slot;

@@ -261,6 +261,20 @@ struct Accelerate {
   }
 };
 
+/// The displacements or the turns of the bodies, and those before the last sweep of the position correction.
+template <class Real>
+struct Displacements {
+  CentreRecord<Real>* now;
+  CentreRecord<Real>* last;
+
+  /// Extrapolates those of body k by beta, as the visits do with the pushes.
+  SCREE_LAW void extrapolate(std::int64_t k, Real beta) const {
+    const CentreRecord<Real> body = now[k];
+    if (beta > 0) now[k].velocity = body.velocity + beta * (body.velocity - last[k].velocity);
+    last[k] = body;
+  }
+};
+
 /// The overlaps that a sweep of the position correction has found, relative to the cap.
 struct Overlaps {
   float deepest = 0;
@@ -276,16 +290,18 @@ struct Overlaps {
   }
 };
 
-/// Moves the bodies of a contact of balls apart. visit() returns the gap before that, relative to the cap; it
-/// is 0 or more where nothing overlapped.
+/// Moves the bodies of a contact of balls apart. The push is first extrapolated by beta times its change in
+/// the last sweep; Displacements::extrapolate has done the same to the bodies. visit() returns the gap before
+/// the push changes, relative to the cap; it is 0 or more where nothing overlapped.
 template <class Real>
 struct CorrectBalls {
   BallContacts<Real> contacts;
   CentreRecord<Real>* bodies;
   Real share;
+  bool remembers;  ///< whether the push before the visit is stored as C::pushed_before; if not, beta is 0
 
   template <class A>
-  SCREE_LAW typename A::V visit(std::int64_t c) const {
+  SCREE_LAW typename A::V visit(std::int64_t c, Real beta) const {
     using C = BallContacts<Real>;
     const auto& f = contacts.fields;
     const Ends* const ends = contacts.ends + c;
@@ -293,15 +309,18 @@ struct CorrectBalls {
     const simd::V3<A> n = f.template vector<A>(C::normal, c);
     const auto gap =
         contacts.gaps.template get<A>(C::predicted_gap, c) + dot(n, two.j.velocity - two.i.velocity);
-    auto pushed = contacts.gaps.template get<A>(C::pushed, c);
+    const auto before = contacts.gaps.template get<A>(C::pushed, c);
+    const auto last = remembers ? contacts.gaps.template get<A>(C::pushed_before, c) : before;
     auto cap = contacts.gaps.template get<A>(C::cap, c);
     auto mass = f.template get<A>(C::normal_mass, c);
     if constexpr (A::width == 1) load_here(cap, mass);
-    if (!A::any((gap < 0) | (pushed > 0))) return typename A::V{};
+    if (!A::any((gap < 0) | (before > 0) | (last > 0))) return typename A::V{};
+    auto pushed = before + A::all(beta) * (before - last);
     const auto more = simd::parting<A>(gap, cap, A::all(share), mass, pushed);
     push_centres(more * n, two.i, two.j);
     store<A>(two, bodies, ends);
     contacts.gaps.template put<A>(C::pushed, c, pushed);
+    if (remembers) contacts.gaps.template put<A>(C::pushed_before, c, before);
     return gap / cap;
   }
 };
@@ -314,9 +333,10 @@ struct CorrectPoints {
   CentreRecord<Real>* bodies;
   CentreRecord<Real>* turns;
   Real share;
+  bool remembers;
 
   template <class A>
-  SCREE_LAW typename A::V visit(std::int64_t c) const {
+  SCREE_LAW typename A::V visit(std::int64_t c, Real beta) const {
     using C = PointContacts<Real>;
     using V = typename A::V;
     const Ends* const ends = contacts.ends + c;
@@ -330,7 +350,7 @@ struct CorrectPoints {
     V pushed_apart{}, least{};
     const int count = A::most(contacts.points + c);
     simd::Point<A> points[most_points]{};
-    V predicted_gap[most_points]{}, pushed[most_points]{}, masses_there[most_points]{};
+    V predicted_gap[most_points]{}, before[most_points]{}, pushed[most_points]{}, masses_there[most_points]{};
     bool parts[most_points]{};
     const auto mass_at = [&](int p) {
       return contacts.point_fields.template get<A>(C::at_point(p, C::normal_mass), c);
@@ -338,7 +358,11 @@ struct CorrectPoints {
     SCREE_UNROLL for (int p = 0; p < most_points; ++p) {
       if (p >= count) continue;
       predicted_gap[p] = contacts.gaps.template get<A>(C::at_point(p, C::predicted_gap), c);
-      pushed[p] = contacts.gaps.template get<A>(C::at_point(p, C::pushed), c);
+      before[p] = contacts.gaps.template get<A>(C::at_point(p, C::pushed), c);
+      const V last =
+          remembers ? contacts.gaps.template get<A>(C::at_point(p, C::pushed_before), c) : before[p];
+      parts[p] = A::any((before[p] > 0) | (last > 0));
+      pushed[p] = before[p] + A::all(beta) * (before[p] - last);
       if constexpr (is_gpu_code) {
         points[p] = point_at<A>(contacts, c, p);
         masses_there[p] = mass_at(p);
@@ -350,7 +374,7 @@ struct CorrectPoints {
       const simd::V3<A> lever_i = cross(at.arm_i, n), lever_j = cross(at.arm_j, n);
       const V gap =
           predicted_gap[p] + apart + (dot(lever_j, turned.j.velocity) - dot(lever_i, turned.i.velocity));
-      parts[p] = A::any((gap < 0) | (pushed[p] > 0));
+      parts[p] = parts[p] || A::any(gap < 0);
       if (parts[p]) {
         const V mass = is_gpu_code ? masses_there[p] : mass_at(p);
         const V more = simd::parting<A>(gap, cap, A::all(share), mass, pushed[p]);
@@ -365,7 +389,9 @@ struct CorrectPoints {
     store<A>(centres, bodies, ends);
     store<A>(turned, turns, ends);
     SCREE_UNROLL for (int p = 0; p < most_points; ++p) {
-      if (p < count && parts[p]) contacts.gaps.template put<A>(C::at_point(p, C::pushed), c, pushed[p]);
+      if (p >= count || !parts[p]) continue;
+      contacts.gaps.template put<A>(C::at_point(p, C::pushed), c, pushed[p]);
+      if (remembers) contacts.gaps.template put<A>(C::at_point(p, C::pushed_before), c, before[p]);
     }
     return least / cap;
   }

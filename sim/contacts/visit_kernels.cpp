@@ -106,11 +106,11 @@ SweepChange sweep_over(const Visit& given, Blocks blocks, double beta) {
 }
 
 template <class Visit>
-Overlaps correct_over(const Visit& given, Blocks blocks) {
+Overlaps correct_over(const Visit& given, Blocks blocks, double beta) {
   const Visit visit = given;
   Vector deepest{}, sum{}, count{};
   for (std::int64_t k = 0; k < blocks.count; ++k) {
-    const Vector gap = visit.template visit<Lanes>(blocks.place(k));
+    const Vector gap = visit.template visit<Lanes>(blocks.place(k), beta);
     const Vector depth = gap < 0 ? -gap : Vector{};
     deepest = depth > deepest ? depth : deepest;
     sum += depth;
@@ -230,6 +230,7 @@ std::uint32_t prepare_balls(const PrepareBalls& given, const BallBlock& block, s
   gaps.put<Lanes>(C::gap, place, contact.gap);
   gaps.put<Lanes>(C::predicted_gap, place, contact.gap + 0.125 * given.step * given.step * contact.curvature);
   gaps.put<Lanes>(C::pushed, place, Vector{});
+  gaps.put<Lanes>(C::pushed_before, place, Vector{});
   gaps.put<Lanes>(C::cap, place, tolerance::correction_cap * smaller);
   const Vector closing = -dot(law.normal, j.velocity - i.velocity + kick);
   const Vector open = contact.gap > 0 ? contact.gap : Vector{};

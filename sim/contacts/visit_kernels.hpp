@@ -40,8 +40,8 @@ struct VisitKernels {
   SweepChange (*sweep_points)(const SweepPoints<double>&, Blocks, double beta);
   SweepChange (*roll_balls)(const RollBalls&, Blocks, double beta);
   SweepChange (*roll_points)(const RollPoints&, Blocks, double beta);
-  Overlaps (*correct_balls)(const CorrectBalls<double>&, Blocks);
-  Overlaps (*correct_points)(const CorrectPoints<double>&, Blocks);
+  Overlaps (*correct_balls)(const CorrectBalls<double>&, Blocks, double beta);
+  Overlaps (*correct_points)(const CorrectPoints<double>&, Blocks, double beta);
   /// Returns a bit for each of `look` slots: whether its two bodies are within their reaches. `reach` also
   /// has an element -1, for empty slots, which is near nothing.
   std::uint64_t (*near)(const Reach* reach, const Slot* slots, const Period* period);
@@ -68,11 +68,11 @@ struct VisitKernels {
   SweepChange operator()(const RollPoints& visit, Blocks blocks, double beta) const {
     return roll_points(visit, blocks, beta);
   }
-  Overlaps operator()(const CorrectBalls<double>& visit, Blocks blocks) const {
-    return correct_balls(visit, blocks);
+  Overlaps operator()(const CorrectBalls<double>& visit, Blocks blocks, double beta) const {
+    return correct_balls(visit, blocks, beta);
   }
-  Overlaps operator()(const CorrectPoints<double>& visit, Blocks blocks) const {
-    return correct_points(visit, blocks);
+  Overlaps operator()(const CorrectPoints<double>& visit, Blocks blocks, double beta) const {
+    return correct_points(visit, blocks, beta);
   }
 };
 

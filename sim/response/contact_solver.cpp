@@ -120,8 +120,9 @@ void ContactSolver<Space, Real>::load_bodies(const ConstBodyView& bodies, ConstV
   mid_.resize(n);
   for (auto* records : {&solver_, &free_, &last_}) records->resize(all);
   displacement_.resize(all);
+  last_displacement_.resize(all);
   const bool only_balls = slots_.other_tiles() == 0;
-  turn_.resize(only_balls ? 0 : all);
+  for (auto* records : {&turn_, &last_turn_}) records->resize(only_balls ? 0 : all);
   parallel::for_each<Space>("contacts.bodies", n,
                             LoadBody<Real>{bodies, margin, parameters, step_, mid_.view(), solver_.view()});
   parallel::for_each<Space>(

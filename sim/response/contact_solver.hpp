@@ -41,6 +41,7 @@ namespace scree::solver {
 struct CorrectionPlan {
   int least, usual, most;
   double deepest, mean, too_deep;
+  int first_with_momentum;  ///< first sweep with momentum, counted from 0
 };
 
 /// Finds the contacts of a substep, their impulses and the position correction. The bodies belong to the
@@ -162,7 +163,7 @@ class ContactSolver {
                           Array<BodyRecord<Real>, Space>& to);
   void fly_on_with_changes();
   Ledger shift_after_late_impacts(const FlightStage& flight);
-  void predict_late_gaps(const FlightStage& flight);
+  void find_end_gaps(const FlightStage& flight);
 
   Slots<Space, Real> slots_;
   double step_ = 0;
@@ -171,7 +172,7 @@ class ContactSolver {
   Array<BodyRecord<Real>, Space> solver_, free_, last_, before_;
   Array<Guide, Space> guided_;  // guides of bodies of the solver, hub parts included
   std::vector<Guide> guides_;   // guides with bodies by place
-  Array<CentreRecord<Real>, Space> displacement_, turn_;
+  Array<CentreRecord<Real>, Space> displacement_, turn_, last_displacement_, last_turn_;
   Array<PartsSum, Space> parts_sums_;
 
   ContactStore<Space, Real> store_;

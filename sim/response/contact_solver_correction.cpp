@@ -10,12 +10,9 @@
 namespace scree::solver {
 
 template <class Space, class Real>
-void ContactSolver<Space, Real>::predict_late_gaps(const FlightStage& flight) {
-  const ConstBodyView bodies = read_only(flight.bodies);
-  for_balls("gaps.predict",
-            PredictLateGapsOfBalls<Real>{store_.balls(), slots_.places(), solver_.view(), bodies, flight});
-  for_points("gaps.predict",
-             PredictLateGapsOfPoints<Real>{store_.points(), slots_.places_of_others(), bodies, flight});
+void ContactSolver<Space, Real>::find_end_gaps(const FlightStage& flight) {
+  for_balls("gaps.end", FindEndGapsOfBalls<Real>{store_.balls(), slots_.places(), flight});
+  for_points("gaps.end", FindEndGapsOfPoints<Real>{store_.points(), slots_.places_of_others(), flight});
 }
 
 template <class Space, class Real>
@@ -23,8 +20,8 @@ Ledger ContactSolver<Space, Real>::correct(const FlightStage& flight, bool any_l
   loads_.swap(next_loads_);
   overlap_ = tolerance::correction_cap * totals_.deepest;
   if (counts_.contacts == 0) return {};
-  if (any_late_impact) predict_late_gaps(flight);
   if (overlap_ == 0 && !any_late_impact) return {};
+  find_end_gaps(flight);
   parallel::for_each<Space>("correction.start", displacement_.size(),
                             ResetDisplacement<Real>{solver_.view(), displacement_.view(), turn_.view()});
   const double quality = flight.parameters.quality;
@@ -44,19 +41,24 @@ Ledger ContactSolver<Space, Real>::correct(const FlightStage& flight, bool any_l
 }
 
 /// Returns the limits of the position correction. The deepest contact of a heap is one of many: sweeps over
-/// all of them go on for its sake only as long as it is too deep to be left.
+/// all of them go on for its sake only as long as it is too deep to be left. The first sweeps of a heap are
+/// plain, since these are cheaper and a heap at rest takes no others. With few contacts all are plain:
+/// momentum may leave bodies further apart than they must be, and a stack with e = 1 then rests later.
 template <class Space, class Real>
 CorrectionPlan ContactSolver<Space, Real>::plan_correction(double quality) const {
   using namespace tolerance;
   constexpr int most = 100, most_of_heap = 60;
-  if (!has_heap()) return {1, most, most, corrected_overlap, corrected_overlap, corrected_overlap};
+  // It is so far under worst_overlap_left that a correction that gets there allows for fewer substeps.
+  constexpr double worst_corrected = 0.6 * worst_overlap_left;
+  if (!has_heap()) return {1, most, most, corrected_overlap, corrected_overlap, corrected_overlap, most};
   const bool shares = shares_loads(counts_.contacts, counts_.points);
   return {.least = shares || sweep_count_.needs_least_sweeps() ? 1 : 2,
           .usual = shares ? 24 : 12,
           .most = most_of_heap,
           .deepest = heap_overlap / quality,
           .mean = (shares ? shared_mean_overlap : heap_mean_overlap) / quality,
-          .too_deep = worst_overlap_left / quality};
+          .too_deep = worst_corrected / quality,
+          .first_with_momentum = 2};
 }
 
 template <class Space, class Real>
@@ -69,12 +71,14 @@ double ContactSolver<Space, Real>::run_correction_phases(const CorrectionPlan& p
           .point_colors = ColorPhases(store_.point_colors(), visit_width<Space, Real>),
           .balls = store_.balls(),
           .points = store_.points(),
-          .displacement = displacement_.data(),
-          .turn = turn_.data(),
+          .displacements = {displacement_.data(), last_displacement_.data()},
+          .turns = {turn_.data(), last_turn_.data()},
+          .body_count = displacement_.size(),
           .shifted_hubs = join_hubs(displacement_),
           .turned_hubs = join_hubs(turn_),
           .guides = {guided_.view(), displacement_.data()},
           .share = static_cast<Real>(tolerance::correction_share),
+          .first_with_momentum = plan.first_with_momentum,
           .least = plan.least,
           .usual = plan.usual,
           .most = plan.most,
@@ -82,7 +86,7 @@ double ContactSolver<Space, Real>::run_correction_phases(const CorrectionPlan& p
           .mean = static_cast<float>(plan.mean / tolerance::correction_cap),
           .too_deep = static_cast<float>(plan.too_deep / tolerance::correction_cap)},
       CorrectionState{});
-  return tolerance::correction_cap * done.mean;
+  return tolerance::correction_cap * done.first / static_cast<double>(counts_.contacts);
 }
 
 #define SCREE_INSTANTIATE(Space)                                                   \

@@ -30,7 +30,7 @@ struct PadBalls {
       for (int field = 0; field < C::count; ++field) contacts.fields.at(field, c) = 0;
       contacts.fields.at(C::normal_mass, c) = 1;
       contacts.gaps.at(C::predicted_gap, c) = contacts.gaps.at(C::cap, c) = 1;
-      contacts.gaps.at(C::pushed, c) = 0;
+      contacts.gaps.at(C::pushed, c) = contacts.gaps.at(C::pushed_before, c) = 0;
       contacts.fields.at(C::target, c) = static_cast<Real>(no_target);
       for (int field = 0; rolls && field < RollingFields<Real>::count; ++field)
         rolling.fields.at(field, c) = 0;
@@ -78,6 +78,7 @@ struct PadPoints {
     f.at(C::at_point(k, C::target), c) = static_cast<Real>(no_target);
     contacts.gaps.at(C::at_point(k, C::predicted_gap), c) = 1;
     contacts.gaps.at(C::at_point(k, C::pushed), c) = 0;
+    contacts.gaps.at(C::at_point(k, C::pushed_before), c) = 0;
   }
 };
 

@@ -22,14 +22,15 @@ class SweepCount {
   /// power, each times the length of the substep (J).
   void judge(double residual, double kicked, double dissipated);
 
-  /// Is called after the position correction of each substep. `mean`: mean overlap of the contacts, as a
-  /// share of the smaller body's size.
+  /// Is called after the position correction of each substep. `mean`: mean overlap that the substep has left
+  /// to the correction, over all contacts, as a share of the smaller body's size. What the correction leaves
+  /// shows less of the error of the impulses, the better the correction is.
   void judge_overlap(double mean) { overlap_ = std::max(overlap_, mean); }
 
   /// Whether the heap flows: it dissipates more than tolerance::flowing_power of the power of its impulses.
   bool flows() const { return flows_; }
   /// The tolerance of the sweeps: they end when one changes the impulses by no more than this share of their
-  /// size. It is larger while the heap flows and its contacts hardly overlap.
+  /// size. It is larger while the heap flows and hardly overlaps before it is corrected.
   double change() const;
   /// Whether the slow modes have converged, so that the least number of sweeps will do.
   bool needs_least_sweeps() const { return degree_ == 0; }

@@ -52,8 +52,8 @@ struct OneItem {
     return visit.template visit<Scalar<Real>>(colors.place(color, item), more...);
   }
   template <class Visit>
-  SCREE_HD Overlaps part(const ColorPhases& colors, int color, const Visit& visit) const {
-    return Overlaps::of_gap(static_cast<float>(this->visit(colors, color, visit)));
+  SCREE_HD Overlaps part(const ColorPhases& colors, int color, const Visit& visit, Real beta) const {
+    return Overlaps::of_gap(static_cast<float>(this->visit(colors, color, visit, beta)));
   }
   SCREE_HD void accelerate(const Accelerate<Real>& bodies, Real beta) const { bodies.visit(item, beta); }
   template <class F>
@@ -86,12 +86,13 @@ struct RunOfItems {
     }
   }
   template <class Visit>
-  Overlaps part(const ColorPhases& colors, int color, const Visit& visit) const {
+  Overlaps part(const ColorPhases& colors, int color, const Visit& visit, Real beta) const {
     if constexpr (by_kernels) {
-      return this->visit(colors, color, visit);
+      return this->visit(colors, color, visit, beta);
     } else {
       Overlaps sum;
-      for (std::int64_t k = begin; k < end; ++k) sum = sum + OneItem<Real>{k}.part(colors, color, visit);
+      for (std::int64_t k = begin; k < end; ++k)
+        sum = sum + OneItem<Real>{k}.part(colors, color, visit, beta);
       return sum;
     }
   }
@@ -127,6 +128,16 @@ struct HoldToGuides {
     body.velocity = v3<Real>(along);
   }
 };
+
+/// Rounds a ratio to a multiple of 1/1024. Sums whose terms are added in another order (on another GPU, or
+/// with bodies at other places) differ in their last digits; ratios rounded from them do not, except one in
+/// about 1e12. Ratios of small integers, which symmetric heaps have, are far from the steps of the
+/// rounding.
+SCREE_HD inline double rounded(double ratio) {
+  constexpr double levels = 1024;
+  constexpr double leap = 0.618;
+  return fmin(floor(levels * ratio + leap), levels - 1) / levels;
+}
 
 /// Finds the impulses. The first pass applies the warm-start impulses to the bodies. Each other pass is a
 /// sweep with these phases: the bodies repeat their last change times beta (momentum), the contacts of each
@@ -202,16 +213,6 @@ struct ImpulsePhases {
   }
 
  private:
-  /// Rounds a ratio to a multiple of 1/1024. Sums whose terms are added in another order (on another GPU, or
-  /// with bodies at other places) differ in their last digits; ratios rounded from them do not, except one in
-  /// about 1e12. Ratios of small integers, which symmetric heaps have, are far from the steps of the
-  /// rounding.
-  SCREE_HD static double rounded(double ratio) {
-    constexpr double levels = 1024;
-    constexpr double leap = 0.618;
-    return fmin(floor(levels * ratio + leap), levels - 1) / levels;
-  }
-
   SCREE_CALLS_ITS_ARGUMENTS
   template <class Items>
   SCREE_HD Sum work(const State& state, int phase, const Items& items) const {
@@ -271,11 +272,14 @@ struct ImpulsePhases {
 struct CorrectionState {
   std::int32_t sweeps = 0;
   bool corrected = false;
-  double mean = 0;  ///< mean overlap that the last sweep has found, relative to the cap
+  double first = 0;  ///< sum of the overlaps that the first sweep has found, relative to the cap
+  double sum = 0;    ///< the same of the last sweep
+  double beta = 0;   ///< factor by which the next sweep extrapolates the last change, rounded
 };
 
 /// Corrects positions: finds displacements and turns of the bodies that move overlapping bodies apart. They
-/// start from zero.
+/// start from zero. Sweeps have momentum as in ImpulsePhases, but beta is the ratio of the sums of the
+/// overlaps that two sweeps have found.
 template <class Real, bool only_balls>
 struct CorrectionPhases {
   using State = CorrectionState;
@@ -286,20 +290,24 @@ struct CorrectionPhases {
   ColorPhases ball_colors, point_colors;
   BallContacts<Real> balls;
   PointContacts<Real> points;
-  CentreRecord<Real>* displacement;
-  CentreRecord<Real>* turn;  ///< not used if all contacts are of balls
+  Displacements<Real> displacements;
+  Displacements<Real> turns;  ///< not used if all contacts are of balls
+  std::int64_t body_count;
   JoinHubs<CentreRecord<Real>> shifted_hubs, turned_hubs;
   HoldToGuides<CentreRecord<Real>> guides;
   Real share;
+  int first_with_momentum;        ///< first sweep with momentum, counted from 0
   int least, usual, most;         ///< numbers of sweeps of the CorrectionPlan
   float deepest, mean, too_deep;  ///< overlaps of the CorrectionPlan, relative to the cap
 
+  SCREE_HD bool goes_on(const State& state) const { return state.sweeps >= first_with_momentum; }
   SCREE_HD int phases(const State& state) const {
     if (state.corrected || state.sweeps >= most) return 0;
-    return ball_colors.count + point_colors.count + shifted_hubs.phases() + turned_hubs.phases() +
-           guides.phases();
+    return (goes_on(state) ? 1 : 0) + ball_colors.count + point_colors.count + shifted_hubs.phases() +
+           turned_hubs.phases() + guides.phases();
   }
-  SCREE_HD std::int64_t items(const State&, int phase) const {
+  SCREE_HD std::int64_t items(const State& state, int phase) const {
+    if (goes_on(state) && phase-- == 0) return body_count;
     if (phase < ball_colors.count) return ball_colors.items(phase);
     phase -= ball_colors.count;
     if (phase < point_colors.count) return point_colors.items(phase);
@@ -308,31 +316,48 @@ struct CorrectionPhases {
     phase -= shifted_hubs.phases();
     return phase < turned_hubs.phases() ? turned_hubs.items(phase) : guides.guides.size();
   }
-  std::int64_t most_items() const { return std::max(ball_colors.most_items(), point_colors.most_items()); }
-  SCREE_HD Sum operator()(const State&, int phase, std::int64_t item) const {
-    return work(phase, OneItem<Real>{item});
+  std::int64_t most_items() const {
+    return std::max({body_count, ball_colors.most_items(), point_colors.most_items()});
   }
-  Sum over(const State&, int phase, std::int64_t begin, std::int64_t end) const {
-    return work(phase, RunOfItems<Real>{begin, end});
+  SCREE_HD Sum operator()(const State& state, int phase, std::int64_t item) const {
+    return work(state, phase, OneItem<Real>{item});
+  }
+  Sum over(const State& state, int phase, std::int64_t begin, std::int64_t end) const {
+    return work(state, phase, RunOfItems<Real>{begin, end});
   }
   SCREE_HD State judge(const State& state, const Sum& seen) const {
     const int sweeps = state.sweeps + 1;
     const bool are_small =
         sweeps >= least && seen.deepest <= deepest && seen.sum <= static_cast<double>(mean) * seen.count;
-    return {sweeps, are_small || (sweeps >= usual && seen.deepest <= too_deep),
-            seen.count > 0 ? seen.sum / seen.count : 0.0};
+    const double ratio = goes_on(state) && state.sweeps > 0 ? seen.sum / state.sum : 0.0;
+    return {.sweeps = sweeps,
+            .corrected = are_small || (sweeps >= usual && seen.deepest <= too_deep),
+            .first = state.sweeps == 0 ? seen.sum : state.first,
+            .sum = seen.sum,
+            .beta = ratio < 1.0 ? rounded(ratio) : 0.0};
   }
 
  private:
   SCREE_CALLS_ITS_ARGUMENTS
   template <class Items>
-  SCREE_HD Sum work(int phase, const Items& items) const {
+  SCREE_HD Sum work(const State& state, int phase, const Items& items) const {
+    const auto beta = static_cast<Real>(state.beta);
+    const bool remembers = goes_on(state);
+    if (remembers && phase-- == 0) {
+      items.each([&](std::int64_t k) {
+        displacements.extrapolate(k, beta);
+        if constexpr (!only_balls) turns.extrapolate(k, beta);
+      });
+      return {};
+    }
     if (phase < ball_colors.count)
-      return items.part(ball_colors, phase, CorrectBalls<Real>{balls, displacement, share});
+      return items.part(ball_colors, phase, CorrectBalls<Real>{balls, displacements.now, share, remembers},
+                        beta);
     phase -= ball_colors.count;
     if constexpr (!only_balls) {
       if (phase < point_colors.count)
-        return items.part(point_colors, phase, CorrectPoints<Real>{points, displacement, turn, share});
+        return items.part(point_colors, phase,
+                          CorrectPoints<Real>{points, displacements.now, turns.now, share, remembers}, beta);
     }
     phase -= point_colors.count;
     items.each([&](std::int64_t item) {

@@ -155,6 +155,7 @@ class Problem {
           all.push_back(p.point_fields.at(Points::at_point(k, Points::last) + e, c));
         }
         all.push_back(p.gaps.at(Points::at_point(k, Points::pushed), c));
+        all.push_back(p.gaps.at(Points::at_point(k, Points::pushed_before), c));
       }
       for (int field = 0; field < Rolling::count; ++field) all.push_back(point_rolling().fields.at(field, c));
     }
@@ -174,6 +175,7 @@ class Problem {
   static void put_gap(const At& at, double predicted_gap, double pushed) {
     at(Balls::gap) = at(Balls::predicted_gap) = predicted_gap;
     at(Balls::pushed) = pushed;
+    at(Balls::pushed_before) = 0;
   }
   std::vector<std::pair<void*, std::size_t>> memory() {
     const auto bytes = [](std::int64_t doubles) {
@@ -218,10 +220,12 @@ std::vector<double> visit_all(Problem& problem, const Over& over) {
     sum(over(SweepPoints<double>{points, bodies, block_sweeps}, p, beta));
     sum(over(RollPoints{points, point_rolling, bodies, true}, p, beta));
   }
-  for (int k = 0; k < 2; ++k) {
+  CentreRecord<double>* const centres = problem.centres.data();
+  CentreRecord<double>* const turns = problem.turns.data();
+  for (const bool momentum : {false, true, true}) {
     for (const Overlaps& overlaps :
-         {over(CorrectBalls<double>{balls, problem.centres.data(), share}, b),
-          over(CorrectPoints<double>{points, problem.centres.data(), problem.turns.data(), share}, p)})
+         {over(CorrectBalls<double>{balls, centres, share, momentum}, b, momentum ? beta : 0.0),
+          over(CorrectPoints<double>{points, centres, turns, share, momentum}, p, momentum ? beta : 0.0)})
       sums.insert(sums.end(), {overlaps.deepest, overlaps.sum, overlaps.count});
   }
   return sums;
