@@ -11,7 +11,7 @@ namespace scree::solver {
 
 template <class Space, class Real>
 void ContactSolver<Space, Real>::find_end_gaps(const FlightStage& flight) {
-  for_balls("gaps.end", FindEndGapsOfBalls<Real>{store_.balls(), slots_.places(), flight});
+  for_balls("gaps.end", FindEndGapsOfBalls<Real>{store_.balls(), slots_.places(), solver_.view(), flight});
   for_points("gaps.end", FindEndGapsOfPoints<Real>{store_.points(), slots_.places_of_others(), flight});
 }
 

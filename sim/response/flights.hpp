@@ -2,7 +2,6 @@
 #pragma once
 
 #include "sim/contacts/contact_flight.hpp"
-#include "sim/contacts/find_stage.hpp"
 #include "sim/contacts/layout.hpp"
 #include "sim/contacts/sweeps.hpp"
 #include "sim/observe/observation.hpp"
@@ -71,53 +70,47 @@ struct ReloadBody {
   }
 };
 
-/// The least gap of a contact (m), and its normal from the first body to the second.
-struct Gap {
-  double gap = HUGE_VAL;
-  Vec3 normal = Vec3::Zero();
-};
-
-/// Returns the gap of the contact of a slot between its bodies where they are now. It is infinite if it is
-/// more than the smaller body's size. It is never inlined, since most contacts do not need it.
-[[gnu::noinline]] SCREE_HD inline Gap gap_now(const FlightStage& flight, const Slot& slot) {
-  const BodyView& bodies = flight.bodies;
-  const Shape shape_i = bodies.shape[slot.i], shape_j = bodies.shape[slot.j];
-  const Solid i{bodies.position[slot.i], bodies.orientation[slot.i], bodies.size[slot.i]};
-  Solid j{bodies.position[slot.j], bodies.orientation[slot.j], bodies.size[slot.j]};
-  bodies.period.bring_near(i.position, j.position);
-  const double reach = fmin(smallest_size(shape_i, i.size), smallest_size(shape_j, j.size));
-  Manifold found[max_pair_manifolds];
-  const int count = find_any_contacts({shape_i, i}, {shape_j, j}, flight.shapes_of(slot.i, slot.j),
-                                      {.margin = reach}, found);
-  const auto is_of = [&](Shape shape) { return shape_i == shape || shape_j == shape; };
-  const Manifold* on = manifold_on(slot.surface, is_of(Shape::tube) && is_of(Shape::box), found, count);
-  if (on == nullptr) return {};
-  Gap least{.normal = on->normal};
-  for (int k = 0; k < on->count; ++k) least.gap = fmin(least.gap, on->points[k].gap);
-  return least;
-}
-
-/// Finds the gap at the end of the substep of a contact whose normal at the midpoint does not tell it, since
-/// its bodies fly past each other or were struck after the midpoint. If it carries no load, it gets the
-/// normal at the end as well, along which the correction may push it.
+/// Finds the gap at the end of the substep of a contact whose normal at the midpoint does not tell it. That
+/// of bodies that were struck late is completed from the positions at the end. Two balls that fly past each
+/// other (passes()) have no gap until here. It is measured, and the contact gets the normal at the end as
+/// well, along which the correction may push it. Other bodies that fly past each other have none.
 template <class Real>
 struct FindEndGapsOfBalls {
   BallContacts<Real> contacts;
   ConstView<Slot> places;
+  ConstView<BodyRecord<Real>> solver;
   FlightStage flight;
   SCREE_HD void operator()(std::int64_t c) const {
     using C = BallContacts<Real>;
     if (contacts.flags[c] == 0) return;
-    const Gap end = gap_now(flight, places[contacts.slot[c]]);
-    contacts.gaps.at(C::predicted_gap, c) = static_cast<Real>(end.gap);
-    const bool is_loaded = !is_zero(contacts.fields.vector(C::impulse, c));
-    if (!is_loaded && end.gap < HUGE_VAL) contacts.fields.set(C::normal, c, v3<Real>(end.normal));
+    const BodyView& bodies = flight.bodies;
+    const Slot& slot = places[contacts.slot[c]];
+    const Vec3 apart = bodies.period.nearest(bodies.position[slot.j] - bodies.position[slot.i]);
+    Real& predicted_gap = contacts.gaps.at(C::predicted_gap, c);
+    if (!(predicted_gap < static_cast<Real>(HUGE_VAL))) {
+      if (bodies.shape[slot.i] != Shape::sphere || bodies.shape[slot.j] != Shape::sphere) return;
+      const double distance = apart.norm();
+      if (distance == 0) return;
+      predicted_gap = static_cast<Real>(distance - bodies.size[slot.i].x() - bodies.size[slot.j].x());
+      contacts.fields.set(C::normal, c, v3<Real>(apart / distance));
+    } else if ((contacts.flags[c] & flag_late_impact) != 0) {
+      const double left = flight.terms.step - fmax(flight.clock[slot.i], flight.clock[slot.j]);
+      const Vec3 turned = turning_of(slot.j, slot.end_j) - turning_of(slot.i, slot.end_i);
+      predicted_gap +=
+          static_cast<Real>(vec3(contacts.fields.vector(C::normal, c)).dot(apart + left * turned));
+    }
+  }
+
+ private:
+  /// Returns the velocity of a wall point relative to the centre of its wall.
+  SCREE_HD Vec3 turning_of(std::int32_t body, std::int32_t end) const {
+    const BodyView& bodies = flight.bodies;
+    const bool is_wall_point = bodies.mobility[body] != Mobility::free && end != body;
+    return is_wall_point ? Vec3(vec3(solver[end].velocity) - bodies.velocity[body]) : Vec3(Vec3::Zero());
   }
 };
 
-/// Finds the gaps of a contact of several points, as FindEndGapsOfBalls does. Those of bodies that were
-/// struck late are completed from the positions at the end. Points whose bodies fly past each other
-/// (passes()) have no gap until here; they all get that of the bodies.
+/// Completes the gaps of a contact of several points whose bodies were struck late.
 template <class Real>
 struct FindEndGapsOfPoints {
   PointContacts<Real> contacts;
@@ -125,27 +118,9 @@ struct FindEndGapsOfPoints {
   FlightStage flight;
   SCREE_HD void operator()(std::int64_t c) const {
     using C = PointContacts<Real>;
-    const std::uint8_t flags = contacts.flags[c];
-    if (flags == 0) return;
-    const Slot& slot = places[contacts.slot[c]];
-    if ((flags & flag_late_impact) != 0) complete_late_gaps(c, slot);
-    if ((flags & flag_flying) == 0) return;
-    const auto gap_of = [&](int k) -> Real& { return contacts.gaps.at(C::at_point(k, C::predicted_gap), c); };
-    int passing = 0;
-    for (int k = 0; k < contacts.points[c]; ++k)
-      if (!(gap_of(k) < static_cast<Real>(HUGE_VAL))) ++passing;
-    if (passing == 0) return;
-    const Gap end = gap_now(flight, slot);
-    for (int k = 0; k < contacts.points[c]; ++k)
-      gap_of(k) = gap_of(k) < static_cast<Real>(HUGE_VAL) ? gap_of(k) : static_cast<Real>(end.gap);
-    if (passing == contacts.points[c] && end.gap < HUGE_VAL)
-      contacts.fields.set(C::normal, c, v3<Real>(end.normal));
-  }
-
- private:
-  SCREE_HD void complete_late_gaps(std::int64_t c, const Slot& slot) const {
-    using C = PointContacts<Real>;
+    if ((contacts.flags[c] & flag_late_impact) == 0) return;
     const BodyView& bodies = flight.bodies;
+    const Slot& slot = places[contacts.slot[c]];
     const Vec3 n = vec3(contacts.fields.vector(C::normal, c));
     const Vec3 apart = bodies.period.nearest(bodies.position[slot.j] - bodies.position[slot.i]);
     const double left = flight.terms.step - fmax(flight.clock[slot.i], flight.clock[slot.j]);
