@@ -70,10 +70,11 @@ struct ReloadBody {
   }
 };
 
-/// Finds the gap at the end of the substep of a contact whose normal at the midpoint does not tell it. That
-/// of bodies that were struck late is completed from the positions at the end. Two balls that fly past each
-/// other (passes()) have no gap until here. It is measured, and the contact gets the normal at the end as
-/// well, along which the correction may push it. Other bodies that fly past each other have none.
+/// Finds the gap at the end of the substep of a contact whose normal at the midpoint does not tell it, since
+/// its bodies fly past each other or were struck late. That of two balls is measured. If the contact carries
+/// no load, it gets the normal at the end as well, along which the correction may push it. With other bodies,
+/// a late contact's gap is completed from the positions at the end, and bodies that fly past each other have
+/// none (passes()).
 template <class Real>
 struct FindEndGapsOfBalls {
   BallContacts<Real> contacts;
@@ -86,18 +87,17 @@ struct FindEndGapsOfBalls {
     const BodyView& bodies = flight.bodies;
     const Slot& slot = places[contacts.slot[c]];
     const Vec3 apart = bodies.period.nearest(bodies.position[slot.j] - bodies.position[slot.i]);
+    const Vec3 normal = vec3(contacts.fields.vector(C::normal, c));
     Real& predicted_gap = contacts.gaps.at(C::predicted_gap, c);
-    if (!(predicted_gap < static_cast<Real>(HUGE_VAL))) {
-      if (bodies.shape[slot.i] != Shape::sphere || bodies.shape[slot.j] != Shape::sphere) return;
+    if (bodies.shape[slot.i] == Shape::sphere && bodies.shape[slot.j] == Shape::sphere) {
       const double distance = apart.norm();
-      if (distance == 0) return;
       predicted_gap = static_cast<Real>(distance - bodies.size[slot.i].x() - bodies.size[slot.j].x());
-      contacts.fields.set(C::normal, c, v3<Real>(apart / distance));
+      const bool is_loaded = !is_zero(contacts.fields.vector(C::impulse, c));
+      if (!is_loaded && distance > 0) contacts.fields.set(C::normal, c, v3<Real>(apart / distance));
     } else if ((contacts.flags[c] & flag_late_impact) != 0) {
       const double left = flight.terms.step - fmax(flight.clock[slot.i], flight.clock[slot.j]);
       const Vec3 turned = turning_of(slot.j, slot.end_j) - turning_of(slot.i, slot.end_i);
-      predicted_gap +=
-          static_cast<Real>(vec3(contacts.fields.vector(C::normal, c)).dot(apart + left * turned));
+      predicted_gap += static_cast<Real>(normal.dot(apart + left * turned));
     }
   }
 
