@@ -85,12 +85,49 @@ struct Load {
   SCREE_HD T operator()(std::int64_t i) const { return values[i]; }
 };
 
+/// The work of for_each_counted() on one of `threads` threads of Device. The threads of a warp that go
+/// different ways work one after the other, so the first items are dealt to one thread of each warp.
+template <class F>
+struct CountedLoop {
+  static constexpr std::int64_t warp = 32;
+
+  const std::uint64_t* count;
+  std::int64_t threads;
+  F f;
+  SCREE_HD void operator()(std::int64_t thread) const {
+    const auto items = static_cast<std::int64_t>(*count);
+    const std::int64_t first = thread % warp * (threads / warp) + thread / warp;
+    for (std::int64_t k = first; k < items; k += threads) f(k);
+  }
+};
+
 }  // namespace detail
+
+/// Calls f(k) for 0 <= k < *count, in any order and concurrently. `count` is in the space, so that the host
+/// does not wait for it; it is at most `most`. This is for items with much work each, of which there are
+/// mostly fewer than `most`.
+template <class Space, class F>
+void for_each_counted(const char* label, const std::uint64_t* count, [[maybe_unused]] std::int64_t most,
+                      F f) {
+  if constexpr (std::is_same_v<Space, Host>) {
+    constexpr std::int64_t few_items = 16;
+    parallel::for_each<Host>(label, static_cast<std::int64_t>(*count), f, few_items);
+  } else {
+    // A GPU holds some 2^16 threads with so much work at once.
+    constexpr std::int64_t fewest = 1 << 15, most_threads = 1 << 18;
+    const std::int64_t threads = std::clamp((most / 4 + fewest - 1) / fewest * fewest, fewest, most_threads);
+    parallel::for_each<Space>(label, threads, detail::CountedLoop<F>{count, threads, f});
+  }
+}
 
 /// Sets every element to `value`.
 template <class Space, class T>
-void fill(const char* label, Array<T, Space>& values, const T& value) {
+void fill(const char* label, View<T> values, const std::type_identity_t<T>& value) {
   parallel::for_each<Space>(label, values.size(), detail::Set<T>{values.data(), value});
+}
+template <class Space, class T>
+void fill(const char* label, Array<T, Space>& values, const std::type_identity_t<T>& value) {
+  parallel::fill<Space>(label, values.view(), value);
 }
 
 /// Returns the sum of f(i) over 0 <= i < n, as T with an operator +; T{} for n = 0. The tree of the additions

@@ -116,4 +116,15 @@ SCREE_HD void set_bits(T* place, T value) {
 #endif
 }
 
+/// Clears the bits of `value` in a place.
+template <class T>
+SCREE_HD void clear_bits(T* place, T value) {
+#if defined(__CUDA_ARCH__)
+  using Word = detail::CudaWord<T>;
+  atomicAnd(reinterpret_cast<Word*>(place), static_cast<Word>(static_cast<T>(~value)));
+#else
+  std::atomic_ref<T>(*place).fetch_and(static_cast<T>(~value), std::memory_order_relaxed);
+#endif
+}
+
 }  // namespace scree

@@ -138,15 +138,18 @@ class GridBarrier {
 };
 
 /// How many phases from `first` on have so few items that one block does them sooner than all blocks would
-/// pass a barrier. 0 where items() depend on what other blocks do meanwhile.
+/// pass a barrier. 0 where items() depend on what other blocks do meanwhile. `items`: those of phase `first`.
 template <class Program>
 __device__ int phases_of_one_block(const Program& program, const typename Program::State& state, int first,
-                                   int phases) {
-  int phase = first;
+                                   int phases, std::int64_t items) {
+  int few = 0;
   if constexpr (WorksOnRuns<Program>) {
-    while (phase < phases && program.items(state, phase) <= Program::threads) ++phase;
+    while (items <= Program::threads) {
+      if (first + ++few == phases) break;
+      items = program.items(state, first + few);
+    }
   }
-  return phase - first;
+  return few;
 }
 
 constexpr int warp = 32;
@@ -197,7 +200,8 @@ __global__ void __launch_bounds__(Program::threads, blocks_at_once<Program>())
     Sum mine{};
     for (int phase = 0; phase < phases;) {
       if (phase > 0) barrier.wait();
-      if (const int few = phases_of_one_block(program, state, phase, phases); few > 0) {
+      const std::int64_t items = program.items(state, phase);
+      if (const int few = phases_of_one_block(program, state, phase, phases, items); few > 0) {
         for (int k = 0; blockIdx.x == 0 && k < few; ++k) {
           if (k > 0) __syncthreads();
           const std::int64_t item = threadIdx.x;
@@ -206,7 +210,6 @@ __global__ void __launch_bounds__(Program::threads, blocks_at_once<Program>())
         phase += few;
         continue;
       }
-      const std::int64_t items = program.items(state, phase);
       const auto of_thread = ItemsOfThread::of<Program>(items);
       for (std::int64_t i = of_thread.first; i < items; i += of_thread.stride)
         mine = mine + program(state, phase, i);

@@ -73,6 +73,9 @@ inline constexpr int wedged_steps = 32;
 /// substeps, which cost more (docs/decisions/0059).
 inline constexpr double worst_overlap_left = 2e-2;
 inline constexpr double mean_overlap_left = 5e-4;
+/// Deepest overlap to which the position correction of a heap in motion goes on. It is so far under
+/// worst_overlap_left that a correction that gets there allows for fewer substeps. Smaller: more sweeps.
+inline constexpr double worst_corrected_overlap = 0.6 * worst_overlap_left;
 /// Largest number of substeps in which a step is taken if the scene leaves it open, at response.quality 1.
 /// Larger: fast scenes cost more.
 inline constexpr int most_substeps = 4;
@@ -124,9 +127,9 @@ inline constexpr double heap_change = 3e-3;
 /// Largest such change for a heap that flows. Larger: its bodies overlap more; smaller: more sweeps, against
 /// overlaps that the motion makes anew (docs/decisions/0052 lists the trade-off).
 inline constexpr double heap_change_in_flow = 2e-2;
-/// Mean overlaps of the contacts of a heap that flows (of the smaller size): under the first, the change at
-/// which its sweeps end is doubled in the next substeps; over the second, it is halved. Larger: fewer sweeps,
-/// and heaps that flow overlap more.
+/// Mean overlaps of the contacts of a heap that flows, before the position correction (of the smaller size):
+/// under the first, the change at which its sweeps end is doubled in the next substeps; over the second, it
+/// is halved. Larger: fewer sweeps, and heaps that flow overlap more.
 inline constexpr double little_overlap_in_flow = 2e-4;
 inline constexpr double much_overlap_in_flow = 4e-4;
 /// Residual power: the power of the normal impulses on the relative velocities that they leave, as a share of

@@ -63,6 +63,11 @@ struct Meet {
   }
 };
 
+struct CountVisit {
+  std::int64_t* times;
+  SCREE_HD void operator()(std::int64_t i) const { ++times[i]; }
+};
+
 // Many threads update the same minimum, maximum, counter and list.
 struct Tell {
   std::uint64_t* least;
@@ -95,6 +100,20 @@ TYPED_TEST(ParallelTest, ForEachVisitsEveryIndexOnce) {
   }
 }
 
+TYPED_TEST(ParallelTest, ForEachCountedVisitsWhatIsCountedOnce) {
+  for (const std::int64_t n : {0, 1, 31, 70000, 200001}) {
+    Array<std::int64_t, TypeParam> times(200001);
+    Array<std::uint64_t, TypeParam> count;
+    copy(count, std::vector<std::uint64_t>{static_cast<std::uint64_t>(n)});
+    parallel::fill("test.fill", times, 0);
+    parallel::for_each_counted<TypeParam>("test.counted", count.data(), times.size(),
+                                          CountVisit{times.data()});
+    const std::vector<std::int64_t> got = to_vector(times);
+    for (std::int64_t i = 0; i < std::ssize(got); ++i)
+      ASSERT_EQ(got[static_cast<std::size_t>(i)], i < n ? 1 : 0) << "n = " << n;
+  }
+}
+
 TYPED_TEST(ParallelTest, WorksOnAfterAnAllocationThatFailed) {
   EXPECT_THROW((Array<double, TypeParam>(std::int64_t{1} << 50)), std::exception);
   Array<std::int64_t, TypeParam> squares(1000);
@@ -119,6 +138,32 @@ TYPED_TEST(ParallelTest, ExchangeHandsOnWhatWasWrittenBefore) {
   const std::vector<std::int64_t> all = to_vector(sums);
   for (std::int64_t k = 0; k < count; ++k)
     ASSERT_EQ(all[static_cast<std::size_t>(k)], 3 * (k + k + count) + 2);
+}
+
+// Each thread sets a bit of a word that it shares with others, or clears it.
+struct SetOrClear {
+  std::uint64_t* words;
+  bool set;
+  SCREE_HD void operator()(std::int64_t i) const {
+    const std::uint64_t bit = std::uint64_t{1} << (i % 64);
+    if (set) {
+      set_bits(&words[i / 64], bit);
+    } else if (i % 3 != 0) {
+      clear_bits(&words[i / 64], bit);
+    }
+  }
+};
+
+TYPED_TEST(ParallelTest, BitsAreSetAndClearedOneByOne) {
+  constexpr std::int64_t words = 1000;
+  Array<std::uint64_t, TypeParam> bits(words);
+  parallel::fill("bits", bits, 0);
+  parallel::for_each<TypeParam>("set", 64 * words, SetOrClear{bits.data(), true});
+  EXPECT_EQ(to_vector(bits), std::vector<std::uint64_t>(words, ~std::uint64_t{0}));
+  parallel::for_each<TypeParam>("clear", 64 * words, SetOrClear{bits.data(), false});
+  const std::vector<std::uint64_t> left = to_vector(bits);
+  for (std::int64_t i = 0; i < 64 * words; ++i)
+    ASSERT_EQ(left[static_cast<std::size_t>(i / 64)] >> (i % 64) & 1, i % 3 == 0 ? 1u : 0u) << i;
 }
 
 TYPED_TEST(ParallelTest, LowerRaiseAndCountMissNobody) {
