@@ -17,16 +17,14 @@ struct FreeEnds {
   std::int32_t i, j;
 };
 
-/// The contacts that are coloured.
+/// The contacts that are coloured, which are known by their slots.
 struct ColoredContacts {
-  ConstView<std::int32_t> found;
   ConstView<Slot> slots;
   ConstView<Mobility> mobility;
   ConstView<BodyNumber> number;
 
-  SCREE_HD const Slot& slot(std::int64_t d) const { return slots[found[d]]; }
-  SCREE_HD FreeEnds ends(std::int64_t d) const {
-    const Slot& at = slot(d);
+  SCREE_HD FreeEnds ends(std::int32_t s) const {
+    const Slot& at = slots[s];
     return {mobility[at.i] == Mobility::free ? at.end_i : -1,
             mobility[at.j] == Mobility::free ? at.end_j : -1};
   }
@@ -35,8 +33,8 @@ struct ColoredContacts {
   /// on the surface. There are fewer than 2^30 bodies, since each takes some 100 bytes, and at most 16
   /// surfaces of a pair. No rank is UncoloredContact::colored, which bodies 870,744,363 and 1,067,891,420
   /// would give.
-  SCREE_HD std::uint64_t rank(std::int64_t d) const {
-    const Slot& at = slot(d);
+  SCREE_HD std::uint64_t rank(std::int32_t s) const {
+    const Slot& at = slots[s];
     const auto bits_of = [&](std::int32_t body) { return static_cast<std::uint64_t>(number[body]); };
     std::uint64_t x = bits_of(at.i) << 34 | bits_of(at.j) << 4 | static_cast<std::uint64_t>(at.surface);
     x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9u;
@@ -45,41 +43,67 @@ struct ColoredContacts {
   }
 };
 
-struct Uncolored {
-  static constexpr std::uint32_t none = 0xffffffffu;
+// The bit that marks a remembered colour while find() looks which contacts are still there. A slot without a
+// colour is not marked.
+constexpr std::uint8_t is_here = 128;
+static_assert((on_part | (on_part - 1)) < is_here);
+
+/// Marks the colours of the contacts that are there, and lists the contacts that have none. `anew`: the taken
+/// colours of all bodies are collected, too.
+struct MarkColors {
+  ColoredContacts contacts;
   ConstView<std::int32_t> found;
-  ConstView<std::uint8_t> remembered;
-  bool keep;
-  SCREE_HD std::uint32_t operator()(std::int64_t d) const {
-    return !keep || remembered[found[d]] == no_color ? static_cast<std::uint32_t>(d) : none;
+  bool anew;
+  View<std::uint8_t> remembered;
+  View<std::uint64_t> taken;
+  View<std::int32_t> uncolored;
+  ColorChanges* changes;
+
+  SCREE_HD void operator()(std::int64_t d) const {
+    const std::int32_t s = found[d];
+    const std::uint8_t was = remembered[s];
+    if (was == no_color) {
+      uncolored[static_cast<std::int64_t>(count_up_together(&changes->uncolored))] = s;
+      return;
+    }
+    remembered[s] = was | is_here;
+    if (!anew) return;
+    const FreeEnds ends = contacts.ends(s);
+    const std::uint64_t bit = std::uint64_t{1} << was % on_part;
+    if (ends.i >= 0) set_bits(&taken[ends.i], bit);
+    if (ends.j >= 0) set_bits(&taken[ends.j], bit);
   }
 };
 
-/// Gives each contact the colour that its slot remembers, if colours are kept, and marks this colour as taken
-/// at the contact's free bodies.
-struct KeepColors {
+/// Forgets the colours of contacts that have gone, and removes the marks of the others. `anew`: the colours
+/// of contacts that have gone are not among the taken ones.
+struct ForgetGone {
   ColoredContacts contacts;
-  bool keep;
-  ConstView<std::uint8_t> remembered;
-  View<std::uint32_t> color;
-  View<std::uint32_t> slot;
+  bool anew;
+  View<std::uint8_t> remembered;
   View<std::uint64_t> taken;
+  ColorChanges* changes;
 
-  SCREE_HD void operator()(std::int64_t d) const {
-    const std::uint8_t was = remembered[contacts.found[d]];
-    slot[d] = static_cast<std::uint32_t>(contacts.found[d]);
-    color[d] = no_color;
-    if (!keep || was == no_color) return;
-    color[d] = was % on_part;
-    const FreeEnds ends = contacts.ends(d);
-    if (ends.i >= 0) set_bits(&taken[ends.i], std::uint64_t{1} << color[d]);
-    if (ends.j >= 0) set_bits(&taken[ends.j], std::uint64_t{1} << color[d]);
+  SCREE_HD void operator()(std::int64_t s) const {
+    const std::uint8_t was = remembered[s];
+    if (was == no_color) return;
+    if ((was & is_here) != 0) {
+      remembered[s] = static_cast<std::uint8_t>(was - is_here);
+      return;
+    }
+    remembered[s] = no_color;
+    put(&changes->any_gone, 1u);
+    if (anew) return;
+    const FreeEnds ends = contacts.ends(static_cast<std::int32_t>(s));
+    const std::uint64_t bit = std::uint64_t{1} << was % on_part;
+    if (ends.i >= 0) clear_bits(&taken[ends.i], bit);
+    if (ends.j >= 0) clear_bits(&taken[ends.j], bit);
   }
 };
 
 struct GatherUncolored {
   ColoredContacts contacts;
-  ConstView<std::uint32_t> list;
+  ConstView<std::int32_t> list;
   View<UncoloredContact> waiting;
   SCREE_HD void operator()(std::int64_t k) const {
     const FreeEnds ends = contacts.ends(list[k]);
@@ -102,9 +126,10 @@ struct ColorRounds {
   static constexpr int threads = 256;
   static constexpr int blocks_at_once = 2;
 
-  ConstView<std::uint32_t> list;
+  ColoredContacts contacts;
+  ConstView<std::int32_t> list;
   View<UncoloredContact> waiting;
-  View<std::uint32_t> color;
+  View<std::uint8_t> remembered;
   View<std::uint64_t> standing;
   View<std::uint64_t> taken;
 
@@ -124,7 +149,8 @@ struct ColorRounds {
     if (!at_i.is_claimed || !at_j.is_claimed) return {1};
     std::uint32_t lowest = 0;
     while (((at_i.taken | at_j.taken) >> lowest & 1) != 0) ++lowest;
-    color[list[item]] = lowest;
+    const bool part = is_on_part(contacts.mobility, contacts.slots[list[item]]);
+    remembered[list[item]] = static_cast<std::uint8_t>(lowest | (part ? on_part : 0));
     waiting[item].rank = UncoloredContact::colored;
     leave(contact.i, at_i, lowest);
     leave(contact.j, at_j, lowest);
@@ -151,36 +177,31 @@ struct ColorRounds {
   }
 };
 
-struct RememberColors {
-  ColoredContacts contacts;
-  ConstView<std::uint32_t> color;
-  View<std::uint8_t> remembered;
+/// Loads the colour and the slot of each contact.
+struct LoadColors {
+  ConstView<std::int32_t> found;
+  ConstView<std::uint8_t> remembered;
+  View<std::uint8_t> color;
+  View<std::int32_t> slot;
   SCREE_HD void operator()(std::int64_t d) const {
-    const bool part = is_on_part(contacts.mobility, contacts.slot(d));
-    remembered[contacts.found[d]] = static_cast<std::uint8_t>(color[d] | (part ? on_part : 0));
+    color[d] = remembered[found[d]] % on_part;
+    slot[d] = found[d];
   }
 };
 
 struct LoadColor {
-  ConstView<std::uint32_t> color;
-  SCREE_HD int operator()(std::int64_t d) const { return static_cast<int>(color[d]); }
-};
-
-template <class T>
-struct Fill {
-  View<T> of;
-  T value;
-  SCREE_HD void operator()(std::int64_t k) const { of[k] = value; }
+  ConstView<std::uint8_t> color;
+  SCREE_HD int operator()(std::int64_t d) const { return color[d]; }
 };
 
 struct PlaceContacts {
-  ConstView<std::uint32_t> color;
-  ConstView<std::uint32_t> slot;
+  ConstView<std::uint8_t> color;
+  ConstView<std::int32_t> slot;
   ConstView<ColorStart> start;
   View<std::int32_t> to;
   SCREE_HD void operator()(std::int64_t k) const {
     const ColorStart& of = start[color[k]];
-    to[of.place + (k - of.first)] = static_cast<std::int32_t>(slot[k]);
+    to[of.place + (k - of.first)] = slot[k];
   }
 };
 
@@ -194,35 +215,62 @@ void ContactColors<Space>::find(ConstView<std::int32_t> found, ConstView<Slot> s
   // colouring by more than this, all contacts are coloured anew.
   constexpr int most_more = 3;
   const std::int64_t n = found.size();
-  const ColoredContacts contacts{found, slots, bodies.mobility, bodies.id};
   const bool keep = colors_ > 0 && colors_ <= colors_at_first_ + most_more;
-  parallel::select("contacts.color", n, Uncolored{found, remembered, keep}, Uncolored::none, uncolored_);
-  are_same_ = knows_slots_ && keep && uncolored_.empty() && n == color_.size();
-  knows_slots_ = true;
-  if (are_same_) return;
-  color_.resize(n);
-  slot_.resize(n);
-  standing_.resize(ends);
-  taken_.resize(ends);
-  parallel::fill("contacts.color", standing_, ~std::uint64_t{0});
-  parallel::fill("contacts.color", taken_, std::uint64_t{0});
+  const bool anew = !keep || !knows_slots_;
+  if (anew) {
+    standing_.resize(ends);
+    taken_.resize(ends);
+    parallel::fill("contacts.color", standing_, ~std::uint64_t{0});
+    parallel::fill("contacts.color", taken_, std::uint64_t{0});
+  }
+  if (!keep) parallel::fill<Space>("contacts.color", remembered, no_color);
+  uncolored_.resize(n);
+  changes_.resize(1);
+  parallel::fill("contacts.color", changes_, ColorChanges{});
+  const ColoredContacts contacts{slots, bodies.mobility, bodies.id};
   parallel::for_each<Space>(
       "contacts.color", n,
-      KeepColors{contacts, keep, remembered, color_.view(), slot_.view(), taken_.view()});
-  if (const ConstView<std::uint32_t> list = std::as_const(uncolored_).view(); list.size() > 0) {
-    waiting_.resize(list.size());
-    parallel::for_each<Space>("contacts.color", list.size(),
-                              GatherUncolored{contacts, list, waiting_.view()});
-    parallel::run_in_phases<Space>(
-        "contacts.color", ColorRounds{list, waiting_.view(), color_.view(), standing_.view(), taken_.view()},
-        ColorRounds::State{false});
-  }
-  parallel::for_each<Space>("contacts.color", remembered.size(), Fill<std::uint8_t>{remembered, no_color});
-  parallel::for_each<Space>("contacts.color", n,
-                            RememberColors{contacts, std::as_const(color_).view(), remembered});
+      MarkColors{contacts, found, anew, remembered, taken_.view(), uncolored_.view(), changes_.data()});
+  parallel::for_each<Space>("contacts.color", remembered.size(),
+                            ForgetGone{contacts, anew, remembered, taken_.view(), changes_.data()});
+  ColorChanges changes;
+  copy_bytes<Host, Space>(&changes, changes_.data(), sizeof(changes));
+  are_same_ = !anew && changes.uncolored == 0 && changes.any_gone == 0;
+  knows_slots_ = true;
+  if (are_same_) return;
+  uncolored_.resize(static_cast<std::int64_t>(changes.uncolored));
+  color_others(slots, bodies, remembered);
+  sort(found, remembered);
+  if (!keep && n > 0) colors_at_first_ = colors_;
+}
+
+/// Colours the contacts that have no colour yet.
+template <class Space>
+void ContactColors<Space>::color_others(ConstView<Slot> slots, const ConstBodyView& bodies,
+                                        View<std::uint8_t> remembered) {
+  const ConstView<std::int32_t> list = std::as_const(uncolored_).view();
+  if (list.size() == 0) return;
+  const ColoredContacts contacts{slots, bodies.mobility, bodies.id};
+  waiting_.resize(list.size());
+  parallel::for_each<Space>("contacts.color", list.size(), GatherUncolored{contacts, list, waiting_.view()});
+  parallel::run_in_phases<Space>(
+      "contacts.color",
+      ColorRounds{contacts, list, waiting_.view(), remembered, standing_.view(), taken_.view()},
+      ColorRounds::State{false});
+}
+
+/// Sorts the contacts by their colours, and finds the ranges of the colours.
+template <class Space>
+void ContactColors<Space>::sort(ConstView<std::int32_t> found, ConstView<std::uint8_t> remembered) {
+  constexpr int color_bits = 6;
+  static_assert(most_colors <= 1 << color_bits);
+  const std::int64_t n = found.size();
+  color_.resize(n);
+  slot_.resize(n);
   ranges_ = {};
   if (n == 0) return;
-  parallel::sort_by_key("contacts.color", color_, slot_, 6);
+  parallel::for_each<Space>("contacts.color", n, LoadColors{found, remembered, color_.view(), slot_.view()});
+  parallel::sort_by_key("contacts.color", color_, slot_, color_bits);
   parallel::histogram<Space>("contacts.color", n, LoadColor{std::as_const(color_).view()}, most_colors,
                              counts_);
   std::vector<ColorStart> start;
@@ -234,12 +282,11 @@ void ContactColors<Space>::find(ConstView<std::int32_t> found, ConstView<Slot> s
   }
   copy(start_, start);
   colors_ = ranges_.colors();
-  if (!keep) colors_at_first_ = colors_;
 }
 
 template <class Space>
 void ContactColors<Space>::place(View<std::int32_t> slot) const {
-  parallel::for_each<Space>("contacts.color", slot.size(), Fill<std::int32_t>{slot, Slot::empty});
+  parallel::fill<Space>("contacts.color", slot, Slot::empty);
   parallel::for_each<Space>("contacts.color", color_.size(),
                             PlaceContacts{color_.view(), slot_.view(), start_.view(), slot});
 }

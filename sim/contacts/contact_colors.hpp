@@ -39,6 +39,13 @@ struct alignas(16) UncoloredContact {
   static constexpr std::uint64_t colored = ~std::uint64_t{0};
 };
 
+/// What has changed since the last colouring: the number of contacts without a colour, and whether (0 or 1)
+/// any contact has gone.
+struct ColorChanges {
+  std::uint64_t uncolored = 0;
+  std::uint32_t any_gone = 0;
+};
+
 /// The colouring of the contacts of one kind (of balls, or of several points).
 template <class Space>
 class ContactColors {
@@ -67,14 +74,22 @@ class ContactColors {
   }
 
  private:
-  Array<std::uint32_t, Space> color_, slot_;  // each contact's colour and slot; find() sorts them by colour
+  void color_others(ConstView<Slot> slots, const ConstBodyView& bodies, View<std::uint8_t> remembered);
+  void sort(ConstView<std::int32_t> found, ConstView<std::uint8_t> remembered);
+
+  Array<std::uint8_t, Space> color_;  // each contact's colour and slot; find() sorts them by colour
+  Array<std::int32_t, Space> slot_;
   ColorRanges ranges_;
-  Array<ColorStart, Space> start_;  // one element for each colour
-  // Temporary memory of find(): contacts without a colour, the number of contacts of each colour, and for
-  // each body of the solver the lowest rank that has claimed it and the colours that are taken there.
-  Array<std::uint32_t, Space> uncolored_, counts_;
+  Array<ColorStart, Space> start_;     // one element for each colour
+  Array<std::uint64_t, Space> taken_;  // the colours that are taken at each body of the solver
+  // Temporary memory of find(): the slots of contacts without a colour, the number of contacts of each
+  // colour, and the lowest rank that has claimed each body of the solver; between two calls no body is
+  // claimed.
+  Array<std::int32_t, Space> uncolored_;
+  Array<std::uint32_t, Space> counts_;
+  Array<ColorChanges, Space> changes_;
   Array<UncoloredContact, Space> waiting_;
-  Array<std::uint64_t, Space> standing_, taken_;
+  Array<std::uint64_t, Space> standing_;
   bool knows_slots_ = false, are_same_ = false;
   int colors_ = 0;           // number of colours after the last find()
   int colors_at_first_ = 0;  // number of colours after the last find() that coloured all contacts at once

@@ -207,6 +207,18 @@ TYPED_TEST(ContactColorsTest, TheSameContactsStayWhereTheyAre) {
   EXPECT_FALSE(crowd.are_same());
 }
 
+/// Which colours are taken is kept from call to call: it must be what the contacts would tell.
+TYPED_TEST(ContactColorsTest, ChangesGiveTheColoursThatAllContactsWouldGive) {
+  Crowd<TypeParam> crowd(9), other(9);
+  for (int k = 0; k < 30; ++k) {
+    crowd.change(10);
+    other.change(10);
+    other.forget();
+    ASSERT_EQ(crowd.color(), other.color()) << k;
+    ASSERT_EQ(crowd.remembered(), other.remembered()) << k;
+  }
+}
+
 TYPED_TEST(ContactColorsTest, PartsOfHubsAreDealtAnew) {
   Crowd<TypeParam> crowd(6);
   crowd.change(1);
