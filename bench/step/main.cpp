@@ -92,8 +92,16 @@ Json per_step(const std::vector<timing::Entry>& list, double steps) {
   return json;
 }
 
+/// Returns how often each of the entries came in a step.
+Json times_per_step(const std::vector<timing::Entry>& list, double steps) {
+  Json json;
+  for (const timing::Entry& entry : list) json[entry.label] = static_cast<double>(entry.calls) / steps;
+  return json;
+}
+
 /// Takes steps in which each parallel call is waited for, to measure its share; this makes the steps slower.
 Json steps_by_calls(Simulation& simulation, int most) {
+  const Counters before = simulation.observe(false).counters;
   timing::reset();
   timing::time_calls(true);
   const auto start = Clock::now();
@@ -101,10 +109,16 @@ Json steps_by_calls(Simulation& simulation, int most) {
   for (; steps < most && !simulation.finished(); ++steps) simulation.step();
   const double total = seconds_since(start);
   timing::time_calls(false);
+  const Counters& after = simulation.observe(false).counters;
+  const auto each = [steps](std::int64_t more) { return static_cast<double>(more) / steps; };
   return {{"steps", steps},
+          {"substeps", each(after.substeps - before.substeps)},
+          {"sweeps", each(after.sweeps - before.sweeps)},
+          {"pcs_made", each(after.pcs_made - before.pcs_made)},
           {"mean_ms", 1e3 * total / steps},
           {"stages_ms", per_step(timing::entries(), steps)},
-          {"calls_ms", per_step(timing::calls(), steps)}};
+          {"calls_ms", per_step(timing::calls(), steps)},
+          {"calls", times_per_step(timing::calls(), steps)}};
 }
 
 /// Takes steps until the simulated time `until` (s), or until the wall time `within` (s) has passed.

@@ -149,7 +149,7 @@ struct AccountBallBlocks {
     for (std::int64_t c = first; c < first + simd::width && contacts.slot[c] != Slot::empty; ++c) {
       const std::int32_t place = contacts.slot[c];
       memory[place] = {contacts.fields.vector(BallContacts<double>::impulse, c)};
-      if (memory[place].is_loaded()) stage.mark_loaded(stage.places[place], stage.places[place].surface);
+      if (memory[place].is_loaded()) stage.mark_loaded_balls(place);
     }
   }
 };

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "core/space_atomic.hpp"
+#include "core/space_record.hpp"
 #include "core/tolerances.hpp"
 #include "sim/contacts/layout.hpp"
 #include "sim/contacts/sweeps.hpp"
@@ -62,6 +63,19 @@ struct PointMotion {
   Vec3 before, free, after;
 };
 
+/// The two bodies of a contact as the solver has them: with the substep's forces, without contacts (`free`)
+/// and with them (`after`).
+template <class Real>
+struct EndBodies {
+  BodyRecord<Real> free_i, free_j, after_i, after_j;
+
+  SCREE_HD bool is_free_i() const { return after_i.inverse_mass > 0; }
+  SCREE_HD bool is_free_j() const { return after_j.inverse_mass > 0; }
+  SCREE_HD std::int64_t free_ends() const {
+    return static_cast<int>(is_free_i()) + static_cast<int>(is_free_j());
+  }
+};
+
 /// The gain of energy that counts as rounding, relative to Moved::square. In float it is larger: rounding is
 /// relative to the velocities, which may be thousands of times as large as their changes.
 template <class Real>
@@ -79,7 +93,8 @@ struct AccountStage {
   ResponseParameters parameters;
   double step;
   View<std::uint32_t> loads;  ///< one byte for each candidate, with a bit for each part that bears load
-  bool again = false;         ///< whether the gaps at the end have been set already
+  bool places_are_candidates = false;  ///< Slots::are_candidates()
+  bool again = false;                  ///< whether the gaps at the end have been set already
 
   /// Returns the Manifold::part of a slot's surface. For a box in a tube, the eight surfaces of the corners
   /// are all parts of the one wall.
@@ -90,21 +105,35 @@ struct AccountStage {
     if (!corners) return slot.surface;
     return slot.surface < box_corners ? 0 : slot.surface - box_corners + 1;
   }
-  SCREE_HD void mark_loaded(const Slot& slot, int part) const {
-    const auto candidate = static_cast<std::uint32_t>(slot.candidate);
-    set_bits(&loads[candidate / 4], 1u << (8 * (candidate % 4) + static_cast<std::uint32_t>(part)));
+  SCREE_HD void mark_loaded(std::int64_t candidate, int part) const {
+    const auto byte = static_cast<std::uint32_t>(candidate % 4);
+    set_bits(&loads[candidate / 4], 1u << (8 * byte + static_cast<std::uint32_t>(part)));
+  }
+  /// Marks the candidate of a slot of balls, without a look at the slot if that is not needed.
+  SCREE_HD void mark_loaded_balls(std::int64_t place) const {
+    if (places_are_candidates) {
+      mark_loaded(place, 0);
+    } else {
+      mark_loaded(places[place].candidate, places[place].surface);
+    }
+  }
+
+  SCREE_HD EndBodies<Real> ends_of(const Ends& ends) const {
+    return {load_whole(free[ends.i]), load_whole(free[ends.j]), load_whole(solver[ends.i]),
+            load_whole(solver[ends.j])};
   }
 
   SCREE_HD PointMotion motion_of(const Vec3& arm_i, const Vec3& arm_j, const Slot& slot,
-                                 const Ends& ends) const {
-    const Vec3 with_forces = velocity_of(free, ends.j, arm_j) - velocity_of(free, ends.i, arm_i);
-    return {with_forces - kick_of(slot.j, ends.j, arm_j) + kick_of(slot.i, ends.i, arm_i), with_forces,
-            velocity_of(solver, ends.j, arm_j) - velocity_of(solver, ends.i, arm_i)};
+                                 const EndBodies<Real>& at) const {
+    const Vec3 with_forces = velocity_of(at.free_j, arm_j) - velocity_of(at.free_i, arm_i);
+    return {with_forces - kick_of(slot.j, at.is_free_j(), at.free_j, arm_j) +
+                kick_of(slot.i, at.is_free_i(), at.free_i, arm_i),
+            with_forces, velocity_of(at.after_j, arm_j) - velocity_of(at.after_i, arm_i)};
   }
 
   /// Adds what the impulse of a point has moved to the totals, as account() of impulse_energy.hpp does, with
   /// the lever arms of `at`.
-  SCREE_HD void account(const AccountedPoint& at, const Slot& slot, const Ends& ends,
+  SCREE_HD void account(const AccountedPoint& at, const Slot& slot, const EndBodies<Real>& ends,
                         ContactTotals& totals) const {
     const Vec3& p = at.impulse;
     const auto [before, free_u, after] = motion_of(at.arm_i, at.arm_j, slot, ends);
@@ -114,29 +143,24 @@ struct AccountStage {
     const double changed = p.dot(after - free_u);
     totals.restitution -= normal_part;
     totals.friction -= through_mean - normal_part;
-    if (!is_free(ends.i)) totals.work += p.dot(velocity_of(solver, ends.i, at.arm_i));
-    if (!is_free(ends.j)) totals.work -= p.dot(velocity_of(solver, ends.j, at.arm_j));
+    if (!ends.is_free_i()) totals.work += p.dot(velocity_of(ends.after_i, at.arm_i));
+    if (!ends.is_free_j()) totals.work -= p.dot(velocity_of(ends.after_j, at.arm_j));
     totals.gap_power += pn * (after.dot(at.normal) - at.target);
     totals.kick_power += changed;
   }
-  SCREE_HD bool is_free(std::int32_t end) const { return solver[end].inverse_mass > 0; }
   /// Sets `gaining` in the totals of one contact, all of whose points have been added.
   SCREE_HD static void judge_gain(ContactTotals& totals) {
     totals.gaining = totals.moved().gains(response_gain<Real>) ? 1 : 0;
   }
-  SCREE_HD std::int64_t free_ends(const Ends& ends) const {
-    return static_cast<int>(is_free(ends.i)) + static_cast<int>(is_free(ends.j));
-  }
 
  private:
-  SCREE_HD static Vec3 velocity_of(ConstView<BodyRecord<Real>> records, std::int32_t end, const Vec3& arm) {
-    const BodyRecord<Real>& body = records[end];
+  SCREE_HD static Vec3 velocity_of(const BodyRecord<Real>& body, const Vec3& arm) {
     return vec3(body.velocity) + vec3(body.spin).cross(arm);
   }
   /// Returns what the substep's forces have added to the velocity of a point of a body (m/s).
-  SCREE_HD Vec3 kick_of(std::int32_t body, std::int32_t end, const Vec3& arm) const {
-    Vec3 kick = is_free(end) ? Vec3(step * parameters.acceleration_of(body)) : Vec3(Vec3::Zero());
-    if (parameters.torque.size() > 0) kick += (vec3(free[end].spin) - bodies.spin[body]).cross(arm);
+  SCREE_HD Vec3 kick_of(std::int32_t body, bool is_free, const BodyRecord<Real>& at, const Vec3& arm) const {
+    Vec3 kick = is_free ? Vec3(step * parameters.acceleration_of(body)) : Vec3(Vec3::Zero());
+    if (parameters.torque.size() > 0) kick += (vec3(at.spin) - bodies.spin[body]).cross(arm);
     return kick;
   }
 };
@@ -158,7 +182,7 @@ struct AccountBalls {
   SCREE_HD ContactTotals operator()(std::int64_t c) const {
     using C = BallContacts<Real>;
     const std::int64_t place = contacts.slot[c];
-    const Ends ends = contacts.ends[c];
+    const EndBodies<Real> ends = stage.ends_of(contacts.ends[c]);
     const auto& f = contacts.fields;
     const V3<Real> n = f.vector(C::normal, c);
     const V3<Real> impulse = f.vector(C::impulse, c);
@@ -174,13 +198,13 @@ struct AccountBalls {
           slot, ends, totals);
       totals.gaps = fabs(static_cast<double>(contacts.gaps.at(C::gap, c)));
       totals.loaded = 1;
-      totals.ends = stage.free_ends(ends);
+      totals.ends = ends.free_ends();
       stage.judge_gain(totals);
-      if (stage.loads.size() > 0) stage.mark_loaded(slot, slot.surface);
+      if (stage.loads.size() > 0) stage.mark_loaded_balls(place);
     }
     Real& predicted_gap = contacts.gaps.at(C::predicted_gap, c);
     if (contacts.flags[c] == 0) {
-      const V3<Real> u = stage.solver[ends.j].velocity - stage.solver[ends.i].velocity;
+      const V3<Real> u = ends.after_j.velocity - ends.after_i.velocity;
       if (!stage.again) predicted_gap += static_cast<Real>(0.5 * stage.step) * dot(n, u);
       totals.deepest = fmax(0.0, static_cast<double>(-predicted_gap / contacts.gaps.at(C::cap, c)));
     } else if (passes(contacts.flags[c], loaded)) {
@@ -202,7 +226,7 @@ struct AccountPoints {
     using C = PointContacts<Real>;
     const std::int64_t place = contacts.slot[c];
     const Slot& slot = stage.places[first_place + place];
-    const Ends ends = contacts.ends[c];
+    const EndBodies<Real> ends = stage.ends_of(contacts.ends[c]);
     const Vec3 n = vec3(contacts.fields.vector(C::normal, c));
     const double cap = static_cast<double>(contacts.fields.at(C::cap, c));
     const auto& f = contacts.point_fields;
@@ -222,15 +246,15 @@ struct AccountPoints {
       Real& predicted_gap = contacts.gaps.at(C::at_point(k, C::predicted_gap), c);
       if (passes(contacts.flags[c], loaded)) predicted_gap = static_cast<Real>(HUGE_VAL);
       if (contacts.flags[c] != 0) continue;
-      const V3<Real> u = velocity_at(at, stage.solver[ends.i], stage.solver[ends.j]);
+      const V3<Real> u = velocity_at(at, ends.after_i, ends.after_j);
       if (!stage.again)
         predicted_gap += static_cast<Real>(0.5 * stage.step) * dot(contacts.fields.vector(C::normal, c), u);
       totals.deepest = fmax(totals.deepest, static_cast<double>(-predicted_gap) / cap);
     }
     if (totals.loaded == 0) return totals;
-    totals.ends = stage.free_ends(ends);
+    totals.ends = ends.free_ends();
     stage.judge_gain(totals);
-    if (stage.loads.size() > 0) stage.mark_loaded(slot, stage.part_of(slot));
+    if (stage.loads.size() > 0) stage.mark_loaded(slot.candidate, stage.part_of(slot));
     return totals;
   }
 };

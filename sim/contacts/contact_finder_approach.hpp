@@ -19,9 +19,8 @@ ApproachList ContactFinder<Space, Real>::clear_approaching(std::int64_t contacts
 template <class Space, class Real>
 template <class Judge>
 void ContactFinder<Space, Real>::judge(const ApproachList& approaching, const Judge& judge) {
-  constexpr std::int64_t threads = JudgeApproach<Judge>::template threads<Space>;
-  parallel::for_each<Space>("contacts.approaching", threads,
-                            JudgeApproach<Judge>{threads, approaching, judge});
+  parallel::for_each_counted<Space>("contacts.approaching", approaching.count, approaching.contacts.size(),
+                                    JudgeApproach<Judge>{approaching, judge});
 }
 
 }  // namespace scree::solver

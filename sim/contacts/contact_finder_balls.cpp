@@ -13,6 +13,11 @@ void ContactFinder<Space, Real>::find_balls(const FindStage<Real>& stage, Slots<
   constexpr std::int64_t few_tiles = 2, few_blocks = 32;
   found_.start(tiles);
   FindBalls<Real> find{stage, {}, slots.ball_memory(), solver, {}};
+  // Calls what(search) with a search that can do what the slots need.
+  const auto with_search = [&](const auto& what) {
+    if (stage.any_late_impact || slots.has_rare_balls()) return what(find);
+    what(FindBalls<Real, false>{stage, find.contacts, find.memory, solver, find.approaching});
+  };
   if constexpr (!one_by_one) {
     reach_.resize(stage.mid.size() + 1);
     Reach* const reach = reach_.data() + 1;
@@ -20,8 +25,10 @@ void ContactFinder<Space, Real>::find_balls(const FindStage<Real>& stage, Slots<
     parallel::for_each<Host>("contacts.find balls", tiles,
                              FindBallTile{find, reach, found_.places(), found_.counts()}, few_tiles);
   } else {
-    parallel::compact_tiles<Space>("contacts.find balls", tiles,
-                                   FindSlots<FindBalls<Real>>{find, found_.places()}, found_.counts());
+    with_search([&]<class Find>(const Find& search) {
+      parallel::compact_tiles<Space>("contacts.find balls", tiles, FindSlots<Find>{search, found_.places()},
+                                     found_.counts());
+    });
   }
   found_.join();
   ball_colors_.find(found_.all(), slots.places_of_balls(), stage.bodies,
@@ -35,7 +42,9 @@ void ContactFinder<Space, Real>::find_balls(const FindStage<Real>& stage, Slots<
     parallel::for_each<Host>("contacts.make balls", contacts / simd::width,
                              MakeBallBlock{find, reach_.data() + 1}, few_blocks);
   } else {
-    parallel::for_each<Space>("contacts.make balls", contacts, MakeContacts<FindBalls<Real>>{find});
+    with_search([&]<class Find>(const Find& search) {
+      parallel::for_each<Space>("contacts.make balls", contacts, MakeContacts<Find>{search});
+    });
   }
   judge(find.approaching, JudgeBalls<Real>{stage, find.contacts});
 }

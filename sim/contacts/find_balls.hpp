@@ -6,6 +6,7 @@
 #include "narrowphase/sphere_plane.hpp"
 #include "narrowphase/sphere_sphere.hpp"
 #include "sim/contacts/find_stage.hpp"
+#include "sim/contacts/solver_bodies.hpp"
 
 namespace scree::solver {
 
@@ -74,15 +75,16 @@ template <class Real>
   return found;
 }
 
-template <class Real>
+template <bool rare, class Real>
 SCREE_HD inline bool meet_balls(const FindStage<Real>& stage, std::int64_t place, const SlotBodies<Real>& at,
                                 double delay, Touch& out) {
-  const auto is_common = [](Shape shape) { return shape == Shape::sphere || shape == Shape::plane; };
-  if (delay > 0 || !is_common(at.a.shape) || !is_common(at.b.shape)) {
-    Touch rare;  // in memory, since the called function takes its address
-    const bool found = meet_rarely(stage, stage.places[place], delay, rare);
-    if (found) out = rare;
-    return found;
+  if constexpr (rare) {
+    if (delay > 0 || !is_ball_or_plane(at.a.shape) || !is_ball_or_plane(at.b.shape)) {
+      Touch touch;  // in memory, since the called function takes its address
+      const bool found = meet_rarely(stage, stage.places[place], delay, touch);
+      if (found) out = touch;
+      return found;
+    }
   }
   Manifold m;
   const bool found = meet<false>(stage, at, 0, m);
@@ -91,8 +93,9 @@ SCREE_HD inline bool meet_balls(const FindStage<Real>& stage, std::int64_t place
 }
 
 /// Finds and makes contacts of balls as if all their bodies met and stayed together. Contacts whose bodies
-/// may fly past each other or bounce are added to `approaching`.
-template <class Real>
+/// may fly past each other or bounce are added to `approaching`. Without `rare`, no slot may be rare
+/// (Slots::has_rare_balls()) and no body struck after the midpoint: this takes fewer registers.
+template <class Real, bool rare = true>
 struct FindBalls {
   struct Record {
     Vec3 normal;
@@ -101,8 +104,9 @@ struct FindBalls {
     double delay;
   };
 
-  static constexpr int blocks_at_once = 2;  // more would spill registers: worse than waiting threads
-  static constexpr int kinds = 0;           // the work on all slots is alike
+  // More would spill registers, which is worse than waiting threads.
+  static constexpr int blocks_at_once = rare ? 2 : 3;
+  static constexpr int kinds = 0;  // the work on all slots is alike
 
   FindStage<Real> stage;
   BallContacts<Real> contacts;
@@ -115,9 +119,9 @@ struct FindBalls {
     const Slot slot = stage.places[place];
     if (slot.i == Slot::empty) return false;
     const SlotBodies<Real> at = stage.load(slot);
-    record.delay = stage.delay_of(slot);
+    record.delay = rare ? stage.delay_of(slot) : 0.0;
     Touch m;
-    if (!meet_balls(stage, place, at, record.delay, m)) {
+    if (!meet_balls<rare>(stage, place, at, record.delay, m)) {
       memory[place] = {};
       return false;
     }
@@ -146,7 +150,7 @@ struct FindBalls {
     const double friction = stage.friction_of(at);
     const double curvature = stage.curvature_of(at, n);
     const double opened = stage.opened_by_then(at, n, curvature, record.delay);
-    set_wall_points(at, record);
+    if constexpr (rare) set_wall_points(at, record);
     const double parting = n.dot(stage.relative_velocity(at));
     const double closing = -n.dot(stage.kicked_relative_velocity(at));
     const bool approaches =

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "core/space_atomic.hpp"
+#include "core/space_record.hpp"
 #include "core/tolerances.hpp"
 #include "narrowphase/any_contacts.hpp"
 #include "narrowphase/contact.hpp"
@@ -47,7 +48,9 @@ struct FindStage {
   bool any_late_impact;              ///< whether any body was struck after the midpoint
   LibccdContacts* libccd = nullptr;  ///< on Host alone; null if libccd is not used
 
-  SCREE_HD SlotBodies<Real> load(const Slot& slot) const { return {slot, mid[slot.i], mid[slot.j]}; }
+  SCREE_HD SlotBodies<Real> load(const Slot& slot) const {
+    return {slot, load_whole(mid[slot.i]), load_whole(mid[slot.j])};
+  }
   SCREE_HD const PairLaw& law_of(const SlotBodies<Real>& at) const {
     return laws.table[at.a.material * laws.materials + at.b.material];
   }
@@ -266,27 +269,13 @@ struct MakeContacts {
   }
 };
 
-/// Decides for each listed contact whether its bodies fly past each other or bounce. This work differs from
-/// that on the many contacts that touch, so it is done in a pass of its own.
+/// Decides for a listed contact whether its bodies fly past each other or bounce. This work differs from that
+/// on the many contacts that touch, so it is done in a pass of its own.
 template <class Judge>
 struct JudgeApproach {
-  /// The number of threads, which is also the stride with which each of them goes through the list.
-  template <class Space>
-  static constexpr std::int64_t threads = std::is_same_v<Space, Host> ? 64 : 1 << 15;
-
-  std::int64_t stride;
-
   ApproachList approaching;
   Judge judge;
-
-  /// The threads of a warp of a GPU go different ways and so work one after the other: the first contacts
-  /// are dealt to one thread of each warp.
-  SCREE_HD void operator()(std::int64_t thread) const {
-    constexpr std::int64_t warp = 32;
-    const auto count = static_cast<std::int64_t>(*approaching.count);
-    const std::int64_t first = thread % warp * (stride / warp) + thread / warp;
-    for (std::int64_t k = first; k < count; k += stride) judge(approaching.contacts[k]);
-  }
+  SCREE_HD void operator()(std::int64_t k) const { judge(approaching.contacts[k]); }
 };
 
 }  // namespace scree::solver

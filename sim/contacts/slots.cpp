@@ -1,6 +1,7 @@
 #include "sim/contacts/slots.hpp"
 
 #include "core/parallel.hpp"
+#include "core/space_atomic.hpp"
 #include "core/space_tiles.hpp"
 #include "sim/contacts/contact_colors.hpp"
 
@@ -72,12 +73,18 @@ struct PlaceSlots {
   }
 };
 
-/// Copies slots to their places.
+/// Copies slots to their places, and sets *any_rare to 1 if any slot of balls is rare.
 struct PutSlots {
+  ConstBodyView bodies;
   ConstView<Slot> slots;
   ConstView<std::int64_t> place;
+  std::int64_t ball_places;
   View<Slot> places;
-  SCREE_HD void operator()(std::int64_t s) const { places[place[s]] = slots[s]; }
+  std::uint32_t* any_rare;
+  SCREE_HD void operator()(std::int64_t s) const {
+    places[place[s]] = slots[s];
+    if (place[s] < ball_places && is_rare(bodies, slots[s])) put(any_rare, 1u);
+  }
 };
 
 /// Gives each place what its slot remembered before the slots were built anew.
@@ -170,17 +177,20 @@ void Slots<Space, Real>::place_slots(const ConstBodyView& bodies) {
   place_.resize(slots.size());
   parallel::for_each<Space>("slots.place", slots.size(),
                             PlaceSlots{std::as_const(others).view(), ball_places(), place_.view()});
-  put_slots((ball_tiles_ + parallel::tiles_of(other_slots)) * parallel::tile);
+  put_slots(bodies, (ball_tiles_ + parallel::tiles_of(other_slots)) * parallel::tile);
 }
 
 /// Makes room for a number of places, and copies the slots to theirs.
 template <class Space, class Real>
-void Slots<Space, Real>::put_slots(std::int64_t places) {
+void Slots<Space, Real>::put_slots(const ConstBodyView& bodies, std::int64_t places) {
   places_.resize(places);
   parallel::fill("slots.place", places_, Slot{});
-  parallel::for_each<Space>(
-      "slots.place", place_.size(),
-      PutSlots{std::as_const(slots_).view(), std::as_const(place_).view(), places_.view()});
+  Array<std::uint32_t, Space> any_rare(1);
+  parallel::fill("slots.place", any_rare, 0u);
+  parallel::for_each<Space>("slots.place", place_.size(),
+                            PutSlots{bodies, std::as_const(slots_).view(), std::as_const(place_).view(),
+                                     ball_places(), places_.view(), any_rare.data()});
+  has_rare_balls_ = to_vector(any_rare).front() != 0;
 }
 
 template <class Space, class Real>
@@ -243,7 +253,7 @@ void Slots<Space, Real>::archive(Archive& archive, const ConstBodyView& bodies) 
   if (!archive.is_loading()) return;
   list_slots(bodies);
   solver_bodies_.number(bodies, slots_.view());
-  put_slots(ball_memory_.size() + point_memory_.size());
+  put_slots(bodies, ball_memory_.size() + point_memory_.size());
 }
 
 #define SCREE_INSTANTIATE(Space)       \

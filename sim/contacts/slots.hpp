@@ -73,6 +73,10 @@ class Slots {
   ConstView<Slot> places_of_others() const {
     return {places_.data() + ball_places(), places_.size() - ball_places()};
   }
+  /// Whether any slot of balls is_rare().
+  bool has_rare_balls() const { return has_rare_balls_; }
+  /// Whether the slot of each candidate is at the candidate's own place: each has one slot, of balls.
+  bool are_candidates() const { return slots_.size() == pairs_.size() && other_tiles() == 0; }
   View<BallMemory<Real>> ball_memory() { return ball_memory_.view(); }
   View<PointMemory<Real>> point_memory() { return point_memory_.view(); }
   /// Returns the couples against rolling (N m s) of all places; empty if nothing rolls.
@@ -88,7 +92,7 @@ class Slots {
  private:
   void list_slots(const ConstBodyView& bodies);
   void place_slots(const ConstBodyView& bodies);
-  void put_slots(std::int64_t places);
+  void put_slots(const ConstBodyView& bodies, std::int64_t places);
   void recall(ConstView<std::int64_t> before, const ConstBodyView& bodies, bool rolls);
 
   Array<Pair, Space> pairs_;                      // the candidates
@@ -97,6 +101,7 @@ class Slots {
   Array<Slot, Space> places_;                     // the same slots, tile by tile
   Array<std::int64_t, Space> place_, old_place_;  // place of each slot
   std::int64_t ball_tiles_ = 0;
+  bool has_rare_balls_ = false;
   Array<BallMemory<Real>, Space> ball_memory_, old_ball_memory_;     // for each place of balls
   Array<PointMemory<Real>, Space> point_memory_, old_point_memory_;  // for each other place
   Array<V3<Real>, Space> couples_, old_couples_;                     // for each place, if anything rolls

@@ -36,6 +36,17 @@ SCREE_HD inline bool is_of_balls(const ConstBodyView& bodies, const Slot& slot) 
   return is_ball(slot.i) && is_ball(slot.j);
 }
 
+SCREE_HD inline bool is_ball_or_plane(Shape shape) { return shape == Shape::sphere || shape == Shape::plane; }
+
+/// Whether a slot of balls is more than one of two balls, or of a ball and a plane that stands still.
+SCREE_HD inline bool is_rare(const ConstBodyView& bodies, const Slot& slot) {
+  const auto is_wall_point = [&](std::int32_t body, std::int32_t end) {
+    return bodies.mobility[body] != Mobility::free && end != body;
+  };
+  return !is_ball_or_plane(bodies.shape[slot.i]) || !is_ball_or_plane(bodies.shape[slot.j]) ||
+         is_wall_point(slot.i, slot.end_i) || is_wall_point(slot.j, slot.end_j);
+}
+
 /// The bodies of the solver, in this order: all bodies; padding_body, which is not free; the parts of the
 /// hubs; and the points of turning walls that balls may touch. The last are one body for each slot, which is
 /// not free and has the velocity of the wall at the contact.

@@ -109,6 +109,7 @@ struct FlightStage {
   double least_impact_speed = -1;  ///< two bodies whose top speeds sum to no more have no impact (m/s)
 
   SCREE_HD bool is_free(std::int32_t body) const { return bodies.mobility[body] == Mobility::free; }
+  SCREE_HD bool is_absent(std::int64_t body) const { return bodies.mobility[body] == Mobility::absent; }
   /// Returns whether a body is so heavy that an impact with the other one hardly moves it.
   SCREE_HD bool is_heavy_to(std::int32_t body, std::int32_t other) const {
     return is_free(body) && tolerance::heavy_ratio * bodies.inverse_mass[body] <= bodies.inverse_mass[other];
@@ -176,28 +177,32 @@ struct FlightStage {
 
   /// Sets the turn, the top speed, the reach and the extent of a body in the given flight.
   SCREE_HD void bound(std::int32_t body, const BodyFlight& in) const {
-    const bool absent = bodies.mobility[body] == Mobility::absent;
-    const double turns = absent ? 0.0 : fastest_turn(in);
-    const double linear = in.velocity.norm();
+    const double turns = turn_of(body, in);
     const double gained = in.acceleration.norm() * terms.step;
-    const double reaches = absent ? 0.0 : (linear + gained + turns) * (0.5 * terms.step);
+    const double reaches = is_absent(body) ? 0.0 : (in.velocity.norm() + gained + turns) * (0.5 * terms.step);
     turn[body] = turns;
-    top_speed[body] = absent ? 0.0 : linear + turns + (parameters.acceleration.size() > 0 ? gained : 0.0);
+    top_speed[body] = top_speed_of(body, in);
     reach[body] = reaches;
     extent[body] = is_boundary(in.shape) ? HUGE_VAL : bounding_radius(in.shape, in.size) + reaches;
   }
   SCREE_HD void bound(std::int32_t body) const { bound(body, flight(body)); }
 
+  /// Returns the top speed of a body in the given flight, which bound() sets (m/s).
+  SCREE_HD double top_speed_of(std::int32_t body, const BodyFlight& in) const {
+    if (is_absent(body)) return 0.0;
+    const bool gains = parameters.acceleration.size() > 0;
+    return in.velocity.norm() + turn_of(body, in) + (gains ? in.acceleration.norm() * terms.step : 0.0);
+  }
+
   /// Returns the length to which the tolerances of a body are relative (m); infinite for absent bodies.
   SCREE_HD double size_of(std::int64_t body) const {
-    return bodies.mobility[body] == Mobility::absent ? HUGE_VAL
-                                                     : smallest_size(bodies.shape[body], bodies.size[body]);
+    return is_absent(body) ? HUGE_VAL : smallest_size(bodies.shape[body], bodies.size[body]);
   }
 
   /// Returns whether the meetings of a body with others need a search (next_meeting), by the turn that
   /// bound() has set.
   SCREE_HD bool needs_search(std::int32_t body) const {
-    if (bodies.mobility[body] == Mobility::absent || bodies.shape[body] == Shape::sphere) return false;
+    if (is_absent(body) || bodies.shape[body] == Shape::sphere) return false;
     return !is_boundary(bodies.shape[body]) || turn[body] == HUGE_VAL;
   }
 
@@ -260,6 +265,10 @@ struct FlightStage {
   }
 
  private:
+  /// Returns a bound on the speed that rotation gives the surface of a body (m/s).
+  SCREE_HD double turn_of(std::int32_t body, const BodyFlight& in) const {
+    return is_absent(body) ? 0.0 : fastest_turn(in);
+  }
   /// Returns whether an approach at this speed may go deep, or bounce on a part that bears no load.
   template <class Loads>
   SCREE_HD bool may_count(std::int32_t i, std::int32_t j, const ImpactLimits& limits, const Loads& loads,

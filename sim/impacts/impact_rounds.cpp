@@ -40,6 +40,21 @@ struct StartFlight {
   }
 };
 
+/// Bounds bodies and laws as StartFlight does, without a write and without needs_search.
+struct BoundSpeeds {
+  FlightStage stage;
+  SCREE_HD FlightBounds operator()(std::int64_t k) const {
+    FlightBounds bounds;
+    const ConstView<PairLaw> laws = stage.terms.laws.table;
+    if (k < laws.size()) bounds.restitution = laws[k].restitution;
+    if (k >= stage.bodies.count()) return bounds;
+    const auto body = static_cast<std::int32_t>(k);
+    bounds.top_speed = stage.top_speed_of(body, stage.flight(body));
+    bounds.smallest = stage.size_of(k);
+    return bounds;
+  }
+};
+
 struct StartProgress {
   FlightStage stage;
   ConstView<FlightBounds> bounds;
@@ -76,18 +91,16 @@ struct ResetBodies {
   }
 };
 
-/// Lists the pairs that come near each other. This loop is not part of the rounds, which take many registers,
-/// so that more pairs are looked at in parallel. It loads the speeds of four pairs together, since most pairs
-/// are too slow.
-struct ListNear {
+/// Lists the pairs that are fast enough for an impact. It loads the speeds of four pairs together, since most
+/// pairs are too slow.
+struct ListFast {
   static constexpr int together = 4;
   SCREE_HD static std::int64_t items(std::int64_t pairs) { return (pairs + together - 1) / together; }
 
-  FlightStage stage;
+  ConstView<double> top_speed;
   ConstView<Pair> pairs;
-  ConstView<LoadedParts> loaded;
   ImpactProgress* progress;
-  View<std::int64_t> near;
+  View<std::int32_t> fast;
   SCREE_HD void operator()(std::int64_t item) const {
     const std::int64_t stride = items(pairs.size());
     const double least = progress->least_impact_speed;
@@ -95,15 +108,29 @@ struct ListNear {
     for (int p = 0; p < together; ++p) {
       const std::int64_t k = item + p * stride;
       const Pair pair = pairs[k < pairs.size() ? k : item];
-      is_fast[p] = k < pairs.size() && stage.top_speed[pair.i] + stage.top_speed[pair.j] > least;
+      is_fast[p] = k < pairs.size() && top_speed[pair.i] + top_speed[pair.j] > least;
     }
-    for (int p = 0; p < together; ++p)
-      if (is_fast[p]) look_at(item + p * stride);
+    for (int p = 0; p < together; ++p) {
+      if (!is_fast[p]) continue;
+      const auto place = static_cast<std::int64_t>(count_up_together(&progress->fast));
+      fast[place] = static_cast<std::int32_t>(item + p * stride);
+    }
   }
+};
 
- private:
-  SCREE_HD void look_at(std::int64_t k) const {
+/// Lists the pairs that come near each other, of those in `fast` or of all. This loop is not part of the
+/// rounds, nor of ListFast, since it takes many registers: so more pairs are looked at in parallel.
+struct ListNear {
+  FlightStage stage;
+  ConstView<Pair> pairs;
+  ConstView<LoadedParts> loaded;
+  ConstView<std::int32_t> fast;  ///< ListFast::fast; empty: all pairs are looked at
+  ImpactProgress* progress;
+  View<std::int64_t> near;
+  SCREE_HD void operator()(std::int64_t item) const {
+    const std::int64_t k = fast.size() > 0 ? fast[item] : item;
     const auto [i, j] = pairs[k];
+    if (stage.top_speed[i] + stage.top_speed[j] <= progress->least_impact_speed) return;
     ImpactLimits limits;
     if (!stage.may_meet(i, j, limits) || !stage.come_near(i, j, limits, detail::loads_at(loaded, k))) return;
     const auto place = static_cast<std::int64_t>(count_up_together(&progress->near));
@@ -163,9 +190,8 @@ template <class Space>
 bool ImpactRounds<Space>::any_may_meet(const FlightTerms& terms, const ResponseParameters& parameters,
                                        BodyView bodies) {
   log_.resize(bodies.count());
-  start({terms, parameters, bodies, log_});
-  copy_bytes<Host, Space>(&progress_, shared_progress_.data(), sizeof(progress_));
-  return progress_.least_impact_speed != HUGE_VAL;
+  const FlightStage stage(terms, parameters, bodies, log_);
+  return any_may_meet(stage, BoundSpeeds{stage});
 }
 
 template <class Space>
@@ -179,7 +205,7 @@ Ledger ImpactRounds<Space>::resolve(const Problem& problem, const ResponseParame
   impacts_.resize(0);
   struck_.resize(0);
   rounds_ = 0;
-  if (!any_may_meet(problem.terms, parameters, bodies)) {
+  if (!any_may_meet(stage, StartFlight{stage})) {
     log_.bore_load.resize(0);
     return {};
   }
@@ -190,6 +216,7 @@ Ledger ImpactRounds<Space>::resolve(const Problem& problem, const ResponseParame
   }
   if (problem.pairs_made == 0 || problem.pairs_made != adjacency_of_) adjacency_.clear();
   parallel::for_each<Space>("impact.near", bodies.count(), ResetBodies{program(stage, problem)});
+  list_fast(stage, problem);
   list_near(stage, problem);
   RoundsState state;
   for (;;) {
@@ -205,15 +232,19 @@ Ledger ImpactRounds<Space>::resolve(const Problem& problem, const ResponseParame
   return put_in_order(problem.pairs.size(), bodies.id);
 }
 
+/// Returns whether any pair may be fast enough for an impact. `bounds_of`: StartFlight or BoundSpeeds.
 template <class Space>
-void ImpactRounds<Space>::start(const FlightStage& stage) {
+template <class BoundsOf>
+bool ImpactRounds<Space>::any_may_meet(const FlightStage& stage, const BoundsOf& bounds_of) {
   shared_progress_.resize(1);
   bounds_.resize(1);
   parallel::sum_into<FlightBounds, Space>("impact.start",
                                           std::max(stage.bodies.count(), stage.terms.laws.table.size()),
-                                          StartFlight{stage}, bounds_scratch_, bounds_.data());
+                                          bounds_of, bounds_scratch_, bounds_.data());
   parallel::for_each<Space>("impact.start", 1,
                             StartProgress{stage, std::as_const(bounds_).view(), shared_progress_.data()});
+  copy_bytes<Host, Space>(&progress_, shared_progress_.data(), sizeof(progress_));
+  return progress_.least_impact_speed != HUGE_VAL;
 }
 
 template <class Space>
@@ -250,11 +281,28 @@ ImpactProgram ImpactRounds<Space>::program(const FlightStage& stage, const Probl
           .chunks = chunks_.view()};
 }
 
+/// Lists the fast pairs on Device, where slow pairs would make threads wait in list_near(). On Host that
+/// looks at all pairs itself, since threads would wait for one another to add to the list of fast ones.
+template <class Space>
+void ImpactRounds<Space>::list_fast(const FlightStage& stage, const Problem& problem) {
+  if constexpr (!std::is_same_v<Space, Host>) {
+    fast_.resize(problem.pairs.size());
+    parallel::for_each<Space>(
+        "impact.near", ListFast::items(problem.pairs.size()),
+        ListFast{stage.top_speed, problem.pairs, shared_progress_.data(), fast_.view()});
+  }
+}
+
 template <class Space>
 void ImpactRounds<Space>::list_near(const FlightStage& stage, const Problem& problem) {
-  parallel::for_each<Space>(
-      "impact.near", ListNear::items(problem.pairs.size()),
-      ListNear{stage, problem.pairs, problem.loaded, shared_progress_.data(), near_.view()});
+  ImpactProgress* const progress = shared_progress_.data();
+  const ListNear list{stage,    problem.pairs, problem.loaded, std::as_const(fast_).view(),
+                      progress, near_.view()};
+  if constexpr (std::is_same_v<Space, Host>) {
+    parallel::for_each<Host>("impact.near", problem.pairs.size(), list);
+  } else {
+    parallel::for_each_counted<Space>("impact.near", &progress->fast, problem.pairs.size(), list);
+  }
 }
 
 template <class Space>

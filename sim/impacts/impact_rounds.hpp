@@ -83,9 +83,11 @@ class ImpactRounds {
   }
 
  private:
-  void start(const FlightStage& stage);
+  template <class BoundsOf>
+  bool any_may_meet(const FlightStage& stage, const BoundsOf& bounds_of);
   detail::ImpactProgram program(const FlightStage& stage, const Problem& problem);
-  /// Lists the pairs that may meet, as far as there is room.
+  void list_fast(const FlightStage& stage, const Problem& problem);
+  /// Lists the pairs that come near each other, as far as there is room.
   void list_near(const FlightStage& stage, const Problem& problem);
   /// Makes room in the lists for rounds that have halted for want of it.
   void make_room(const FlightStage& stage, const Problem& problem, detail::RoundsState& state);
@@ -96,6 +98,7 @@ class ImpactRounds {
   Array<detail::ImpactProgress, Space> shared_progress_;  // one element
   Array<detail::FlightBounds, Space> bounds_, bounds_scratch_;
   std::int64_t rounds_ = 0;
+  Array<std::int32_t, Space> fast_;  // pairs that are fast enough for an impact, on Device
   // Arrays that detail::ImpactProgram views:
   Array<std::uint64_t, Space> first_[2];
   Array<std::uint32_t, Space> struck_in_, waits_in_, impact_group_of_, walls_of_;

@@ -80,6 +80,7 @@ struct ImpactProgress {
   FirstOfAll first[2];            ///< first meetings of the even rounds and of the odd ones
   double least_impact_speed = 0;  ///< FlightStage::least_impact_speed; infinite if no pair is faster (m/s)
   bool needs_search = false;      ///< whether the meetings of some body have no closed form
+  std::uint64_t fast = 0;         ///< number of pairs that are fast enough for an impact, on Device
   std::uint64_t near = 0;         ///< number of pairs that come near each other, before the first round
   std::uint64_t chunks = 0;       ///< number of chunks that this round has listed
   std::uint64_t impacts = 0;

@@ -115,10 +115,11 @@ struct SlipEnd {
     const Vec3 normal = vec3(contacts.fields.vector(Contacts::normal, c));
     const auto mu = static_cast<double>(contacts.fields.at(Contacts::friction, c));
     const int points = points_of(contacts, c);
+    const EndBodies<Real> ends = stage.ends_of(contacts.ends[c]);
     double before = 0, free = 0, after = 0, friction = 0, most_friction = 0;
     for (int k = 0; k < points; ++k) {
       const ContactRow row = row_of(contacts, c, k);
-      const PointMotion u = stage.motion_of(row.arm_i, row.arm_j, slot, contacts.ends[c]);
+      const PointMotion u = stage.motion_of(row.arm_i, row.arm_j, slot, ends);
       const Vec3 slip = across(u.before, normal);
       const double speed = slip.norm();
       if (speed > 0) {

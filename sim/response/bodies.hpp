@@ -3,6 +3,7 @@
 #pragma once
 
 #include "core/bodies.hpp"
+#include "core/space_record.hpp"
 #include "sim/contacts/layout.hpp"
 #include "sim/contacts/slots.hpp"
 #include "sim/contacts/sweeps.hpp"
@@ -37,25 +38,27 @@ struct LoadBody {
     const Vec3& v = bodies.velocity[k];
     const bool free = bodies.mobility[k] == Mobility::free;
     const auto real = [](double value) { return static_cast<Real>(value); };
-    mid[k] = {.position = bodies.position[k],
-              .size = smallest_size(bodies.shape[k], bodies.size[k]),
-              .velocity = v3<Real>(v),
-              .margin = real(margin[k]),
-              .inverse_mass = real(bodies.inverse_mass[k]),
-              .inverse_inertia = real(bodies.inverse_inertia[k].x()),
-              .material = bodies.material[k],
-              .shape = bodies.shape[k],
-              .mobility = bodies.mobility[k]};
+    const MidBody<Real> at{.position = bodies.position[k],
+                           .size = smallest_size(bodies.shape[k], bodies.size[k]),
+                           .velocity = v3<Real>(v),
+                           .margin = real(margin[k]),
+                           .inverse_mass = real(bodies.inverse_mass[k]),
+                           .inverse_inertia = real(bodies.inverse_inertia[k].x()),
+                           .material = bodies.material[k],
+                           .shape = bodies.shape[k],
+                           .mobility = bodies.mobility[k]};
+    store_whole(mid[k], at);
     Vec3 spin = bodies.spin[k];
     if (free && parameters.torque.size() > 0) {
       const Mat3 world = world_inverse_inertia(bodies.orientation[k], bodies.inverse_inertia[k]);
       spin += step * (world * parameters.torque[k]).eval();
     }
-    BodyRecord<Real>& body = solver[k];
+    BodyRecord<Real> body;
     body.velocity = v3<Real>(free ? Vec3(v + step * parameters.acceleration_of(k)) : v);
     body.inverse_mass = real(bodies.inverse_mass[k]);
     body.spin = v3<Real>(spin);
     body.inverse_inertia = real(bodies.inverse_inertia[k].x());
+    store_whole(solver[k], body);
   }
 };
 
@@ -97,8 +100,8 @@ struct StoreVelocities {
   SCREE_HD void operator()(std::int64_t k) const {
     if (bodies.mobility[k] != Mobility::free) return;
     // Changes are added, so that velocities of bodies without contact are not rounded.
-    const BodyRecord<Real>& before = free[k];
-    const BodyRecord<Real>& after = solver[k];
+    const BodyRecord<Real> before = load_whole(free[k]);
+    const BodyRecord<Real> after = load_whole(solver[k]);
     bodies.velocity[k] += step * parameters.acceleration_of(k) + vec3(after.velocity - before.velocity);
     bodies.spin[k] += vec3(after.spin - before.spin);
     if (parameters.torque.size() > 0) {

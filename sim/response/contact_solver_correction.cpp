@@ -48,8 +48,6 @@ template <class Space, class Real>
 CorrectionPlan ContactSolver<Space, Real>::plan_correction(double quality) const {
   using namespace tolerance;
   constexpr int most = 100, most_of_heap = 60;
-  // It is so far under worst_overlap_left that a correction that gets there allows for fewer substeps.
-  constexpr double worst_corrected = 0.6 * worst_overlap_left;
   if (!has_heap()) return {1, most, most, corrected_overlap, corrected_overlap, corrected_overlap, most};
   const bool shares = shares_loads(counts_.contacts, counts_.points);
   return {.least = shares || sweep_count_.needs_least_sweeps() ? 1 : 2,
@@ -57,7 +55,7 @@ CorrectionPlan ContactSolver<Space, Real>::plan_correction(double quality) const
           .most = most_of_heap,
           .deepest = heap_overlap / quality,
           .mean = (shares ? shared_mean_overlap : heap_mean_overlap) / quality,
-          .too_deep = worst_corrected / quality,
+          .too_deep = worst_corrected_overlap / quality,
           .first_with_momentum = 2};
 }
 

@@ -256,7 +256,8 @@ void ContactSolver<Space, Real>::scale_impulses(double by) {
 template <class Space, class Real>
 AccountStage<Real> ContactSolver<Space, Real>::account_stage(const ConstBodyView& bodies,
                                                              const ResponseParameters& parameters) {
-  return {slots_.places(), bodies, free_.view(), solver_.view(), parameters, step_, next_loads_.view()};
+  return {slots_.places(), bodies, free_.view(),       solver_.view(),
+          parameters,      step_,  next_loads_.view(), slots_.are_candidates()};
 }
 
 template <class Space, class Real>

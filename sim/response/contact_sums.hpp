@@ -123,7 +123,8 @@ struct MarkBallLoads {
   ConstView<BallMemory<Real>> memory;
   SCREE_HD void operator()(std::int64_t place) const {
     const Slot& slot = stage.places[place];
-    if (slot.i != Slot::empty && memory[place].is_loaded()) stage.mark_loaded(slot, stage.part_of(slot));
+    if (slot.i != Slot::empty && memory[place].is_loaded())
+      stage.mark_loaded(slot.candidate, stage.part_of(slot));
   }
 };
 template <class Real>
@@ -133,7 +134,8 @@ struct MarkPointLoads {
   ConstView<PointMemory<Real>> memory;
   SCREE_HD void operator()(std::int64_t place) const {
     const Slot& slot = stage.places[first_place + place];
-    if (slot.i != Slot::empty && memory[place].is_loaded()) stage.mark_loaded(slot, stage.part_of(slot));
+    if (slot.i != Slot::empty && memory[place].is_loaded())
+      stage.mark_loaded(slot.candidate, stage.part_of(slot));
   }
 };
 

@@ -87,7 +87,6 @@ struct FindEndGapsOfBalls {
     const BodyView& bodies = flight.bodies;
     const Slot& slot = places[contacts.slot[c]];
     const Vec3 apart = bodies.period.nearest(bodies.position[slot.j] - bodies.position[slot.i]);
-    const Vec3 normal = vec3(contacts.fields.vector(C::normal, c));
     Real& predicted_gap = contacts.gaps.at(C::predicted_gap, c);
     if (bodies.shape[slot.i] == Shape::sphere && bodies.shape[slot.j] == Shape::sphere) {
       const double distance = apart.norm();
@@ -97,6 +96,7 @@ struct FindEndGapsOfBalls {
     } else if ((contacts.flags[c] & flag_late_impact) != 0) {
       const double left = flight.terms.step - fmax(flight.clock[slot.i], flight.clock[slot.j]);
       const Vec3 turned = turning_of(slot.j, slot.end_j) - turning_of(slot.i, slot.end_i);
+      const Vec3 normal = vec3(contacts.fields.vector(C::normal, c));
       predicted_gap += static_cast<Real>(normal.dot(apart + left * turned));
     }
   }

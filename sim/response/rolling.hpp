@@ -59,15 +59,16 @@ struct AccountRolling {
     const Slot slot = stage.places[place];
     const Ends ends = contacts.ends[c];
     const Vec3 couple = vec3(found);
-    const Vec3 spin_i = vec3(stage.solver[ends.i].spin);
-    const Vec3 spin_j = vec3(stage.solver[ends.j].spin);
+    const BodyRecord<Real> i = load_whole(stage.solver[ends.i]);
+    const BodyRecord<Real> j = load_whole(stage.solver[ends.j]);
+    const Vec3 spin_i = vec3(i.spin), spin_j = vec3(j.spin);
     const Vec3 before = stage.bodies.spin[slot.j] - stage.bodies.spin[slot.i];
     const Vec3 free = vec3(stage.free[ends.j].spin) - vec3(stage.free[ends.i].spin);
     totals.friction = -0.5 * couple.dot(before + spin_j - spin_i);
     totals.kick_power = couple.dot(spin_j - spin_i - free);
     stage.judge_gain(totals);
-    if (!stage.is_free(ends.i)) totals.work += couple.dot(spin_i);
-    if (!stage.is_free(ends.j)) totals.work -= couple.dot(spin_j);
+    if (!(i.inverse_mass > 0)) totals.work += couple.dot(spin_i);
+    if (!(j.inverse_mass > 0)) totals.work -= couple.dot(spin_j);
     return totals;
   }
 };

@@ -2,6 +2,7 @@
 
 #include "core/parallel.hpp"
 
+#include <algorithm>
 #include <bit>
 #include <utility>
 
@@ -13,6 +14,20 @@ constexpr std::int64_t together = 32;  // largest number of entries in a group
 
 SCREE_HD bool is_wall(ConstView<Mobility> mobility, std::int32_t body) {
   return mobility[body] != Mobility::free;
+}
+
+/// Returns the index of the first number in a sorted list that is not below `wanted`.
+SCREE_HD std::int64_t first_not_below(ConstView<std::int32_t> sorted, std::int32_t wanted) {
+  std::int64_t low = 0, high = sorted.size();
+  while (low < high) {
+    const std::int64_t middle = (low + high) / 2;
+    if (sorted[middle] < wanted) {
+      low = middle + 1;
+    } else {
+      high = middle;
+    }
+  }
+  return low;
 }
 
 struct IsOnWall {
@@ -52,21 +67,7 @@ struct MarkGroups {
   ConstView<std::int32_t> body;
   View<std::uint8_t> marks;
   SCREE_HD void operator()(std::int64_t e) const {
-    marks[e] = (e - first_of(body[e])) % together == 0 ? 1 : 0;
-  }
-
- private:
-  SCREE_HD std::int64_t first_of(std::int32_t wanted) const {
-    std::int64_t low = 0, high = body.size();
-    while (low < high) {
-      const std::int64_t middle = (low + high) / 2;
-      if (body[middle] < wanted) {
-        low = middle + 1;
-      } else {
-        high = middle;
-      }
-    }
-    return low;
+    marks[e] = (e - first_not_below(body, body[e])) % together == 0 ? 1 : 0;
   }
 };
 
@@ -85,22 +86,45 @@ struct ListGroups {
   }
 };
 
+/// Returns impulses as a list of their numbers. Threads that work on neighbouring numbers use memory better
+/// than threads that work on neighbouring impulses.
+View<double> numbers_of(View<WallImpulse> impulses) {
+  static_assert(sizeof(WallImpulse) == WallImpulse::numbers * sizeof(double));
+  return {reinterpret_cast<double*>(impulses.data()), WallImpulse::numbers * impulses.size()};
+}
+
+/// Adds up one number of a group.
 struct AddGroup {
   ConstView<std::int64_t> begin;
-  ConstView<WallImpulse> below;
-  View<WallImpulse> sums;
-  SCREE_HD void operator()(std::int64_t g) const {
-    WallImpulse sum;
-    for (std::int64_t e = begin[g]; e < begin[g + 1]; ++e) sum = sum + below[e];
-    sums[g] = sum;
+  ConstView<double> below;
+  View<double> sums;
+  SCREE_HD void operator()(std::int64_t item) const {
+    constexpr std::int64_t numbers = WallImpulse::numbers;
+    const std::int64_t g = item / numbers;
+    double sum = 0;
+    for (std::int64_t e = begin[g]; e < begin[g + 1]; ++e) sum += below[numbers * e + item % numbers];
+    sums[item] = sum;
   }
 };
 
 struct AddToTotal {
+  ConstView<std::int32_t> walls;
   ConstView<std::int32_t> body;
   ConstView<WallImpulse> sums;
   View<WallImpulse> totals;
-  SCREE_HD void operator()(std::int64_t g) const { totals[body[g]] = totals[body[g]] + sums[g]; }
+  SCREE_HD void operator()(std::int64_t g) const {
+    WallImpulse& total = totals[first_not_below(walls, body[g])];
+    total = total + sums[g];
+  }
+};
+
+/// Returns the place of a body that is not free; `none` for a free one.
+struct PlaceOfWall {
+  static constexpr std::int32_t none = -1;
+  ConstView<Mobility> mobility;
+  SCREE_HD std::int32_t operator()(std::int64_t body) const {
+    return is_wall(mobility, static_cast<std::int32_t>(body)) ? static_cast<std::int32_t>(body) : none;
+  }
 };
 
 }  // namespace
@@ -144,30 +168,57 @@ void WallSums<Space>::take(ConstView<Slot> places, const ConstBodyView& bodies) 
 }
 
 template <class Space>
-void WallSums<Space>::start_step(std::int64_t bodies) {
-  totals_.resize(bodies);
+void WallSums<Space>::list_walls(ConstView<Mobility> mobility) {
+  parallel::select("walls.list", mobility.size(), PlaceOfWall{mobility}, PlaceOfWall::none, walls_);
+  walls_on_host_ = to_vector(walls_);
+  totals_.resize(walls_.size());
+  start_step();
+}
+
+template <class Space>
+void WallSums<Space>::start_step() {
   parallel::fill("walls.clear", totals_, WallImpulse{});
 }
 
 template <class Space>
+WallImpulse WallSums<Space>::total_of(std::int32_t place) const {
+  WallImpulse total;
+  const auto at = std::ranges::lower_bound(walls_on_host_, place);
+  if (at == walls_on_host_.end() || *at != place) return total;
+  copy_bytes<Host, Space>(&total, totals_.data() + (at - walls_on_host_.begin()), sizeof(total));
+  return total;
+}
+
+template <class Space>
+std::vector<WallImpulse> WallSums<Space>::totals_by_place(std::int64_t bodies) const {
+  std::vector<WallImpulse> all(static_cast<std::size_t>(bodies));
+  const std::vector<WallImpulse> totals = to_vector(totals_);
+  for (std::size_t w = 0; w < totals.size(); ++w)
+    all[static_cast<std::size_t>(walls_on_host_[w])] = totals[w];
+  return all;
+}
+
+template <class Space>
 View<WallImpulse> WallSums<Space>::clear_impulses() {
-  parallel::fill("walls.clear", impulses_, WallImpulse{});
+  parallel::fill<Space>("walls.clear", numbers_of(impulses_.view()), 0.0);
   return impulses_.view();
 }
 
 template <class Space>
 void WallSums<Space>::add_up() {
   if (used_levels_ == 0) return;
-  ConstView<WallImpulse> below = std::as_const(impulses_).view();
+  View<WallImpulse> below = impulses_.view();
   for (std::size_t l = 0; l < used_levels_; ++l) {
     Level& level = levels_[l];
-    parallel::for_each<Space>("walls.sums", level.sums.size(),
-                              AddGroup{std::as_const(level.begin).view(), below, level.sums.view()});
-    below = std::as_const(level.sums).view();
+    const View<double> sums = numbers_of(level.sums.view());
+    parallel::for_each<Space>("walls.sums", sums.size(),
+                              AddGroup{std::as_const(level.begin).view(), numbers_of(below), sums});
+    below = level.sums.view();
   }
   const Level& last = levels_[used_levels_ - 1];
-  parallel::for_each<Space>("walls.sums", last.body.size(),
-                            AddToTotal{last.body.view(), below, totals_.view()});
+  parallel::for_each<Space>(
+      "walls.sums", last.body.size(),
+      AddToTotal{std::as_const(walls_).view(), last.body.view(), below, totals_.view()});
 }
 
 #define SCREE_INSTANTIATE(Space) template class WallSums<Space>;

@@ -7,11 +7,14 @@
 
 #include <cstdint>
 #include <deque>
+#include <vector>
 
 namespace scree::solver {
 
-/// Impulse and moment on a body that is not free.
+/// Impulse and moment on a body that is not free: six numbers.
 struct WallImpulse {
+  static constexpr int numbers = 6;
+
   Vec3 impulse = Vec3::Zero();  ///< total impulse (N s)
   Vec3 moment = Vec3::Zero();   ///< about the centre of the body (N m s)
 
@@ -25,8 +28,10 @@ struct WallImpulse {
 template <class Space>
 class WallSums {
  public:
-  /// Sets the totals of all bodies to zero.
-  void start_step(std::int64_t bodies);
+  /// Lists the bodies that are not free, and sets their totals to zero.
+  void list_walls(ConstView<Mobility> mobility);
+  /// Sets all totals to zero.
+  void start_step();
   /// Lists the slots anew, after new candidates.
   void take(ConstView<Slot> places, const ConstBodyView& bodies);
 
@@ -38,8 +43,12 @@ class WallSums {
   /// Adds the impulses to the totals of their bodies.
   void add_up();
 
-  /// Returns the total of each body over the step, by place.
+  /// Returns the total of the body at a place over the step; zero if the body is free.
+  WallImpulse total_of(std::int32_t place) const;
+  /// Returns the total of each body that is not free, in the order of their places.
   const Array<WallImpulse, Space>& totals() const { return totals_; }
+  /// Returns the totals of `bodies` bodies, by place.
+  std::vector<WallImpulse> totals_by_place(std::int64_t bodies) const;
   /// Sets the totals back to a copy made before.
   void restore_totals(const Array<WallImpulse, Space>& totals) { copy(totals_, totals); }
 
@@ -51,9 +60,12 @@ class WallSums {
     Array<WallImpulse, Space> sums;
   };
 
+  Array<std::int32_t, Space> walls_;  // the bodies that are not free, by place
+  std::vector<std::int32_t> walls_on_host_;
   Array<std::int32_t, Space> entry_of_;
   Array<std::int32_t, Space> body_;  // body of each slot in the list
-  Array<WallImpulse, Space> impulses_, totals_;
+  Array<WallImpulse, Space> impulses_;
+  Array<WallImpulse, Space> totals_;  // of each of walls_
   std::deque<Level> levels_;
   std::size_t used_levels_ = 0;
 };

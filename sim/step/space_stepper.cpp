@@ -175,6 +175,7 @@ class SpaceStepper final : public Stepper {
     const timing::Region region("broadphase");
     order_.sort(bodies_);
     have_moved_ = true;
+    walls_are_listed_ = false;
     forces_.forget();
     kept_pairs_.forget();
     seen_pairs_.forget();
@@ -182,7 +183,12 @@ class SpaceStepper final : public Stepper {
     find_guides();
   }
   void clear_wall_impulses() {
-    contacts_.wall_sums().start_step(bodies_.count());
+    if (walls_are_listed_) {
+      contacts_.wall_sums().start_step();
+    } else {
+      contacts_.wall_sums().list_walls(std::as_const(bodies_).mobility.view());
+    }
+    walls_are_listed_ = true;
     wall_impacts_.clear();
   }
   void find_guides() {
@@ -226,6 +232,7 @@ class SpaceStepper final : public Stepper {
   }
   /// Must be called when bodies have come or gone, or have been moved other than by a step.
   void forget_pairs() {
+    walls_are_listed_ = false;
     forces_.forget();
     kept_pairs_.forget();
     seen_pairs_.forget();
@@ -296,6 +303,8 @@ class SpaceStepper final : public Stepper {
   Ledger start_ledger_;
   Vec3 start_gravity_ = Vec3::Zero();
   WallImpacts wall_impacts_;  // of the step
+  bool walls_are_listed_ =
+      false;  // whether the wall sums know which bodies are walls, at their present places
   /// The data that the first half of a substep changes, besides what contacts remember.
   struct Restart {
     MovingState<Space> state;
@@ -431,8 +440,11 @@ void SpaceStepper<Space, Real>::archive(Archive& archive) {
   }
   archive("velocity_before", start_.velocity);
   archive.expect(start_.velocity.size() == bodies_.count(), "velocity_before");
-  if (archive.is_loading()) clear_wall_impulses();
-  wall_impacts_.archive(archive, by_number(to_vector(contacts_.wall_sums().totals())));
+  if (archive.is_loading()) {
+    walls_are_listed_ = false;
+    clear_wall_impulses();
+  }
+  wall_impacts_.archive(archive, by_number(contacts_.wall_sums().totals_by_place(bodies_.count())));
   archive.part("kept_pairs", kept_pairs_);
   archive.part("seen_pairs", seen_pairs_);
   archive("sees_kept", sees_kept_);
@@ -548,14 +560,9 @@ SteppedBody SpaceStepper<Space, Real>::body(BodyNumber number) const {
   if (!servo_axis_.contains(number))
     body.acceleration += gravity_.excess_of_mean(grid_.length(step_ + 1), parameters_);
   if (!wall_impacts_.is_wall(number)) return body;
-  if (const auto& totals = contacts_.wall_sums().totals(); totals.size() > 0) {
-    const auto on = value_at(totals, k);
-    body.contact_impulse = on.impulse;
-    body.contact_moment = on.moment;
-  }
-  const solver::WallImpulse struck = wall_impacts_.of(number);
-  body.contact_impulse += struck.impulse;
-  body.contact_moment += struck.moment;
+  const solver::WallImpulse on = contacts_.wall_sums().total_of(k) + wall_impacts_.of(number);
+  body.contact_impulse = on.impulse;
+  body.contact_moment = on.moment;
   return body;
 }
 

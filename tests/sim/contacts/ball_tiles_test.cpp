@@ -98,22 +98,26 @@ class Crowd {
     Array<BallMemory<double>, Host> memory;
     std::vector<std::int32_t> approaching;
   };
-  Found find(bool by_kernels) {
+  enum class How { kernels, one_by_one, one_by_one_without_rare };
+  template <How how>
+  Found find() {
+    constexpr bool by_kernels = how == How::kernels;
+    using Find = FindBalls<double, how != How::one_by_one_without_rare>;
     Found found;
     copy(found.memory, memory_at_start_);
     std::vector<std::int32_t> approaching(static_cast<std::size_t>(tiles * tile));
     std::uint64_t count = 0;
-    FindBalls<double> one_by_one{
+    Find one_by_one{
         stage(), {}, found.memory.view(), solver_.view(), {{approaching.data(), tiles * tile}, &count}};
     Array<Reach, Host> reach(bodies_.count() + 1);
     for (std::int64_t k = 0; k < reach.size(); ++k) SetReach{stage(), reach.data() + 1}(k);
     FoundSlots<Host> slots;
     slots.start(tiles);
-    if (by_kernels) {
+    if constexpr (by_kernels) {
       for (std::int64_t t = 0; t < tiles; ++t)
         FindBallTile{one_by_one, reach.data() + 1, slots.places(), slots.counts()}(t);
     } else {
-      parallel::compact_tiles<Host>("test", tiles, FindSlots<FindBalls<double>>{one_by_one, slots.places()},
+      parallel::compact_tiles<Host>("test", tiles, FindSlots<Find>{one_by_one, slots.places()},
                                     slots.counts());
     }
     slots.join();
@@ -124,11 +128,11 @@ class Crowd {
     one_by_one.contacts = found.store.balls();
     for (std::int64_t c = 0; c < one_color.places(); ++c)
       one_by_one.contacts.slot[c] = c < slots.all().size() ? slots.all()[c] : Slot::empty;
-    if (by_kernels) {
+    if constexpr (by_kernels) {
       for (std::int64_t b = 0; b < one_color.places() / simd::width; ++b)
         MakeBallBlock{one_by_one, reach.data() + 1}(b);
     } else {
-      for (std::int64_t c = 0; c < one_color.places(); ++c) MakeContacts<FindBalls<double>>{one_by_one}(c);
+      for (std::int64_t c = 0; c < one_color.places(); ++c) MakeContacts<Find>{one_by_one}(c);
     }
     approaching.resize(static_cast<std::size_t>(count));
     std::ranges::sort(approaching);
@@ -158,7 +162,7 @@ TEST(BallTiles, FindWhatIsFoundOneByOne) {
   using C = BallContacts<double>;
   for (const bool periodic : {false, true}) {
     Crowd crowd(periodic);
-    auto kernels = crowd.find(true), one_by_one = crowd.find(false);
+    auto kernels = crowd.find<Crowd::How::kernels>(), one_by_one = crowd.find<Crowd::How::one_by_one>();
     const C a = kernels.store.balls(), b = one_by_one.store.balls();
     EXPECT_EQ(kernels.approaching, one_by_one.approaching);
     EXPECT_GT(kernels.approaching.size(), 5u);
@@ -182,10 +186,28 @@ TEST(BallTiles, FindWhatIsFoundOneByOne) {
   }
 }
 
-TEST(BallTiles, BookWhatIsBookedOneByOne) {
+/// No slot of the crowd is rare, so the search without rare slots finds and makes the same, to the last bit.
+TEST(BallTiles, RareSlotsAreLeftOutWhereThereAreNone) {
+  using C = BallContacts<double>;
+  Crowd crowd(true);
+  auto all = crowd.find<Crowd::How::one_by_one>(), plain = crowd.find<Crowd::How::one_by_one_without_rare>();
+  const C a = all.store.balls(), b = plain.store.balls();
+  EXPECT_EQ(all.approaching, plain.approaching);
+  ASSERT_EQ(a.slot.size(), b.slot.size());
+  for (std::int64_t c = 0; c < all.store.ball_colors().contacts(); ++c) {
+    ASSERT_EQ(a.slot[c], b.slot[c]);
+    ASSERT_EQ(a.flags[c], b.flags[c]);
+    for (int field = 0; field < C::count; ++field)
+      ASSERT_EQ(a.fields.at(field, c), b.fields.at(field, c)) << c << " " << field;
+    for (int field = 0; field < C::gap_count; ++field)
+      ASSERT_EQ(a.gaps.at(field, c), b.gaps.at(field, c)) << c << " " << field;
+  }
+}
+
+TEST(BallTiles, AccountWhatIsAccountedOneByOne) {
   using C = BallContacts<double>;
   Crowd crowd(false);
-  auto kernels = crowd.find(true), one_by_one = crowd.find(true);
+  auto kernels = crowd.find<Crowd::How::kernels>(), one_by_one = crowd.find<Crowd::How::kernels>();
   Random random(8, 0);
   Array<BodyRecord<double>, Host> before, after;
   copy(before, crowd.solver());

@@ -146,6 +146,26 @@ TYPED_TEST(SlotsTest, ATubeHasASlotForEachSurfaceAndOneThatTurnsAPointForEach) {
                          {1, 0}, {1, 1}, {1, 2}, {2, 0}, {2, 1}, {2, 2}}));
 }
 
+TYPED_TEST(SlotsTest, KnowWhetherTheirPlacesAreCandidatesAndWhetherAnyIsRare) {
+  const std::vector<Pair> pairs{{0, 2}, {1, 2}, {1, 3}, {2, 3}};
+  const auto built = [&](const BodyTable& of) {
+    Built<TypeParam> all(of);
+    all.build(pairs);
+    return std::pair(all.slots.are_candidates(), all.slots.has_rare_balls());
+  };
+  EXPECT_EQ(built(balls(10, false)), std::pair(true, false)) << "balls and a plane";
+  EXPECT_EQ(built(balls(10, true)), std::pair(false, true)) << "a tube that turns";
+  BodyTable bodies = balls(10, false);
+  bodies.spin[0] = Vec3(0, 1, 0);
+  bodies.mobility[0] = Mobility::prescribed;
+  EXPECT_EQ(built(bodies), std::pair(true, true)) << "a plane that turns";
+  bodies = balls(10, false);
+  bodies.shape[3] = Shape::box;
+  EXPECT_EQ(built(bodies), std::pair(false, false)) << "a free box has no slot of balls";
+  bodies.mobility[3] = Mobility::fixed;
+  EXPECT_EQ(built(bodies), std::pair(true, true)) << "a fixed box";
+}
+
 /// A ball that touches a thousand others is split into many parts, each with few slots.
 TYPED_TEST(SlotsTest, AHubIsSplit) {
   const BodyTable bodies = balls(1002, false);
