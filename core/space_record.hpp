@@ -2,6 +2,7 @@
 #pragma once
 
 #include "core/space.hpp"
+#include "core/space_unroll.hpp"
 
 #include <cstddef>
 #include <cstdint>
@@ -22,8 +23,7 @@ SCREE_HD void copy_record(T& to, const T& from) {
   static_assert(alignof(T) % sizeof(SixteenBytes) == 0);
   auto* const t = reinterpret_cast<SixteenBytes*>(&to);
   const auto* const f = reinterpret_cast<const SixteenBytes*>(&from);
-#pragma unroll
-  for (std::size_t k = 0; k < sizeof(T) / sizeof(SixteenBytes); ++k) t[k] = f[k];
+  SCREE_UNROLL for (std::size_t k = 0; k < sizeof(T) / sizeof(SixteenBytes); ++k) t[k] = f[k];
 }
 
 }  // namespace detail

@@ -3,7 +3,6 @@
 #pragma once
 
 #include "core/space_atomic.hpp"
-#include "core/space_record.hpp"
 #include "core/tolerances.hpp"
 #include "narrowphase/any_contacts.hpp"
 #include "narrowphase/contact.hpp"
@@ -48,9 +47,7 @@ struct FindStage {
   bool any_late_impact;              ///< whether any body was struck after the midpoint
   LibccdContacts* libccd = nullptr;  ///< on Host alone; null if libccd is not used
 
-  SCREE_HD SlotBodies<Real> load(const Slot& slot) const {
-    return {slot, load_whole(mid[slot.i]), load_whole(mid[slot.j])};
-  }
+  SCREE_HD SlotBodies<Real> load(const Slot& slot) const { return {slot, mid[slot.i], mid[slot.j]}; }
   SCREE_HD const PairLaw& law_of(const SlotBodies<Real>& at) const {
     return laws.table[at.a.material * laws.materials + at.b.material];
   }

@@ -1,6 +1,7 @@
 // Tests of the sums of impulses on bodies that are not free, against sums in long double.
 #include "sim/response/wall_sums.hpp"
 
+#include "core/parallel.hpp"
 #include "core/rng.hpp"
 #include "tests/core/spaces.hpp"
 
@@ -55,6 +56,13 @@ struct Walls {
   }
 };
 
+struct Amount {
+  ConstView<WallImpulse> impulses;
+  SCREE_HD double operator()(std::int64_t e) const {
+    return impulses[e].impulse.squaredNorm() + impulses[e].moment.squaredNorm();
+  }
+};
+
 /// Gives each slot on a wall a random impulse, and adds it to `expected`.
 template <class Space>
 void add_impulses(WallSums<Space>& sums, const Walls<Space>& walls, Random& random,
@@ -62,6 +70,7 @@ void add_impulses(WallSums<Space>& sums, const Walls<Space>& walls, Random& rand
   std::vector<std::int32_t> entry(walls.slots.size());
   copy_bytes<Host, Space>(entry.data(), sums.entry_of_place().data(), entry.size() * sizeof(entry[0]));
   const View<WallImpulse> there = sums.clear_impulses();
+  ASSERT_EQ((parallel::sum<double, Space>("test", there.size(), Amount{there})), 0.0);
   std::vector<WallImpulse> impulses(static_cast<std::size_t>(there.size()));
   for (std::size_t s = 0; s < entry.size(); ++s) {
     const Slot& slot = walls.slots[s];
