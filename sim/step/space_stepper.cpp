@@ -303,8 +303,8 @@ class SpaceStepper final : public Stepper {
   Ledger start_ledger_;
   Vec3 start_gravity_ = Vec3::Zero();
   WallImpacts wall_impacts_;  // of the step
-  bool walls_are_listed_ =
-      false;  // whether the wall sums know which bodies are walls, at their present places
+  // Whether the wall sums know which bodies are walls, at their present places.
+  bool walls_are_listed_ = false;
   /// The data that the first half of a substep changes, besides what contacts remember.
   struct Restart {
     MovingState<Space> state;
