@@ -90,9 +90,9 @@ struct Load {
 template <class F>
 struct CountedLoop {
   static constexpr std::int64_t warp = 32;
+  static constexpr std::int64_t threads = 1 << 16;  // a GPU holds about as many with much work at once
 
   const std::uint64_t* count;
-  std::int64_t threads;
   F f;
   SCREE_HD void operator()(std::int64_t thread) const {
     const auto items = static_cast<std::int64_t>(*count);
@@ -104,19 +104,14 @@ struct CountedLoop {
 }  // namespace detail
 
 /// Calls f(k) for 0 <= k < *count, in any order and concurrently. `count` is in the space, so that the host
-/// does not wait for it; it is at most `most`. This is for items with much work each, of which there are
-/// mostly fewer than `most`.
+/// does not wait for it. This is for items with much work each.
 template <class Space, class F>
-void for_each_counted(const char* label, const std::uint64_t* count, [[maybe_unused]] std::int64_t most,
-                      F f) {
+void for_each_counted(const char* label, const std::uint64_t* count, F f) {
   if constexpr (std::is_same_v<Space, Host>) {
     constexpr std::int64_t few_items = 16;
     parallel::for_each<Host>(label, static_cast<std::int64_t>(*count), f, few_items);
   } else {
-    // A GPU holds some 2^16 threads with so much work at once.
-    constexpr std::int64_t fewest = 1 << 15, most_threads = 1 << 18;
-    const std::int64_t threads = std::clamp((most / 4 + fewest - 1) / fewest * fewest, fewest, most_threads);
-    parallel::for_each<Space>(label, threads, detail::CountedLoop<F>{count, threads, f});
+    parallel::for_each<Space>(label, detail::CountedLoop<F>::threads, detail::CountedLoop<F>{count, f});
   }
 }
 

@@ -19,7 +19,7 @@ ApproachList ContactFinder<Space, Real>::clear_approaching(std::int64_t contacts
 template <class Space, class Real>
 template <class Judge>
 void ContactFinder<Space, Real>::judge(const ApproachList& approaching, const Judge& judge) {
-  parallel::for_each_counted<Space>("contacts.approaching", approaching.count, approaching.contacts.size(),
+  parallel::for_each_counted<Space>("contacts.approaching", approaching.count,
                                     JudgeApproach<Judge>{approaching, judge});
 }
 

@@ -301,7 +301,7 @@ void ImpactRounds<Space>::list_near(const FlightStage& stage, const Problem& pro
   if constexpr (std::is_same_v<Space, Host>) {
     parallel::for_each<Host>("impact.near", problem.pairs.size(), list);
   } else {
-    parallel::for_each_counted<Space>("impact.near", &progress->fast, problem.pairs.size(), list);
+    parallel::for_each_counted<Space>("impact.near", &progress->fast, list);
   }
 }
 

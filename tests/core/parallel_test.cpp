@@ -106,8 +106,7 @@ TYPED_TEST(ParallelTest, ForEachCountedVisitsWhatIsCountedOnce) {
     Array<std::uint64_t, TypeParam> count;
     copy(count, std::vector<std::uint64_t>{static_cast<std::uint64_t>(n)});
     parallel::fill("test.fill", times, 0);
-    parallel::for_each_counted<TypeParam>("test.counted", count.data(), times.size(),
-                                          CountVisit{times.data()});
+    parallel::for_each_counted<TypeParam>("test.counted", count.data(), CountVisit{times.data()});
     const std::vector<std::int64_t> got = to_vector(times);
     for (std::int64_t i = 0; i < std::ssize(got); ++i)
       ASSERT_EQ(got[static_cast<std::size_t>(i)], i < n ? 1 : 0) << "n = " << n;
