@@ -123,20 +123,27 @@ struct AccountStage {
             load_whole(solver[ends.j])};
   }
 
+  /// Returns the change of the velocity of j relative to i by the substep's forces (m/s).
+  SCREE_HD Vec3 kick_of(const Slot& slot, const EndBodies<Real>& at) const {
+    return kick_of(slot.j, at.is_free_j()) - kick_of(slot.i, at.is_free_i());
+  }
+
+  /// `kick`: kick_of() of the contact.
   SCREE_HD PointMotion motion_of(const Vec3& arm_i, const Vec3& arm_j, const Slot& slot,
-                                 const EndBodies<Real>& at) const {
+                                 const EndBodies<Real>& at, const Vec3& kick) const {
     const Vec3 with_forces = velocity_of(at.free_j, arm_j) - velocity_of(at.free_i, arm_i);
-    return {with_forces - kick_of(slot.j, at.is_free_j(), at.free_j, arm_j) +
-                kick_of(slot.i, at.is_free_i(), at.free_i, arm_i),
-            with_forces, velocity_of(at.after_j, arm_j) - velocity_of(at.after_i, arm_i)};
+    Vec3 before = with_forces - kick;
+    if (parameters.torque.size() > 0)
+      before += turn_of(slot.i, at.free_i, arm_i) - turn_of(slot.j, at.free_j, arm_j);
+    return {before, with_forces, velocity_of(at.after_j, arm_j) - velocity_of(at.after_i, arm_i)};
   }
 
   /// Adds what the impulse of a point has moved to the totals, as account() of impulse_energy.hpp does, with
   /// the lever arms of `at`.
   SCREE_HD void account(const AccountedPoint& at, const Slot& slot, const EndBodies<Real>& ends,
-                        ContactTotals& totals) const {
+                        const Vec3& kick, ContactTotals& totals) const {
     const Vec3& p = at.impulse;
-    const auto [before, free_u, after] = motion_of(at.arm_i, at.arm_j, slot, ends);
+    const auto [before, free_u, after] = motion_of(at.arm_i, at.arm_j, slot, ends, kick);
     const double pn = p.dot(at.normal);
     const double through_mean = 0.5 * p.dot(before + after);
     const double normal_part = 0.5 * pn * at.normal.dot(before + after);
@@ -157,11 +164,13 @@ struct AccountStage {
   SCREE_HD static Vec3 velocity_of(const BodyRecord<Real>& body, const Vec3& arm) {
     return vec3(body.velocity) + vec3(body.spin).cross(arm);
   }
-  /// Returns what the substep's forces have added to the velocity of a point of a body (m/s).
-  SCREE_HD Vec3 kick_of(std::int32_t body, bool is_free, const BodyRecord<Real>& at, const Vec3& arm) const {
-    Vec3 kick = is_free ? Vec3(step * parameters.acceleration_of(body)) : Vec3(Vec3::Zero());
-    if (parameters.torque.size() > 0) kick += (vec3(at.spin) - bodies.spin[body]).cross(arm);
-    return kick;
+  /// Returns what the substep's forces have added to the velocity of a body (m/s).
+  SCREE_HD Vec3 kick_of(std::int32_t body, bool is_free) const {
+    return is_free ? Vec3(step * parameters.acceleration_of(body)) : Vec3(Vec3::Zero());
+  }
+  /// Returns what the substep's torques have added to the velocity of a point of a body (m/s).
+  SCREE_HD Vec3 turn_of(std::int32_t body, const BodyRecord<Real>& at, const Vec3& arm) const {
+    return (vec3(at.spin) - bodies.spin[body]).cross(arm);
   }
 };
 
@@ -195,7 +204,7 @@ struct AccountBalls {
       const auto number = [&](int field) { return static_cast<double>(f.at(field, c)); };
       stage.account(
           {vec3(impulse), normal, number(C::arm_i) * normal, number(C::arm_j) * normal, number(C::target)},
-          slot, ends, totals);
+          slot, ends, stage.kick_of(slot, ends), totals);
       totals.gaps = fabs(static_cast<double>(contacts.gaps.at(C::gap, c)));
       totals.loaded = 1;
       totals.ends = ends.free_ends();
@@ -227,6 +236,7 @@ struct AccountPoints {
     const std::int64_t place = contacts.slot[c];
     const Slot& slot = stage.places[first_place + place];
     const EndBodies<Real> ends = stage.ends_of(contacts.ends[c]);
+    const Vec3 kick = stage.kick_of(slot, ends);
     const Vec3 n = vec3(contacts.fields.vector(C::normal, c));
     const double cap = static_cast<double>(contacts.fields.at(C::cap, c));
     const auto& f = contacts.point_fields;
@@ -238,7 +248,7 @@ struct AccountPoints {
       const bool loaded = !is_zero(impulse);
       memory[place].impulse[k] = impulse;
       if (loaded) {
-        stage.account({vec3(impulse), n, vec3(at.arm_i), vec3(at.arm_j), number(C::target)}, slot, ends,
+        stage.account({vec3(impulse), n, vec3(at.arm_i), vec3(at.arm_j), number(C::target)}, slot, ends, kick,
                       totals);
         totals.gaps += fabs(static_cast<double>(contacts.gaps.at(C::at_point(k, C::gap), c)));
         ++totals.loaded;

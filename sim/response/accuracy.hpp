@@ -116,10 +116,11 @@ struct SlipEnd {
     const auto mu = static_cast<double>(contacts.fields.at(Contacts::friction, c));
     const int points = points_of(contacts, c);
     const EndBodies<Real> ends = stage.ends_of(contacts.ends[c]);
+    const Vec3 kick = stage.kick_of(slot, ends);
     double before = 0, free = 0, after = 0, friction = 0, most_friction = 0;
     for (int k = 0; k < points; ++k) {
       const ContactRow row = row_of(contacts, c, k);
-      const PointMotion u = stage.motion_of(row.arm_i, row.arm_j, slot, ends);
+      const PointMotion u = stage.motion_of(row.arm_i, row.arm_j, slot, ends, kick);
       const Vec3 slip = across(u.before, normal);
       const double speed = slip.norm();
       if (speed > 0) {
