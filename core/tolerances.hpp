@@ -17,13 +17,9 @@ inline constexpr double contact_slack = 0.02;
 
 /// Extra reach of the boxes of the broad phase beyond that of contact detection (of smallest_size): the pairs
 /// last until a body has moved about this far. Larger: fewer broad phases, more pairs for the narrow phase.
-/// It never changes a result.
+/// Which pairs are looked at decides about the order of contacts, and so about rounding, but no pair that may
+/// touch is left out.
 inline constexpr double pair_skin = 0.03;
-/// Distance that bodies may travel in the mean while the pairs last (of smallest_size). The boxes of faster
-/// bodies have room for the same time. Larger: fewer broad phases, more pairs for the narrow phase.
-inline constexpr double pair_travel = 0.05;
-/// Longest time for which the boxes have room, in steps.
-inline constexpr double most_pair_steps = 16;
 
 /// Safety factor on the distance that a body can travel in a step, because impacts add to its speed.
 inline constexpr double travel_factor = 1.05;

@@ -98,24 +98,25 @@ struct AddTravel {
   SCREE_HD void operator()(std::int64_t k) const { margin[k] += travel(k); }
 };
 
-/// Raises the margin of a box to at least the wanted one plus the skin, and to the distance that the body's
-/// surface travels within `life` (s), at its own speed or the typical one, whichever is larger. Fast bodies
-/// are few, but without that room they alone would force new boxes around all bodies. So would a slow body
-/// among fast ones, which pass their speed on to it.
+/// Raises the margin of a box to at least the wanted one plus the skin, and adds the distance that the body's
+/// surface travels at its own speed or the typical one, whichever is larger. Fast bodies are few, but without
+/// that room they alone would force new boxes around all bodies. So would a slow body among fast ones, which
+/// pass their speed on to it.
 struct RaiseMargin {
   ConstBodyView bodies;
   ConstView<double> wanted;
   View<double> margin;
-  double life;
-  double typical;  ///< typical speed of bodies, in their smallest_size (1/s)
-  double most;     ///< largest margin, unless the wanted one is larger (m)
+  double substep, life;  ///< for how long the margin has room for contacts, and shall have room (s)
+  double typical;        ///< typical speed of bodies, in their smallest_size (1/s)
+  double most;           ///< largest margin, unless the wanted one is larger (m)
   SCREE_HD void operator()(std::int64_t k) const {
     if (bodies.mobility[k] == Mobility::fixed || is_surface(bodies.shape[k])) return;
     const double size = smallest_size(bodies.shape[k], bodies.size[k]);
-    const double travel =
-        tolerance::contact_slack * size + life * fmax(surface_speed(bodies, k), typical * size);
-    const double ample = fmax(margin[k], fmax(wanted[k] + tolerance::pair_skin * size, travel));
-    margin[k] = fmax(wanted[k], fmin(ample, most));
+    const double skin = tolerance::pair_skin * size;
+    const double speed = fmax(surface_speed(bodies, k), typical * size);
+    const double contacts =
+        fmax(fmax(margin[k], wanted[k] + skin), tolerance::contact_slack * size + skin + substep * speed);
+    margin[k] = fmax(wanted[k], fmin(contacts + (life - substep) * speed, most));
   }
 };
 
@@ -151,18 +152,17 @@ double largest_margin(const Array<double, Space>& margin) {
 }
 
 template <class Space>
-void FatBoxes<Space>::put_around(const Bodies<Space>& bodies, double dt, const ResponseParameters& parameters,
+void FatBoxes<Space>::put_around(const Bodies<Space>& bodies, double now, double substep,
+                                 const ResponseParameters& parameters,
                                  const Array<double, Space>& contact_margin) {
   const auto leaving =
       parallel::sum_by_tiles<Leaving, Space>("pairs.leaving", bodies.count(), LeavingOf{view_of(bodies)});
   const double rate = leaving.rates / static_cast<double>(std::max<std::int64_t>(leaving.count, 1));
-  const double longest = tolerance::most_pair_steps * dt;
-  const double life =
-      rate * longest > tolerance::pair_travel ? std::max(dt, tolerance::pair_travel / rate) : longest;
-  contact_margins(bodies, dt, tolerance::contact_slack + tolerance::pair_skin, parameters, margin_);
+  const double life = life_.choose(now, substep, rate);
+  contact_margins(bodies, substep, tolerance::contact_slack + tolerance::pair_skin, parameters, margin_);
   parallel::for_each<Space>("pairs.margins", bodies.count(),
-                            RaiseMargin{view_of(bodies), contact_margin.view(), margin_.view(), life, rate,
-                                        bodies.period.most_margin});
+                            RaiseMargin{view_of(bodies), contact_margin.view(), margin_.view(), substep, life,
+                                        rate, bodies.period.most_margin});
   copy(position_, bodies.position);
   copy(orientation_, bodies.orientation);
 }
@@ -197,10 +197,12 @@ bool FatBoxes<Space>::pairs_last_now(const ConstBodyView& now, const Array<doubl
 }
 
 template <class Space>
-void FatBoxes<Space>::add_travel(const Bodies<Space>& bodies, Array<double, Space>& contact_margin) const {
+void FatBoxes<Space>::add_travel(const Bodies<Space>& bodies, Array<double, Space>& contact_margin) {
+  life_.make_room();
   parallel::for_each<Space>(
       "pairs.travel", bodies.count(),
-      AddTravel{{view_of(bodies), position_.view(), orientation_.view()}, contact_margin.view()});
+      AddTravel{{view_of(bodies), std::as_const(position_).view(), std::as_const(orientation_).view()},
+                contact_margin.view()});
 }
 
 #define SCREE_INSTANTIATE(Space)                                                                 \

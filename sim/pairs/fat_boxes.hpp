@@ -5,6 +5,7 @@
 #include "core/array.hpp"
 #include "core/bodies.hpp"
 #include "sim/laws/response_parameters.hpp"
+#include "sim/pairs/box_life.hpp"
 #include "sim/pairs/new_pairs.hpp"
 
 #include <cstdint>
@@ -25,10 +26,13 @@ double largest_margin(const Array<double, Space>& margin);
 template <class Space>
 class FatBoxes {
  public:
-  /// Puts the boxes around the bodies where they are, with room for their travel within dt (s), as far as
-  /// their period lets them look, and for contacts within the given margins (m).
-  void put_around(const Bodies<Space>& bodies, double dt, const ResponseParameters& parameters,
-                  const Array<double, Space>& contact_margin);
+  /// Puts the boxes around the bodies where they are, with room for contacts within the given margins (m),
+  /// and for the bodies' travel in as many substeps as pays (BoxLife), as far as their period lets them look.
+  /// `now`: time of the run (s); `substep`: length of a substep (s), for which there is always room.
+  void put_around(const Bodies<Space>& bodies, double now, double substep,
+                  const ResponseParameters& parameters, const Array<double, Space>& contact_margin);
+  /// Must be called when bodies have changed other than by their motion.
+  void forget() { life_.forget(); }
   /// Returns whether the pairs found with the boxes still include all pairs of bodies that may be in contact
   /// within the given margins (m), wherever the bodies are now: all bodies are in their boxes, or those
   /// outside are few and have no NewPairs.
@@ -38,18 +42,21 @@ class FatBoxes {
                   Array<double, Space>& contact_margin);
   /// Returns how many bodies were outside their boxes when pairs_last() was last called.
   std::int64_t outside() const { return new_pairs_.outside(); }
-  /// Raises the margins (m) by the distance that each body has moved since the boxes were put around it.
-  void add_travel(const Bodies<Space>& bodies, Array<double, Space>& contact_margin) const;
+  /// Must be called if impacts have sent bodies out of their boxes and are undone. Raises the margins (m) by
+  /// the distance that each body has moved since the boxes were put around it.
+  void add_travel(const Bodies<Space>& bodies, Array<double, Space>& contact_margin);
   const Array<double, Space>& margin() const { return margin_; }  ///< margins of the boxes (m)
   void archive(Archive& archive) {
     archive("margin", margin_);
     archive("position", position_);
     archive("orientation", orientation_);
+    archive.part("life", life_);
   }
 
  private:
   bool pairs_last_now(const ConstBodyView& now, const Array<double, Space>& contact_margin);
 
+  BoxLife life_;
   Array<double, Space> margin_;
   Array<Vec3, Space> position_;
   Array<Quat, Space> orientation_;

@@ -123,22 +123,22 @@ void require_one_image(const Period& period, const Array<double, Space>& contact
 
 template <class Space>
 ConstView<Pair> KeptPairs<Space>::covering(const Bodies<Space>& bodies,
-                                           const Array<double, Space>& contact_margin, double reach,
-                                           const ResponseParameters& parameters) {
+                                           const Array<double, Space>& contact_margin, double now,
+                                           double substep, const ResponseParameters& parameters) {
   {
     const timing::Region region("broadphase");
     if (cover(bodies, contact_margin)) return pairs();
   }
-  return make(bodies, contact_margin, reach, parameters);
+  return make(bodies, contact_margin, now, substep, parameters);
 }
 
 template <class Space>
 ConstView<Pair> KeptPairs<Space>::make(const Bodies<Space>& bodies,
-                                       const Array<double, Space>& contact_margin, double reach,
+                                       const Array<double, Space>& contact_margin, double now, double substep,
                                        const ResponseParameters& parameters) {
   const timing::Region region("broadphase");
   require_one_image<Space>(bodies.period, contact_margin);
-  boxes_.put_around(bodies, reach, parameters, contact_margin);
+  boxes_.put_around(bodies, now, substep, parameters, contact_margin);
   const ConstView<Pair> pcs = finder_->find(bodies, boxes_.margin());
   pcs_size_ = pcs.size();
   candidates_.list(view_of(bodies), pcs, boxes_.margin().view());

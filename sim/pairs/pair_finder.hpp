@@ -47,13 +47,13 @@ class KeptPairs {
       : finder_(make_pair_finder<Space>(settings, on_device, origin)) {}
 
   /// Returns candidates that include all pairs which may come as close as their contact margins (m). If they
-  /// have to be made anew, they have room for the bodies' travel within `reach` (s). The view is valid until
-  /// they are made the next time.
+  /// have to be made anew, they have room for the bodies' travel within one substep or more. `now`: time of
+  /// the run (s); `substep`: length of a substep (s). The view is valid until they are made the next time.
   ConstView<Pair> covering(const Bodies<Space>& bodies, const Array<double, Space>& contact_margin,
-                           double reach, const ResponseParameters& parameters);
+                           double now, double substep, const ResponseParameters& parameters);
   /// Makes the candidates of covering() anew, and returns them.
-  ConstView<Pair> make(const Bodies<Space>& bodies, const Array<double, Space>& contact_margin, double reach,
-                       const ResponseParameters& parameters);
+  ConstView<Pair> make(const Bodies<Space>& bodies, const Array<double, Space>& contact_margin, double now,
+                       double substep, const ResponseParameters& parameters);
   /// Returns the candidates last made.
   ConstView<Pair> pairs() const { return candidates_.pairs(); }
   /// Returns whether the candidates last made still include all pairs that may come that close, for the
@@ -68,12 +68,16 @@ class KeptPairs {
     contact_margins<Space>(bodies, foresight, tolerance::contact_slack, parameters, contact_margin);
     return false;
   }
-  /// Raises the margins (m) by the distance that each body has moved since the pairs were made.
-  void add_travel(const Bodies<Space>& bodies, Array<double, Space>& contact_margin) const {
+  /// Must be called if impacts have sent bodies out of their boxes and are undone. Raises the margins (m) by
+  /// the distance that each body has moved since the pairs were made.
+  void add_travel(const Bodies<Space>& bodies, Array<double, Space>& contact_margin) {
     boxes_.add_travel(bodies, contact_margin);
   }
   /// Must be called when the bodies have changed: the next call makes the pairs anew.
-  void forget() { kept_ = false; }
+  void forget() {
+    kept_ = false;
+    boxes_.forget();
+  }
 
   std::vector<BodyBox> boxes() const { return finder_->boxes(); }
   GridOccupancy grid_occupancy() const { return finder_->grid_occupancy(); }

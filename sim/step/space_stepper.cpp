@@ -245,7 +245,6 @@ class SpaceStepper final : public Stepper {
             .from = from,
             .bounces = from == 0};
   }
-  double reach_from(double h, double done) const { return grid_.length(step_ + 1) - done + h; }
 
   /// Sets gravity for the substep that begins, to its value at the midpoint (a time in s).
   void turn_gravity(double midpoint) {
@@ -264,7 +263,7 @@ class SpaceStepper final : public Stepper {
   void give_candidates(ConstView<Pair> pairs);
   ConstView<std::int64_t> known(ConstView<Pair> pairs);
   ConstView<LoadedParts> loads_of(ConstView<Pair> pairs);
-  bool resolve_impacts(double h, double from, double foresight, double reach);
+  bool resolve_impacts(double h, double from, double foresight, double midpoint);
   Vec3 arm_on_wall(const Impact& impact, BodyNumber wall) const;
 
   /// Finds the pairs for the present state. If the step's pairs no longer cover it, others are made apart,
@@ -357,12 +356,13 @@ void SpaceStepper<Space, Real>::substep(double h, double done) {
 template <class Space, class Real>
 bool SpaceStepper<Space, Real>::fly_and_respond(double h, double done, bool may_be_undone) {
   struck_.clear();
-  turn_gravity(grid_.time(step_) + done + 0.5 * h);
+  const double midpoint = grid_.time(step_) + done + 0.5 * h;
+  turn_gravity(midpoint);
   forces_.start_substep(bodies_);
-  fly(grid_.time(step_) + done + 0.5 * h, 0.5 * h);
-  const bool struck = resolve_impacts(h, 0, h, reach_from(h, done));
+  fly(midpoint, 0.5 * h);
+  const bool struck = resolve_impacts(h, 0, h, midpoint);
   const bool any_late_impact = impacts_.any_late_impact();
-  give_candidates(struck ? kept_pairs_.covering(bodies_, contact_margin_, reach_from(h, done), parameters_)
+  give_candidates(struck ? kept_pairs_.covering(bodies_, contact_margin_, midpoint, h, parameters_)
                          : kept_pairs_.pairs());
   counters.pcs_made = kept_pairs_.times_made();
   if (may_be_undone) contacts_.keep_memory();
@@ -387,7 +387,7 @@ template <class Space, class Real>
 void SpaceStepper<Space, Real>::fly_on(double h, double done, bool any_late_impact) {
   const FlightStage flight = impacts_.stage(terms(h, 0), parameters_, views());
   contacts_.add_wall_impulses(flight);
-  if (resolve_impacts(h, 0.5 * h, 0.5 * h, reach_from(h, done)))
+  if (resolve_impacts(h, 0.5 * h, 0.5 * h, grid_.time(step_) + done + 0.5 * h))
     contacts_.take_velocities(view_of(std::as_const(bodies_)));
   fly(grid_.time(step_) + done + h, 0.5 * h);
   ledger.work += forces_.work(bodies_);
@@ -489,10 +489,10 @@ ConstView<LoadedParts> SpaceStepper<Space, Real>::loads_of(ConstView<Pair> pairs
 
 /// Resolves the impacts in the flight of a substep, from `from` (s) on, and returns whether there were any.
 /// Sets the margins for contacts within `foresight` (s) from now on, which is at least the time to the
-/// flight's end; they are not set if all bodies are too slow for impacts in the second half. `reach`: the
-/// time for which new fat boxes must have room (s), reach_from().
+/// flight's end; they are not set if all bodies are too slow for impacts in the second half. `midpoint`:
+/// time of the run at the midpoint of the substep (s).
 template <class Space, class Real>
-bool SpaceStepper<Space, Real>::resolve_impacts(double h, double from, double foresight, double reach) {
+bool SpaceStepper<Space, Real>::resolve_impacts(double h, double from, double foresight, double midpoint) {
   constexpr int most_attempts = 8;
   if (from > 0) {
     const timing::Region region("impacts");
@@ -505,7 +505,7 @@ bool SpaceStepper<Space, Real>::resolve_impacts(double h, double from, double fo
   bool covered = cover();
   for (int attempt = 1;; ++attempt) {
     const ConstView<Pair> pairs =
-        covered ? kept_pairs_.pairs() : kept_pairs_.make(bodies_, contact_margin_, reach, parameters_);
+        covered ? kept_pairs_.pairs() : kept_pairs_.make(bodies_, contact_margin_, midpoint, h, parameters_);
     const timing::Region region("impacts");
     const Ledger moved = impacts_.resolve({.pairs = pairs,
                                            .loaded = loads_of(pairs),
@@ -584,7 +584,7 @@ template <class Space, class Real>
 ConstView<Pair> SpaceStepper<Space, Real>::pairs_now() {
   contact_margins<Space>(bodies_, 0, tolerance::contact_slack, parameters_, contact_margin_);
   sees_kept_ = kept_pairs_.cover(bodies_, contact_margin_);
-  return (sees_kept_ ? kept_pairs_ : seen_pairs_).covering(bodies_, contact_margin_, 0, parameters_);
+  return (sees_kept_ ? kept_pairs_ : seen_pairs_).covering(bodies_, contact_margin_, 0, 0, parameters_);
 }
 
 template <class Space, class Real>

@@ -22,7 +22,7 @@ TYPED_TEST(FatBoxesTest, BoxesHoldUntilABodyLeavesIts) {
   Array<double, TypeParam> margin;
   contact_margins(bodies, 0, tolerance::contact_slack, {}, margin);
   FatBoxes<TypeParam> boxes;
-  boxes.put_around(bodies, 0, {}, margin);
+  boxes.put_around(bodies, 0, 0, {}, margin);
   EXPECT_TRUE(boxes.pairs_last(bodies, margin));
   EXPECT_EQ(boxes.outside(), 0);
   const auto hold_when_moved = [&](std::size_t body, double share) {

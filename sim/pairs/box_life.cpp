@@ -1,0 +1,51 @@
+#include "sim/pairs/box_life.hpp"
+
+#include "core/tolerances.hpp"
+
+#include <algorithm>
+
+namespace scree {
+
+/// Returns the time that pairs take in each substep if they last `substeps`, in arbitrary units: their
+/// number, times the cost of looking at a pair and of making it. The number of bodies near a body grows with
+/// the third power of the box. `travel`: distance per substep, in smallest_size.
+double BoxLife::cost_of(int substeps, double travel) const {
+  constexpr double making = 2;  // cost of making a pair, as a multiple of that of looking at it in a substep
+  const double box = 1 + tolerance::contact_slack + tolerance::pair_skin + (substeps + room_) * travel;
+  return box * box * box * (1 + making / substeps);
+}
+
+/// Impacts make boxes fail that were to last, which shows only afterwards. Then the next ones are to last no
+/// longer than these have lasted. After several that have lasted as they should, twice as long is tried.
+void BoxLife::judge(double lasted) {
+  constexpr int enough = 4;
+  constexpr double rounding = 1e-6;  // of the times
+  if (lasted < planned_ - rounding) {
+    most_ = std::max(1, static_cast<int>(lasted + rounding));
+    kept_in_a_row_ = 0;
+  } else if (++kept_in_a_row_ >= enough) {
+    most_ = std::min(2 * most_, longest);
+    kept_in_a_row_ = 0;
+  }
+}
+
+double BoxLife::choose(double now, double substep, double rate) {
+  constexpr double least_room = 0.05, shrinking = 0.97;
+  if (planned_ > 0 && substep_ > 0) judge((now - made_) / substep_);
+  room_ = std::max(shrinking * room_, least_room);
+  int best = 1;
+  for (int substeps = 2; substeps <= most_; ++substeps) {
+    if (cost_of(substeps, rate * substep) < cost_of(best, rate * substep)) best = substeps;
+  }
+  made_ = now;
+  substep_ = substep;
+  planned_ = best;
+  return (best + room_) * substep;
+}
+
+void BoxLife::make_room() {
+  constexpr double growing = 1.5, most_room = 2;
+  room_ = std::min(growing * room_, most_room);
+}
+
+}  // namespace scree
