@@ -18,6 +18,9 @@ struct SimulationOptions {
   /// on the processor.
   SpaceChoice space = SpaceChoice::automatic;
   int threads = 0;  ///< number of threads; 0: all cores. It never changes the result.
+  /// Whether the forces on bodies that are not free can be measured at any time. If not, they are summed up
+  /// only in scenes with a check that measures a force, and are NaN in others.
+  bool all_forces = true;
 };
 
 }  // namespace scree

@@ -200,7 +200,9 @@ int run(int argc, char** argv) {
   const double within = std::stod(options.at("--within"));
   const Scene scene = scene_of(words.front(), options.at("--set"));
   const auto building = Clock::now();
-  Simulation simulation(scene, {space_of(options.at("--space")), std::stoi(options.at("--threads"))});
+  Simulation simulation(scene, {.space = space_of(options.at("--space")),
+                                .threads = std::stoi(options.at("--threads")),
+                                .all_forces = false});
   const double built = seconds_since(building);
   const auto settling = Clock::now();
   settle(simulation, std::stod(options.at("--settle")), within);

@@ -87,6 +87,7 @@ CLI::Validator positive() {
 }
 
 void add_simulation(CLI::App& command, SimulationOptions& options, const char* threads) {
+  options.all_forces = false;  // a run shows no forces but those that its checks measure
   static const std::map<std::string, SpaceChoice> spaces = {
       {"auto", SpaceChoice::automatic}, {"host", SpaceChoice::host}, {"cuda", SpaceChoice::cuda}};
   choose(command.add_option("--device", options.space, "Where to run"), spaces);

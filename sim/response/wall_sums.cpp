@@ -131,13 +131,15 @@ struct PlaceOfWall {
 
 template <class Space>
 void WallSums<Space>::take(ConstView<Slot> places, const ConstBodyView& bodies) {
+  impulses_.resize(0);
+  used_levels_ = 0;
+  if (walls_.empty()) return;
   Array<std::uint32_t, Space> place, key;
   parallel::select("walls.list", places.size(), IsOnWall{places, bodies.mobility}, IsOnWall::none, place);
   const std::int64_t n = place.size();
+  if (n == 0) return;
   impulses_.resize(n);
   body_.resize(n);
-  used_levels_ = 0;
-  if (n == 0) return;
   key.resize(n);
   parallel::for_each<Space>("walls.list", n,
                             NameWall{places, bodies.mobility, std::as_const(place).view(), key.view()});

@@ -32,7 +32,7 @@ class WallSums {
   void list_walls(ConstView<Mobility> mobility);
   /// Sets all totals to zero.
   void start_step();
-  /// Lists the slots anew, after new candidates.
+  /// Lists the slots anew, after new candidates. If no walls are listed, nothing is summed up.
   void take(ConstView<Slot> places, const ConstBodyView& bodies);
 
   bool is_empty() const { return impulses_.empty(); }

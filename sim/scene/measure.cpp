@@ -124,6 +124,12 @@ bool is_of_overlaps(const Measure& measure) {
   return measure.info->of == MeasureSubject::run && (word == "penetration" || word == "pairs");
 }
 
+bool is_of_forces(const Measure& measure) {
+  const bool of_body = measure.info->of == MeasureSubject::body || measure.info->of == MeasureSubject::mesh;
+  const std::string_view name = measure.info->name;
+  return of_body && (name == "force" || name == "torque");
+}
+
 bool is_measure_word(std::string_view name) {
   return name == region_word || std::ranges::any_of(measure_table(), [&](const MeasureInfo& info) {
            return info.of == MeasureSubject::run && first_word(info.name) == name;

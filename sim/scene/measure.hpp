@@ -56,6 +56,9 @@ struct Measure {
 /// Returns whether a narrow phase is needed to know the measure: it is of overlaps or of pairs.
 bool is_of_overlaps(const Measure& measure);
 
+/// Returns whether the measure is of the contact forces on a body or a mesh.
+bool is_of_forces(const Measure& measure);
+
 /// Returns whether the name is the first word of measures that are not of a body (energy, region ...). No
 /// body may have such a name.
 bool is_measure_word(std::string_view name);

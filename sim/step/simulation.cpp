@@ -4,6 +4,7 @@
 #include "core/timing.hpp"
 #include "sim/bodies/prescribed.hpp"
 #include "sim/bodies/presence.hpp"
+#include "sim/scene/measure.hpp"
 #include "sim/scene/motion_bounds.hpp"
 #include "sim/scene/time_grid.hpp"
 #include "sim/step/guarded_steps.hpp"
@@ -76,13 +77,21 @@ Body body_at(const BodyTable& bodies, std::size_t k) {
 /// (docs/decisions/0022).
 constexpr std::int64_t few_for_device = 20000;
 
+/// Returns whether a check of the scene measures a force.
+bool checks_forces(const Scene& scene) {
+  return std::ranges::any_of(
+      scene.checks, [&](const Check& check) { return is_of_forces(parse_measure(check.measure, scene)); });
+}
+
 std::unique_ptr<Stepper> make_stepper(const Scene& scene, const TimeGrid& grid, const Presence& presence,
-                                      SpaceChoice space, const Vec3& origin) {
-  const bool on_device = space == SpaceChoice::cuda ||
-                         (space == SpaceChoice::automatic && device_info().available &&
+                                      const SimulationOptions& options, const Vec3& origin) {
+  const bool on_device = options.space == SpaceChoice::cuda ||
+                         (options.space == SpaceChoice::automatic && device_info().available &&
                           std::ranges::count(scene.bodies.mobility, Mobility::free) >= few_for_device);
   return make_space_stepper(scene, grid, paths_of(scene, grid, presence),
-                            {.on_device = on_device, .origin = origin});
+                            {.on_device = on_device,
+                             .origin = origin,
+                             .sums_impulses_on_walls = options.all_forces || checks_forces(scene)});
 }
 
 }  // namespace
@@ -120,7 +129,7 @@ struct Simulation::Parts {
                     : tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism)),
         origin(middle_of(s.bodies)),
         reference(s.gravity_turn ? Vec3(Vec3::Zero()) : origin),
-        stepper(make_stepper(s, grid, presence, options.space, origin)),
+        stepper(make_stepper(s, grid, presence, options, origin)),
         steps(scene, reference) {
     if (presence.count() < scene.bodies.count())
       stepper->change_bodies([this](Bodies<Host>& bodies) { presence.begin(bodies); });

@@ -49,6 +49,7 @@ class SpaceStepper final : public Stepper {
                const StepperOptions& options)
       : grid_(grid),
         steps_in_order_(options.steps_in_order),
+        sums_impulses_on_walls_(options.sums_impulses_on_walls),
         geometry_(scene.geometry),
         paths_(paths),
         parameters_(response_parameters_of(scene)),
@@ -183,6 +184,8 @@ class SpaceStepper final : public Stepper {
     find_guides();
   }
   void clear_wall_impulses() {
+    impulses_on_walls_known_ = sums_impulses_on_walls_;
+    if (!sums_impulses_on_walls_) return;
     if (walls_are_listed_) {
       contacts_.wall_sums().start_step();
     } else {
@@ -272,6 +275,7 @@ class SpaceStepper final : public Stepper {
   const KeptPairs<Space>& pairs_seen() const { return sees_kept_ ? kept_pairs_ : seen_pairs_; }
   TimeGrid grid_;
   std::int64_t steps_in_order_;
+  bool sums_impulses_on_walls_;
   std::shared_ptr<const Geometry> geometry_;
   std::int64_t step_ = 0;
   Bodies<Space> bodies_;
@@ -302,6 +306,7 @@ class SpaceStepper final : public Stepper {
   Ledger start_ledger_;
   Vec3 start_gravity_ = Vec3::Zero();
   WallImpacts wall_impacts_;  // of the step
+  bool impulses_on_walls_known_ = false;
   // Whether the wall sums know which bodies are walls, at their present places.
   bool walls_are_listed_ = false;
   /// The data that the first half of a substep changes, besides what contacts remember.
@@ -444,6 +449,7 @@ void SpaceStepper<Space, Real>::archive(Archive& archive) {
     walls_are_listed_ = false;
     clear_wall_impulses();
   }
+  archive("impulses_on_walls_known", impulses_on_walls_known_);
   wall_impacts_.archive(archive, by_number(contacts_.wall_sums().totals_by_place(bodies_.count())));
   archive.part("kept_pairs", kept_pairs_);
   archive.part("seen_pairs", seen_pairs_);
@@ -529,7 +535,7 @@ bool SpaceStepper<Space, Real>::resolve_impacts(double h, double from, double fo
   struck_.resize(before + static_cast<std::size_t>(impacts_.impacts().size()));
   copy_bytes<Host, Space>(struck_.data() + before, impacts_.impacts().data(),
                           (struck_.size() - before) * sizeof(Impact));
-  for (std::size_t k = before; k < struck_.size(); ++k)
+  for (std::size_t k = before; sums_impulses_on_walls_ && k < struck_.size(); ++k)
     wall_impacts_.add(struck_[k], [&](BodyNumber wall) { return arm_on_wall(struck_[k], wall); });
   return true;
 }
@@ -560,6 +566,10 @@ SteppedBody SpaceStepper<Space, Real>::body(BodyNumber number) const {
   if (!servo_axis_.contains(number))
     body.acceleration += gravity_.excess_of_mean(grid_.length(step_ + 1), parameters_);
   if (!wall_impacts_.is_wall(number)) return body;
+  if (!impulses_on_walls_known_) {
+    body.contact_impulse = body.contact_moment = Vec3::Constant(NAN);
+    return body;
+  }
   const solver::WallImpulse on = contacts_.wall_sums().total_of(k) + wall_impacts_.of(number);
   body.contact_impulse = on.impulse;
   body.contact_moment = on.moment;

@@ -19,6 +19,8 @@ struct StepperOptions {
   /// Most bodies still have their old neighbours by then. The places of bodies in memory do not change a bit
   /// of their states (docs/decisions/0047).
   std::int64_t steps_in_order = 64;
+  /// Whether the impulses on bodies that are not free are summed up. If not, theirs are NaN.
+  bool sums_impulses_on_walls = true;
 };
 
 /// Makes the stepper of a scene. In mixed precision impulses and velocities are found in float, but the state

@@ -370,6 +370,36 @@ bodies:
   EXPECT_GT(run.observe().counters.direct, 0);
 }
 
+/// The sums of forces on walls are left out where no check measures a force. Nothing else changes by that.
+TEST_P(SpaceStep, ForcesThatNoCheckMeasuresChangeNothing) {
+  const std::string scene = std::string(grain) + R"(
+gravity: [0, 0, -9.81]
+time: {end: 0.4, step: 0.004}
+bodies:
+  - {plane: {normal: [0, 0, 1], offset: 0}, name: floor, material: stone}
+  - {box: {size: [0.4, 0.4, 0.02]}, at: [0, 0, 0.3], motion: {velocity: [0, 0, 0.2]}, material: stone}
+  - {box: {size: 0.1}, at: [0.1, 0, 0.37], material: stone}
+  - sphere: {radius: 0.02}
+    at: [-0.1, -0.1, 0.03]
+    repeat: {count: [4, 4, 3], spacing: [0.05, 0.05, 0.05], jitter: 0.002}
+    material: stone
+)";
+  SimulationOptions as_checked = GetParam().options;
+  as_checked.all_forces = false;
+  Simulation with = simulate(scene);
+  Simulation without = simulate(scene, as_checked);
+  Simulation checked = simulate(scene + "checks: [{measure: floor.force.z, below: 0}]\n", as_checked);
+  for (Simulation* run : {&with, &without, &checked}) run_to_end(*run);
+  EXPECT_EQ(with.state_hash(), without.state_hash());
+  EXPECT_EQ(with.state_hash(), checked.state_hash());
+  EXPECT_LT(with.body(0).force.z(), 0);
+  EXPECT_EQ(with.body(0).force, checked.body(0).force);
+  EXPECT_EQ(with.body(1).force, checked.body(1).force);
+  EXPECT_TRUE(without.body(0).force.array().isNaN().all());
+  EXPECT_TRUE(without.body(1).force.array().isNaN().all());
+  EXPECT_EQ(with.body(2).force, without.body(2).force) << "the force on a free body needs no sums";
+}
+
 TEST_P(SpaceStep, ForcesOnWallsAreThoseOfTheScene) {
   Simulation run = simulate(std::string(grain) + R"(
 gravity: [0, 0, -9.81]
