@@ -20,6 +20,9 @@ inline constexpr double contact_slack = 0.02;
 /// Which pairs are looked at decides about the order of contacts, and so about rounding, but no pair that may
 /// touch is left out.
 inline constexpr double pair_skin = 0.03;
+/// Share of a substep by which pairs may have lasted for less than planned, because times are rounded. It
+/// must exceed the rounding of the run's time, and be well under 1.
+inline constexpr double pair_life_rounding = 1e-6;
 
 /// Safety factor on the distance that a body can travel in a step, because impacts add to its speed.
 inline constexpr double travel_factor = 1.05;

@@ -19,9 +19,8 @@ double BoxLife::cost_of(int substeps, double travel) const {
 /// longer than these have lasted. After several that have lasted as they should, twice as long is tried.
 void BoxLife::judge(double lasted) {
   constexpr int enough = 4;
-  constexpr double rounding = 1e-6;  // of the times
-  if (lasted < planned_ - rounding) {
-    most_ = std::max(1, static_cast<int>(lasted + rounding));
+  if (lasted < planned_ - tolerance::pair_life_rounding) {
+    most_ = std::max(1, static_cast<int>(lasted + tolerance::pair_life_rounding));
     kept_in_a_row_ = 0;
   } else if (++kept_in_a_row_ >= enough) {
     most_ = std::min(2 * most_, longest);

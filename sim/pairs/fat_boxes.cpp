@@ -106,9 +106,10 @@ struct RaiseMargin {
   ConstBodyView bodies;
   ConstView<double> wanted;
   View<double> margin;
-  double substep, life;  ///< for how long the margin has room for contacts, and shall have room (s)
-  double typical;        ///< typical speed of bodies, in their smallest_size (1/s)
-  double most;           ///< largest margin, unless the wanted one is larger (m)
+  double substep;  ///< length of a substep: the margin has room for contacts within it (s)
+  double life;     ///< time for which the margin shall have room (s)
+  double typical;  ///< typical speed of bodies, in their smallest_size (1/s)
+  double most;     ///< largest margin, unless the wanted one is larger (m)
   SCREE_HD void operator()(std::int64_t k) const {
     if (bodies.mobility[k] == Mobility::fixed || is_surface(bodies.shape[k])) return;
     const double size = smallest_size(bodies.shape[k], bodies.size[k]);

@@ -24,8 +24,8 @@ struct RunPhase {
   SCREE_HD void operator()(std::int64_t item) const { join(phase, item); }
 };
 
-/// Hubs with numbers of parts that need no group, one, several, and groups of groups. Each hub is followed by
-/// its parts only in `records`, where the bodies are the first ones.
+/// Hubs with numbers of parts that need no group, one, several, and groups of groups. In `records` the
+/// bodies of all hubs come first, and then the parts of each hub in turn.
 struct Hubs {
   std::vector<Hub> hubs;
   std::vector<std::int32_t> hub_of;
