@@ -110,7 +110,8 @@ def beads(n, **rest):
 
 def rubble(n, **rest):
     x, y, z = (round(count * (n / 10**5) ** (1 / 3)) for count in (40, 88, 14))
-    settings = {**{f"bodies[{k}].repeat.count": f"[{x},{y},{z}]" for k in (4, 5)}, **{f"bodies[{k}].plane.offset": f"{-0.013 * y - 0.002:.6g}" for k in (2, 3)}}
+    settings = {**{f"bodies[{k}].repeat.count": f"[{x},{y},{z}]" for k in (4, 5)}, **{f"bodies[{k}].plane.offset": f"{-0.013 * y - 0.002:.6g}" for k in (2, 3)},
+                **{f"bodies[{k}].at[1]": f"{-0.013 * (y - 1):.6g}" for k in (4, 5)}}
     return Run(**({"scene": "rubble", "settings": settings, "settle": 0.6, "within": 100, "varied": {"n": n}} | rest))
 
 
