@@ -24,6 +24,12 @@ inline constexpr double pair_skin = 0.03;
 /// must exceed the rounding of the run's time, and be well under 1.
 inline constexpr double pair_life_rounding = 1e-6;
 
+/// Mean travel of the bodies within a substep (of smallest_size) under which contacts are searched within the
+/// whole travel of each body, and not only within its travel relative to others. It is as large as
+/// contact_slack: below, the travel adds hardly any contacts. Larger: more contacts to solve that never
+/// close.
+inline constexpr double little_travel = contact_slack;
+
 /// Safety factor on the distance that a body can travel in a step, because impacts add to its speed.
 inline constexpr double travel_factor = 1.05;
 
@@ -68,8 +74,8 @@ inline constexpr double coarser_overlap = 0.012;
 inline constexpr int wedged_steps = 32;
 /// Overlaps that the steps of a heap in motion may leave after position correction: the deepest, and the mean
 /// of all (of the smaller smallest_size). The number of substeps is chosen for them. Larger: fewer substeps,
-/// and errors grow. The mean is over much_overlap_in_flow, so that a heap is swept more before it takes more
-/// substeps, which cost more (docs/decisions/0059).
+/// and errors grow. The correction takes away more than half of the overlaps that much_overlap_in_flow
+/// bounds, so that a heap is swept more before it takes more substeps, which cost more (docs/decisions/0059).
 inline constexpr double worst_overlap_left = 2e-2;
 inline constexpr double mean_overlap_left = 5e-4;
 /// Deepest overlap to which the position correction of a heap in motion goes on. It is so far under
@@ -126,11 +132,11 @@ inline constexpr double heap_change = 3e-3;
 /// Largest such change for a heap that flows. Larger: its bodies overlap more; smaller: more sweeps, against
 /// overlaps that the motion makes anew (docs/decisions/0052 lists the trade-off).
 inline constexpr double heap_change_in_flow = 2e-2;
-/// Mean overlaps of the contacts of a heap that flows, before the position correction (of the smaller size):
-/// under the first, the change at which its sweeps end is doubled in the next substeps; over the second, it
-/// is halved. Larger: fewer sweeps, and heaps that flow overlap more.
-inline constexpr double little_overlap_in_flow = 2e-4;
-inline constexpr double much_overlap_in_flow = 4e-4;
+/// Mean overlaps of the contacts that overlap in a heap that flows, before the position correction (of the
+/// smaller size): under the first, the change at which its sweeps end is doubled in the next substeps; over
+/// the second, it is halved. Larger: fewer sweeps, and heaps that flow overlap more.
+inline constexpr double little_overlap_in_flow = 5e-4;
+inline constexpr double much_overlap_in_flow = 1e-3;
 /// Residual power: the power of the normal impulses on the relative velocities that they leave, as a share of
 /// the power of all impulses on all that they change. Over the first bound a heap is swept twice as often in
 /// the next substeps, and under the second half as often. This power shows slow modes of many layers, which
@@ -243,7 +249,7 @@ inline constexpr double unit_length = 1e-14;
 inline constexpr double step_count = 1e-9;
 
 static_assert(moving_power < flowing_power);
-static_assert(little_overlap_in_flow < much_overlap_in_flow && much_overlap_in_flow < mean_overlap_left);
+static_assert(little_overlap_in_flow < much_overlap_in_flow && much_overlap_in_flow <= 2 * mean_overlap_left);
 static_assert(least_sweeps_power < stirring_power && stirring_power < done_power);
 static_assert(done_power < residual_power);
 static_assert(closed_gap < contact_slack);

@@ -196,7 +196,7 @@ bool ScreeContacts::solve_islands(double tolerance, const DirectLimits& limits, 
   seen.places = {slots_.data(), static_cast<std::int64_t>(slots_.size())};
   seen.free = std::as_const(free_).view();
   seen.contacts = &store_;
-  seen.first_wall_point = free_.size();
+  seen.first_wall_point = seen.first_part = free_.size();
   seen.first_place = store_.ball_colors().places();
   ContactsOnHost<double> contacts(seen, {});
   const bool all = contacts.solve(tolerance, limits, solved, failed);

@@ -174,8 +174,9 @@ struct AccountStage {
   }
 };
 
-/// Whether the bodies of a contact fly past each other. The gap of such a contact does not count, since a
-/// body that flies past is nearer to the other's tangent plane than to the other itself.
+/// Whether the bodies of a contact fly past each other: they were foreseen to, and none of its points bears
+/// load (`loaded`). The gap of such a contact does not count, since a body that flies past is nearer to the
+/// other's tangent plane than to the other itself.
 SCREE_HD inline bool passes(std::uint8_t flags, bool loaded) { return (flags & flag_flying) != 0 && !loaded; }
 
 /// Accounts for a contact of balls: returns its totals, sets its gap at the end, and stores its impulse in
@@ -212,12 +213,12 @@ struct AccountBalls {
       if (stage.loads.size() > 0) stage.mark_loaded_balls(place);
     }
     Real& predicted_gap = contacts.gaps.at(C::predicted_gap, c);
-    if (contacts.flags[c] == 0) {
+    if (passes(contacts.flags[c], loaded)) {
+      predicted_gap = static_cast<Real>(HUGE_VAL);
+    } else if ((contacts.flags[c] & flag_late_impact) == 0) {
       const V3<Real> u = ends.after_j.velocity - ends.after_i.velocity;
       if (!stage.again) predicted_gap += static_cast<Real>(0.5 * stage.step) * dot(n, u);
       totals.deepest = fmax(0.0, static_cast<double>(-predicted_gap / contacts.gaps.at(C::cap, c)));
-    } else if (passes(contacts.flags[c], loaded)) {
-      predicted_gap = static_cast<Real>(HUGE_VAL);
     }
     return totals;
   }
@@ -241,6 +242,10 @@ struct AccountPoints {
     const double cap = static_cast<double>(contacts.fields.at(C::cap, c));
     const auto& f = contacts.point_fields;
     ContactTotals totals;
+    bool any_loaded = false;
+    for (int k = 0; k < contacts.points[c]; ++k)
+      any_loaded = any_loaded || !is_zero(f.vector(C::at_point(k, C::impulse), c));
+    const bool flies_past = passes(contacts.flags[c], any_loaded);
     for (int k = 0; k < contacts.points[c]; ++k) {
       const auto number = [&](auto field) { return static_cast<double>(f.at(C::at_point(k, field), c)); };
       const auto at = point_at<Scalar<Real>>(contacts, c, k);
@@ -254,8 +259,8 @@ struct AccountPoints {
         ++totals.loaded;
       }
       Real& predicted_gap = contacts.gaps.at(C::at_point(k, C::predicted_gap), c);
-      if (passes(contacts.flags[c], loaded)) predicted_gap = static_cast<Real>(HUGE_VAL);
-      if (contacts.flags[c] != 0) continue;
+      if (flies_past) predicted_gap = static_cast<Real>(HUGE_VAL);
+      if (flies_past || (contacts.flags[c] & flag_late_impact) != 0) continue;
       const V3<Real> u = velocity_at(at, ends.after_i, ends.after_j);
       if (!stage.again)
         predicted_gap += static_cast<Real>(0.5 * stage.step) * dot(contacts.fields.vector(C::normal, c), u);

@@ -16,12 +16,12 @@ namespace scree::solver {
 // part of a hub.
 inline constexpr std::uint8_t on_part = 64;
 inline constexpr std::uint8_t no_color = 255;  ///< the slot had no contact
-static_assert(most_colors <= on_part);
+static_assert(most_colors <= on_part && (no_color & on_part) != 0);
 
-/// Returns what is left of a remembered colour when the candidates are made anew. A colour on a part of a hub
-/// is forgotten, since the slots of hubs are then distributed over new parts.
-SCREE_HD inline std::uint8_t color_with_new_parts(std::uint8_t remembered, bool is_on_part) {
-  return is_on_part || (remembered & on_part) != 0 ? no_color : remembered;
+/// Returns what is left of a remembered colour when the contacts of hubs are dealt to new parts. A colour on
+/// a part is forgotten.
+SCREE_HD inline std::uint8_t color_with_new_parts(std::uint8_t remembered) {
+  return (remembered & on_part) != 0 ? no_color : remembered;
 }
 
 /// Where the contacts of a colour begin: their index among all contacts sorted by colour, and their place in
@@ -52,8 +52,8 @@ class ContactColors {
  public:
   /// Colours the contacts of the slots `found`, which are indices into `slots`. `remembered`: the colours
   /// that the slots remember. A slot that had a contact before mostly keeps its colour; on return all slots
-  /// remember their present colours. `ends`: number of bodies of the solver before the points of walls, among
-  /// which are all free bodies and all parts of hubs. The result does not depend on the order of threads.
+  /// remember their present colours. `ends`: number of bodies of the solver. The
+  /// result does not depend on the order of threads.
   void find(ConstView<std::int32_t> found, ConstView<Slot> slots, const ConstBodyView& bodies,
             std::int64_t ends, View<std::uint8_t> remembered);
   /// Returns the ranges of the colours; each colour in it has at least one contact.

@@ -16,9 +16,12 @@ namespace scree::solver {
 template <class Space, class Real>
 class ContactFinder {
  public:
-  /// Finds the contacts and fills the store. Slots without a contact forget their impulses, and bodies of the
-  /// solver that are points of walls get their velocities. `loads`: the loaded parts of each candidate.
-  void find(const FindStage<Real>& stage, Slots<Space, Real>& slots, ConstView<LoadedParts> loads,
+  /// Finds the slots that have a contact, and returns their places. The other slots forget their impulses.
+  /// `loads`: the loaded parts of each candidate. The views are valid until the next call.
+  FoundPlaces search(const FindStage<Real>& stage, Slots<Space, Real>& slots, ConstView<LoadedParts> loads);
+  /// Makes the contacts that the last search() has found, and fills the store. Bodies of the solver that are
+  /// points of walls get their velocities.
+  void make(const FindStage<Real>& stage, Slots<Space, Real>& slots, ConstView<LoadedParts> loads,
             View<BodyRecord<Real>> solver, ContactStore<Space, Real>& store);
   /// Forgets the contacts of the last find(). This is necessary when the slots, or what they remember, have
   /// changed.
@@ -33,15 +36,17 @@ class ContactFinder {
   }
 
  private:
-  void find_balls(const FindStage<Real>& stage, Slots<Space, Real>& slots, View<BodyRecord<Real>> solver,
+  void search_balls(const FindStage<Real>& stage, Slots<Space, Real>& slots);
+  void search_points(const FindStage<Real>& stage, Slots<Space, Real>& slots, ConstView<LoadedParts> loads);
+  void make_balls(const FindStage<Real>& stage, Slots<Space, Real>& slots, View<BodyRecord<Real>> solver,
                   ContactStore<Space, Real>& store);
-  void find_points(const FindStage<Real>& stage, Slots<Space, Real>& slots, ConstView<LoadedParts> loads,
+  void make_points(const FindStage<Real>& stage, Slots<Space, Real>& slots, ConstView<LoadedParts> loads,
                    ContactStore<Space, Real>& store);
   ApproachList clear_approaching(std::int64_t contacts);
   template <class Judge>
   void judge(const ApproachList& approaching, const Judge& judge);
 
-  FoundSlots<Space> found_;
+  FoundSlots<Space> found_balls_, found_points_;
   ContactColors<Space> ball_colors_, point_colors_;
   Array<FoundManifold, Space> manifolds_;  // one for each slot that is not of balls
   Array<Reach, Host> reach_;               // reach of empty slots, then of each body; for kernels only

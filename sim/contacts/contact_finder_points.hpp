@@ -10,21 +10,29 @@
 namespace scree::solver {
 
 template <class Space, class Real>
-void ContactFinder<Space, Real>::find_points(const FindStage<Real>& stage, Slots<Space, Real>& slots,
-                                             ConstView<LoadedParts> loads, ContactStore<Space, Real>& store) {
+void ContactFinder<Space, Real>::search_points(const FindStage<Real>& stage, Slots<Space, Real>& slots,
+                                               ConstView<LoadedParts> loads) {
   const std::int64_t tiles = slots.other_tiles();
-  if (tiles == 0) return store.take_points({});
-  const std::int64_t first = slots.ball_places();
+  found_points_.start(tiles);
+  if (tiles == 0) return;
   manifolds_.resize(tiles * parallel::tile);
-  found_.start(tiles);
-  FindPoints<Real> find{stage, first, {}, slots.point_memory(), loads, {}, manifolds_.view()};
+  const FindPoints<Real> find{stage, slots.ball_places(), {}, slots.point_memory(), loads,
+                              {},    manifolds_.view()};
   parallel::compact_tiles<Space>("contacts.find points", tiles,
-                                 FindSlots<FindPoints<Real>>{find, found_.places()}, found_.counts());
-  found_.join();
-  point_colors_.find(found_.all(), slots.places_of_others(), stage.bodies,
-                     slots.solver_bodies().first_wall_point(), slots.other_colors());
+                                 FindSlots<FindPoints<Real>>{find, found_points_.places()},
+                                 found_points_.counts());
+  found_points_.join();
+}
+
+template <class Space, class Real>
+void ContactFinder<Space, Real>::make_points(const FindStage<Real>& stage, Slots<Space, Real>& slots,
+                                             ConstView<LoadedParts> loads, ContactStore<Space, Real>& store) {
+  if (slots.other_tiles() == 0) return store.take_points({});
+  point_colors_.find(found_points_.all(), slots.places_of_others(), stage.bodies,
+                     slots.solver_bodies().count(), slots.other_colors());
   if (!point_colors_.are_same()) store.take_points(point_colors_.ranges());
-  find.contacts = store.points();
+  const std::int64_t first = slots.ball_places();
+  FindPoints<Real> find{stage, first, store.points(), slots.point_memory(), loads, {}, manifolds_.view()};
   if (!point_colors_.are_same()) point_colors_.place(find.contacts.slot);
   const std::int64_t contacts = find.contacts.slot.size();
   find.approaching = clear_approaching(contacts);

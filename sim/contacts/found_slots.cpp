@@ -24,6 +24,7 @@ template <class Space>
 void FoundSlots<Space>::start(std::int64_t tiles) {
   places_.resize(tiles * parallel::tile);
   counts_.resize(tiles);
+  all_.resize(0);
 }
 
 template <class Space>

@@ -12,8 +12,9 @@ namespace scree::solver {
 template <class Space>
 class FoundSlots {
  public:
-  /// Makes room for a number of tiles. Each tile then writes the places of the slots that it has found to the
-  /// front of its part of places(), in their order, and their number to counts().
+  /// Makes room for a number of tiles, of which none has a slot yet. Each tile then writes the places of the
+  /// slots that it has found to the front of its part of places(), in their order, and their number to
+  /// counts().
   void start(std::int64_t tiles);
   std::int32_t* places() { return places_.data(); }
   std::int32_t* counts() { return counts_.data(); }

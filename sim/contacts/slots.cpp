@@ -91,7 +91,6 @@ struct PutSlots {
 template <class Real>
 struct Recall {
   ConstView<Slot> places;
-  ConstView<Mobility> mobility;
   ConstView<std::int64_t> before;     ///< index of each candidate among the old ones (Slots::look_up())
   ConstView<std::int64_t> old_first;  ///< first slot of each old candidate
   ConstView<std::int64_t> old_place;
@@ -107,8 +106,7 @@ struct Recall {
 
   SCREE_HD void operator()(std::int64_t place) const {
     const std::int64_t old = old_place_of(places[place]);
-    color[place] =
-        old < 0 ? no_color : color_with_new_parts(old_color[old], is_on_part(mobility, places[place]));
+    color[place] = old < 0 ? no_color : color_with_new_parts(old_color[old]);
     if (couples.size() > 0) {
       const bool known = old >= 0 && old < old_couples.size();
       couples[place] = known ? old_couples[old] : V3<Real>{};
@@ -123,6 +121,18 @@ struct Recall {
   SCREE_HD std::int64_t old_place_of(const Slot& slot) const {
     if (slot.i == Slot::empty || before[slot.candidate] < 0) return -1;
     return old_place[old_first[before[slot.candidate]] + slot.surface];
+  }
+};
+
+/// Forgets the colours of contacts that are or were on parts.
+struct ForgetParts {
+  ConstView<Mobility> mobility;
+  ConstView<Slot> places;
+  FoundPlaces found;
+  View<std::uint8_t> color;
+  SCREE_HD void operator()(std::int64_t k) const {
+    const std::int64_t place = found[k];
+    color[place] = is_on_part(mobility, places[place]) ? no_color : color_with_new_parts(color[place]);
   }
 };
 
@@ -152,7 +162,7 @@ void Slots<Space, Real>::build(ConstView<Pair> candidates, ConstView<std::int64_
   list_slots(bodies);
   solver_bodies_.number(bodies, slots_.view());
   place_slots(bodies);
-  recall(before, bodies, rolls);
+  recall(before, rolls);
 }
 
 template <class Space, class Real>
@@ -203,19 +213,30 @@ std::int64_t Slots<Space, Real>::other_tiles() const {
 }
 
 template <class Space, class Real>
+bool Slots<Space, Real>::split_hubs(const ConstBodyView& bodies, const FoundPlaces& found) {
+  const bool changed = solver_bodies_.split_hubs(bodies, found, places_.view());
+  if (solver_bodies_.may_have_hubs()) {
+    parallel::for_each<Space>(
+        "contacts.hubs", found.size(),
+        ForgetParts{bodies.mobility, std::as_const(places_).view(), found, color_.view()});
+  }
+  return changed;
+}
+
+template <class Space, class Real>
 void Slots<Space, Real>::forget_colors() {
   parallel::fill("slots.recall", color_, no_color);
 }
 
 template <class Space, class Real>
-void Slots<Space, Real>::recall(ConstView<std::int64_t> before, const ConstBodyView& bodies, bool rolls) {
+void Slots<Space, Real>::recall(ConstView<std::int64_t> before, bool rolls) {
   ball_memory_.resize(ball_places());
   point_memory_.resize(places_.size() - ball_places());
   couples_.resize(rolls ? places_.size() : 0);
   color_.resize(places_.size());
   parallel::for_each<Space>(
       "slots.recall", places_.size(),
-      Recall<Real>{std::as_const(places_).view(), bodies.mobility, before, std::as_const(old_first_).view(),
+      Recall<Real>{std::as_const(places_).view(), before, std::as_const(old_first_).view(),
                    std::as_const(old_place_).view(), ball_places(), old_ball_places_,
                    std::as_const(old_ball_memory_).view(), std::as_const(old_point_memory_).view(),
                    std::as_const(old_couples_).view(), std::as_const(old_color_).view(), ball_memory_.view(),

@@ -54,6 +54,10 @@ class Slots {
   /// of each body at the last build(), by its present place, if bodies have changed places since.
   void look_up(ConstView<Pair> pairs, ConstView<std::int32_t> place_before,
                Array<std::int64_t, Space>& index) const;
+  /// Splits the bodies that have many of the contacts at the places `found` (SolverBodies::split_hubs), and
+  /// forgets the colours of contacts on their parts, since the contacts are then dealt to the parts anew.
+  /// Returns whether the bodies of the solver may have changed.
+  bool split_hubs(const ConstBodyView& bodies, const FoundPlaces& found);
   /// Forgets all colours, as is necessary when other bodies than before are free.
   void forget_colors();
   /// Keeps a copy of what the slots remember. recall_memory() puts it back; no build() may come between the
@@ -93,7 +97,7 @@ class Slots {
   void list_slots(const ConstBodyView& bodies);
   void place_slots(const ConstBodyView& bodies);
   void put_slots(const ConstBodyView& bodies, std::int64_t places);
-  void recall(ConstView<std::int64_t> before, const ConstBodyView& bodies, bool rolls);
+  void recall(ConstView<std::int64_t> before, bool rolls);
 
   Array<Pair, Space> pairs_;                      // the candidates
   Array<std::int64_t, Space> first_, old_first_;  // first slot of each candidate, and the number of all slots

@@ -13,27 +13,54 @@ namespace scree::solver {
 
 namespace {
 
-/// The most slots that a free body may have without being a hub, and the number of slots of a part of a hub.
-/// Two bodies that are no hubs leave at least one of the 64 colours for a contact between them. Most bodies
-/// of a heap have fewer slots; each colour that only few contacts need makes all threads wait.
-constexpr std::int32_t most_slots = 32;
-constexpr std::int32_t slots_of_part = 12;
-static_assert(2 * most_slots <= most_colors);
+/// The most contacts that a free body may have without being a hub, and the number of contacts of a part of a
+/// hub. Two bodies that are no hubs leave at least one of the 64 colours for a contact between them. Most
+/// bodies of a heap have fewer contacts; each colour that only few contacts need makes all threads wait.
+constexpr std::int32_t most_contacts = 32;
+constexpr std::int32_t contacts_of_part = 12;
+static_assert(2 * most_contacts <= most_colors);
 
-struct CountSlots {
-  ConstView<Slot> slots;
+/// Counts a slot at its bodies, as far as they are free.
+struct CountEnds {
   ConstView<Mobility> mobility;
   View<std::int32_t> counts;
-  SCREE_HD void operator()(std::int64_t s) const {
-    if (mobility[slots[s].i] == Mobility::free) add(&counts[slots[s].i], 1);
-    if (mobility[slots[s].j] == Mobility::free) add(&counts[slots[s].j], 1);
+  SCREE_HD void count(const Slot& slot) const {
+    if (mobility[slot.i] == Mobility::free) add(&counts[slot.i], 1);
+    if (mobility[slot.j] == Mobility::free) add(&counts[slot.j], 1);
   }
+};
+struct CountSlots {
+  CountEnds ends;
+  ConstView<Slot> slots;
+  SCREE_HD void operator()(std::int64_t s) const { ends.count(slots[s]); }
+};
+struct CountContacts {
+  CountEnds ends;
+  FoundPlaces found;
+  ConstView<Slot> places;
+  SCREE_HD void operator()(std::int64_t k) const { ends.count(places[found[k]]); }
+};
+struct LoadCount {
+  ConstView<std::int32_t> counts;
+  SCREE_HD std::int32_t operator()(std::int64_t b) const { return counts[b]; }
 };
 
 struct MarkHubs {
   ConstView<std::int32_t> counts;
   View<std::uint8_t> is_hub;
-  SCREE_HD void operator()(std::int64_t b) const { is_hub[b] = counts[b] > most_slots ? 1 : 0; }
+  SCREE_HD void operator()(std::int64_t b) const { is_hub[b] = counts[b] > most_contacts ? 1 : 0; }
+};
+
+/// Makes all free bodies whole: the ends of their slots are the bodies themselves.
+struct MakeWhole {
+  ConstView<Mobility> mobility;
+  View<Slot> places;
+  SCREE_HD void operator()(std::int64_t s) const {
+    Slot& slot = places[s];
+    if (slot.i == Slot::empty) return;
+    if (mobility[slot.i] == Mobility::free) slot.end_i = slot.i;
+    if (mobility[slot.j] == Mobility::free) slot.end_j = slot.j;
+  }
 };
 
 struct ListHubs {
@@ -43,7 +70,7 @@ struct ListHubs {
   View<std::int32_t> parts;
   SCREE_HD void operator()(std::int64_t b) const {
     if (number[b] == number[b + 1]) return;
-    parts[number[b]] = (counts[b] + slots_of_part - 1) / slots_of_part;
+    parts[number[b]] = (counts[b] + contacts_of_part - 1) / contacts_of_part;
     hubs[number[b]] = {.body = static_cast<std::int32_t>(b), .first = 0, .parts = parts[number[b]]};
   }
 };
@@ -70,14 +97,25 @@ struct NameHubs {
   }
 };
 
-/// Marks the ends of slots that are on hubs; end 2 s is i of slot s, end 2 s + 1 is j.
+/// The ends of the contacts: end 2 k is body i of found slot k, end 2 k + 1 is body j.
+struct ContactEnds {
+  FoundPlaces found;
+  View<Slot> places;
+
+  SCREE_HD Slot& slot(std::int64_t end) const { return places[found[end / 2]]; }
+  SCREE_HD std::int32_t body(std::int64_t end) const { return end % 2 == 0 ? slot(end).i : slot(end).j; }
+  SCREE_HD std::int32_t other(std::int64_t end) const { return end % 2 == 0 ? slot(end).j : slot(end).i; }
+  SCREE_HD void put_on(std::int64_t end, std::int32_t part) const {
+    (end % 2 == 0 ? slot(end).end_i : slot(end).end_j) = part;
+  }
+};
+
 struct MarkHubEnds {
-  ConstView<Slot> slots;
+  ContactEnds ends;
   ConstView<std::int64_t> number;
   View<std::uint8_t> on_hub;
   SCREE_HD void operator()(std::int64_t e) const {
-    const Slot& slot = slots[e / 2];
-    const std::int32_t body = e % 2 == 0 ? slot.i : slot.j;
+    const std::int32_t body = ends.body(e);
     on_hub[e] = number[body + 1] > number[body] ? 1 : 0;
   }
 };
@@ -85,31 +123,29 @@ struct MarkHubEnds {
 /// hub's ends does then not depend on where bodies lie in memory.
 struct ListHubEnds {
   ConstBodyView bodies;
-  ConstView<Slot> slots;
+  ContactEnds ends;
   ConstView<std::int64_t> to;
   View<std::uint64_t> key;
-  View<std::uint64_t> ends;
+  View<std::uint64_t> list;
   SCREE_HD void operator()(std::int64_t e) const {
     if (to[e] == to[e + 1]) return;
-    const Slot& slot = slots[e / 2];
-    key[to[e]] = static_cast<std::uint64_t>(bodies.id[e % 2 == 0 ? slot.j : slot.i]);
-    ends[to[e]] = static_cast<std::uint64_t>(e);
+    key[to[e]] = static_cast<std::uint64_t>(bodies.id[ends.other(e)]);
+    list[to[e]] = static_cast<std::uint64_t>(e);
   }
 };
 /// Computes the keys of a second sorting: by hub, and within a hub the ends with the heaviest other bodies
 /// first. The bits of floats that are not negative have the same order as the floats.
 struct KeyOfHubEnd {
   ConstBodyView bodies;
-  ConstView<Slot> slots;
+  ContactEnds ends;
   ConstView<std::int64_t> number;
-  ConstView<std::uint64_t> ends;
+  ConstView<std::uint64_t> list;
   View<std::uint64_t> key;
   SCREE_HD void operator()(std::int64_t k) const {
-    const auto e = static_cast<std::int64_t>(ends[k]);
-    const Slot& slot = slots[e / 2];
-    const std::int32_t body = e % 2 == 0 ? slot.i : slot.j;
-    const auto lightness = static_cast<float>(bodies.inverse_mass[e % 2 == 0 ? slot.j : slot.i]);
-    key[k] = static_cast<std::uint64_t>(number[body]) << 32 | std::bit_cast<std::uint32_t>(lightness);
+    const auto end = static_cast<std::int64_t>(list[k]);
+    const auto lightness = static_cast<float>(bodies.inverse_mass[ends.other(end)]);
+    key[k] =
+        static_cast<std::uint64_t>(number[ends.body(end)]) << 32 | std::bit_cast<std::uint32_t>(lightness);
   }
 };
 /// Distributes the ends of each hub over its parts, in their order, and adds up the masses of the other
@@ -117,25 +153,25 @@ struct KeyOfHubEnd {
 /// not depend on the order of threads.
 struct DealHubEnds {
   ConstBodyView bodies;
+  ContactEnds ends;
   ConstView<std::uint64_t> key;
-  ConstView<std::uint64_t> ends;
+  ConstView<std::uint64_t> list;
   ConstView<Hub> hubs;
   ConstView<std::int32_t> hub_of;
   std::int64_t first_part;
-  View<Slot> slots;
   View<std::int64_t> weight;
   SCREE_HD void operator()(std::int64_t p) const {
     constexpr double unit = 0x1p40;  // integer weight of the hub's mass
-    const std::int64_t begin = first_of(hub_of[p]) + (first_part + p - hubs[hub_of[p]].first) * slots_of_part;
+    const std::int64_t begin =
+        first_of(hub_of[p]) + (first_part + p - hubs[hub_of[p]].first) * contacts_of_part;
     const double least = bodies.inverse_mass[hubs[hub_of[p]].body];
     std::int64_t sum = 0;
-    for (std::int64_t k = begin; k < begin + slots_of_part && k < ends.size() && hub_at(k) == hub_of[p];
+    for (std::int64_t k = begin; k < begin + contacts_of_part && k < list.size() && hub_at(k) == hub_of[p];
          ++k) {
-      Slot& slot = slots[static_cast<std::int64_t>(ends[k] / 2)];
-      const bool is_i = ends[k] % 2 == 0;
-      (is_i ? slot.end_i : slot.end_j) = static_cast<std::int32_t>(first_part + p);
-      sum += 1 + static_cast<std::int64_t>(
-                     unit * (least / fmax(least, bodies.inverse_mass[is_i ? slot.j : slot.i])));
+      const auto end = static_cast<std::int64_t>(list[k]);
+      ends.put_on(end, static_cast<std::int32_t>(first_part + p));
+      sum +=
+          1 + static_cast<std::int64_t>(unit * (least / fmax(least, bodies.inverse_mass[ends.other(end)])));
     }
     weight[p] = sum;
   }
@@ -207,71 +243,101 @@ struct NumberWallPoints {
 
 template <class Space>
 void SolverBodies<Space>::number(const ConstBodyView& bodies, View<Slot> slots) {
-  split_hubs(bodies, slots);
+  hubs_.resize(0);
+  hub_of_.resize(0);
+  share_.resize(0);
   number_wall_points(bodies, slots);
+  Array<std::int32_t, Space> counts(bodies.count());
+  parallel::fill("slots.degree", counts, 0);
+  parallel::for_each<Space>("slots.degree", slots.size(),
+                            CountSlots{{bodies.mobility, counts.view()}, slots});
+  may_have_hubs_ =
+      parallel::max<std::int32_t, Space>("slots.degree", counts.size(),
+                                         LoadCount{std::as_const(counts).view()}, 0) > most_contacts;
 }
 
 template <class Space>
-void SolverBodies<Space>::split_hubs(const ConstBodyView& bodies, View<Slot> slots) {
+bool SolverBodies<Space>::split_hubs(const ConstBodyView& bodies, const FoundPlaces& found,
+                                     View<Slot> places) {
+  if (!may_have_hubs_) return false;
+  const bool were_there = !hubs_.empty();
+  if (were_there)
+    parallel::for_each<Space>("contacts.hubs", places.size(), MakeWhole{bodies.mobility, places});
+  if (!find_hubs(bodies, found, places)) return were_there;
+  deal_ends(bodies, found, places);
+  return true;
+}
+
+/// Finds the hubs and their parts. Returns whether there are any.
+template <class Space>
+bool SolverBodies<Space>::find_hubs(const ConstBodyView& bodies, const FoundPlaces& found,
+                                    ConstView<Slot> places) {
   const std::int64_t n = bodies.count();
-  const std::int64_t first_part = n + 1;
-  const std::int64_t ends = 2 * slots.size();
   Array<std::int32_t, Space> counts(n);
   Array<std::uint8_t, Space> marks(n);
-  Array<std::int64_t, Space> number, to;
-  parallel::fill("slots.degree", counts, 0);
-  parallel::for_each<Space>("slots.degree", slots.size(), CountSlots{slots, bodies.mobility, counts.view()});
-  parallel::for_each<Space>("slots.hubs", n, MarkHubs{std::as_const(counts).view(), marks.view()});
-  hubs_.resize(parallel::exclusive_scan("slots.hubs", marks, number));
-  count_ = first_part;
+  parallel::fill("contacts.hubs", counts, 0);
+  parallel::for_each<Space>("contacts.hubs", found.size(),
+                            CountContacts{{bodies.mobility, counts.view()}, found, places});
+  parallel::for_each<Space>("contacts.hubs", n, MarkHubs{std::as_const(counts).view(), marks.view()});
+  hubs_.resize(parallel::exclusive_scan("contacts.hubs", marks, hub_number_));
   hub_of_.resize(0);
   share_.resize(0);
-  if (hubs_.empty()) return;
+  if (hubs_.empty()) return false;
   Array<std::int32_t, Space> parts(hubs_.size());
+  Array<std::int64_t, Space> first;
   parallel::for_each<Space>(
-      "slots.hubs", n,
-      ListHubs{std::as_const(counts).view(), std::as_const(number).view(), hubs_.view(), parts.view()});
-  hub_of_.resize(parallel::exclusive_scan("slots.hubs", parts, to));
-  count_ += hub_of_.size();
-  parallel::for_each<Space>("slots.hubs", hubs_.size(),
-                            PlaceHubs{std::as_const(to).view(), first_part, hubs_.view()});
-  parallel::for_each<Space>("slots.hubs", hub_of_.size(), NameHubs{std::as_const(to).view(), hub_of_.view()});
-  marks.resize(ends);
-  parallel::for_each<Space>("slots.hub ends", ends,
-                            MarkHubEnds{slots, std::as_const(number).view(), marks.view()});
-  const std::int64_t on_hubs = parallel::exclusive_scan("slots.hub ends", marks, to);
-  Array<std::uint64_t, Space> key(on_hubs), end(on_hubs);
-  parallel::for_each<Space>("slots.hub ends", ends,
-                            ListHubEnds{bodies, slots, std::as_const(to).view(), key.view(), end.view()});
-  parallel::sort_by_key("slots.hub ends", key, end, std::bit_width(static_cast<std::uint64_t>(n)));
-  parallel::for_each<Space>(
-      "slots.hub ends", on_hubs,
-      KeyOfHubEnd{bodies, slots, std::as_const(number).view(), std::as_const(end).view(), key.view()});
-  parallel::sort_by_key("slots.hub ends", key, end,
+      "contacts.hubs", n,
+      ListHubs{std::as_const(counts).view(), std::as_const(hub_number_).view(), hubs_.view(), parts.view()});
+  hub_of_.resize(parallel::exclusive_scan("contacts.hubs", parts, first));
+  parallel::for_each<Space>("contacts.hubs", hubs_.size(),
+                            PlaceHubs{std::as_const(first).view(), first_part_, hubs_.view()});
+  parallel::for_each<Space>("contacts.hubs", hub_of_.size(),
+                            NameHubs{std::as_const(first).view(), hub_of_.view()});
+  return true;
+}
+
+/// Deals the ends of contacts on hubs to the parts, and finds each part's share.
+template <class Space>
+void SolverBodies<Space>::deal_ends(const ConstBodyView& bodies, const FoundPlaces& found,
+                                    View<Slot> places) {
+  const ContactEnds ends{found, places};
+  const ConstView<std::int64_t> number = std::as_const(hub_number_).view();
+  Array<std::uint8_t, Space> marks(2 * found.size());
+  Array<std::int64_t, Space> to;
+  parallel::for_each<Space>("contacts.hubs", marks.size(), MarkHubEnds{ends, number, marks.view()});
+  const std::int64_t on_hubs = parallel::exclusive_scan("contacts.hubs", marks, to);
+  Array<std::uint64_t, Space> key(on_hubs), list(on_hubs);
+  parallel::for_each<Space>("contacts.hubs", marks.size(),
+                            ListHubEnds{bodies, ends, std::as_const(to).view(), key.view(), list.view()});
+  parallel::sort_by_key("contacts.hubs", key, list,
+                        std::bit_width(static_cast<std::uint64_t>(bodies.count())));
+  parallel::for_each<Space>("contacts.hubs", on_hubs,
+                            KeyOfHubEnd{bodies, ends, number, std::as_const(list).view(), key.view()});
+  parallel::sort_by_key("contacts.hubs", key, list,
                         32 + std::bit_width(static_cast<std::uint64_t>(hubs_.size())));
   Array<std::int64_t, Space> weight(hub_of_.size()), before;
   parallel::for_each<Space>(
-      "slots.hub ends", hub_of_.size(),
-      DealHubEnds{bodies, std::as_const(key).view(), std::as_const(end).view(), std::as_const(hubs_).view(),
-                  std::as_const(hub_of_).view(), first_part, slots, weight.view()});
-  parallel::exclusive_scan("slots.hub ends", weight, before);
+      "contacts.hubs", hub_of_.size(),
+      DealHubEnds{bodies, ends, std::as_const(key).view(), std::as_const(list).view(),
+                  std::as_const(hubs_).view(), std::as_const(hub_of_).view(), first_part_, weight.view()});
+  parallel::exclusive_scan("contacts.hubs", weight, before);
   share_.resize(hub_of_.size());
   parallel::for_each<Space>(
-      "slots.hub ends", hub_of_.size(),
-      ShareHub{std::as_const(hubs_).view(), std::as_const(hub_of_).view(), first_part,
+      "contacts.hubs", hub_of_.size(),
+      ShareHub{std::as_const(hubs_).view(), std::as_const(hub_of_).view(), first_part_,
                std::as_const(weight).view(), std::as_const(before).view(), share_.view()});
 }
 
 template <class Space>
 void SolverBodies<Space>::number_wall_points(const ConstBodyView& bodies, View<Slot> slots) {
-  first_wall_point_ = count_;
+  first_wall_point_ = first_part_ = bodies.count() + 1;
   const auto walls =
       parallel::sum_by_tiles<std::int64_t, Space>("slots.walls", bodies.count(), CountTurningWalls{bodies});
   if (walls == 0) return;
   Array<std::uint8_t, Space> marks(slots.size());
   Array<std::int64_t, Space> number;
   parallel::for_each<Space>("slots.walls", slots.size(), MarkWallPoints{bodies, slots, marks.view()});
-  count_ += parallel::exclusive_scan("slots.walls", marks, number);
+  first_part_ += parallel::exclusive_scan("slots.walls", marks, number);
   parallel::for_each<Space>("slots.walls", slots.size(),
                             NumberWallPoints{bodies, std::as_const(number).view(), first_wall_point_, slots});
 }

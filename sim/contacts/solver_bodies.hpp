@@ -9,10 +9,10 @@
 
 namespace scree::solver {
 
-/// A free body whose many slots would need too many colours. It is solved as several parts that share its
+/// A free body whose many contacts would need too many colours. It is solved as several parts that share its
 /// mass and get equal velocities after each sweep (mass splitting: Tonge, Benevolenski, Voroshilov 2012,
 /// "Mass splitting for jitter-free parallel rigid body simulation", sec. 4). The heaviest of the bodies that
-/// it may touch are on the same part. Half of the mass is shared in proportion to the weights of these
+/// it touches are on the same part. Half of the mass is shared in proportion to the weights of these
 /// bodies, since a part with a body that carries the hub must stop the hub: if a ball with thousands of
 /// grains on it had equal shares, the body on which it lies would slow down only a thousandth of it in a
 /// sweep.
@@ -47,32 +47,52 @@ SCREE_HD inline bool is_rare(const ConstBodyView& bodies, const Slot& slot) {
          is_wall_point(slot.i, slot.end_i) || is_wall_point(slot.j, slot.end_j);
 }
 
-/// The bodies of the solver, in this order: all bodies; padding_body, which is not free; the parts of the
-/// hubs; and the points of turning walls that balls may touch. The last are one body for each slot, which is
-/// not free and has the velocity of the wall at the contact.
+/// The slots that have a contact: those of balls, and the others, which are counted from their first place.
+struct FoundPlaces {
+  ConstView<std::int32_t> balls, others;
+  std::int64_t first_other;
+
+  SCREE_HD std::int64_t size() const { return balls.size() + others.size(); }
+  SCREE_HD std::int64_t operator[](std::int64_t k) const {
+    return k < balls.size() ? balls[k] : first_other + others[k - balls.size()];
+  }
+};
+
+/// The bodies of the solver, in this order: all bodies; padding_body, which is not free; the points of
+/// turning walls that balls may touch; and the parts of the hubs. The points of walls are one body for each
+/// slot, which is not free and has the velocity of the wall at the contact.
 template <class Space>
 class SolverBodies {
  public:
-  /// Numbers the ends of the slots, which are the bodies themselves before the call. The result does not
-  /// depend on the order of threads.
+  /// Numbers the ends of new slots, which are the bodies themselves before the call. There are no hubs
+  /// afterwards. The result does not depend on the order of threads.
   void number(const ConstBodyView& bodies, View<Slot> slots);
+  /// Splits the hubs into parts, and numbers the ends of the slots in `places` that are found and on hubs.
+  /// Returns whether there are hubs, or were before the call. The result depends on the found slots alone,
+  /// and not on the order of threads.
+  bool split_hubs(const ConstBodyView& bodies, const FoundPlaces& found, View<Slot> places);
+  /// Whether any body has so many slots that it may become a hub.
+  bool may_have_hubs() const { return may_have_hubs_; }
 
-  std::int64_t count() const { return count_; }
-  std::int32_t padding_body() const { return static_cast<std::int32_t>(first_part() - 1); }
+  std::int64_t count() const { return first_part_ + hub_of_.size(); }
+  std::int32_t padding_body() const { return static_cast<std::int32_t>(first_wall_point_ - 1); }
   ConstView<Hub> hubs() const { return hubs_.view(); }
   /// Returns the number of the hub of each part.
   ConstView<std::int32_t> hub_of_parts() const { return hub_of_.view(); }
   /// Returns the share of its hub's mass of each part.
   ConstView<double> share_of_parts() const { return share_.view(); }
-  std::int64_t first_part() const { return first_wall_point_ - hub_of_.size(); }
   std::int64_t first_wall_point() const { return first_wall_point_; }
+  std::int64_t first_part() const { return first_part_; }
 
  private:
-  void split_hubs(const ConstBodyView& bodies, View<Slot> slots);
   void number_wall_points(const ConstBodyView& bodies, View<Slot> slots);
+  bool find_hubs(const ConstBodyView& bodies, const FoundPlaces& found, ConstView<Slot> places);
+  void deal_ends(const ConstBodyView& bodies, const FoundPlaces& found, View<Slot> places);
 
-  std::int64_t count_ = 0, first_wall_point_ = 0;
+  std::int64_t first_wall_point_ = 0, first_part_ = 0;
+  bool may_have_hubs_ = false;
   Array<Hub, Space> hubs_;
+  Array<std::int64_t, Space> hub_number_;  // number of hubs before each body, and of all
   Array<std::int32_t, Space> hub_of_;
   Array<double, Space> share_;
 };

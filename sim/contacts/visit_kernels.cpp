@@ -251,15 +251,17 @@ SCREE_LAW Vector predict_gaps(const AccountBlocks& by, std::int64_t c, const Vec
   Vector gap = by.contacts.gaps.get<Lanes>(C::predicted_gap, c);
   const Vector cap = by.contacts.gaps.get<Lanes>(C::cap, c);
   const std::uint8_t* const flags = by.contacts.flags.data() + c;
-  Vector met{}, passes{};
+  Vector late{}, flying{};
   for (int l = 0; l < width; ++l) {
-    met[l] = flags[l] == 0 ? 1 : 0;
-    passes[l] = (flags[l] & flag_flying) != 0 ? 1 : 0;
+    late[l] = (flags[l] & flag_late_impact) != 0 ? 1 : 0;
+    flying[l] = (flags[l] & flag_flying) != 0 ? 1 : 0;
   }
-  if (!by.again) gap = met > 0 ? gap + 0.5 * by.step * velocity : gap;
-  gap = ((passes > 0) & !carries) ? Lanes::all(HUGE_VAL) : gap;
+  const VectorOfMasks passes = (flying > 0) & !carries;
+  const VectorOfMasks met = (late == 0) & !passes;
+  if (!by.again) gap = met ? gap + 0.5 * by.step * velocity : gap;
+  gap = passes ? Lanes::all(HUGE_VAL) : gap;
   by.contacts.gaps.put<Lanes>(C::predicted_gap, c, gap);
-  return met > 0 ? -gap / cap : Vector{};
+  return met ? -gap / cap : Vector{};
 }
 
 BlockTotals account_balls(const AccountBlocks& given, Blocks blocks) {

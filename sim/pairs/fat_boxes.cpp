@@ -158,12 +158,12 @@ void FatBoxes<Space>::put_around(const Bodies<Space>& bodies, double now, double
                                  const Array<double, Space>& contact_margin) {
   const auto leaving =
       parallel::sum_by_tiles<Leaving, Space>("pairs.leaving", bodies.count(), LeavingOf{view_of(bodies)});
-  const double rate = leaving.rates / static_cast<double>(std::max<std::int64_t>(leaving.count, 1));
-  const double life = life_.choose(now, substep, rate);
+  rate_ = leaving.rates / static_cast<double>(std::max<std::int64_t>(leaving.count, 1));
+  const double life = life_.choose(now, substep, rate_);
   contact_margins(bodies, substep, tolerance::contact_slack + tolerance::pair_skin, parameters, margin_);
   parallel::for_each<Space>("pairs.margins", bodies.count(),
                             RaiseMargin{view_of(bodies), contact_margin.view(), margin_.view(), substep, life,
-                                        rate, bodies.period.most_margin});
+                                        rate_, bodies.period.most_margin});
   copy(position_, bodies.position);
   copy(orientation_, bodies.orientation);
 }

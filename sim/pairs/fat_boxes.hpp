@@ -46,8 +46,12 @@ class FatBoxes {
   /// the distance that each body has moved since the boxes were put around it.
   void add_travel(const Bodies<Space>& bodies, Array<double, Space>& contact_margin);
   const Array<double, Space>& margin() const { return margin_; }  ///< margins of the boxes (m)
+  /// Returns how far the bodies travelled within dt (s), on average and in their smallest_size, when the
+  /// boxes were put around them.
+  double mean_travel(double dt) const { return rate_ * dt; }
   void archive(Archive& archive) {
     archive("margin", margin_);
+    archive("rate", rate_);
     archive("position", position_);
     archive("orientation", orientation_);
     archive.part("life", life_);
@@ -57,6 +61,7 @@ class FatBoxes {
   bool pairs_last_now(const ConstBodyView& now, const Array<double, Space>& contact_margin);
 
   BoxLife life_;
+  double rate_ = 0;  // mean speed of the bodies, in their smallest_size, when the boxes were made (1/s)
   Array<double, Space> margin_;
   Array<Vec3, Space> position_;
   Array<Quat, Space> orientation_;

@@ -79,6 +79,9 @@ class KeptPairs {
     boxes_.forget();
   }
 
+  /// Returns how far the bodies travelled within dt (s), on average and in their smallest_size, when the
+  /// pairs were last made.
+  double mean_travel(double dt) const { return boxes_.mean_travel(dt); }
   std::vector<BodyBox> boxes() const { return finder_->boxes(); }
   GridOccupancy grid_occupancy() const { return finder_->grid_occupancy(); }
   /// Returns the number of pairs in the PCS.

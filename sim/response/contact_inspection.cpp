@@ -22,7 +22,7 @@ ContactProblem problem_of(Inspection<Real>& seen, const BodyTable& bodies) {
   }
   // The points of walls that turn follow after the bodies.
   const auto first = static_cast<std::int32_t>(seen.first_wall_point - std::ssize(bodies.position));
-  for (std::int64_t k = seen.first_wall_point; k < seen.free.size(); ++k)
+  for (std::int64_t k = seen.first_wall_point; k < seen.first_part; ++k)
     problem.bodies.push_back({0, Mat3::Zero(), vec3(seen.free[k].velocity), Vec3::Zero()});
   const auto number = [&](std::int32_t k) { return k >= seen.first_wall_point ? k - first : number_of(k); };
   for_each_contact(seen, [&](const SeenContact& c) {

@@ -35,6 +35,7 @@ struct Inspection {
   RollingFields<Real> ball_rolling, point_rolling;
   bool rolls = false;
   std::int64_t first_wall_point = 0;               ///< index of the first wall point in `free`
+  std::int64_t first_part = 0;                     ///< index after the last wall point in `free`
   double step = 0;                                 ///< length of the substep (s)
   std::int64_t first_place = 0;                    ///< place of the first slot that is not of balls
   std::shared_ptr<BroughtContacts<Real>> brought;  ///< null where the contacts are on Host
@@ -89,7 +90,7 @@ SeenContact ball_contact(Inspection<Real>& seen, const BallContacts<Real>& balls
   using B = BallContacts<Real>;
   const auto number = [](Real value) { return static_cast<double>(value); };
   const auto whole = [&](std::int32_t body, std::int32_t end) {
-    return end >= seen.first_wall_point ? end : body;
+    return end >= seen.first_wall_point && end < seen.first_part ? end : body;
   };
   const auto& f = balls.fields;
   SeenContact contact = no_contact();

@@ -66,6 +66,7 @@ Inspection<Real> ContactSolver<Space, Real>::inspect(const ConstBodyView& bodies
   Inspection<Real> seen;
   seen.rolls = rolls();
   seen.first_wall_point = slots_.solver_bodies().first_wall_point();
+  seen.first_part = slots_.solver_bodies().first_part();
   seen.first_place = slots_.ball_places();
   seen.step = step_;
   if constexpr (std::is_same_v<Space, Host>) {
@@ -130,10 +131,9 @@ void ContactSolver<Space, Real>::load_bodies(const ConstBodyView& bodies, ConstV
       LoadPart<Real>{slots_.solver_bodies().hubs(), slots_.solver_bodies().hub_of_parts(),
                      slots_.solver_bodies().share_of_parts(), slots_.solver_bodies().first_part(),
                      solver_.view()});
-  const std::int64_t walls = slots_.solver_bodies().first_wall_point();
-  parallel::for_each<Space>("contacts.bodies", all - walls, ClearNotFree<Real>{walls, solver_.view()});
-  parallel::for_each<Space>("contacts.bodies", 1,
-                            ClearNotFree<Real>{slots_.solver_bodies().padding_body(), solver_.view()});
+  const std::int64_t padding = slots_.solver_bodies().padding_body();
+  parallel::for_each<Space>("contacts.bodies", slots_.solver_bodies().first_part() - padding,
+                            ClearNotFree<Real>{padding, solver_.view()});
 }
 
 template <class Space, class Real>
@@ -143,19 +143,26 @@ void ContactSolver<Space, Real>::find(ConstView<double> margin, double scale, co
   const ConstBodyView bodies = read_only(flight.bodies);
   const ResponseParameters& parameters = flight.parameters;
   load_bodies(bodies, margin, parameters);
-  const FindStage<Real> stage{.places = slots_.places(),
-                              .mid = mid_.view(),
-                              .bodies = bodies,
-                              .solver = solver_.view(),
-                              .laws = flight.terms.laws,
-                              .parameters = parameters,
-                              .step = step_,
-                              .scale = scale,
-                              .noise = tolerance::parting_speed * step_ * parameters.gravity.norm(),
-                              .struck = {flight},
-                              .any_late_impact = any_late_impact,
-                              .libccd = libccd};
-  finder_.find(stage, slots_, loads(), solver_.view(), store_);
+  FindStage<Real> stage{.places = slots_.places(),
+                        .mid = mid_.view(),
+                        .bodies = bodies,
+                        .solver = solver_.view(),
+                        .laws = flight.terms.laws,
+                        .parameters = parameters,
+                        .step = step_,
+                        .scale = scale,
+                        .noise = tolerance::parting_speed * step_ * parameters.gravity.norm(),
+                        .struck = {flight},
+                        .any_late_impact = any_late_impact,
+                        .libccd = libccd};
+  const FoundPlaces found = finder_.search(stage, slots_, loads());
+  if (slots_.split_hubs(bodies, found)) {
+    finder_.forget_slots();
+    load_bodies(bodies, margin, parameters);
+    stage.solver = solver_.view();
+    list_guided(parameters.guides);
+  }
+  finder_.make(stage, slots_, loads(), solver_.view(), store_);
   counts_.contacts = counts_.points = store_.ball_colors().contacts();
   if (parameters.rolling_friction) start_rolling(stage);
   copy(free_, solver_);

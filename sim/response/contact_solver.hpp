@@ -76,8 +76,9 @@ class ContactSolver {
   /// impact. `share` is the length of the substep in steps. Returns the energy and momentum that were moved.
   Ledger solve(const FlightStage& flight, bool any_late_impact, double share, Counters& counters);
 
-  /// Takes the velocities that impacts after the response have changed, and predicts the gaps anew.
-  void take_velocities(const ConstBodyView& bodies);
+  /// Takes the velocities that impacts after the response have changed, and predicts the gaps anew. `flight`
+  /// has the bodies after these impacts.
+  void take_velocities(const FlightStage& flight);
 
   /// Moves bodies apart that would overlap; the velocities stay. Returns what that adds to the ledger.
   Ledger correct(const FlightStage& flight, bool any_late_impact);
@@ -161,9 +162,9 @@ class ContactSolver {
   ContactTotals account_ball_blocks(const AccountStage<Real>& stage) requires(visit_width<Space, Real> > 1);
   ReloadBody<Real> reload(const ConstBodyView& bodies, const Array<BodyRecord<Real>, Space>& from,
                           Array<BodyRecord<Real>, Space>& to);
-  void fly_on_with_changes();
+  void fly_on_with_changes(bool late_are_turned);
   Ledger shift_after_late_impacts(const FlightStage& flight);
-  void find_end_gaps(const FlightStage& flight);
+  void find_end_gaps(const ConstBodyView& bodies);
 
   Slots<Space, Real> slots_;
   double step_ = 0;

@@ -10,9 +10,9 @@
 namespace scree::solver {
 
 template <class Space, class Real>
-void ContactSolver<Space, Real>::find_end_gaps(const FlightStage& flight) {
-  for_balls("gaps.end", FindEndGapsOfBalls<Real>{store_.balls(), slots_.places(), solver_.view(), flight});
-  for_points("gaps.end", FindEndGapsOfPoints<Real>{store_.points(), slots_.places_of_others(), flight});
+void ContactSolver<Space, Real>::find_end_gaps(const ConstBodyView& bodies) {
+  for_balls("gaps.end", FindEndGapsOfBalls<Real>{store_.balls(), slots_.places(), bodies});
+  for_points("gaps.end", FindEndGapsOfPoints<Real>{store_.points(), slots_.places_of_others(), bodies});
 }
 
 template <class Space, class Real>
@@ -21,7 +21,7 @@ Ledger ContactSolver<Space, Real>::correct(const FlightStage& flight, bool any_l
   overlap_ = tolerance::correction_cap * totals_.deepest;
   if (counts_.contacts == 0) return {};
   if (overlap_ == 0 && !any_late_impact) return {};
-  find_end_gaps(flight);
+  find_end_gaps(read_only(flight.bodies));
   parallel::for_each<Space>("correction.start", displacement_.size(),
                             ResetDisplacement<Real>{solver_.view(), displacement_.view(), turn_.view()});
   const double quality = flight.parameters.quality;
@@ -84,7 +84,7 @@ double ContactSolver<Space, Real>::run_correction_phases(const CorrectionPlan& p
           .mean = static_cast<float>(plan.mean / tolerance::correction_cap),
           .too_deep = static_cast<float>(plan.too_deep / tolerance::correction_cap)},
       CorrectionState{});
-  return tolerance::correction_cap * done.first / static_cast<double>(counts_.contacts);
+  return tolerance::correction_cap * done.first;
 }
 
 #define SCREE_INSTANTIATE(Space)                                                   \

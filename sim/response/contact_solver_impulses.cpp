@@ -41,7 +41,7 @@ SweepState ContactSolver<Space, Real>::run_impulse_phases(const SweepPlan& plan)
           .point_rolling = rolling_of_points(),
           .bodies = solver_.data(),
           .last = last_.data(),
-          .body_count = slots_.solver_bodies().first_wall_point(),
+          .body_count = slots_.solver_bodies().count(),
           .hubs = join_hubs(solver_),
           .guides = {guided_.view(), solver_.data()},
           .least = plan.least,
@@ -76,7 +76,7 @@ bool ContactSolver<Space, Real>::find_impulses(const ConstBodyView& bodies,
 template <class Space, class Real>
 bool ContactSolver<Space, Real>::fits_on_host() const {
   return std::is_same_v<Space, Host> ||
-         (slots_.places().size() <= few_places && slots_.solver_bodies().first_wall_point() <= few_bodies);
+         (slots_.places().size() <= few_places && slots_.solver_bodies().count() <= few_bodies);
 }
 
 /// Sweeps over the contacts. At the start the bodies of the solver have their velocities without contacts.
@@ -163,7 +163,7 @@ IslandSums<Space, Sum> ContactSolver<Space, Real>::sum_by_island(const OfBalls& 
                                                                  const OfPoints& of_points) {
   const ConstView<Slot> places = slots_.places();
   const ConstView<BodyRecord<Real>> solver = std::as_const(solver_).view();
-  IslandSums<Space, Sum> sums(slots_.solver_bodies().first_wall_point());
+  IslandSums<Space, Sum> sums(slots_.solver_bodies().count());
   sums.add(TermOfIsland<Real, BallContacts<Real>, OfBalls>{places, 0, store_.balls(), solver, of_balls});
   sums.add(TermOfIsland<Real, PointContacts<Real>, OfPoints>{places, slots_.ball_places(), store_.points(),
                                                              solver, of_points});
@@ -199,7 +199,8 @@ ReloadBody<Real> ContactSolver<Space, Real>::reload(const ConstBodyView& bodies,
                                                     const Array<BodyRecord<Real>, Space>& from,
                                                     Array<BodyRecord<Real>, Space>& to) {
   const SolverBodies<Space>& all = slots_.solver_bodies();
-  return {bodies, all.hubs(), all.hub_of_parts(), all.first_part(), from.view(), to.view()};
+  return {bodies,           all.hubs(),  all.hub_of_parts(), all.first_wall_point(),
+          all.first_part(), from.view(), to.view()};
 }
 
 /// Scales down impulses that would gain energy, until they gain none. Few contacts are scaled island by
@@ -214,7 +215,7 @@ int ContactSolver<Space, Real>::keep_from_gaining(const AccountStage<Real>& stag
     // The scale is rounded down, so that it does not depend on the order in which the sums were added up.
     constexpr double levels = 1 << 20;
     scale_impulses(std::floor(levels * moved.scale_without_gain()) / levels);
-    fly_on_with_changes();
+    fly_on_with_changes(false);
     return 1;
   }
   if (no_island_gains(stage)) return 0;
@@ -226,7 +227,7 @@ int ContactSolver<Space, Real>::keep_from_gaining(const AccountStage<Real>& stag
   if (scaled == 0) return 0;
   copy(last_, solver_);
   put_back(seen, contacts);
-  fly_on_with_changes();
+  fly_on_with_changes(false);
   return scaled;
 }
 
@@ -369,6 +370,11 @@ Ledger ContactSolver<Space, Real>::solve(const FlightStage& flight, bool any_lat
 
 template <class Space, class Real>
 Ledger ContactSolver<Space, Real>::shift_after_late_impacts(const FlightStage& flight) {
+  for_balls("late impacts.turn",
+            TurnLateBalls<Real>{store_.balls(), slots_.places(), std::as_const(solver_).view(), flight});
+  for_points("late impacts.turn",
+             TurnLatePoints<Real>{store_.points(), slots_.places_of_others(), std::as_const(free_).view(),
+                                  std::as_const(solver_).view(), flight});
   const LateMoments<Real> moments{flight, free_.view(), solver_.view()};
   Array<Ledger, Space> totals(3);
   const LateBallMoments<Real> of_balls{moments, store_.balls(), slots_.places()};
@@ -387,22 +393,27 @@ Ledger ContactSolver<Space, Real>::shift_after_late_impacts(const FlightStage& f
 }
 
 template <class Space, class Real>
-void ContactSolver<Space, Real>::take_velocities(const ConstBodyView& bodies) {
-  parallel::for_each<Space>("gaps.reload", solver_.size(), reload(bodies, solver_, last_));
-  solver_.swap(last_);
-  fly_on_with_changes();
+void ContactSolver<Space, Real>::take_velocities(const FlightStage& flight) {
+  const ConstBodyView bodies = read_only(flight.bodies);
+  last_.swap(solver_);
+  parallel::for_each<Space>(
+      "gaps.reload", solver_.size(),
+      TakeImpacts<Real>{reload(bodies, last_, solver_), std::as_const(mid_).view(), flight, last_.view()});
+  fly_on_with_changes(true);
 }
 
 /// Corrects the gaps at the end of the substep, after the velocities have changed from those of `last_`.
+/// `late_are_turned`: whether shift_after_late_impacts() has been called.
 template <class Space, class Real>
-void ContactSolver<Space, Real>::fly_on_with_changes() {
+void ContactSolver<Space, Real>::fly_on_with_changes(bool late_are_turned) {
   for_balls("gaps.predict", PredictGapsOfBalls<Real>{store_.balls(), last_.view(), solver_.view(), step_});
-  for_points("gaps.predict", PredictGapsOfPoints<Real>{store_.points(), last_.view(), solver_.view(), step_});
+  for_points("gaps.predict", PredictGapsOfPoints<Real>{store_.points(), last_.view(), solver_.view(), step_,
+                                                       late_are_turned});
 }
 
 #define SCREE_INSTANTIATE_REAL(Space, Real)                                                       \
   template Ledger ContactSolver<Space, Real>::solve(const FlightStage&, bool, double, Counters&); \
-  template void ContactSolver<Space, Real>::take_velocities(const ConstBodyView&);
+  template void ContactSolver<Space, Real>::take_velocities(const FlightStage&);
 #define SCREE_INSTANTIATE(Space)        \
   SCREE_INSTANTIATE_REAL(Space, double) \
   SCREE_INSTANTIATE_REAL(Space, float)

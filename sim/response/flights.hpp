@@ -20,7 +20,7 @@ struct PredictGapsOfBalls {
   double step;
   SCREE_HD void operator()(std::int64_t c) const {
     using C = BallContacts<Real>;
-    if (contacts.flags[c] != 0) return;
+    if ((contacts.flags[c] & flag_late_impact) != 0) return;
     const auto change = [&](std::int32_t k) { return after[k].velocity - before[k].velocity; };
     const V3<Real> u = change(contacts.ends[c].j) - change(contacts.ends[c].i);
     contacts.gaps.at(C::predicted_gap, c) +=
@@ -32,20 +32,23 @@ struct PredictGapsOfPoints {
   PointContacts<Real> contacts;
   ConstView<BodyRecord<Real>> before, after;
   double step;
+  bool late_are_turned;  ///< whether late contacts have had their turn after the response (TurnLatePoints)
   SCREE_HD void operator()(std::int64_t c) const {
     using C = PointContacts<Real>;
-    if (contacts.flags[c] != 0) return;
-    const Moving<Real> i = change(contacts.ends[c].i);
-    const Moving<Real> j = change(contacts.ends[c].j);
+    // Where the centres of bodies with a late contact are at the end is measured then.
+    const bool is_late = (contacts.flags[c] & flag_late_impact) != 0;
+    if (is_late && !late_are_turned) return;
+    const Moving<Real> i = change(contacts.ends[c].i, is_late);
+    const Moving<Real> j = change(contacts.ends[c].j, is_late);
     for (int k = 0; k < contacts.points[c]; ++k) {
       contacts.gaps.at(C::at_point(k, C::predicted_gap), c) +=
           static_cast<Real>(0.5 * step) * dot(contacts.fields.vector(C::normal, c),
                                               velocity_at(point_at<Scalar<Real>>(contacts, c, k), i, j));
     }
   }
-  SCREE_HD Moving<Real> change(std::int32_t k) const {
+  SCREE_HD Moving<Real> change(std::int32_t k, bool of_spin_alone) const {
     Moving<Real> body = after[k];
-    body.velocity = body.velocity - before[k].velocity;
+    body.velocity = of_spin_alone ? V3<Real>{} : body.velocity - before[k].velocity;
     body.spin = body.spin - before[k].spin;
     return body;
   }
@@ -57,16 +60,100 @@ struct ReloadBody {
   ConstBodyView bodies;
   ConstView<Hub> hubs;
   ConstView<std::int32_t> hub_of;
-  std::int64_t first_part;
+  std::int64_t first_wall_point, first_part;
   ConstView<BodyRecord<Real>> before;
   View<BodyRecord<Real>> solver;
+
   SCREE_HD void operator()(std::int64_t k) const {
-    const std::int64_t part = k - first_part;
     solver[k] = before[k];
-    if (k == first_part - 1 || part >= hub_of.size()) return;  // padding_body, or a point of a wall
-    const std::int64_t body = part < 0 ? k : hubs[hub_of[part]].body;
+    const std::int64_t body = body_of(k);
+    if (body < 0) return;
     solver[k].velocity = v3<Real>(bodies.velocity[body]);
     solver[k].spin = v3<Real>(bodies.spin[body]);
+  }
+  /// Returns the body that a body of the solver is, or is a part of; -1 for padding_body and wall points.
+  SCREE_HD std::int64_t body_of(std::int64_t k) const {
+    const std::int64_t padding_body = first_wall_point - 1;
+    if (k >= first_part) return hubs[hub_of[k - first_part]].body;
+    return k < padding_body ? k : -1;
+  }
+};
+
+/// Takes the velocities of bodies after impacts in the second half of the substep. The velocities before are
+/// replaced by such that the change over the whole half moves a body as far as its impacts have moved it:
+/// after an impact, a body flies with its new velocity only for what is left of the substep. Its centre's way
+/// is known from where it is, however many impacts it had. Its turn is that of a single impact.
+template <class Real>
+struct TakeImpacts {
+  ReloadBody<Real> reload;
+  ConstView<MidBody<Real>> mid;
+  FlightStage flight;
+  View<BodyRecord<Real>> before;
+
+  SCREE_HD void operator()(std::int64_t k) const {
+    reload(k);
+    const std::int64_t body = reload.body_of(k);
+    if (body < 0 || !flight.is_free(static_cast<std::int32_t>(body))) return;
+    const BodyRecord<Real> after = reload.solver[k];
+    const double half = 0.5 * flight.terms.step;
+    const Vec3 moved = flight.bodies.position[body] - mid[body].position;
+    const double left = (flight.terms.step - flight.clock[body]) / half;
+    before[k].velocity = before[k].velocity - v3<Real>(moved / half);
+    before[k].spin = after.spin - static_cast<Real>(left) * (after.spin - before[k].spin);
+  }
+};
+
+/// Adds to the gap at the end of the substep of a late contact what its points move by the spins of the two
+/// bodies, after the response. The contact was found `delay` after the midpoint, with the spins before the
+/// response. But orientations follow the new spins from the midpoint on, since only positions are shifted
+/// (shift_after_late_impact()).
+template <class Real>
+struct TurnLateBalls {
+  BallContacts<Real> contacts;
+  ConstView<Slot> places;
+  ConstView<BodyRecord<Real>> solver;
+  FlightStage flight;
+  SCREE_HD void operator()(std::int64_t c) const {
+    using C = BallContacts<Real>;
+    if ((contacts.flags[c] & flag_late_impact) == 0) return;
+    const Slot& slot = places[contacts.slot[c]];
+    const double left = flight.terms.step - fmax(flight.clock[slot.i], flight.clock[slot.j]);
+    const Vec3 turned = turning_of(slot.j, slot.end_j) - turning_of(slot.i, slot.end_i);
+    contacts.gaps.at(C::predicted_gap, c) +=
+        static_cast<Real>(left * vec3(contacts.fields.vector(C::normal, c)).dot(turned));
+  }
+
+ private:
+  /// Returns the velocity of a wall point relative to the centre of its wall. The point of a ball that
+  /// touches is always the one on the normal.
+  SCREE_HD Vec3 turning_of(std::int32_t body, std::int32_t end) const {
+    const BodyView& bodies = flight.bodies;
+    const bool is_wall_point = bodies.mobility[body] != Mobility::free && end != body;
+    return is_wall_point ? Vec3(vec3(solver[end].velocity) - bodies.velocity[body]) : Vec3(Vec3::Zero());
+  }
+};
+template <class Real>
+struct TurnLatePoints {
+  PointContacts<Real> contacts;
+  ConstView<Slot> places;  ///< slots of this kind of contacts
+  ConstView<BodyRecord<Real>> free, after;
+  FlightStage flight;
+  SCREE_HD void operator()(std::int64_t c) const {
+    using C = PointContacts<Real>;
+    if ((contacts.flags[c] & flag_late_impact) == 0) return;
+    const Slot& slot = places[contacts.slot[c]];
+    const double half = 0.5 * flight.terms.step;
+    const double delay = fmax(flight.clock[slot.i], flight.clock[slot.j]) - half;
+    const auto turn = [&](std::int32_t end) {
+      return Vec3(half * vec3(after[end].spin) - delay * vec3(free[end].spin));
+    };
+    const Vec3 turn_i = turn(slot.end_i), turn_j = turn(slot.end_j);
+    const Vec3 n = vec3(contacts.fields.vector(C::normal, c));
+    for (int k = 0; k < contacts.points[c]; ++k) {
+      const auto at = point_at<Scalar<Real>>(contacts, c, k);
+      contacts.gaps.at(C::at_point(k, C::predicted_gap), c) +=
+          static_cast<Real>(n.dot(turn_j.cross(vec3(at.arm_j)) - turn_i.cross(vec3(at.arm_i))));
+    }
   }
 };
 
@@ -79,12 +166,10 @@ template <class Real>
 struct FindEndGapsOfBalls {
   BallContacts<Real> contacts;
   ConstView<Slot> places;
-  ConstView<BodyRecord<Real>> solver;
-  FlightStage flight;
+  ConstBodyView bodies;
   SCREE_HD void operator()(std::int64_t c) const {
     using C = BallContacts<Real>;
     if (contacts.flags[c] == 0) return;
-    const BodyView& bodies = flight.bodies;
     const Slot& slot = places[contacts.slot[c]];
     const Vec3 apart = bodies.period.nearest(bodies.position[slot.j] - bodies.position[slot.i]);
     Real& predicted_gap = contacts.gaps.at(C::predicted_gap, c);
@@ -94,19 +179,8 @@ struct FindEndGapsOfBalls {
       const bool is_loaded = !is_zero(contacts.fields.vector(C::impulse, c));
       if (!is_loaded && distance > 0) contacts.fields.set(C::normal, c, v3<Real>(apart / distance));
     } else if ((contacts.flags[c] & flag_late_impact) != 0) {
-      const double left = flight.terms.step - fmax(flight.clock[slot.i], flight.clock[slot.j]);
-      const Vec3 turned = turning_of(slot.j, slot.end_j) - turning_of(slot.i, slot.end_i);
-      const Vec3 normal = vec3(contacts.fields.vector(C::normal, c));
-      predicted_gap += static_cast<Real>(normal.dot(apart + left * turned));
+      predicted_gap += static_cast<Real>(vec3(contacts.fields.vector(C::normal, c)).dot(apart));
     }
-  }
-
- private:
-  /// Returns the velocity of a wall point relative to the centre of its wall.
-  SCREE_HD Vec3 turning_of(std::int32_t body, std::int32_t end) const {
-    const BodyView& bodies = flight.bodies;
-    const bool is_wall_point = bodies.mobility[body] != Mobility::free && end != body;
-    return is_wall_point ? Vec3(vec3(solver[end].velocity) - bodies.velocity[body]) : Vec3(Vec3::Zero());
   }
 };
 
@@ -115,22 +189,15 @@ template <class Real>
 struct FindEndGapsOfPoints {
   PointContacts<Real> contacts;
   ConstView<Slot> places;  ///< slots of this kind of contacts
-  FlightStage flight;
+  ConstBodyView bodies;
   SCREE_HD void operator()(std::int64_t c) const {
     using C = PointContacts<Real>;
     if ((contacts.flags[c] & flag_late_impact) == 0) return;
-    const BodyView& bodies = flight.bodies;
     const Slot& slot = places[contacts.slot[c]];
-    const Vec3 n = vec3(contacts.fields.vector(C::normal, c));
     const Vec3 apart = bodies.period.nearest(bodies.position[slot.j] - bodies.position[slot.i]);
-    const double left = flight.terms.step - fmax(flight.clock[slot.i], flight.clock[slot.j]);
-    for (int k = 0; k < contacts.points[c]; ++k) {
-      const auto at = point_at<Scalar<Real>>(contacts, c, k);
-      const Vec3 turned =
-          bodies.spin[slot.j].cross(vec3(at.arm_j)) - bodies.spin[slot.i].cross(vec3(at.arm_i));
-      contacts.gaps.at(C::at_point(k, C::predicted_gap), c) +=
-          static_cast<Real>(n.dot(apart + left * turned));
-    }
+    const auto along = static_cast<Real>(vec3(contacts.fields.vector(C::normal, c)).dot(apart));
+    for (int k = 0; k < contacts.points[c]; ++k)
+      contacts.gaps.at(C::at_point(k, C::predicted_gap), c) += along;
   }
 };
 

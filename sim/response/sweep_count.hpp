@@ -23,8 +23,8 @@ class SweepCount {
   void judge(double residual, double kicked, double dissipated);
 
   /// Is called after the position correction of each substep. `mean`: mean overlap that the substep has left
-  /// to the correction, over all contacts, as a share of the smaller body's size. What the correction leaves
-  /// shows less of the error of the impulses, the better the correction is.
+  /// to the correction, over the contacts that overlap, as a share of the smaller body's size. What the
+  /// correction leaves shows less of the error of the impulses, the better the correction is.
   void judge_overlap(double mean) { overlap_ = std::max(overlap_, mean); }
 
   /// Whether the heap flows: it dissipates more than tolerance::flowing_power of the power of its impulses.

@@ -272,7 +272,7 @@ struct ImpulsePhases {
 struct CorrectionState {
   std::int32_t sweeps = 0;
   bool corrected = false;
-  double first = 0;  ///< sum of the overlaps that the first sweep has found, relative to the cap
+  double first = 0;  ///< mean of the overlaps that the first sweep has found, relative to the cap
   double sum = 0;    ///< the same of the last sweep
   double beta = 0;   ///< factor by which the next sweep extrapolates the last change, rounded
 };
@@ -332,7 +332,7 @@ struct CorrectionPhases {
     const double ratio = goes_on(state) && state.sweeps > 0 ? seen.sum / state.sum : 0.0;
     return {.sweeps = sweeps,
             .corrected = are_small || (sweeps >= usual && seen.deepest <= too_deep),
-            .first = state.sweeps == 0 ? seen.sum : state.first,
+            .first = state.sweeps == 0 ? seen.sum / fmax(seen.count, 1.0) : state.first,
             .sum = seen.sum,
             .beta = ratio < 1.0 ? rounded(ratio) : 0.0};
   }

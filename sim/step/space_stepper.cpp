@@ -13,6 +13,7 @@
 #include "sim/impacts/impact_rounds.hpp"
 #include "sim/model/resolved_response.hpp"
 #include "sim/observe/overlaps.hpp"
+#include "sim/pairs/approach.hpp"
 #include "sim/pairs/pair_finder.hpp"
 #include "sim/response/contact_inspection.hpp"
 #include "sim/response/contact_solver.hpp"
@@ -267,6 +268,7 @@ class SpaceStepper final : public Stepper {
   ConstView<std::int64_t> known(ConstView<Pair> pairs);
   ConstView<LoadedParts> loads_of(ConstView<Pair> pairs);
   bool resolve_impacts(double h, double from, double foresight, double midpoint);
+  ConstView<double> search_margin(double h);
   Vec3 arm_on_wall(const Impact& impact, BodyNumber wall) const;
 
   /// Finds the pairs for the present state. If the step's pairs no longer cover it, others are made apart,
@@ -323,6 +325,7 @@ class SpaceStepper final : public Stepper {
   };
   Restart before_;  // state before the part of a substep that may be taken again, in the accurate mode
   Array<double, Space> contact_margin_;
+  ApproachMargins<Space> approach_margins_;
   std::vector<Impact> struck_;  // impacts of the last substep
 };
 
@@ -376,7 +379,7 @@ bool SpaceStepper<Space, Real>::fly_and_respond(double h, double done, bool may_
   {
     const timing::Region region("narrowphase");
     libccd_.start_search();
-    contacts_.find(std::as_const(contact_margin_).view(), scale, flight, any_late_impact,
+    contacts_.find(search_margin(h), scale, flight, any_late_impact,
                    libccd_.is_needed() ? &libccd_ : nullptr);
     counters.narrowphase.tested += contacts_.slots().candidates().size();
     counters.narrowphase += libccd_.take_stats();
@@ -386,6 +389,15 @@ bool SpaceStepper<Space, Real>::fly_and_respond(double h, double done, bool may_
   return any_late_impact;
 }
 
+/// Returns the margin of each body within which contacts of a substep are searched (m). Where bodies hardly
+/// move, lower margins would not exclude any contact.
+template <class Space, class Real>
+ConstView<double> SpaceStepper<Space, Real>::search_margin(double h) {
+  if (parameters_.accurate || kept_pairs_.mean_travel(h) < tolerance::little_travel)
+    return std::as_const(contact_margin_).view();
+  return approach_margins_.find(bodies_, kept_pairs_.pairs(), h, parameters_, contact_margin_);
+}
+
 /// Takes the second half of the midpoint step: impacts on the way, since the response has changed it, free
 /// flight to the end, and position correction.
 template <class Space, class Real>
@@ -393,7 +405,7 @@ void SpaceStepper<Space, Real>::fly_on(double h, double done, bool any_late_impa
   const FlightStage flight = impacts_.stage(terms(h, 0), parameters_, views());
   contacts_.add_wall_impulses(flight);
   if (resolve_impacts(h, 0.5 * h, 0.5 * h, grid_.time(step_) + done + 0.5 * h))
-    contacts_.take_velocities(view_of(std::as_const(bodies_)));
+    contacts_.take_velocities(flight);
   fly(grid_.time(step_) + done + h, 0.5 * h);
   ledger.work += forces_.work(bodies_);
   gravity_.count(h, parameters_);

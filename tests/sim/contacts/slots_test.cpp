@@ -4,6 +4,7 @@
 #include "core/parallel.hpp"
 #include "core/rng.hpp"
 #include "core/space_tiles.hpp"
+#include "sim/contacts/contact_colors.hpp"
 #include "tests/core/spaces.hpp"
 
 #include <gtest/gtest.h>
@@ -11,6 +12,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <map>
+#include <numeric>
 #include <set>
 #include <tuple>
 #include <utility>
@@ -64,6 +66,7 @@ template <class Space>
 struct Built {
   Bodies<Space> bodies;
   Array<Pair, Space> pairs;
+  Array<std::int32_t, Space> found;
   Slots<Space, double> slots;
 
   explicit Built(const BodyTable& table) { copy_bodies(bodies, table); }
@@ -76,6 +79,12 @@ struct Built {
     slots.look_up(std::as_const(pairs).view(), std::as_const(before).view(), index);
     slots.build(std::as_const(pairs).view(), std::as_const(index).view(), view_of(std::as_const(bodies)),
                 rolls);
+  }
+  /// Splits the hubs among the bodies that have contacts at these places, which are slots of balls.
+  bool split_hubs(const std::vector<std::int32_t>& list) {
+    copy(found, list);
+    return slots.split_hubs(view_of(std::as_const(bodies)),
+                            {std::as_const(found).view(), {}, slots.ball_places()});
   }
   std::vector<Slot> places() const {
     std::vector<Slot> all(static_cast<std::size_t>(slots.places().size()));
@@ -166,18 +175,28 @@ TYPED_TEST(SlotsTest, KnowWhetherTheirPlacesAreCandidatesAndWhetherAnyIsRare) {
   EXPECT_EQ(built(bodies), std::pair(true, true)) << "a fixed box";
 }
 
-/// A ball that touches a thousand others is split into many parts, each with few slots.
+/// Returns the numbers from 0 to n - 1.
+std::vector<std::int32_t> first_numbers(std::int32_t n) {
+  std::vector<std::int32_t> numbers(static_cast<std::size_t>(n));
+  std::iota(numbers.begin(), numbers.end(), 0);
+  return numbers;
+}
+
+/// A ball that touches a thousand others is split into many parts, each with few contacts.
 TYPED_TEST(SlotsTest, AHubIsSplit) {
   const BodyTable bodies = balls(1002, false);
   std::vector<Pair> pairs;
   for (std::int32_t k = 2; k < 1002; ++k) pairs.push_back({1, k});
   Built<TypeParam> built(bodies);
   built.build(pairs);
+  EXPECT_EQ(built.slots.solver_bodies().hubs().size(), 0) << "slots alone make no hub";
+  EXPECT_TRUE(built.split_hubs(first_numbers(1000)));
   const std::vector<Slot> places = built.places();
   ASSERT_EQ(built.slots.solver_bodies().hubs().size(), 1);
   std::map<std::int32_t, int> of_part;
   for (const Slot& slot : places)
     if (slot.i != Slot::empty) ++of_part[slot.end_i];
+  EXPECT_EQ(built.slots.solver_bodies().first_part(), 1003);
   EXPECT_EQ(built.slots.solver_bodies().count(), 1003 + static_cast<std::int64_t>(of_part.size()));
   for (const auto& [part, count] : of_part) {
     EXPECT_GE(part, 1002);
@@ -198,6 +217,7 @@ TYPED_TEST(SlotsTest, TheHeaviestNeighboursOfAHubShareAPart) {
   }
   Built<TypeParam> built(bodies);
   built.build(pairs);
+  ASSERT_TRUE(built.split_hubs(first_numbers(1004)));
   std::vector<double> share(static_cast<std::size_t>(built.slots.solver_bodies().share_of_parts().size()));
   copy_bytes<Host, TypeParam>(share.data(), built.slots.solver_bodies().share_of_parts().data(),
                               share.size() * sizeof(double));
@@ -212,6 +232,60 @@ TYPED_TEST(SlotsTest, TheHeaviestNeighboursOfAHubShareAPart) {
   // 3,001 in all. The other half is divided equally.
   EXPECT_NEAR(share[0], 0.5 * (2009.0 / 3001 + 1.0 / static_cast<double>(share.size())), 1e-3);
   EXPECT_LT(share[1], 0.01);
+}
+
+template <class Space>
+void color_all(Built<Space>& built, std::uint8_t color) {
+  const View<std::uint8_t> colors = built.slots.ball_colors();
+  parallel::fill<Space>("test", colors, color);
+}
+template <class Space>
+std::vector<std::uint8_t> colors_of(Built<Space>& built) {
+  const View<std::uint8_t> colors = built.slots.ball_colors();
+  std::vector<std::uint8_t> all(static_cast<std::size_t>(colors.size()));
+  copy_bytes<Host, Space>(all.data(), colors.data(), all.size());
+  return all;
+}
+
+/// Only contacts make a hub, and it is whole again when it has lost them. Contacts that were or are on its
+/// parts forget their colours; others keep them.
+TYPED_TEST(SlotsTest, AHubComesAndGoesWithItsContacts) {
+  std::vector<Pair> pairs{{300, 301}};
+  for (std::int32_t k = 2; k < 102; ++k) pairs.push_back({1, k});
+  Built<TypeParam> built(balls(400, false));
+  built.build(pairs);
+  ASSERT_TRUE(built.slots.solver_bodies().may_have_hubs());
+  const auto hubs = [&] { return built.slots.solver_bodies().hubs().size(); };
+  const auto is_whole = [&] {
+    for (const Slot& slot : built.places())
+      if (slot.i != Slot::empty && (slot.end_i != slot.i || slot.end_j != slot.j)) return false;
+    return true;
+  };
+
+  color_all(built, 3);
+  EXPECT_FALSE(built.split_hubs(first_numbers(33))) << "32 contacts of the ball";
+  EXPECT_EQ(hubs(), 0);
+  EXPECT_TRUE(is_whole());
+  EXPECT_EQ(colors_of(built)[5], 3);
+
+  EXPECT_TRUE(built.split_hubs(first_numbers(34))) << "33 contacts";
+  EXPECT_EQ(hubs(), 1);
+  EXPECT_EQ(built.slots.solver_bodies().hub_of_parts().size(), 3);
+  EXPECT_FALSE(is_whole());
+  EXPECT_EQ(colors_of(built)[0], 3) << "not on the hub";
+  EXPECT_EQ(colors_of(built)[5], no_color);
+
+  color_all(built, 3 | on_part);
+  EXPECT_TRUE(built.split_hubs(first_numbers(33))) << "the hub goes";
+  EXPECT_EQ(hubs(), 0);
+  EXPECT_TRUE(is_whole());
+  EXPECT_EQ(colors_of(built)[5], no_color);
+  EXPECT_FALSE(built.split_hubs(first_numbers(33)));
+
+  Built<TypeParam> few(balls(400, false));
+  few.build({pairs.begin(), pairs.begin() + 33});
+  EXPECT_FALSE(few.slots.solver_bodies().may_have_hubs());
+  EXPECT_FALSE(few.split_hubs(first_numbers(33)));
 }
 
 template <class Real>

@@ -177,6 +177,36 @@ TEST_P(HeapStep, QualityDividesWhatFlowsOverlaps) {
   EXPECT_LT(2 * coarse.sweeps, fine.sweeps);
 }
 
+/// Boxes and balls tumble down a slope, a step at a time. Most bodies are struck after the midpoint of some
+/// steps, and the response then turns them. Where the gaps at the end of the step were predicted with spins
+/// that begin at the blow, 60 of these steps left overlaps of more than a hundredth on Host.
+TEST_P(HeapStep, BodiesThatAreStruckLateAreCorrected) {
+  Simulation run = simulate(R"(
+gravity: [4.905, 0, -8.4957]
+time: {end: 0.4, step: 0.0020833333333333333, substeps: 1}
+materials: {stone: {density: 2500, restitution: 0.5, friction: 0.4}}
+bodies:
+  - {plane: {normal: [0, 0, 1], offset: 0}, material: stone}
+  - {plane: {normal: [1, 0, 0], offset: -0.02}, material: stone}
+  - {plane: {normal: [0, 1, 0], offset: -0.106}, material: stone}
+  - {plane: {normal: [0, -1, 0], offset: -0.106}, material: stone}
+  - box: {size: {uniform: [[0.014, 0.014, 0.014], [0.022, 0.022, 0.022]]}}
+    at: [0, -0.091, 0.02]
+    repeat: {count: [4, 8, 4], spacing: [0.052, 0.026, 0.026], jitter: 0.001}
+    material: stone
+  - sphere: {radius: {uniform: [0.008, 0.011]}}
+    at: [0.026, -0.091, 0.02]
+    repeat: {count: [4, 8, 4], spacing: [0.052, 0.026, 0.026], jitter: 0.001}
+    material: stone)");
+  int deep = 0;
+  while (!run.finished()) {
+    run.step();
+    deep += run.observe().penetration.relative_max > 0.012;
+  }
+  EXPECT_GT(run.observe().counters.impacts, 1000);
+  EXPECT_LT(deep, 10);
+}
+
 INSTANTIATE_TEST_SUITE_P(Ways, HeapStep, every_way(), name_of);
 
 }  // namespace

@@ -1,0 +1,86 @@
+#include "sim/pairs/approach.hpp"
+
+#include "core/parallel.hpp"
+#include "core/space_atomic.hpp"
+#include "core/tolerances.hpp"
+
+#include <bit>
+#include <cmath>
+
+namespace scree {
+
+namespace {
+
+/// Finds the approach speeds of free bodies, pair by pair.
+struct RaiseApproach {
+  ConstBodyView bodies;
+  ConstView<Pair> pairs;
+  View<std::uint32_t> approach;
+
+  SCREE_HD void operator()(std::int64_t p) const {
+    const Pair& pair = pairs[p];
+    const auto bits = std::bit_cast<std::uint32_t>(static_cast<float>(speed_between(pair.i, pair.j)));
+    if (bodies.mobility[pair.i] == Mobility::free) raise(&approach[pair.i], bits);
+    if (bodies.mobility[pair.j] == Mobility::free) raise(&approach[pair.j], bits);
+  }
+
+ private:
+  SCREE_HD double speed_between(std::int32_t i, std::int32_t j) const {
+    return (velocity_at(j, i) - velocity_at(i, j)).norm() + turning(i) + turning(j);
+  }
+  /// Returns the velocity of a body; if it is not free, that of its point where the other body is.
+  SCREE_HD Vec3 velocity_at(std::int32_t k, std::int32_t other) const {
+    if (bodies.mobility[k] == Mobility::free) return bodies.velocity[k];
+    const Vec3 arm = bodies.period.nearest(bodies.position[other] - bodies.position[k]);
+    return bodies.velocity[k] + bodies.spin[k].cross(arm);
+  }
+  /// Returns how fast the surface of a free body moves by its spin. A ball's surface stays where it is.
+  SCREE_HD double turning(std::int32_t k) const {
+    if (bodies.mobility[k] != Mobility::free || bodies.shape[k] == Shape::sphere) return 0;
+    return bounding_radius(bodies.shape[k], bodies.size[k]) * bodies.spin[k].norm();
+  }
+};
+
+/// Lowers the margins of free bodies. A contact changes the velocity of a body by at most twice the speed at
+/// which it approaches another: that much if the other is heavy and the restitution is 1.
+struct LowerMargin {
+  static constexpr double most_change = 2;
+
+  ConstBodyView bodies;
+  ConstView<std::uint32_t> approach;
+  ConstView<double> whole;
+  View<double> margin;
+  double dt;
+  ResponseParameters parameters;
+  SCREE_HD void operator()(std::int64_t k) const {
+    margin[k] = whole[k];
+    if (bodies.mobility[k] != Mobility::free) return;
+    const double speed = static_cast<double>(std::bit_cast<float>(approach[k]));
+    const double fall = parameters.acceleration_of(k).norm() * dt * dt;
+    const double slack = tolerance::contact_slack * smallest_size(bodies.shape[k], bodies.size[k]);
+    margin[k] = fmin(whole[k], slack + tolerance::travel_factor * (most_change * speed * dt + fall));
+  }
+};
+
+}  // namespace
+
+template <class Space>
+ConstView<double> ApproachMargins<Space>::find(const Bodies<Space>& bodies, ConstView<Pair> pairs, double dt,
+                                               const ResponseParameters& parameters,
+                                               const Array<double, Space>& margin) {
+  const ConstBodyView now = view_of(bodies);
+  approach_.resize(bodies.count());
+  margin_.resize(bodies.count());
+  parallel::fill("contacts.margins", approach_, 0u);
+  parallel::for_each<Space>("contacts.margins", pairs.size(), RaiseApproach{now, pairs, approach_.view()});
+  parallel::for_each<Space>(
+      "contacts.margins", bodies.count(),
+      LowerMargin{now, std::as_const(approach_).view(), margin.view(), margin_.view(), dt, parameters});
+  return std::as_const(margin_).view();
+}
+
+#define SCREE_INSTANTIATE(Space) template class ApproachMargins<Space>;
+SCREE_FOR_EACH_SPACE(SCREE_INSTANTIATE)
+#undef SCREE_INSTANTIATE
+
+}  // namespace scree
