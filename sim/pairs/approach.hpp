@@ -16,11 +16,11 @@ namespace scree {
 template <class Space>
 class ApproachMargins {
  public:
-  /// Returns a margin for each body (m) that is at most `margin`, and that has room for motion at the body's
-  /// approach speed within dt (s). The approach speed is the largest speed of the body relative to one with
-  /// which it is paired, whether the two come nearer or not: a contact with that body can change its velocity
-  /// by about as much. So two bodies with equal velocities have room to meet if something else may stop one
-  /// of them.
+  /// Returns a margin for each body (m) that is at most `margin`, and that has room for motion at twice the
+  /// body's approach speed within dt (s). The approach speed is the largest speed of the body relative to one
+  /// with which it is paired, whether the two come nearer or not: a contact with that body can change its
+  /// velocity by up to twice as much. So two bodies with equal velocities have room to meet if something else
+  /// may stop one of them. The view is valid until the next call.
   ConstView<double> find(const Bodies<Space>& bodies, ConstView<Pair> pairs, double dt,
                          const ResponseParameters& parameters, const Array<double, Space>& margin);
 
