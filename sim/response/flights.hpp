@@ -79,10 +79,10 @@ struct ReloadBody {
   }
 };
 
-/// Takes the velocities of bodies after impacts in the second half of the substep. The velocities before are
-/// replaced by such that the change over the whole half moves a body as far as its impacts have moved it:
-/// after an impact, a body flies with its new velocity only for what is left of the substep. Its centre's way
-/// is known from where it is, however many impacts it had. Its turn is that of a single impact.
+/// Takes the velocities of bodies after impacts in the second half of the substep, and replaces those before.
+/// A body flies with its new velocity only for what is left of the substep. The replaced velocities are
+/// chosen so that the change, over the whole half, moves the body by as much. The displacement of its centre
+/// is known from where it is, however many impacts it had. Its turn is computed as if it had one impact.
 template <class Real>
 struct TakeImpacts {
   ReloadBody<Real> reload;

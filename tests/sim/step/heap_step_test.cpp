@@ -201,7 +201,7 @@ bodies:
   int deep = 0;
   while (!run.finished()) {
     run.step();
-    deep += run.observe().penetration.relative_max > 0.012;
+    deep += run.observe().penetration.relative_max > tolerance::worst_corrected_overlap;
   }
   EXPECT_GT(run.observe().counters.impacts, 1000);
   EXPECT_LT(deep, 10);
