@@ -2,6 +2,7 @@
 #pragma once
 
 #include "broadphase/aabb.hpp"
+#include "broadphase/body_paths.hpp"
 #include "core/array.hpp"
 #include "core/bodies.hpp"
 #include "core/math.hpp"
@@ -64,31 +65,36 @@ SCREE_HD inline Vec3 half_extent_of(const BodyGeometry& body) {
   return half_extent;
 }
 
-/// Returns the box of a body, enlarged by `margin` on every side, relative to `origin` (m). It encloses the
-/// box of exact arithmetic: the rounding of the double formula is added before the result is rounded outward
-/// to float. Planes are absent: Candidates lists them with the bodies near them.
-SCREE_HD inline Aabb bounds_of(const BodyGeometry& body, double margin, const Vec3& origin) {
+/// Returns the box of a body, enlarged by `margin` along each of the world's axes, to either side, relative
+/// to `origin` (m). It encloses the box of exact arithmetic: the rounding of the double formula is added
+/// before the result is rounded outward to float. Planes are absent: Candidates lists them with the bodies
+/// near them.
+SCREE_HD inline Aabb bounds_of(const BodyGeometry& body, const Vec3& margin, const Vec3& origin) {
   if (body.shape == Shape::plane) return absent_bounds();
   const Vec3 half_extent = half_extent_of(body);
   // There are about ten roundings, each of 2^-53 of the size or of the distance, and twice the rounding of
   // the quaternion's norm.
   constexpr double rounding = 0x1p-48;
-  const double reach = bounding_radius(body.shape, body.size) + margin;
+  const double reach = bounding_radius(body.shape, body.size) + margin.maxCoeff();
   Aabb box;
   for (int a = 0; a < 3; ++a) {
     const double centre = body.position[a] - origin[a];
-    const double outward = half_extent[a] + margin + rounding * (fabs(centre) + reach);
+    const double outward = half_extent[a] + margin[a] + rounding * (fabs(centre) + reach);
     box.lo[a] = round_down(centre - outward);
     box.hi[a] = round_up(centre + outward);
   }
   return box;
 }
 
-/// Sets bounds[i] = bounds_of(body i, margin[i], origin) for every body; in a periodic space it takes the
-/// body's image in the cell. Absent bodies have absent bounds. The function makes no check: find() refuses
-/// bounds that are not finite and names the body.
+SCREE_HD inline Aabb bounds_of(const BodyGeometry& body, double margin, const Vec3& origin) {
+  return bounds_of(body, Vec3(Vec3::Constant(margin)), origin);
+}
+
+/// Sets bounds[i] to the box of the whole path of body i, enlarged by margin[i]; in a periodic space it takes
+/// the body's image in the cell. Absent bodies have absent bounds. The function makes no check: find()
+/// refuses bounds that are not finite and names the body.
 template <class Space>
-void compute_bounds(const ConstBodyView& bodies, ConstView<double> margin, const Vec3& origin,
-                    View<Aabb> bounds);
+void compute_bounds(const ConstBodyView& bodies, ConstView<double> margin, const BodyPaths& paths,
+                    const Vec3& origin, View<Aabb> bounds);
 
 }  // namespace scree

@@ -3,7 +3,6 @@
 #include "narrowphase/candidates.hpp"
 
 #include "core/parallel.hpp"
-#include "narrowphase/near_pairs.hpp"
 
 #include <bit>
 #include <cstdint>
@@ -79,11 +78,11 @@ struct TakePair {
 }  // namespace
 
 template <class Space>
-ConstView<Pair> Candidates<Space>::list(const ConstBodyView& bodies, ConstView<Pair> pcs,
-                                        ConstView<double> margin) {
+ConstView<Pair> Candidates<Space>::list(const NearPairs& near, ConstView<Pair> pcs) {
+  const ConstBodyView& bodies = near.bodies;
   const PairKey key{static_cast<int>(std::bit_width(static_cast<std::uint64_t>(bodies.count())))};
   parallel::select("candidates", bodies.count(), PlaneNumber{bodies.shape}, no_plane, planes_);
-  const CandidateKey candidate{{bodies, margin}, pcs, std::as_const(planes_).view(), key};
+  const CandidateKey candidate{near, pcs, std::as_const(planes_).view(), key};
   parallel::select("candidates", candidate.size(), candidate, no_key, keys_);
   parallel::sort("candidates", keys_, 2 * key.bits);
   pairs_.resize(keys_.size());

@@ -4,7 +4,7 @@
 #include "broadphase/broad_phase.hpp"
 #include "core/archive.hpp"
 #include "core/array.hpp"
-#include "core/bodies.hpp"
+#include "narrowphase/near_pairs.hpp"
 
 #include <cstdint>
 
@@ -15,13 +15,12 @@ template <class Space>
 class Candidates {
  public:
   /// Lists the candidates, each once: the pairs of the PCS of which at least one body is free, and each plane
-  /// with each free body, as far as the gap may be no more than the sum of the two margins (m). This is
-  /// decided from the spheres around the bodies (for a tube, from its wall and its caps). Candidates are
+  /// with each free body, as far as the spheres around them are near (NearPairs). Candidates are
   /// ordered by the smaller place of the two bodies and then by the larger, whatever the order of the PCS.
   /// The body with the smaller number is first in its pair, so that a pair remains the same wherever its
   /// bodies lie in the arrays. Pairs with planes in the PCS are left out, because boxes are too coarse for
   /// planes. The view is valid until the next call.
-  ConstView<Pair> list(const ConstBodyView& bodies, ConstView<Pair> pcs, ConstView<double> margin);
+  ConstView<Pair> list(const NearPairs& near, ConstView<Pair> pcs);
   /// Returns the candidates of the last call of list().
   ConstView<Pair> pairs() const { return pairs_.view(); }
   void archive(Archive& archive) { archive("pairs", pairs_); }

@@ -103,7 +103,7 @@ void Judge::measure_penetration_of(const BodyTable& state) {
   copy(margin, std::vector<double>(state.position.size(), 0.0));  // pairs that do not overlap are not needed
   const ConstBodyView views = view_of(std::as_const(bodies));
   const ConstView<Pair> pairs =
-      candidates_.list(views, pair_finder_->find(bodies, margin), std::as_const(margin).view());
+      candidates_.list({views, std::as_const(margin).view()}, pair_finder_->find(bodies, margin, {}));
   findings_.squared_penetration = 0;
   std::vector<Overlap> overlaps;
   for (const auto& [i, j] : pairs) {

@@ -40,7 +40,7 @@ std::vector<double> cell_widths(const Scene& scene) {
   std::ranges::fill(margin.view(), 0.0);
   Array<Aabb, Host> bounds;
   bounds.resize(bodies.count());
-  compute_bounds<Host>(view_of(std::as_const(bodies)), margin.view(), Vec3::Zero(), bounds.view());
+  compute_bounds<Host>(view_of(std::as_const(bodies)), margin.view(), {}, Vec3::Zero(), bounds.view());
   const Census census = take_census<Host>(std::as_const(bounds).view());
   const SizeHistogram sizes = count_sizes<Host>(std::as_const(bounds).view(), census);
   std::vector<double> widths;

@@ -2,10 +2,7 @@
 
 #include "core/parallel.hpp"
 #include "core/space_atomic.hpp"
-#include "core/tolerances.hpp"
 
-#include <bit>
-#include <cmath>
 #include <utility>
 
 namespace scree {
@@ -42,45 +39,18 @@ struct RaiseApproach {
   }
 };
 
-/// Lowers the margins of free bodies. A contact changes the velocity of a body by at most twice the speed at
-/// which it approaches another: that much if the other is heavy and the restitution is 1.
-struct LowerMargin {
-  static constexpr double most_change = 2;
-
-  ConstBodyView bodies;
-  ConstView<std::uint32_t> approach;
-  ConstView<double> whole;
-  View<double> margin;
-  double dt;
-  ResponseParameters parameters;
-  SCREE_HD void operator()(std::int64_t k) const {
-    margin[k] = whole[k];
-    if (bodies.mobility[k] != Mobility::free) return;
-    const double speed = static_cast<double>(std::bit_cast<float>(approach[k]));
-    const double fall = parameters.acceleration_of(k).norm() * dt * dt;
-    const double slack = tolerance::contact_slack * smallest_size(bodies.shape[k], bodies.size[k]);
-    margin[k] = fmin(whole[k], slack + tolerance::travel_factor * (most_change * speed * dt + fall));
-  }
-};
-
 }  // namespace
 
 template <class Space>
-ConstView<double> ApproachMargins<Space>::find(const Bodies<Space>& bodies, ConstView<Pair> pairs, double dt,
-                                               const ResponseParameters& parameters,
-                                               const Array<double, Space>& margin) {
-  const ConstBodyView now = view_of(bodies);
-  approach_.resize(bodies.count());
-  margin_.resize(bodies.count());
-  parallel::fill("contacts.margins", approach_, 0u);
-  parallel::for_each<Space>("contacts.margins", pairs.size(), RaiseApproach{now, pairs, approach_.view()});
-  parallel::for_each<Space>(
-      "contacts.margins", bodies.count(),
-      LowerMargin{now, std::as_const(approach_).view(), margin.view(), margin_.view(), dt, parameters});
-  return std::as_const(margin_).view();
+ApproachSpeeds ApproachFinder<Space>::find(const Bodies<Space>& bodies, ConstView<Pair> pairs) {
+  bits_.resize(bodies.count());
+  parallel::fill("pairs.approach", bits_, 0u);
+  parallel::for_each<Space>("pairs.approach", pairs.size(),
+                            RaiseApproach{view_of(bodies), pairs, bits_.view()});
+  return {std::as_const(bits_).view()};
 }
 
-#define SCREE_INSTANTIATE(Space) template class ApproachMargins<Space>;
+#define SCREE_INSTANTIATE(Space) template class ApproachFinder<Space>;
 SCREE_FOR_EACH_SPACE(SCREE_INSTANTIATE)
 #undef SCREE_INSTANTIATE
 

@@ -10,8 +10,12 @@ namespace scree {
 class BoxLife {
  public:
   /// Returns for how long new boxes shall have room (s). `now`: time of the run (s); `substep`: length of a
-  /// substep, which is the shortest life (s); `rate`: mean speed of the bodies, in their smallest_size (1/s).
-  double choose(double now, double substep, double rate);
+  /// substep, which is the shortest life (s); `rate`: mean speed at which the bodies leave the places or the
+  /// paths around which the boxes are, in their smallest_size (1/s); `along`: their mean speed along these
+  /// paths (1/s).
+  double choose(double now, double substep, double rate, double along);
+  /// Returns for how many substeps the last boxes should last.
+  int planned() const { return planned_; }
   /// Must be called when impacts have sent bodies out of their boxes, so that the impacts have to be found
   /// again: the next boxes have more room.
   void make_room();
@@ -31,7 +35,7 @@ class BoxLife {
   static constexpr int longest = 32;
 
   void judge(double lasted);
-  double cost_of(int substeps, double travel) const;
+  double cost_of(int substeps, double travel, double along) const;
 
   double made_ = 0;        // when the last boxes were made (s)
   double substep_ = 0;     // length of a substep then (s)

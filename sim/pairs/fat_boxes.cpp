@@ -20,34 +20,49 @@ SCREE_HD double surface_speed(const ConstBodyView& bodies, std::int64_t k) {
   return bodies.velocity[k].norm() + turning;
 }
 
+/// Sets contact margins, as contact_margins() does.
 struct SetMargin {
   ConstBodyView bodies;
   View<double> margin;
-  double dt;
-  double slack;
+  double dt;     ///< time within which a body may meet others (s)
+  double slack;  ///< (of smallest_size)
   ResponseParameters parameters;
+  ApproachSpeeds approaches;
   SCREE_HD void operator()(std::int64_t k) const {
-    const Shape shape = bodies.shape[k];
+    constexpr double most_change = 2;  // of a velocity by a contact, as a multiple of the approach speed
     if (bodies.mobility[k] == Mobility::fixed) {
       margin[k] = 0;
       return;
     }
+    double speed = surface_speed(bodies, k);
+    if (approaches.exist() && bodies.mobility[k] == Mobility::free)
+      speed = fmin(speed, most_change * approaches.of(k));
+    margin[k] = at_speed(k, speed);
+  }
+  /// Returns the margin with which a body has room for motion at the given speed (m/s).
+  SCREE_HD double at_speed(std::int64_t k, double speed) const {
+    const Shape shape = bodies.shape[k];
     const double curving =
         bodies.mobility[k] == Mobility::prescribed ? parameters.prescribed_acceleration : 0.0;
     const double fall = (parameters.acceleration_of(k).norm() + curving) * dt * dt;
-    margin[k] = (is_surface(shape) ? 0.0 : slack * smallest_size(shape, bodies.size[k])) +
-                tolerance::travel_factor * (surface_speed(bodies, k) * dt + fall);
+    return (is_surface(shape) ? 0.0 : slack * smallest_size(shape, bodies.size[k])) +
+           tolerance::travel_factor * (speed * dt + fall);
   }
 };
 
-/// Finds how far a body's surface may have moved from where it was (m).
-struct Travel {
+/// Finds how far a body's surface may be from where it was, or would be on the body's path (m).
+struct Deviation {
   ConstBodyView bodies;
   ConstView<Vec3> position;
   ConstView<Quat> orientation;
+  BodyPaths paths;
+  double passed;  ///< time since the bodies were at these positions (s)
+  double half;    ///< half the length of the substep (s)
+  /// Returns the distance now.
   SCREE_HD double operator()(std::int64_t k) const {
     if (bodies.mobility[k] == Mobility::fixed || bodies.mobility[k] == Mobility::absent) return 0;
-    const double moved = (bodies.position[k] - position[k]).norm();
+    const Vec3 on_path = position[k] + paths.within(passed) * paths.velocity_of(bodies.mobility[k], k);
+    const double moved = (bodies.position[k] - on_path).norm();
     if (bodies.shape[k] == Shape::sphere) return moved;
     // A turn by an angle moves a point by 2 r sin(angle / 2), which is at most 4 r sin(angle / 4).
     const Eigen::Vector4d& q = bodies.orientation[k].coeffs();
@@ -55,35 +70,42 @@ struct Travel {
     const double way = sqrt(fmin((q - before).squaredNorm(), (q + before).squaredNorm()));
     return moved + 2 * bounding_radius(bodies.shape[k], bodies.size[k]) * way;
   }
-};
-
-/// Finds whether a body may touch something outside its box.
-struct IsOut {
-  Travel travel;
-  ConstView<double> box_margin;
-  ConstView<double> contact_margin;
-  SCREE_HD bool operator()(std::int64_t k) const {
-    const Mobility mobility = travel.bodies.mobility[k];
-    if (mobility == Mobility::fixed || mobility == Mobility::absent) return false;
-    return travel(k) + contact_margin[k] > box_margin[k];
+  SCREE_HD bool has_path(std::int64_t k) const {
+    return paths.exist() && bodies.mobility[k] == Mobility::free;
+  }
+  /// Returns a bound on how much the distance to a path grows in the substep, if the body flies freely,
+  /// without its accelerations (m).
+  SCREE_HD double growth(std::int64_t k) const {
+    const Vec3& velocity = bodies.velocity[k];
+    double leaving = (velocity - paths.velocity[k]).norm();
+    const bool is_on_path = paths.from <= passed - half && passed + half <= paths.until;
+    if (!is_on_path) leaving = fmax(leaving, velocity.norm());
+    return half * (leaving + surface_speed(bodies, k) - velocity.norm());
   }
 };
 
+/// Finds the margin that the box of a body must have for its contacts now, and for its flight in the substep.
+/// A body without a path has room for its flight in its contact margin.
+struct NeededMargin {
+  Deviation deviation;
+  SetMargin margins;
+  SCREE_HD double operator()(std::int64_t k, double contact_margin) const {
+    const double flight = deviation.has_path(k) ? margins.at_speed(k, 0) + deviation.growth(k) : 0.0;
+    return deviation(k) + fmax(contact_margin, flight);
+  }
+};
+
+/// Sets the contact margin of a body, and notes whether it may touch something outside its box.
 struct NoteOutside {
-  IsOut is_out;
+  NeededMargin needed;
+  ConstView<double> box_margin;
+  NearPairs now;
   BodiesOutside outside;
   SCREE_HD void operator()(std::int64_t k) const {
-    if (is_out(k)) outside.add({is_out.travel.bodies, is_out.contact_margin}, k);
-  }
-};
-
-/// Sets the contact margin of a body before it is checked.
-struct NoteOutsideWithMargin {
-  SetMargin margins;
-  NoteOutside note;
-  SCREE_HD void operator()(std::int64_t k) const {
-    margins(k);
-    note(k);
+    needed.margins(k);
+    const Mobility mobility = now.bodies.mobility[k];
+    if (mobility == Mobility::fixed || mobility == Mobility::absent) return;
+    if (needed(k, now.margin[k]) > box_margin[k]) outside.add(now, k);
   }
 };
 
@@ -93,35 +115,46 @@ struct LoadMargin {
 };
 
 struct AddTravel {
-  Travel travel;
+  NeededMargin needed;
   View<double> margin;
-  SCREE_HD void operator()(std::int64_t k) const { margin[k] += travel(k); }
+  SCREE_HD void operator()(std::int64_t k) const { margin[k] = needed(k, margin[k]); }
 };
 
-/// Raises the margin of a box to at least the wanted one plus the skin, and adds the distance that the body's
-/// surface travels at its own speed or the typical one, whichever is larger. Fast bodies are few, but without
-/// that room they alone would force new boxes around all bodies. So would a slow body among fast ones, which
-/// pass their speed on to it.
-struct RaiseMargin {
-  ConstBodyView bodies;
+/// Returns the speed at which a body may leave its place, or its path if approach speeds are given (m/s).
+SCREE_HD double leaving_speed(const ConstBodyView& bodies, const ApproachSpeeds& approaches, std::int64_t k) {
+  const double speed = surface_speed(bodies, k);
+  if (!approaches.exist() || bodies.mobility[k] != Mobility::free) return speed;
+  return fmax(fmin(speed, approaches.of(k)), speed - bodies.velocity[k].norm());
+}
+
+/// Sets the margin of a box: at least the wanted one plus the skin, and that of contacts within a substep. It
+/// adds the distance that the body's surface travels at its own leaving_speed() or the typical one, whichever
+/// is larger. Fast bodies are few, but without that room they alone would force new boxes around all bodies.
+/// So would a slow body among fast ones, which pass their speed on to it.
+struct SetBoxMargin {
+  SetMargin contacts;  ///< sets the margin for contacts within a substep, with the skin
   ConstView<double> wanted;
-  View<double> margin;
-  double substep;  ///< length of a substep: the margin has room for contacts within it (s)
   double life;     ///< time for which the margin shall have room (s)
-  double typical;  ///< typical speed of bodies, in their smallest_size (1/s)
+  double typical;  ///< typical leaving_speed() of bodies, in their smallest_size (1/s)
   double most;     ///< largest margin, unless the wanted one is larger (m)
   SCREE_HD void operator()(std::int64_t k) const {
+    contacts(k);
+    const ConstBodyView& bodies = contacts.bodies;
     if (bodies.mobility[k] == Mobility::fixed || is_surface(bodies.shape[k])) return;
     const double size = smallest_size(bodies.shape[k], bodies.size[k]);
     const double skin = tolerance::pair_skin * size;
-    const double speed = fmax(surface_speed(bodies, k), typical * size);
-    const double contacts =
-        fmax(fmax(margin[k], wanted[k] + skin), tolerance::contact_slack * size + skin + substep * speed);
-    margin[k] = fmax(wanted[k], fmin(contacts + (life - substep) * speed, most));
+    const double speed = fmax(leaving_speed(bodies, contacts.approaches, k), typical * size);
+    double& margin = contacts.margin[k];
+    double least =
+        fmax(fmax(margin, wanted[k] + skin), tolerance::contact_slack * size + skin + contacts.dt * speed);
+    // A body that something stops in the middle of a substep leaves its path at the speed that it had.
+    if (contacts.approaches.exist())
+      least = fmax(least, contacts.at_speed(k, 0.5 * surface_speed(bodies, k)));
+    margin = fmax(wanted[k], fmin(least + (life - contacts.dt) * speed, most));
   }
 };
 
-/// Rates at which bodies leave their positions: speeds in their own smallest_size (1/s).
+/// Rates at which bodies leave their places: speeds in their own smallest_size (1/s).
 struct Leaving {
   double rates = 0;  ///< sum of the rates (1/s)
   std::int64_t count = 0;
@@ -131,20 +164,43 @@ struct Leaving {
 };
 struct LeavingOf {
   ConstBodyView bodies;
+  ApproachSpeeds approaches;
   SCREE_HD Leaving operator()(std::int64_t k) const {
     if (bodies.mobility[k] != Mobility::free) return {};
-    return {surface_speed(bodies, k) / smallest_size(bodies.shape[k], bodies.size[k]), 1};
+    return {leaving_speed(bodies, approaches, k) / smallest_size(bodies.shape[k], bodies.size[k]), 1};
   }
 };
+
+/// Returns the mean of leaving_speed() over the free bodies, in their smallest_size (1/s).
+template <class Space>
+double mean_rate(const Bodies<Space>& bodies, const ApproachSpeeds& approaches) {
+  const auto leaving = parallel::sum_by_tiles<Leaving, Space>("pairs.leaving", bodies.count(),
+                                                              LeavingOf{view_of(bodies), approaches});
+  return leaving.rates / static_cast<double>(std::max<std::int64_t>(leaving.count, 1));
+}
+
+struct FreeSpeed {
+  ConstBodyView bodies;
+  SCREE_HD double operator()(std::int64_t k) const {
+    return bodies.mobility[k] == Mobility::free ? bodies.velocity[k].norm() : 0.0;
+  }
+};
+
+/// Returns the largest speed of a free body (m/s).
+template <class Space>
+double fastest(const Bodies<Space>& bodies) {
+  return parallel::max<double, Space>("pairs.leaving", bodies.count(), FreeSpeed{view_of(bodies)}, 0.0);
+}
 
 }  // namespace
 
 template <class Space>
 void contact_margins(const Bodies<Space>& bodies, double dt, double slack,
-                     const ResponseParameters& parameters, Array<double, Space>& margin) {
+                     const ResponseParameters& parameters, const ApproachSpeeds& approaches,
+                     Array<double, Space>& margin) {
   margin.resize(bodies.count());
   parallel::for_each<Space>("pairs.margins", bodies.count(),
-                            SetMargin{view_of(bodies), margin.view(), dt, slack, parameters});
+                            SetMargin{view_of(bodies), margin.view(), dt, slack, parameters, approaches});
 }
 
 template <class Space>
@@ -153,62 +209,95 @@ double largest_margin(const Array<double, Space>& margin) {
 }
 
 template <class Space>
-void FatBoxes<Space>::put_around(const Bodies<Space>& bodies, double now, double substep,
-                                 const ResponseParameters& parameters,
+bool FatBoxes<Space>::shall_follow_paths(const Bodies<Space>& bodies, const SearchTime& time,
+                                         const ResponseParameters& parameters) {
+  constexpr double most_share = 0.25;  // of what the period allows, for the motion within a substep
+  if (parameters.accurate || mean_rate<Space>(bodies, {}) * time.substep < tolerance::little_travel)
+    return false;
+  return !bodies.period.exists ||
+         fastest<Space>(bodies) * time.substep <= most_share * bodies.period.most_margin;
+}
+
+template <class Space>
+void FatBoxes<Space>::put_around(const Bodies<Space>& bodies, const SearchTime& time,
+                                 const ResponseParameters& parameters, const ApproachSpeeds& approaches,
                                  const Array<double, Space>& contact_margin) {
-  const auto leaving =
-      parallel::sum_by_tiles<Leaving, Space>("pairs.leaving", bodies.count(), LeavingOf{view_of(bodies)});
-  rate_ = leaving.rates / static_cast<double>(std::max<std::int64_t>(leaving.count, 1));
-  const double life = life_.choose(now, substep, rate_);
-  contact_margins(bodies, substep, tolerance::contact_slack + tolerance::pair_skin, parameters, margin_);
-  parallel::for_each<Space>("pairs.margins", bodies.count(),
-                            RaiseMargin{view_of(bodies), contact_margin.view(), margin_.view(), substep, life,
-                                        rate_, bodies.period.most_margin});
+  const double rate = mean_rate<Space>(bodies, approaches);
+  const double along = approaches.exist() ? mean_rate<Space>(bodies, {}) : 0;
+  const double life = life_.choose(time.now, time.substep, rate, along);
+  const Period& period = bodies.period;
+  // In a period, half of the way to the second image is for the path.
+  const double most = (approaches.exist() ? 0.5 : 1.0) * period.most_margin;
+  margin_.resize(bodies.count());
+  parallel::for_each<Space>(
+      "pairs.margins", bodies.count(),
+      SetBoxMargin{{view_of(bodies), margin_.view(), time.substep,
+                    tolerance::contact_slack + tolerance::pair_skin, parameters, approaches},
+                   contact_margin.view(),
+                   life,
+                   rate,
+                   most});
+  made_ = time.now;
+  from_ = -0.5 * time.substep;
+  // The paths go on for a substep, so that bodies are paired before they meet, and have room for it.
+  until_ = (life_.planned() + 1) * time.substep;
   copy(position_, bodies.position);
   copy(orientation_, bodies.orientation);
+  if (approaches.exist()) {
+    copy(velocity_, bodies.velocity);
+    if (period.exists)
+      until_ = std::clamp((period.most_margin - largest_margin<Space>(margin_)) / fastest<Space>(bodies), 0.0,
+                          until_);
+  } else {
+    velocity_.resize(0);
+  }
 }
 
 template <class Space>
-bool FatBoxes<Space>::pairs_last(const Bodies<Space>& bodies, const Array<double, Space>& contact_margin) {
-  const ConstBodyView now = view_of(bodies);
-  const IsOut is_out{{now, position_.view(), orientation_.view()}, margin_.view(), contact_margin.view()};
-  parallel::for_each<Space>("pairs.out", bodies.count(), NoteOutside{is_out, new_pairs_.start()});
-  return pairs_last_now(now, contact_margin);
+auto FatBoxes<Space>::deviation(const Bodies<Space>& bodies, const SearchTime& time) const {
+  return Deviation{view_of(bodies), position_.view(), orientation_.view(),
+                   paths(),         time.now - made_, 0.5 * time.substep};
 }
 
 template <class Space>
-bool FatBoxes<Space>::pairs_last(const Bodies<Space>& bodies, double dt, const ResponseParameters& parameters,
+bool FatBoxes<Space>::pairs_last(const Bodies<Space>& bodies, const SearchTime& time,
+                                 const ResponseParameters& parameters, const ApproachSpeeds& approaches,
                                  Array<double, Space>& contact_margin) {
   contact_margin.resize(bodies.count());
   const ConstBodyView now = view_of(bodies);
-  const SetMargin margins{now, contact_margin.view(), dt, tolerance::contact_slack, parameters};
-  const IsOut is_out{
-      {now, position_.view(), orientation_.view()}, margin_.view(), std::as_const(contact_margin).view()};
-  parallel::for_each<Space>("pairs.out", bodies.count(),
-                            NoteOutsideWithMargin{margins, {is_out, new_pairs_.start()}});
-  return pairs_last_now(now, contact_margin);
-}
-
-template <class Space>
-bool FatBoxes<Space>::pairs_last_now(const ConstBodyView& now, const Array<double, Space>& contact_margin) {
   ConstBodyView then = now;
   then.position = std::as_const(position_).view();
   then.orientation = std::as_const(orientation_).view();
-  return !new_pairs_.exist({now, contact_margin.view()}, {then, std::as_const(margin_).view()});
+  const double half = 0.5 * time.substep;
+  const SetMargin margins{
+      now, contact_margin.view(), time.foresight, tolerance::contact_slack, parameters, approaches};
+  const NearPairs near_now{now, std::as_const(contact_margin).view(),
+                           follow_paths() ? BodyPaths{now.velocity, -half, half} : BodyPaths{}};
+  const NearPairs near_then{then, std::as_const(margin_).view(), paths()};
+  parallel::for_each<Space>(
+      "pairs.out", bodies.count(),
+      NoteOutside{{deviation(bodies, time), margins}, near_then.margin, near_now, new_pairs_.start()});
+  return !new_pairs_.exist(near_now, near_then);
 }
 
 template <class Space>
-void FatBoxes<Space>::add_travel(const Bodies<Space>& bodies, Array<double, Space>& contact_margin) {
+void FatBoxes<Space>::add_travel(const Bodies<Space>& bodies, const SearchTime& time,
+                                 const ResponseParameters& parameters, Array<double, Space>& contact_margin) {
   life_.make_room();
-  parallel::for_each<Space>(
-      "pairs.travel", bodies.count(),
-      AddTravel{{view_of(bodies), std::as_const(position_).view(), std::as_const(orientation_).view()},
-                contact_margin.view()});
+  parallel::for_each<Space>("pairs.travel", bodies.count(),
+                            AddTravel{{deviation(bodies, time),
+                                       {view_of(bodies),
+                                        contact_margin.view(),
+                                        time.foresight,
+                                        tolerance::contact_slack,
+                                        parameters,
+                                        {}}},
+                                      contact_margin.view()});
 }
 
 #define SCREE_INSTANTIATE(Space)                                                                 \
   template void contact_margins(const Bodies<Space>&, double, double, const ResponseParameters&, \
-                                Array<double, Space>&);                                          \
+                                const ApproachSpeeds&, Array<double, Space>&);                   \
   template double largest_margin<Space>(const Array<double, Space>&);                            \
   template class FatBoxes<Space>;
 SCREE_FOR_EACH_SPACE(SCREE_INSTANTIATE)

@@ -25,9 +25,10 @@ class PairFinderIn final : public PairFinder<BodySpace> {
   PairFinderIn(const BroadPhaseSettings& settings, const Vec3& origin)
       : settings_(settings), broad_phase_(make_broad_phase<Space>(settings)), origin_(origin) {}
 
-  ConstView<Pair> find(const Bodies<BodySpace>& bodies, const Array<double, BodySpace>& margin) override {
+  ConstView<Pair> find(const Bodies<BodySpace>& bodies, const Array<double, BodySpace>& margin,
+                       const BodyPaths& paths) override {
     body_bounds_.resize(bodies.count());
-    compute_bounds<BodySpace>(view_of(bodies), margin.view(), origin_, body_bounds_.view());
+    compute_bounds<BodySpace>(view_of(bodies), margin.view(), paths, origin_, body_bounds_.view());
     if (!bodies.period.exists) return find_among(body_bounds_, bodies.mobility);
     images_.take(std::as_const(body_bounds_).view(), bodies.mobility.view(), bodies.period);
     return images_.pairs_of(find_among(images_.bounds(), images_.mobility()));
@@ -122,29 +123,47 @@ void require_one_image(const Period& period, const Array<double, Space>& contact
 }  // namespace
 
 template <class Space>
-ConstView<Pair> KeptPairs<Space>::covering(const Bodies<Space>& bodies,
-                                           const Array<double, Space>& contact_margin, double now,
-                                           double substep, const ResponseParameters& parameters) {
-  {
-    const timing::Region region("broadphase");
-    if (cover(bodies, contact_margin)) return pairs();
+bool KeptPairs<Space>::cover(const Bodies<Space>& bodies, const SearchTime& time,
+                             const ResponseParameters& parameters, Array<double, Space>& contact_margin) {
+  if (!kept_) {
+    contact_margins<Space>(bodies, time.foresight, tolerance::contact_slack, parameters, {}, contact_margin);
+    return false;
   }
-  return make(bodies, contact_margin, now, substep, parameters);
+  const ApproachSpeeds approaches =
+      boxes_.follow_paths() ? approaches_.find(bodies, pairs()) : ApproachSpeeds{};
+  return boxes_.pairs_last(bodies, time, parameters, approaches, contact_margin);
 }
 
 template <class Space>
-ConstView<Pair> KeptPairs<Space>::make(const Bodies<Space>& bodies,
-                                       const Array<double, Space>& contact_margin, double now, double substep,
-                                       const ResponseParameters& parameters) {
+void KeptPairs<Space>::make(const Bodies<Space>& bodies, const SearchTime& time,
+                            const ResponseParameters& parameters, Array<double, Space>& contact_margin) {
   const timing::Region region("broadphase");
+  const bool along_paths = boxes_.shall_follow_paths(bodies, time, parameters);
+  const bool had_paths = kept_ && boxes_.follow_paths();
+  // Approach speeds need pairs.
+  if (along_paths && !kept_) make_in_boxes(bodies, time, parameters, {}, contact_margin);
+  const auto approaches = [&] { return along_paths ? approaches_.find(bodies, pairs()) : ApproachSpeeds{}; };
+  const auto set_margins = [&] {
+    contact_margins<Space>(bodies, time.foresight, tolerance::contact_slack, parameters, approaches(),
+                           contact_margin);
+  };
+  if (along_paths != had_paths) set_margins();
+  make_in_boxes(bodies, time, parameters, approaches(), contact_margin);
+  // A body that is newly paired with another has room for contacts with it.
+  if (along_paths) set_margins();
+}
+
+template <class Space>
+void KeptPairs<Space>::make_in_boxes(const Bodies<Space>& bodies, const SearchTime& time,
+                                     const ResponseParameters& parameters, const ApproachSpeeds& approaches,
+                                     const Array<double, Space>& contact_margin) {
   require_one_image<Space>(bodies.period, contact_margin);
-  boxes_.put_around(bodies, now, substep, parameters, contact_margin);
-  const ConstView<Pair> pcs = finder_->find(bodies, boxes_.margin());
+  boxes_.put_around(bodies, time, parameters, approaches, contact_margin);
+  const ConstView<Pair> pcs = finder_->find(bodies, boxes_.margin(), boxes_.paths());
   pcs_size_ = pcs.size();
-  candidates_.list(view_of(bodies), pcs, boxes_.margin().view());
+  candidates_.list({view_of(bodies), boxes_.margin().view(), boxes_.paths()}, pcs);
   kept_ = true;
   ++times_made_;
-  return pairs();
 }
 
 template <class Space>

@@ -20,9 +20,10 @@ template <class Space>
 class PairFinder {
  public:
   virtual ~PairFinder() = default;
-  /// Returns the PCS of the bodies, each box enlarged by its margin (m). The view is valid until the next
-  /// call.
-  virtual ConstView<Pair> find(const Bodies<Space>& bodies, const Array<double, Space>& margin) = 0;
+  /// Returns the PCS of the bodies, each box extended along its path and enlarged by its margin (m). The view
+  /// is valid until the next call.
+  virtual ConstView<Pair> find(const Bodies<Space>& bodies, const Array<double, Space>& margin,
+                               const BodyPaths& paths) = 0;
   virtual const char* space_name() const = 0;
   /// Returns the boxes of the last call of find().
   virtual std::vector<BodyBox> boxes() const = 0;
@@ -46,32 +47,24 @@ class KeptPairs {
   KeptPairs(const BroadPhaseSettings& settings, bool on_device, const Vec3& origin)
       : finder_(make_pair_finder<Space>(settings, on_device, origin)) {}
 
-  /// Returns candidates that include all pairs which may come as close as their contact margins (m). If they
-  /// have to be made anew, they have room for the bodies' travel within one substep or more. `now`: time of
-  /// the run (s); `substep`: length of a substep (s). The view is valid until they are made the next time.
-  ConstView<Pair> covering(const Bodies<Space>& bodies, const Array<double, Space>& contact_margin,
-                           double now, double substep, const ResponseParameters& parameters);
-  /// Makes the candidates of covering() anew, and returns them.
-  ConstView<Pair> make(const Bodies<Space>& bodies, const Array<double, Space>& contact_margin, double now,
-                       double substep, const ResponseParameters& parameters);
-  /// Returns the candidates last made.
+  /// Sets the contact margins of the bodies (m), and returns whether the candidates last made still include
+  /// all pairs that may come as close as these within the foresight, for the bodies where they are now. Boxes
+  /// that follow paths have the margins of approach speeds, and the candidates include all pairs that meet in
+  /// free flight within the substep.
+  bool cover(const Bodies<Space>& bodies, const SearchTime& time, const ResponseParameters& parameters,
+             Array<double, Space>& contact_margin);
+  /// Makes the candidates anew, with room for the bodies' travel within one substep or more. They include all
+  /// pairs that may come as close as the contact margins (m), which cover() has set before. Sets the margins
+  /// anew, by the approach speeds of the new pairs, if the boxes follow paths.
+  void make(const Bodies<Space>& bodies, const SearchTime& time, const ResponseParameters& parameters,
+            Array<double, Space>& contact_margin);
+  /// Returns the candidates last made. The view is valid until they are made the next time.
   ConstView<Pair> pairs() const { return candidates_.pairs(); }
-  /// Returns whether the candidates last made still include all pairs that may come that close, for the
-  /// bodies where they are now.
-  bool cover(const Bodies<Space>& bodies, const Array<double, Space>& contact_margin) {
-    return kept_ && boxes_.pairs_last(bodies, contact_margin);
-  }
-  /// Returns the same for the margins (m) of contacts within `foresight` (s), which it sets.
-  bool cover(const Bodies<Space>& bodies, double foresight, const ResponseParameters& parameters,
-             Array<double, Space>& contact_margin) {
-    if (kept_) return boxes_.pairs_last(bodies, foresight, parameters, contact_margin);
-    contact_margins<Space>(bodies, foresight, tolerance::contact_slack, parameters, contact_margin);
-    return false;
-  }
   /// Must be called if impacts have sent bodies out of their boxes and are undone. Raises the margins (m) by
   /// the distance that each body has moved since the pairs were made.
-  void add_travel(const Bodies<Space>& bodies, Array<double, Space>& contact_margin) {
-    boxes_.add_travel(bodies, contact_margin);
+  void add_travel(const Bodies<Space>& bodies, const SearchTime& time, const ResponseParameters& parameters,
+                  Array<double, Space>& contact_margin) {
+    boxes_.add_travel(bodies, time, parameters, contact_margin);
   }
   /// Must be called when the bodies have changed: the next call makes the pairs anew.
   void forget() {
@@ -79,9 +72,6 @@ class KeptPairs {
     boxes_.forget();
   }
 
-  /// Returns how far the bodies travelled within dt (s), on average and in their smallest_size, when the
-  /// pairs were last made.
-  double mean_travel(double dt) const { return boxes_.mean_travel(dt); }
   std::vector<BodyBox> boxes() const { return finder_->boxes(); }
   GridOccupancy grid_occupancy() const { return finder_->grid_occupancy(); }
   /// Returns the number of pairs in the PCS.
@@ -98,7 +88,12 @@ class KeptPairs {
   }
 
  private:
+  void make_in_boxes(const Bodies<Space>& bodies, const SearchTime& time,
+                     const ResponseParameters& parameters, const ApproachSpeeds& approaches,
+                     const Array<double, Space>& contact_margin);
+
   std::unique_ptr<PairFinder<Space>> finder_;
+  ApproachFinder<Space> approaches_;
   FatBoxes<Space> boxes_;
   Candidates<Space> candidates_;
   std::int64_t pcs_size_ = 0;

@@ -13,7 +13,6 @@
 #include "sim/impacts/impact_rounds.hpp"
 #include "sim/model/resolved_response.hpp"
 #include "sim/observe/overlaps.hpp"
-#include "sim/pairs/approach.hpp"
 #include "sim/pairs/pair_finder.hpp"
 #include "sim/response/contact_inspection.hpp"
 #include "sim/response/contact_solver.hpp"
@@ -268,7 +267,6 @@ class SpaceStepper final : public Stepper {
   ConstView<std::int64_t> known(ConstView<Pair> pairs);
   ConstView<LoadedParts> loads_of(ConstView<Pair> pairs);
   bool resolve_impacts(double h, double from, double foresight, double midpoint);
-  ConstView<double> search_margin(double h);
   Vec3 arm_on_wall(const Impact& impact, BodyNumber wall) const;
 
   /// Finds the pairs for the present state. If the step's pairs no longer cover it, others are made apart,
@@ -325,7 +323,6 @@ class SpaceStepper final : public Stepper {
   };
   Restart before_;  // state before the part of a substep that may be taken again, in the accurate mode
   Array<double, Space> contact_margin_;
-  ApproachMargins<Space> approach_margins_;
   std::vector<Impact> struck_;  // impacts of the last substep
 };
 
@@ -368,10 +365,9 @@ bool SpaceStepper<Space, Real>::fly_and_respond(double h, double done, bool may_
   turn_gravity(midpoint);
   forces_.start_substep(bodies_);
   fly(midpoint, 0.5 * h);
-  const bool struck = resolve_impacts(h, 0, h, midpoint);
+  resolve_impacts(h, 0, h, midpoint);
   const bool any_late_impact = impacts_.any_late_impact();
-  give_candidates(struck ? kept_pairs_.covering(bodies_, contact_margin_, midpoint, h, parameters_)
-                         : kept_pairs_.pairs());
+  give_candidates(kept_pairs_.pairs());
   counters.pcs_made = kept_pairs_.times_made();
   if (may_be_undone) contacts_.keep_memory();
   const double scale = last_substep_ > 0 ? h / last_substep_ : 1.0;
@@ -379,7 +375,7 @@ bool SpaceStepper<Space, Real>::fly_and_respond(double h, double done, bool may_
   {
     const timing::Region region("narrowphase");
     libccd_.start_search();
-    contacts_.find(search_margin(h), scale, flight, any_late_impact,
+    contacts_.find(std::as_const(contact_margin_).view(), scale, flight, any_late_impact,
                    libccd_.is_needed() ? &libccd_ : nullptr);
     counters.narrowphase.tested += contacts_.slots().candidates().size();
     counters.narrowphase += libccd_.take_stats();
@@ -387,15 +383,6 @@ bool SpaceStepper<Space, Real>::fly_and_respond(double h, double done, bool may_
   const timing::Region region("response");
   ledger = ledger + contacts_.solve(flight, any_late_impact, h / grid_.length(step_ + 1), counters);
   return any_late_impact;
-}
-
-/// Returns the margin of each body within which contacts of a substep are searched (m). Where bodies hardly
-/// move, lower margins would not exclude any contact.
-template <class Space, class Real>
-ConstView<double> SpaceStepper<Space, Real>::search_margin(double h) {
-  if (parameters_.accurate || kept_pairs_.mean_travel(h) < tolerance::little_travel)
-    return std::as_const(contact_margin_).view();
-  return approach_margins_.find(bodies_, kept_pairs_.pairs(), h, parameters_, contact_margin_);
 }
 
 /// Takes the second half of the midpoint step: impacts on the way, since the response has changed it, free
@@ -516,14 +503,15 @@ bool SpaceStepper<Space, Real>::resolve_impacts(double h, double from, double fo
     const timing::Region region("impacts");
     if (!impacts_.any_may_meet(terms(h, from), parameters_, views())) return false;
   }
+  const SearchTime time{.now = midpoint, .substep = h, .foresight = foresight};
   const auto cover = [&] {
     const timing::Region region("broadphase");
-    return kept_pairs_.cover(bodies_, foresight, parameters_, contact_margin_);
+    return kept_pairs_.cover(bodies_, time, parameters_, contact_margin_);
   };
   bool covered = cover();
   for (int attempt = 1;; ++attempt) {
-    const ConstView<Pair> pairs =
-        covered ? kept_pairs_.pairs() : kept_pairs_.make(bodies_, contact_margin_, midpoint, h, parameters_);
+    if (!covered) kept_pairs_.make(bodies_, time, parameters_, contact_margin_);
+    const ConstView<Pair> pairs = kept_pairs_.pairs();
     const timing::Region region("impacts");
     const Ledger moved = impacts_.resolve({.pairs = pairs,
                                            .loaded = loads_of(pairs),
@@ -533,14 +521,15 @@ bool SpaceStepper<Space, Real>::resolve_impacts(double h, double from, double fo
                                           parameters_, views());
     if (impacts_.impacts().size() == 0) return false;
     // A struck body may have left its box, and bodies that it can meet now may be missing from the pairs.
-    if (cover() || attempt == most_attempts) {
+    covered = cover();
+    if (covered || attempt == most_attempts) {
       ledger = ledger + moved;
       break;
     }
-    kept_pairs_.add_travel(bodies_, contact_margin_);
+    kept_pairs_.add_travel(bodies_, time, parameters_, contact_margin_);
     impacts_.undo(views());
-    covered = false;
   }
+  if (!covered) kept_pairs_.make(bodies_, time, parameters_, contact_margin_);
   counters.impacts += impacts_.impacts().size();
   if (impacts_.hit_bound()) ++counters.unfinished_impacts;
   const std::size_t before = struck_.size();
@@ -604,9 +593,11 @@ RegionContents SpaceStepper<Space, Real>::contents_of(const Region& region) cons
 
 template <class Space, class Real>
 ConstView<Pair> SpaceStepper<Space, Real>::pairs_now() {
-  contact_margins<Space>(bodies_, 0, tolerance::contact_slack, parameters_, contact_margin_);
-  sees_kept_ = kept_pairs_.cover(bodies_, contact_margin_);
-  return (sees_kept_ ? kept_pairs_ : seen_pairs_).covering(bodies_, contact_margin_, 0, 0, parameters_);
+  const SearchTime time{.now = grid_.time(step_), .substep = 0, .foresight = 0};
+  sees_kept_ = kept_pairs_.cover(bodies_, time, parameters_, contact_margin_);
+  if (!sees_kept_ && !seen_pairs_.cover(bodies_, time, parameters_, contact_margin_))
+    seen_pairs_.make(bodies_, time, parameters_, contact_margin_);
+  return pairs_seen().pairs();
 }
 
 template <class Space, class Real>

@@ -141,7 +141,7 @@ TYPED_TEST(BoundsInSpace, OfManyBodiesAreThoseOfEach) {
   Array<double, TypeParam> margins;
   copy(margins, margin);
   Array<Aabb, TypeParam> bounds(1000);
-  compute_bounds<TypeParam>(view_of(std::as_const(bodies)), std::as_const(margins).view(), origin,
+  compute_bounds<TypeParam>(view_of(std::as_const(bodies)), std::as_const(margins).view(), {}, origin,
                             bounds.view());
   const std::vector<Aabb> all = to_vector(bounds);
   for (std::size_t k = 0; k < all.size(); ++k) {

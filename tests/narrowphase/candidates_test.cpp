@@ -61,8 +61,8 @@ void expect_listed(const Bodies<Host>& bodies, const std::vector<Pair>& pcs,
   Candidates<Space> candidates;
   for (int again = 0; again < 2; ++again) {
     const ConstView<Pair> found =
-        candidates.list(view_of(std::as_const(bodies_there)), std::as_const(pcs_there).view(),
-                        std::as_const(margin_there).view());
+        candidates.list({view_of(std::as_const(bodies_there)), std::as_const(margin_there).view()},
+                        std::as_const(pcs_there).view());
     ASSERT_EQ(found.size(), static_cast<std::int64_t>(expected.size()));
     std::vector<Pair> pairs(expected.size());
     copy_bytes<Host, Space>(pairs.data(), found.data(), pairs.size() * sizeof(Pair));
@@ -152,7 +152,7 @@ TYPED_TEST(CandidatesTest, OfNothingAreNone) {
   Bodies<TypeParam> bodies;
   Array<double, TypeParam> margin;
   EXPECT_EQ(
-      Candidates<TypeParam>().list(view_of(std::as_const(bodies)), {}, std::as_const(margin).view()).size(),
+      Candidates<TypeParam>().list({view_of(std::as_const(bodies)), std::as_const(margin).view()}, {}).size(),
       0);
 }
 

@@ -1,4 +1,5 @@
-// Tests of the margins of bodies that move along with their neighbours, in each space.
+// Tests of approach speeds, and of the margins of bodies that move along with their neighbours, in each
+// space.
 #include "sim/pairs/approach.hpp"
 
 #include "core/tolerances.hpp"
@@ -48,13 +49,12 @@ std::vector<double> lowered(const BodyTable& table, const std::vector<Pair>& lis
   Array<Pair, Space> pairs;
   copy(pairs, list);
   Array<double, Space> margin;
-  contact_margins(bodies, dt, tolerance::contact_slack, parameters, margin);
+  contact_margins(bodies, dt, tolerance::contact_slack, parameters, {}, margin);
   if (whole) *whole = to_vector(margin);
-  ApproachMargins<Space> margins;
-  const ConstView<double> found = margins.find(bodies, std::as_const(pairs).view(), dt, parameters, margin);
-  std::vector<double> on_host(static_cast<std::size_t>(found.size()));
-  copy_bytes<Host, Space>(on_host.data(), found.data(), on_host.size() * sizeof(double));
-  return on_host;
+  ApproachFinder<Space> finder;
+  contact_margins(bodies, dt, tolerance::contact_slack, parameters,
+                  finder.find(bodies, std::as_const(pairs).view()), margin);
+  return to_vector(margin);
 }
 
 /// Of a row of balls that falls, only those near one that has stopped have room for the fall.

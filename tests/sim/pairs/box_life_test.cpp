@@ -13,7 +13,7 @@ constexpr double substep = 0.01;  // s
 double substeps_after(BoxLife& life, int times, double lasted, double rate, double& now) {
   double room = 0;
   for (int k = 0; k < times; ++k) {
-    room = life.choose(now, substep, rate) / substep;
+    room = life.choose(now, substep, rate, 0) / substep;
     now += lasted * substep;
   }
   return room;
@@ -23,14 +23,14 @@ TEST(BoxLife, LastsTheLongerTheSlowerTheBodiesAre) {
   double last = 1e9;
   for (const double travel : {1e-5, 1e-2, 0.1, 0.3, 3.0}) {
     BoxLife life;
-    const double room = life.choose(0, substep, travel / substep) / substep;
+    const double room = life.choose(0, substep, travel / substep, 0) / substep;
     EXPECT_LE(room, last) << travel;
     EXPECT_GE(room, 1) << "a substep has room, however fast the bodies are";
     last = room;
   }
   EXPECT_LT(last, 2);
   BoxLife of_resting_bodies;
-  EXPECT_GT(of_resting_bodies.choose(0, substep, 0) / substep, 16);
+  EXPECT_GT(of_resting_bodies.choose(0, substep, 0, 0) / substep, 16);
 }
 
 TEST(BoxLife, BoxesThatFailAreFollowedByOthersThatLastAsLong) {
@@ -60,14 +60,41 @@ TEST(BoxLife, DoesNotJudgeBoxesThatWereForgotten) {
 TEST(BoxLife, LeavesRoomForImpactsWhereTheyHaveSentBodiesOut) {
   constexpr double rate = 0.3 / substep;
   BoxLife life;
-  const double calm = life.choose(0, substep, rate);
+  const double calm = life.choose(0, substep, rate, 0);
   life.make_room();
-  const double room = life.choose(substep, substep, rate);
+  const double room = life.choose(substep, substep, rate, 0);
   EXPECT_GT(room, 1.1 * calm);
   double now = 2 * substep;
   EXPECT_LT(substeps_after(life, 200, 1, rate, now) * substep, calm) << "nothing was sent out for long";
   for (int k = 0; k < 100; ++k) life.make_room();
-  EXPECT_LT(life.choose(now, substep, rate) / substep, 4) << "room is bounded";
+  EXPECT_LT(life.choose(now, substep, rate, 0) / substep, 4) << "room is bounded";
+}
+
+/// Boxes that are made anew at once, because impacts have sent bodies out, have not failed to last.
+TEST(BoxLife, BoxesThatAreMadeAnewAtOnceAreNotJudged) {
+  constexpr double rate = 0.01 / substep;
+  BoxLife life;
+  life.choose(0, substep, rate, 0);
+  const int hoped_for = life.planned();
+  ASSERT_GT(hoped_for, 6);
+  life.choose(0, substep, rate, 0);
+  EXPECT_EQ(life.planned(), hoped_for);
+  life.choose(substep, substep, rate, 0);
+  EXPECT_EQ(life.planned(), 1);
+}
+
+/// The boxes of bodies that fall together last longer than those of bodies that scatter as fast, but a path
+/// does not grow without bounds.
+TEST(BoxLife, LastsTheLongerTheBetterBodiesFollowTheirPaths) {
+  const auto planned = [](double leaving, double along) {
+    BoxLife life;
+    life.choose(0, substep, leaving / substep, along / substep);
+    return life.planned();
+  };
+  EXPECT_GT(planned(0.01, 0.4), 2 * planned(0.4, 0));
+  EXPECT_LE(planned(0.01, 0.4), planned(0.01, 0));
+  EXPECT_LE(planned(0.01, 4), planned(0.01, 0.4));
+  EXPECT_GE(planned(0.3, 100), 1);
 }
 
 }  // namespace

@@ -16,6 +16,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <set>
+#include <string>
 #include <type_traits>
 #include <utility>
 #include <vector>
@@ -55,8 +56,9 @@ struct Found {
     Array<double, Space> margin;
     ResponseParameters parameters;
     parameters.gravity = scene.gravity;
-    contact_margins(bodies, 0.01, tolerance::contact_slack, parameters, margin);
-    const ConstView<Pair> view = kept.covering(bodies, margin, 0, 0.01, parameters);
+    const SearchTime time{.now = 0, .substep = 0.01, .foresight = 0.01};
+    if (!kept.cover(bodies, time, parameters, margin)) kept.make(bodies, time, parameters, margin);
+    const ConstView<Pair> view = kept.pairs();
     std::vector<Pair> found(static_cast<std::size_t>(view.size()));
     copy_bytes<Host, Space>(found.data(), view.data(), found.size() * sizeof(Pair));
     for (const Pair& pair : found) pairs.emplace_back(pair.i, pair.j);
@@ -121,8 +123,9 @@ bodies:
   for (std::uint64_t trial = 0; trial < 120; ++trial) {
     BodyTable state = scene.bodies;
     copy_bodies(bodies, state);
-    contact_margins(bodies, 0, tolerance::contact_slack, parameters, margin);
-    kept.make(bodies, margin, 0, 0, parameters);
+    kept.forget();
+    EXPECT_FALSE(kept.cover(bodies, {}, parameters, margin));
+    kept.make(bodies, {}, parameters, margin);
     Random random(47, trial);
     const double way = random.uniform(0.001, 0.05);
     for (int moved = 0; moved < 12;) {
@@ -133,8 +136,7 @@ bodies:
       ++moved;
     }
     copy_bodies(bodies, state);
-    contact_margins(bodies, 0, tolerance::contact_slack, parameters, margin);
-    if (!kept.cover(bodies, margin)) {
+    if (!kept.cover(bodies, {}, parameters, margin)) {
       ++ended;
       continue;
     }
@@ -160,6 +162,147 @@ bodies:
   }
   EXPECT_GT(lasted, 30);
   EXPECT_GT(ended, 20);
+}
+
+/// A ball falls alone, and has room for its whole travel as soon as it is paired with the ground.
+TYPED_TEST(InSpaceTest, ABodyHasRoomForContactsWithANewPair) {
+  Scene scene = scene_of(R"(
+time: {end: 1, step: 0.1}
+materials: {a: {density: 1000}}
+bodies:
+  - {plane: {normal: [0, 0, 1], offset: 0}, material: a}
+  - {sphere: {radius: 0.5}, at: [0, 0, 209], velocity: [0, 0, -20], material: a}
+)");
+  ResponseParameters parameters;
+  parameters.gravity = Vec3(0, 0, -10);
+  KeptPairs<TypeParam> kept(scene.broadphase, !std::is_same_v<TypeParam, Host>, Vec3::Zero());
+  Bodies<TypeParam> bodies;
+  Array<double, TypeParam> margin, whole;
+  const std::size_t ball = 1;
+  for (int step = 0; step < 105; ++step) {
+    copy_bodies(bodies, scene.bodies);
+    const SearchTime time{.now = 0.1 * step, .substep = 0.1, .foresight = 0.1};
+    if (!kept.cover(bodies, time, parameters, margin)) kept.make(bodies, time, parameters, margin);
+    contact_margins(bodies, time.foresight, tolerance::contact_slack, parameters, {}, whole);
+    const double share = to_vector(margin)[ball] / to_vector(whole)[ball];
+    if (step == 0) {
+      EXPECT_LT(share, 0.1) << "the boxes follow paths";
+    }
+    if (step == 104) {
+      EXPECT_EQ(share, 1) << "the ball meets the ground in this substep";
+    }
+    scene.bodies.position[ball].z() -= 2;
+  }
+}
+
+/// Moves bodies that flow together and are struck now and then, and checks at each substep, and after each
+/// blow, that the pairs kept include all that meet in free flight. The oracle is the contacts of all pairs,
+/// at several times of the substep.
+template <class Space>
+void expect_pairs_that_meet(const Period& period) {
+  const std::string walls = R"(
+  - {plane: {normal: [0, 0, 1], offset: -1.3}, material: a}
+  - {tube: {radius: 2, length: 3.4}, fixed: true, at: [0, 0, 0], material: a}
+)";
+  const Scene scene = scene_of(R"(
+seed: 4
+time: {end: 1, step: 0.01}
+materials: {a: {density: 1000}}
+bodies:
+)" + (period.exists ? "" : walls) +
+                               R"(
+  - {box: {size: [1, 0.6, 0.1]}, fixed: true, at: [0, 0, 0], orientation: [1, 0.2, 0.2, 0], material: a}
+  - {sphere: {radius: 0.08}, at: [-0.9, -0.9, -1], repeat: {count: [7, 7, 3], spacing: [0.3, 0.3, 0.5], jitter: 0.03}, material: a}
+  - {box: {size: [0.2, 0.15, 0.1]}, at: [-0.9, -0.9, -0.8], repeat: {count: [7, 7, 3], spacing: [0.3, 0.3, 0.5], jitter: 0.03}, material: a}
+)");
+  constexpr double h = 0.01;
+  ResponseParameters parameters;
+  parameters.gravity.setZero();
+  KeptPairs<Space> kept(scene.broadphase, !std::is_same_v<Space, Host>, Vec3::Zero());
+  Bodies<Space> bodies;
+  Array<double, Space> margin;
+  int lasted = 0, ended = 0, met = 0;
+  const auto n = static_cast<std::int32_t>(scene.bodies.position.size());
+  const auto check = [&](const BodyTable& state, double now) {
+    const SearchTime time{.now = now, .substep = h, .foresight = h};
+    copy_bodies(bodies, state);
+    bodies.period = period;
+    const bool covered = kept.cover(bodies, time, parameters, margin);
+    ++(covered ? lasted : ended);
+    if (!covered) kept.make(bodies, time, parameters, margin);
+    std::vector<Pair> pairs(static_cast<std::size_t>(kept.pairs().size()));
+    copy_bytes<Host, Space>(pairs.data(), kept.pairs().data(), pairs.size() * sizeof(Pair));
+    std::set<std::pair<std::int32_t, std::int32_t>> known;
+    for (const Pair& pair : pairs) known.insert(std::minmax(pair.i, pair.j));
+    for (int sample = -4; sample <= 4; ++sample) {
+      const double s = sample * h / 8;
+      const auto solid = [&](std::int32_t body) {
+        const auto k = static_cast<std::size_t>(body);
+        return Solid{state.position[k] + s * state.velocity[k],
+                     rotation_of(s * state.spin[k]) * state.orientation[k], state.size[k]};
+      };
+      for (std::int32_t i = 0; i < n; ++i) {
+        for (std::int32_t j = i + 1; j < n; ++j) {
+          const auto a = static_cast<std::size_t>(i), b = static_cast<std::size_t>(j);
+          if (state.mobility[a] != Mobility::free && state.mobility[b] != Mobility::free) continue;
+          const Solid first = solid(i);
+          Solid second = solid(j);
+          period.bring_near(first.position, second.position);
+          const double reach =
+              bounding_radius(state.shape[a], state.size[a]) + bounding_radius(state.shape[b], state.size[b]);
+          if (!is_boundary(state.shape[a]) && (second.position - first.position).norm() > reach) continue;
+          Manifold manifolds[max_pair_manifolds];
+          if (find_pair_contacts(state.shape[a], first, state.shape[b], second, 0, manifolds) == 0) continue;
+          ++met;
+          ASSERT_TRUE(known.contains({i, j})) << now << " s: " << i << ", " << j << " at " << s << " s";
+        }
+      }
+    }
+  };
+  for (std::uint64_t trial = 0; trial < 12; ++trial) {
+    BodyTable state = scene.bodies;
+    Random random(53, trial);
+    const auto vector = [&random](double most) {
+      const double x = random.uniform(-most, most), y = random.uniform(-most, most);
+      return Vec3(x, y, random.uniform(-most, most));
+    };
+    // The bodies travel up to several times their size in a substep, and one in 12 against the flow.
+    const Vec3 flow = vector(random.uniform(2, 20));
+    for (std::size_t k = 0; k < state.position.size(); ++k) {
+      if (state.mobility[k] != Mobility::free) continue;
+      state.velocity[k] = (k % 12 == 0 ? Vec3(-flow) : flow) + vector(0.2);
+      if (state.shape[k] == Shape::box) state.spin[k] = vector(3);
+    }
+    kept.forget();
+    for (int step = 0; step < 8; ++step) {
+      const double now = static_cast<double>(trial) + step * h;
+      check(state, now);
+      for (int blow = 0; blow < 3; ++blow) {
+        const auto k = static_cast<std::size_t>(random.uniform(0, n));
+        if (state.mobility[k] != Mobility::free) continue;
+        state.velocity[k] = blow == 0   ? Vec3(Vec3::Zero())
+                            : blow == 1 ? Vec3(-0.5 * state.velocity[k])
+                                        : vector(flow.norm());
+      }
+      check(state, now);
+      if (testing::Test::HasFatalFailure()) return;
+      for (std::size_t k = 0; k < state.position.size(); ++k) {
+        state.position[k] += h * state.velocity[k];
+        state.orientation[k] = rotation_of(h * state.spin[k]) * state.orientation[k];
+      }
+    }
+  }
+  EXPECT_GT(lasted, 40);
+  EXPECT_GT(ended, 20);
+  EXPECT_GT(met, 1000);
+}
+
+TYPED_TEST(InSpaceTest, PairsAlongPathsIncludeAllThatMeet) { expect_pairs_that_meet<TypeParam>({}); }
+
+TYPED_TEST(InSpaceTest, PairsAlongPathsIncludeAllThatMeetThroughAPeriod) {
+  Period period = period_of(Vec3(-1.05, -1.05, -2), Vec3(2.1, 2.1, 0));
+  period.most_margin = 0.6;
+  expect_pairs_that_meet<TypeParam>(period);
 }
 
 TYPED_TEST(InSpaceTest, ForcesActFromTheirStartToTheirEnd) {

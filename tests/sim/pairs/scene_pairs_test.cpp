@@ -44,10 +44,10 @@ PairSet pairs_of(BroadPhaseMethod method, bool on_device, const Snapshot& state,
   Array<double, Host> margin;
   ResponseParameters parameters;
   parameters.gravity = scene.gravity;
-  contact_margins(bodies, 2 * scene.time.step, tolerance::contact_slack, parameters, margin);
+  contact_margins(bodies, 2 * scene.time.step, tolerance::contact_slack, parameters, {}, margin);
   const auto finder = make_pair_finder<Host>({.method = method}, on_device, state.bodies.position.front());
   PairSet set;
-  for (const Pair& pair : finder->find(bodies, margin)) set.emplace_back(pair.i, pair.j);
+  for (const Pair& pair : finder->find(bodies, margin, {})) set.emplace_back(pair.i, pair.j);
   std::sort(set.begin(), set.end());
   return set;
 }
