@@ -211,7 +211,7 @@ bodies:
   ResponseParameters parameters;
   parameters.prescribed_acceleration = prescribed_acceleration(scene);
   Array<double, Host> margin;
-  contact_margins<Host>(bodies, 0.02, 0, parameters, margin);
+  contact_margins<Host>(bodies, 0.02, 0, parameters, {}, margin);
   const double share = 1 - std::cos(4 * pi * 0.02);
   EXPECT_GT(std::as_const(margin).view()[0], share);
   EXPECT_GT(std::as_const(margin).view()[1], 2 * std::sin(share / 2));
