@@ -12,35 +12,24 @@ namespace scree {
 
 namespace {
 
-/// Returns a bound on the speeds of all points of a body (m/s).
-SCREE_HD double surface_speed(const ConstBodyView& bodies, std::int64_t k) {
+/// Returns how fast the surface of a body moves by its spin. A ball's surface stays where it is (m/s).
+SCREE_HD double turning_speed(const ConstBodyView& bodies, std::int64_t k) {
   const Shape shape = bodies.shape[k];
-  const double turning =
-      shape == Shape::sphere ? 0.0 : bounding_radius(shape, bodies.size[k]) * bodies.spin[k].norm();
-  return bodies.velocity[k].norm() + turning;
+  return shape == Shape::sphere ? 0.0 : bounding_radius(shape, bodies.size[k]) * bodies.spin[k].norm();
 }
 
-/// Sets contact margins, as contact_margins() does.
-struct SetMargin {
+/// Returns a bound on the speeds of all points of a body (m/s).
+SCREE_HD double surface_speed(const ConstBodyView& bodies, std::int64_t k) {
+  return bodies.velocity[k].norm() + turning_speed(bodies, k);
+}
+
+/// Finds the margin with which a body has room for its motion within dt (m).
+struct MarginForMotion {
   ConstBodyView bodies;
-  View<double> margin;
-  double dt;     ///< time within which a body may meet others (s)
+  double dt;     ///< (s)
   double slack;  ///< (of smallest_size)
   ResponseParameters parameters;
-  ApproachSpeeds approaches;
-  SCREE_HD void operator()(std::int64_t k) const {
-    constexpr double most_change = 2;  // of a velocity by a contact, as a multiple of the approach speed
-    if (bodies.mobility[k] == Mobility::fixed) {
-      margin[k] = 0;
-      return;
-    }
-    double speed = surface_speed(bodies, k);
-    if (approaches.exist() && bodies.mobility[k] == Mobility::free)
-      speed = fmin(speed, most_change * approaches.of(k));
-    margin[k] = at_speed(k, speed);
-  }
-  /// Returns the margin with which a body has room for motion at the given speed (m/s).
-  SCREE_HD double at_speed(std::int64_t k, double speed) const {
+  SCREE_HD double operator()(std::int64_t k, double speed) const {
     const Shape shape = bodies.shape[k];
     const double curving =
         bodies.mobility[k] == Mobility::prescribed ? parameters.prescribed_acceleration : 0.0;
@@ -50,14 +39,33 @@ struct SetMargin {
   }
 };
 
+/// Sets contact margins, as contact_margins() does.
+struct SetMargin {
+  MarginForMotion margin_for;
+  ApproachSpeeds approaches;
+  View<double> margin;
+  SCREE_HD void operator()(std::int64_t k) const {
+    constexpr double most_change = 2;  // of a velocity by a contact, as a multiple of the approach speed
+    const ConstBodyView& bodies = margin_for.bodies;
+    if (bodies.mobility[k] == Mobility::fixed) {
+      margin[k] = 0;
+      return;
+    }
+    double speed = surface_speed(bodies, k);
+    if (approaches.exist() && bodies.mobility[k] == Mobility::free)
+      speed = fmin(speed, fmax(most_change * approaches.of(k), turning_speed(bodies, k)));
+    margin[k] = margin_for(k, speed);
+  }
+};
+
 /// Finds how far a body's surface may be from where it was, or would be on the body's path (m).
 struct Deviation {
   ConstBodyView bodies;
   ConstView<Vec3> position;
   ConstView<Quat> orientation;
   BodyPaths paths;
-  double passed;  ///< time since the bodies were at these positions (s)
-  double half;    ///< half the length of the substep (s)
+  double passed;        ///< time since the bodies were at these positions (s)
+  double half_substep;  ///< (s)
   /// Returns the distance now.
   SCREE_HD double operator()(std::int64_t k) const {
     if (bodies.mobility[k] == Mobility::fixed || bodies.mobility[k] == Mobility::absent) return 0;
@@ -78,9 +86,9 @@ struct Deviation {
   SCREE_HD double growth(std::int64_t k) const {
     const Vec3& velocity = bodies.velocity[k];
     double leaving = (velocity - paths.velocity[k]).norm();
-    const bool is_on_path = paths.from <= passed - half && passed + half <= paths.until;
+    const bool is_on_path = paths.from <= passed - half_substep && passed + half_substep <= paths.until;
     if (!is_on_path) leaving = fmax(leaving, velocity.norm());
-    return half * (leaving + surface_speed(bodies, k) - velocity.norm());
+    return tolerance::travel_factor * half_substep * (leaving + turning_speed(bodies, k));
   }
 };
 
@@ -88,21 +96,22 @@ struct Deviation {
 /// A body without a path has room for its flight in its contact margin.
 struct NeededMargin {
   Deviation deviation;
-  SetMargin margins;
+  MarginForMotion margin_for;
   SCREE_HD double operator()(std::int64_t k, double contact_margin) const {
-    const double flight = deviation.has_path(k) ? margins.at_speed(k, 0) + deviation.growth(k) : 0.0;
+    const double flight = deviation.has_path(k) ? margin_for(k, 0) + deviation.growth(k) : 0.0;
     return deviation(k) + fmax(contact_margin, flight);
   }
 };
 
 /// Sets the contact margin of a body, and notes whether it may touch something outside its box.
 struct NoteOutside {
+  SetMargin set_margin;
   NeededMargin needed;
   ConstView<double> box_margin;
   NearPairs now;
   BodiesOutside outside;
   SCREE_HD void operator()(std::int64_t k) const {
-    needed.margins(k);
+    set_margin(k);
     const Mobility mobility = now.bodies.mobility[k];
     if (mobility == Mobility::fixed || mobility == Mobility::absent) return;
     if (needed(k, now.margin[k]) > box_margin[k]) outside.add(now, k);
@@ -124,7 +133,7 @@ struct AddTravel {
 SCREE_HD double leaving_speed(const ConstBodyView& bodies, const ApproachSpeeds& approaches, std::int64_t k) {
   const double speed = surface_speed(bodies, k);
   if (!approaches.exist() || bodies.mobility[k] != Mobility::free) return speed;
-  return fmax(fmin(speed, approaches.of(k)), speed - bodies.velocity[k].norm());
+  return fmax(fmin(speed, approaches.of(k)), turning_speed(bodies, k));
 }
 
 /// Sets the margin of a box: at least the wanted one plus the skin, and that of contacts within a substep. It
@@ -139,18 +148,18 @@ struct SetBoxMargin {
   double most;     ///< largest margin, unless the wanted one is larger (m)
   SCREE_HD void operator()(std::int64_t k) const {
     contacts(k);
-    const ConstBodyView& bodies = contacts.bodies;
+    const MarginForMotion& margin_for = contacts.margin_for;
+    const ConstBodyView& bodies = margin_for.bodies;
     if (bodies.mobility[k] == Mobility::fixed || is_surface(bodies.shape[k])) return;
     const double size = smallest_size(bodies.shape[k], bodies.size[k]);
     const double skin = tolerance::pair_skin * size;
     const double speed = fmax(leaving_speed(bodies, contacts.approaches, k), typical * size);
     double& margin = contacts.margin[k];
     double least =
-        fmax(fmax(margin, wanted[k] + skin), tolerance::contact_slack * size + skin + contacts.dt * speed);
+        fmax(fmax(margin, wanted[k] + skin), tolerance::contact_slack * size + skin + margin_for.dt * speed);
     // A body that something stops in the middle of a substep leaves its path at the speed that it had.
-    if (contacts.approaches.exist())
-      least = fmax(least, contacts.at_speed(k, 0.5 * surface_speed(bodies, k)));
-    margin = fmax(wanted[k], fmin(least + (life - contacts.dt) * speed, most));
+    if (contacts.approaches.exist()) least = fmax(least, margin_for(k, 0.5 * surface_speed(bodies, k)));
+    margin = fmax(wanted[k], fmin(least + (life - margin_for.dt) * speed, most));
   }
 };
 
@@ -200,7 +209,7 @@ void contact_margins(const Bodies<Space>& bodies, double dt, double slack,
                      Array<double, Space>& margin) {
   margin.resize(bodies.count());
   parallel::for_each<Space>("pairs.margins", bodies.count(),
-                            SetMargin{view_of(bodies), margin.view(), dt, slack, parameters, approaches});
+                            SetMargin{{view_of(bodies), dt, slack, parameters}, approaches, margin.view()});
 }
 
 template <class Space>
@@ -229,14 +238,15 @@ void FatBoxes<Space>::put_around(const Bodies<Space>& bodies, const SearchTime& 
   // In a period, half of the way to the second image is for the path.
   const double most = (approaches.exist() ? 0.5 : 1.0) * period.most_margin;
   margin_.resize(bodies.count());
-  parallel::for_each<Space>(
-      "pairs.margins", bodies.count(),
-      SetBoxMargin{{view_of(bodies), margin_.view(), time.substep,
-                    tolerance::contact_slack + tolerance::pair_skin, parameters, approaches},
-                   contact_margin.view(),
-                   life,
-                   rate,
-                   most});
+  parallel::for_each<Space>("pairs.margins", bodies.count(),
+                            SetBoxMargin{{{view_of(bodies), time.substep,
+                                           tolerance::contact_slack + tolerance::pair_skin, parameters},
+                                          approaches,
+                                          margin_.view()},
+                                         contact_margin.view(),
+                                         life,
+                                         rate,
+                                         most});
   made_ = time.now;
   from_ = -0.5 * time.substep;
   // The paths go on for a substep, so that bodies are paired before they meet, and have room for it.
@@ -245,9 +255,12 @@ void FatBoxes<Space>::put_around(const Bodies<Space>& bodies, const SearchTime& 
   copy(orientation_, bodies.orientation);
   if (approaches.exist()) {
     copy(velocity_, bodies.velocity);
-    if (period.exists)
-      until_ = std::clamp((period.most_margin - largest_margin<Space>(margin_)) / fastest<Space>(bodies), 0.0,
-                          until_);
+    const double speed = period.exists ? fastest<Space>(bodies) : 0;
+    if (speed > 0) {
+      const double most_time = std::max(period.most_margin - largest_margin<Space>(margin_), 0.0) / speed;
+      from_ = std::max(from_, -most_time);
+      until_ = std::min(until_, most_time);
+    }
   } else {
     velocity_.resize(0);
   }
@@ -269,14 +282,16 @@ bool FatBoxes<Space>::pairs_last(const Bodies<Space>& bodies, const SearchTime& 
   then.position = std::as_const(position_).view();
   then.orientation = std::as_const(orientation_).view();
   const double half = 0.5 * time.substep;
-  const SetMargin margins{
-      now, contact_margin.view(), time.foresight, tolerance::contact_slack, parameters, approaches};
+  const MarginForMotion margin_for{now, time.foresight, tolerance::contact_slack, parameters};
   const NearPairs near_now{now, std::as_const(contact_margin).view(),
                            follow_paths() ? BodyPaths{now.velocity, -half, half} : BodyPaths{}};
   const NearPairs near_then{then, std::as_const(margin_).view(), paths()};
-  parallel::for_each<Space>(
-      "pairs.out", bodies.count(),
-      NoteOutside{{deviation(bodies, time), margins}, near_then.margin, near_now, new_pairs_.start()});
+  parallel::for_each<Space>("pairs.out", bodies.count(),
+                            NoteOutside{{margin_for, approaches, contact_margin.view()},
+                                        {deviation(bodies, time), margin_for},
+                                        near_then.margin,
+                                        near_now,
+                                        new_pairs_.start()});
   return !new_pairs_.exist(near_now, near_then);
 }
 
@@ -284,15 +299,9 @@ template <class Space>
 void FatBoxes<Space>::add_travel(const Bodies<Space>& bodies, const SearchTime& time,
                                  const ResponseParameters& parameters, Array<double, Space>& contact_margin) {
   life_.make_room();
+  const MarginForMotion margin_for{view_of(bodies), time.foresight, tolerance::contact_slack, parameters};
   parallel::for_each<Space>("pairs.travel", bodies.count(),
-                            AddTravel{{deviation(bodies, time),
-                                       {view_of(bodies),
-                                        contact_margin.view(),
-                                        time.foresight,
-                                        tolerance::contact_slack,
-                                        parameters,
-                                        {}}},
-                                      contact_margin.view()});
+                            AddTravel{{deviation(bodies, time), margin_for}, contact_margin.view()});
 }
 
 #define SCREE_INSTANTIATE(Space)                                                                 \

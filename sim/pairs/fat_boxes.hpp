@@ -61,15 +61,15 @@ class FatBoxes {
   /// Returns whether the boxes follow paths. Then approach speeds must be given to pairs_last().
   bool follow_paths() const { return paths().exist(); }
   /// Sets the contact_margins() within the foresight (m), and returns whether the pairs found with the boxes
-  /// still include all pairs of bodies that may be in contact within these, wherever the bodies are now: all
-  /// bodies are in their boxes, or those outside are few and have no NewPairs.
+  /// still include all pairs of bodies that may be in contact within these, wherever the bodies are now, or
+  /// that meet in free flight within the substep: all bodies are in their boxes, or those outside are few and
+  /// have no NewPairs.
   bool pairs_last(const Bodies<Space>& bodies, const SearchTime& time, const ResponseParameters& parameters,
                   const ApproachSpeeds& approaches, Array<double, Space>& contact_margin);
   /// Returns how many bodies were outside their boxes when pairs_last() was last called.
   std::int64_t outside() const { return new_pairs_.outside(); }
-  /// Must be called if impacts have sent bodies out of their boxes and are undone. Raises the margins (m) by
-  /// the distance that each body has moved since the boxes were put around it, or by how far it gets from its
-  /// path within the substep.
+  /// Must be called if impacts have sent bodies out of their boxes and are undone. Raises the margins (m) to
+  /// those that boxes would need that are put around the bodies as they were then.
   void add_travel(const Bodies<Space>& bodies, const SearchTime& time, const ResponseParameters& parameters,
                   Array<double, Space>& contact_margin);
   const Array<double, Space>& margin() const { return margin_; }  ///< margins of the boxes (m)

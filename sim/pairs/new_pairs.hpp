@@ -38,9 +38,8 @@ class NewPairs {
 
   /// Returns an empty list, to which all bodies that are outside now must be added.
   BodiesOutside start();
-  /// Returns whether two bodies, of which one is outside, may be in contact as they are now, but were not
-  /// near each other `then`, when all near pairs were found. Returns true if more than most_outside are
-  /// outside.
+  /// Returns whether two bodies, of which one is outside, are near each other `now`, but were not `then`,
+  /// when all near pairs were found. Returns true if more than most_outside are outside.
   bool exist(const NearPairs& now, const NearPairs& then);
   /// Returns how many bodies were outside when exist() was last called.
   std::int64_t outside() const { return outside_; }

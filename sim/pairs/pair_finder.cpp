@@ -143,14 +143,14 @@ void KeptPairs<Space>::make(const Bodies<Space>& bodies, const SearchTime& time,
   // Approach speeds need pairs.
   if (along_paths && !kept_) make_in_boxes(bodies, time, parameters, {}, contact_margin);
   const auto approaches = [&] { return along_paths ? approaches_.find(bodies, pairs()) : ApproachSpeeds{}; };
-  const auto set_margins = [&] {
+  if (along_paths != had_paths) {
     contact_margins<Space>(bodies, time.foresight, tolerance::contact_slack, parameters, approaches(),
                            contact_margin);
-  };
-  if (along_paths != had_paths) set_margins();
+  }
   make_in_boxes(bodies, time, parameters, approaches(), contact_margin);
-  // A body that is newly paired with another has room for contacts with it.
-  if (along_paths) set_margins();
+  // Bodies that are newly paired with others may need more room for contacts with these.
+  if (along_paths && !cover(bodies, time, parameters, contact_margin))
+    make_in_boxes(bodies, time, parameters, approaches(), contact_margin);
 }
 
 template <class Space>

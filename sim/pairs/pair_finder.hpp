@@ -54,14 +54,15 @@ class KeptPairs {
   bool cover(const Bodies<Space>& bodies, const SearchTime& time, const ResponseParameters& parameters,
              Array<double, Space>& contact_margin);
   /// Makes the candidates anew, with room for the bodies' travel within one substep or more. They include all
-  /// pairs that may come as close as the contact margins (m), which cover() has set before. Sets the margins
-  /// anew, by the approach speeds of the new pairs, if the boxes follow paths.
+  /// pairs that may come as close as the contact margins (m), which cover() has set before. If the boxes
+  /// follow paths, the margins are set anew by the approach speeds of the new pairs, and boxes that are too
+  /// small for these are made a second time.
   void make(const Bodies<Space>& bodies, const SearchTime& time, const ResponseParameters& parameters,
             Array<double, Space>& contact_margin);
   /// Returns the candidates last made. The view is valid until they are made the next time.
   ConstView<Pair> pairs() const { return candidates_.pairs(); }
-  /// Must be called if impacts have sent bodies out of their boxes and are undone. Raises the margins (m) by
-  /// the distance that each body has moved since the pairs were made.
+  /// Must be called if impacts have sent bodies out of their boxes and are undone. Raises the margins (m) to
+  /// those that boxes would need that are put around the bodies as they were then.
   void add_travel(const Bodies<Space>& bodies, const SearchTime& time, const ResponseParameters& parameters,
                   Array<double, Space>& contact_margin) {
     boxes_.add_travel(bodies, time, parameters, contact_margin);

@@ -113,6 +113,9 @@ TYPED_TEST(ApproachTest, TheSpinOfABoxIsAnApproach) {
   const double speed = 3 * std::sqrt(0.75);
   for (const std::size_t k : {1, 2})
     EXPECT_NEAR(margin[k], slack + tolerance::travel_factor * 2 * speed * dt, 1e-7) << k;
+  const std::vector<double> alone = lowered<TypeParam>(bodies, {}, {});
+  EXPECT_NEAR(alone[1], slack, 1e-12);
+  EXPECT_NEAR(alone[2], slack + tolerance::travel_factor * speed * dt, 1e-12) << "it may turn into another";
 }
 
 }  // namespace

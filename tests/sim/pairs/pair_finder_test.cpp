@@ -215,7 +215,6 @@ bodies:
   - {sphere: {radius: 0.08}, at: [-0.9, -0.9, -1], repeat: {count: [7, 7, 3], spacing: [0.3, 0.3, 0.5], jitter: 0.03}, material: a}
   - {box: {size: [0.2, 0.15, 0.1]}, at: [-0.9, -0.9, -0.8], repeat: {count: [7, 7, 3], spacing: [0.3, 0.3, 0.5], jitter: 0.03}, material: a}
 )");
-  constexpr double h = 0.01;
   ResponseParameters parameters;
   parameters.gravity.setZero();
   KeptPairs<Space> kept(scene.broadphase, !std::is_same_v<Space, Host>, Vec3::Zero());
@@ -223,7 +222,7 @@ bodies:
   Array<double, Space> margin;
   int lasted = 0, ended = 0, met = 0;
   const auto n = static_cast<std::int32_t>(scene.bodies.position.size());
-  const auto check = [&](const BodyTable& state, double now) {
+  const auto check = [&](const BodyTable& state, double now, double h) {
     const SearchTime time{.now = now, .substep = h, .foresight = h};
     copy_bodies(bodies, state);
     bodies.period = period;
@@ -271,12 +270,14 @@ bodies:
     for (std::size_t k = 0; k < state.position.size(); ++k) {
       if (state.mobility[k] != Mobility::free) continue;
       state.velocity[k] = (k % 12 == 0 ? Vec3(-flow) : flow) + vector(0.2);
-      if (state.shape[k] == Shape::box) state.spin[k] = vector(3);
+      if (state.shape[k] == Shape::box) state.spin[k] = vector(k % 5 == 0 ? 20 : 3);
     }
     kept.forget();
+    double now = static_cast<double>(trial);
     for (int step = 0; step < 8; ++step) {
-      const double now = static_cast<double>(trial) + step * h;
-      check(state, now);
+      // The length of substeps changes, and `now` is in the middle of one.
+      const double h = random.uniform() < 0.5 ? 0.01 : 0.005;
+      check(state, now, h);
       for (int blow = 0; blow < 3; ++blow) {
         const auto k = static_cast<std::size_t>(random.uniform(0, n));
         if (state.mobility[k] != Mobility::free) continue;
@@ -284,12 +285,13 @@ bodies:
                             : blow == 1 ? Vec3(-0.5 * state.velocity[k])
                                         : vector(flow.norm());
       }
-      check(state, now);
+      check(state, now, h);
       if (testing::Test::HasFatalFailure()) return;
       for (std::size_t k = 0; k < state.position.size(); ++k) {
         state.position[k] += h * state.velocity[k];
         state.orientation[k] = rotation_of(h * state.spin[k]) * state.orientation[k];
       }
+      now += h;
     }
   }
   EXPECT_GT(lasted, 40);
