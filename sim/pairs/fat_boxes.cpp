@@ -123,6 +123,12 @@ struct LoadMargin {
   SCREE_HD double operator()(std::int64_t k) const { return margin[k]; }
 };
 
+struct RaiseTo {
+  ConstView<double> least;
+  View<double> margin;
+  SCREE_HD void operator()(std::int64_t k) const { margin[k] = fmax(margin[k], least[k]); }
+};
+
 struct AddTravel {
   NeededMargin needed;
   View<double> margin;
@@ -210,6 +216,11 @@ void contact_margins(const Bodies<Space>& bodies, double dt, double slack,
   margin.resize(bodies.count());
   parallel::for_each<Space>("pairs.margins", bodies.count(),
                             SetMargin{{view_of(bodies), dt, slack, parameters}, approaches, margin.view()});
+}
+
+template <class Space>
+void raise_margins(const Array<double, Space>& least, Array<double, Space>& margin) {
+  parallel::for_each<Space>("pairs.margins", margin.size(), RaiseTo{least.view(), margin.view()});
 }
 
 template <class Space>
@@ -307,6 +318,7 @@ void FatBoxes<Space>::add_travel(const Bodies<Space>& bodies, const SearchTime& 
 #define SCREE_INSTANTIATE(Space)                                                                 \
   template void contact_margins(const Bodies<Space>&, double, double, const ResponseParameters&, \
                                 const ApproachSpeeds&, Array<double, Space>&);                   \
+  template void raise_margins<Space>(const Array<double, Space>&, Array<double, Space>&);        \
   template double largest_margin<Space>(const Array<double, Space>&);                            \
   template class FatBoxes<Space>;
 SCREE_FOR_EACH_SPACE(SCREE_INSTANTIATE)

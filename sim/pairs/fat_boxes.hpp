@@ -34,6 +34,10 @@ void contact_margins(const Bodies<Space>& bodies, double dt, double slack,
                      const ResponseParameters& parameters, const ApproachSpeeds& approaches,
                      Array<double, Space>& margin);
 
+/// Raises each margin to at least another (m).
+template <class Space>
+void raise_margins(const Array<double, Space>& least, Array<double, Space>& margin);
+
 /// Returns the largest margin, and at least 0 (m).
 template <class Space>
 double largest_margin(const Array<double, Space>& margin);

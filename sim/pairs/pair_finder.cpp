@@ -148,9 +148,11 @@ void KeptPairs<Space>::make(const Bodies<Space>& bodies, const SearchTime& time,
                            contact_margin);
   }
   make_in_boxes(bodies, time, parameters, approaches(), contact_margin);
+  if (!along_paths) return;
   // Bodies that are newly paired with others may need more room for contacts with these.
-  if (along_paths && !cover(bodies, time, parameters, contact_margin))
-    make_in_boxes(bodies, time, parameters, approaches(), contact_margin);
+  const bool covered = cover(bodies, time, parameters, margin_of_new_pairs_);
+  raise_margins<Space>(margin_of_new_pairs_, contact_margin);
+  if (!covered) make_in_boxes(bodies, time, parameters, approaches(), contact_margin);
 }
 
 template <class Space>

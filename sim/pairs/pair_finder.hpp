@@ -55,8 +55,8 @@ class KeptPairs {
              Array<double, Space>& contact_margin);
   /// Makes the candidates anew, with room for the bodies' travel within one substep or more. They include all
   /// pairs that may come as close as the contact margins (m), which cover() has set before. If the boxes
-  /// follow paths, the margins are set anew by the approach speeds of the new pairs, and boxes that are too
-  /// small for these are made a second time.
+  /// follow paths, the margins are raised to those of the approach speeds of the new pairs, and boxes that
+  /// are too small for these are made a second time.
   void make(const Bodies<Space>& bodies, const SearchTime& time, const ResponseParameters& parameters,
             Array<double, Space>& contact_margin);
   /// Returns the candidates last made. The view is valid until they are made the next time.
@@ -97,6 +97,8 @@ class KeptPairs {
   ApproachFinder<Space> approaches_;
   FatBoxes<Space> boxes_;
   Candidates<Space> candidates_;
+  Array<double, Space>
+      margin_of_new_pairs_;  // contact margins by the approach speeds of the pairs just made (m)
   std::int64_t pcs_size_ = 0;
   bool kept_ = false;
   std::int64_t times_made_ = 0;
