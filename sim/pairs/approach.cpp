@@ -32,10 +32,9 @@ struct RaiseApproach {
     const Vec3 arm = bodies.period.nearest(bodies.position[other] - bodies.position[k]);
     return bodies.velocity[k] + bodies.spin[k].cross(arm);
   }
-  /// Returns how fast the surface of a free body moves by its spin. A ball's surface stays where it is.
+  /// Returns the turning_speed() of a free body; that of others is in their velocity_at().
   SCREE_HD double turning(std::int32_t k) const {
-    if (bodies.mobility[k] != Mobility::free || bodies.shape[k] == Shape::sphere) return 0;
-    return bounding_radius(bodies.shape[k], bodies.size[k]) * bodies.spin[k].norm();
+    return bodies.mobility[k] == Mobility::free ? turning_speed(bodies, k) : 0.0;
   }
 };
 

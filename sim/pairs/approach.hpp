@@ -10,6 +10,12 @@
 
 namespace scree {
 
+/// Returns how fast the surface of a body moves by its spin (m/s). A ball's surface stays where it is.
+SCREE_HD inline double turning_speed(const ConstBodyView& bodies, std::int64_t k) {
+  const Shape shape = bodies.shape[k];
+  return shape == Shape::sphere ? 0.0 : bounding_radius(shape, bodies.size[k]) * bodies.spin[k].norm();
+}
+
 /// Approach speeds of free bodies: the largest speed of a body relative to one with which it is paired,
 /// whether the two come nearer or not.
 struct ApproachSpeeds {

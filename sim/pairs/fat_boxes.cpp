@@ -12,12 +12,6 @@ namespace scree {
 
 namespace {
 
-/// Returns how fast the surface of a body moves by its spin. A ball's surface stays where it is (m/s).
-SCREE_HD double turning_speed(const ConstBodyView& bodies, std::int64_t k) {
-  const Shape shape = bodies.shape[k];
-  return shape == Shape::sphere ? 0.0 : bounding_radius(shape, bodies.size[k]) * bodies.spin[k].norm();
-}
-
 /// Returns a bound on the speeds of all points of a body (m/s).
 SCREE_HD double surface_speed(const ConstBodyView& bodies, std::int64_t k) {
   return bodies.velocity[k].norm() + turning_speed(bodies, k);
@@ -169,29 +163,32 @@ struct SetBoxMargin {
   }
 };
 
-/// Rates at which bodies leave their places: speeds in their own smallest_size (1/s).
-struct Leaving {
-  double rates = 0;  ///< sum of the rates (1/s)
+/// Sums of rates: speeds of free bodies in their own smallest_size (1/s).
+struct Rates {
+  double leaving = 0;  ///< of leaving_speed()
+  double surface = 0;  ///< of surface_speed()
   std::int64_t count = 0;
-  SCREE_HD friend Leaving operator+(const Leaving& a, const Leaving& b) {
-    return {a.rates + b.rates, a.count + b.count};
+  SCREE_HD friend Rates operator+(const Rates& a, const Rates& b) {
+    return {a.leaving + b.leaving, a.surface + b.surface, a.count + b.count};
   }
 };
-struct LeavingOf {
+struct RatesOf {
   ConstBodyView bodies;
   ApproachSpeeds approaches;
-  SCREE_HD Leaving operator()(std::int64_t k) const {
+  SCREE_HD Rates operator()(std::int64_t k) const {
     if (bodies.mobility[k] != Mobility::free) return {};
-    return {leaving_speed(bodies, approaches, k) / smallest_size(bodies.shape[k], bodies.size[k]), 1};
+    const double size = smallest_size(bodies.shape[k], bodies.size[k]);
+    return {leaving_speed(bodies, approaches, k) / size, surface_speed(bodies, k) / size, 1};
   }
 };
 
-/// Returns the mean of leaving_speed() over the free bodies, in their smallest_size (1/s).
+/// Returns the mean rates of the free bodies.
 template <class Space>
-double mean_rate(const Bodies<Space>& bodies, const ApproachSpeeds& approaches) {
-  const auto leaving = parallel::sum_by_tiles<Leaving, Space>("pairs.leaving", bodies.count(),
-                                                              LeavingOf{view_of(bodies), approaches});
-  return leaving.rates / static_cast<double>(std::max<std::int64_t>(leaving.count, 1));
+Rates mean_rates(const Bodies<Space>& bodies, const ApproachSpeeds& approaches) {
+  const auto sum = parallel::sum_by_tiles<Rates, Space>("pairs.leaving", bodies.count(),
+                                                        RatesOf{view_of(bodies), approaches});
+  const auto count = static_cast<double>(std::max<std::int64_t>(sum.count, 1));
+  return {sum.leaving / count, sum.surface / count, 1};
 }
 
 struct FreeSpeed {
@@ -232,7 +229,7 @@ template <class Space>
 bool FatBoxes<Space>::shall_follow_paths(const Bodies<Space>& bodies, const SearchTime& time,
                                          const ResponseParameters& parameters) {
   constexpr double most_share = 0.25;  // of what the period allows, for the motion within a substep
-  if (parameters.accurate || mean_rate<Space>(bodies, {}) * time.substep < tolerance::little_travel)
+  if (parameters.accurate || mean_rates<Space>(bodies, {}).surface * time.substep < tolerance::little_travel)
     return false;
   return !bodies.period.exists ||
          fastest<Space>(bodies) * time.substep <= most_share * bodies.period.most_margin;
@@ -242,9 +239,9 @@ template <class Space>
 void FatBoxes<Space>::put_around(const Bodies<Space>& bodies, const SearchTime& time,
                                  const ResponseParameters& parameters, const ApproachSpeeds& approaches,
                                  const Array<double, Space>& contact_margin) {
-  const double rate = mean_rate<Space>(bodies, approaches);
-  const double along = approaches.exist() ? mean_rate<Space>(bodies, {}) : 0;
-  const double life = life_.choose(time.now, time.substep, rate, along);
+  const Rates rates = mean_rates<Space>(bodies, approaches);
+  const double along = approaches.exist() ? rates.surface : 0;
+  const double life = life_.choose(time.now, time.substep, rates.leaving, along);
   const Period& period = bodies.period;
   // In a period, half of the way to the second image is for the path.
   const double most = (approaches.exist() ? 0.5 : 1.0) * period.most_margin;
@@ -256,7 +253,7 @@ void FatBoxes<Space>::put_around(const Bodies<Space>& bodies, const SearchTime& 
                                           margin_.view()},
                                          contact_margin.view(),
                                          life,
-                                         rate,
+                                         rates.leaving,
                                          most});
   made_ = time.now;
   from_ = -0.5 * time.substep;

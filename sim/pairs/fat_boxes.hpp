@@ -26,9 +26,10 @@ struct SearchTime {
 ///
 /// In a heap that falls or flows, a body comes nearer to others only by the difference of their velocities,
 /// which is much smaller than its travel. If approach speeds are given, the margin of a free body is at most
-/// its travel at twice that speed: a contact with the other body can change its velocity by up to twice as
-/// much, if the other is heavy and the restitution is 1. So two bodies with equal velocities have room to
-/// meet if something else may stop one of them. Such margins do not include the motion of the body itself.
+/// its travel at twice that speed, or by its turn alone if that is more: a contact with the other body can
+/// change its velocity by up to twice as much, if the other is heavy and the restitution is 1. So two bodies
+/// with equal velocities have room to meet if something else may stop one of them. Such margins do not
+/// include the motion of the body itself.
 template <class Space>
 void contact_margins(const Bodies<Space>& bodies, double dt, double slack,
                      const ResponseParameters& parameters, const ApproachSpeeds& approaches,
