@@ -272,9 +272,10 @@ struct ImpulsePhases {
 struct CorrectionState {
   std::int32_t sweeps = 0;
   bool corrected = false;
-  double first = 0;  ///< mean of the overlaps that the first sweep has found, relative to the cap
-  double sum = 0;    ///< the same of the last sweep
-  double beta = 0;   ///< factor by which the next sweep extrapolates the last change, rounded
+  double first = 0;   ///< mean of the overlaps that the first sweep has found, relative to the cap
+  double sum = 0;     ///< the same of the last sweep
+  double beta = 0;    ///< factor by which the next sweep extrapolates the last change, rounded
+  float deepest = 0;  ///< deepest overlap, as CorrectionPhases has last looked at how fast it falls
 };
 
 /// Corrects positions: finds displacements and turns of the bodies that move overlapping bodies apart. They
@@ -327,17 +328,26 @@ struct CorrectionPhases {
   }
   SCREE_HD State judge(const State& state, const Sum& seen) const {
     const int sweeps = state.sweeps + 1;
-    const bool are_small =
-        sweeps >= least && seen.deepest <= deepest && seen.sum <= static_cast<double>(mean) * seen.count;
+    const bool is_small_mean = seen.sum <= static_cast<double>(mean) * seen.count;
+    const bool are_small = sweeps >= least && seen.deepest <= deepest && is_small_mean;
+    const bool looks = sweeps % sweeps_a_look == 0;
+    // The deepest of many small overlaps that hardly changes, as with a wedged body, would be too deep after
+    // the last sweep as well.
+    const bool is_stuck =
+        looks && is_small_mean && fabsf(seen.deepest - state.deepest) < hardly * seen.deepest;
     const double ratio = goes_on(state) && state.sweeps > 0 ? seen.sum / state.sum : 0.0;
     return {.sweeps = sweeps,
-            .corrected = are_small || (sweeps >= usual && seen.deepest <= too_deep),
+            .corrected = are_small || (sweeps >= usual && (seen.deepest <= too_deep || is_stuck)),
             .first = state.sweeps == 0 ? seen.sum / fmax(seen.count, 1.0) : state.first,
             .sum = seen.sum,
-            .beta = ratio < 1.0 ? rounded(ratio) : 0.0};
+            .beta = ratio < 1.0 ? rounded(ratio) : 0.0,
+            .deepest = looks ? seen.deepest : state.deepest};
   }
 
  private:
+  static constexpr int sweeps_a_look = 4;  // sweeps between two looks at how fast the deepest overlap falls
+  static constexpr float hardly = 0.01f;
+
   SCREE_CALLS_ITS_ARGUMENTS
   template <class Items>
   SCREE_HD Sum work(const State& state, int phase, const Items& items) const {

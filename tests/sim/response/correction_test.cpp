@@ -114,5 +114,44 @@ TYPED_TEST(CorrectionTest, MomentumCarriesAPushThroughAColumn) {
   }
 }
 
+/// Returns after how many sweeps the correction of a heap ends, in which the deepest overlap falls by the
+/// factor `falls` in a sweep, and the mean is `mean` of what is allowed.
+int sweeps_of_heap(double falls, double mean) {
+  const CorrectionPhases<float, true> phases{.ball_colors = ColorPhases({}, 1),
+                                             .point_colors = ColorPhases({}, 1),
+                                             .balls = {},
+                                             .points = {},
+                                             .displacements = {nullptr, nullptr},
+                                             .turns = {nullptr, nullptr},
+                                             .body_count = 0,
+                                             .shifted_hubs = {},
+                                             .turned_hubs = {},
+                                             .guides = {},
+                                             .share = 0.8f,
+                                             .first_with_momentum = 2,
+                                             .least = 2,
+                                             .usual = 12,
+                                             .most = 60,
+                                             .deepest = 0.01f,
+                                             .mean = 1e-4f,
+                                             .too_deep = 0.06f};
+  constexpr double contacts = 1e5;
+  CorrectionState state;
+  double deepest = 0.3;
+  while (!state.corrected && state.sweeps < phases.most) {
+    state = phases.judge(state, {static_cast<float>(deepest), mean * 1e-4 * contacts, contacts});
+    deepest *= falls;
+  }
+  return state.sweeps;
+}
+
+TEST(CorrectionTest, OneWedgedContactDoesNotMakeAHeapTakeAllSweeps) {
+  EXPECT_EQ(sweeps_of_heap(0.999, 0.5), 12);
+  EXPECT_EQ(sweeps_of_heap(1, 0.5), 12);
+  // What still falls goes on until it is no longer too deep, and so does a heap whose mean is too large.
+  EXPECT_EQ(sweeps_of_heap(0.95, 0.5), 33);
+  EXPECT_EQ(sweeps_of_heap(0.999, 2), 60);
+}
+
 }  // namespace
 }  // namespace scree::solver
