@@ -50,10 +50,7 @@ struct FlightLog {
   Array<double, Space> budget_used;  ///< cost of its impacts so far, by impact_cost()
   Array<double, Space> turn;         ///< bound on the speed that rotation gives its surface (m/s)
   Array<double, Space> top_speed;    ///< bound on its surface's speed, without what gravity adds (m/s)
-  Array<double, Space> reach;        ///< bound on its surface's travel from the midpoint to either end (m)
-  /// The distance from its midpoint position within which the body stays in the substep (m); infinite for a
-  /// boundary.
-  Array<double, Space> extent;
+  Array<double, Space> radius;       ///< bounding_radius(); infinite for a boundary (m)
   /// 1 for a body that bore load together with another free body in the last substep. Empty if there is no
   /// such body, or if none counts.
   Array<std::uint32_t, Space> bore_load;
@@ -63,8 +60,7 @@ struct FlightLog {
     budget_used.resize(bodies);
     turn.resize(bodies);
     top_speed.resize(bodies);
-    reach.resize(bodies);
-    extent.resize(bodies);
+    radius.resize(bodies);
   }
 };
 
@@ -92,8 +88,7 @@ struct FlightStage {
         budget_used(log.budget_used.view()),
         turn(log.turn.view()),
         top_speed(log.top_speed.view()),
-        reach(log.reach.view()),
-        extent(log.extent.view()),
+        radius(log.radius.view()),
         bore_load(log.bore_load.view()) {}
 
   FlightTerms terms;
@@ -103,8 +98,7 @@ struct FlightStage {
   View<double> budget_used;
   View<double> turn;
   View<double> top_speed;
-  View<double> reach;
-  View<double> extent;
+  View<double> radius;
   View<std::uint32_t> bore_load;
   double least_impact_speed = -1;  ///< two bodies whose top speeds sum to no more have no impact (m/s)
 
@@ -130,7 +124,7 @@ struct FlightStage {
       load(bodies.position, bodies.orientation, bodies.velocity, bodies.spin, bodies.size,
            bodies.inverse_mass, bodies.inverse_inertia, bodies.shape, bodies.mobility, bodies.material,
            bodies.id);
-      load(clock, budget_used, turn, top_speed, reach, extent);
+      load(clock, budget_used, turn, top_speed, radius);
       if (bore_load.size() > 0) load(bore_load);
     }
   }
@@ -175,15 +169,11 @@ struct FlightStage {
     return pair;
   }
 
-  /// Sets the turn, the top speed, the reach and the extent of a body in the given flight.
+  /// Sets the turn, the top speed and the radius of a body in the given flight.
   SCREE_HD void bound(std::int32_t body, const BodyFlight& in) const {
-    const double turns = turn_of(body, in);
-    const double gained = in.acceleration.norm() * terms.step;
-    const double reaches = is_absent(body) ? 0.0 : (in.velocity.norm() + gained + turns) * (0.5 * terms.step);
-    turn[body] = turns;
+    turn[body] = turn_of(body, in);
     top_speed[body] = top_speed_of(body, in);
-    reach[body] = reaches;
-    extent[body] = is_boundary(in.shape) ? HUGE_VAL : bounding_radius(in.shape, in.size) + reaches;
+    radius[body] = is_boundary(in.shape) ? HUGE_VAL : bounding_radius(in.shape, in.size);
   }
   SCREE_HD void bound(std::int32_t body) const { bound(body, flight(body)); }
 
@@ -220,16 +210,16 @@ struct FlightStage {
   /// Returns whether two bodies, one of which is free, may meet in an impact, without a look at their shapes.
   /// If so, sets the limits of what counts as an impact.
   SCREE_HD bool may_meet(std::int32_t i, std::int32_t j, ImpactLimits& limits) const {
-    if (top_speed[i] + top_speed[j] <= least_impact_speed || are_far(i, j) ||
-        std::max(budget_used[i], budget_used[j]) >= impacts_end)
-      return false;
+    if (top_speed[i] + top_speed[j] <= least_impact_speed) return false;
+    const double linear = linear_approach(i, j);
+    if (are_far(i, j, linear) || std::max(budget_used[i], budget_used[j]) >= impacts_end) return false;
     limits.earliest = std::max(clock[i], clock[j]);
     if (!(limits.earliest < terms.step)) return false;
     limits.left = terms.step - limits.earliest;
     limits.slowest = terms.bounces && !both_bore_load(i, j) ? slowest_bounce(i, j) : HUGE_VAL;
     limits.farthest =
         parameters.continuous ? tolerance::deep_approach * terms.laws.smaller_size(i, j) : HUGE_VAL;
-    return limits.may_count(fastest(i, j));
+    return limits.may_count(linear + turn[i] + turn[j]);
   }
 
   /// Returns for two bodies that may_meet() whether an impact may count with these loads and whether they
@@ -241,7 +231,8 @@ struct FlightStage {
                                             const Loads& loads) const {
     if (!may_count(i, j, limits, loads, fastest(i, j))) return false;
     if (bodies.shape[i] == Shape::sphere && bodies.shape[j] == Shape::sphere) return true;
-    return may_touch(pair_of(i, j, terms.step), limits.earliest);
+    const PairFlight pair = pair_of(i, j, terms.step);
+    return may_count(i, j, limits, loads, fastest_approach(pair)) && may_touch(pair, limits.earliest);
   }
 
   /// Returns the next impact of two bodies, one of which is free. `loads`: the loads of the pair, as
@@ -283,6 +274,10 @@ struct FlightStage {
   }
   /// Returns a bound on how fast two bodies come closer in the substep (m/s).
   SCREE_HD double fastest(std::int32_t i, std::int32_t j) const {
+    return linear_approach(i, j) + turn[i] + turn[j];
+  }
+  /// Returns the part of that bound for the motion of their centres (m/s).
+  SCREE_HD double linear_approach(std::int32_t i, std::int32_t j) const {
     Vec3 velocity = bodies.velocity[j] - bodies.velocity[i];
     Vec3 gained = Vec3::Zero();
     if (is_free(i) != is_free(j) || parameters.acceleration.size() > 0) {
@@ -290,19 +285,32 @@ struct FlightStage {
       if (is_free(i)) gained -= terms.step * parameters.acceleration_of(i);
       if (is_free(j)) gained += terms.step * parameters.acceleration_of(j);
     }
-    return velocity.norm() + gained.norm() + turn[i] + turn[j];
+    return velocity.norm() + gained.norm();
   }
 
-  /// Returns true if two bodies do not come near one another in the substep.
-  SCREE_HD bool are_far(std::int32_t i, std::int32_t j) const {
-    const double near = extent[i] + extent[j];
+  /// Returns true if two bodies do not come near one another in the substep, with this linear_approach().
+  SCREE_HD bool are_far(std::int32_t i, std::int32_t j, double linear) const {
+    const double near = radius[i] + radius[j];
     const Vec3 offset = bodies.period.nearest(bodies.position[j] - bodies.position[i]);
-    if (near < HUGE_VAL) return offset.squaredNorm() > near * near;
-    const bool boundary_i = is_boundary(bodies.shape[i]);
-    const std::int32_t boundary = boundary_i ? i : j;
-    if (bodies.shape[boundary] == Shape::tube) return false;
-    const Vec3 up = bodies.orientation[boundary] * Vec3::UnitZ();
-    return (boundary_i ? 1.0 : -1.0) * up.dot(offset) > extent[boundary_i ? j : i] + reach[boundary];
+    const double half = 0.5 * terms.step;
+    if (near == HUGE_VAL)
+      return is_boundary(bodies.shape[i]) ? is_far_from_boundary(j, i, offset, linear * half)
+                                          : is_far_from_boundary(i, j, -offset, linear * half);
+    const double reach = near + (linear + turn[i] + turn[j]) * half;
+    return offset.squaredNorm() > reach * reach;
+  }
+  /// Returns true if a body does not come near the surfaces of a boundary in the substep. `offset`: from the
+  /// boundary to the body (m); `travel`: how far it changes before or after the midpoint (m).
+  SCREE_HD bool is_far_from_boundary(std::int32_t body, std::int32_t boundary, const Vec3& offset,
+                                     double travel) const {
+    const BodyFlight in = flight(boundary);
+    const double half = 0.5 * terms.step;
+    const double around = radius[body] + travel + turn[body] * half;
+    const double tilts = in.tilting_spin().norm() * half;
+    const double room = around + tilts * (offset.norm() + around);
+    const Vec3 at = in.orientation.conjugate() * offset;
+    if (in.shape == Shape::plane) return at.z() > room;
+    return hypot(at.x(), at.y()) + room < in.size.x() && fabs(at.z()) + room < in.size.z();
   }
 };
 

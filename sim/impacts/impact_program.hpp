@@ -31,6 +31,10 @@ struct ImpactProgram {
   static constexpr bool diverges = true;
   static constexpr std::uint32_t most_rounds = 1 << 16;
   static constexpr int chunk_size = 8;
+  /// A body with more pairs than this is listed as a whole when it is struck: one thread would be slow to
+  /// list its chunks.
+  static constexpr std::int64_t most_in_chunks = 4096;
+  static constexpr std::int64_t threads_of_hub = 1 << 15;  ///< items that look at the pairs of such a body
 
   FlightStage stage;
   ConstView<Pair> pairs;
@@ -54,7 +58,9 @@ struct ImpactProgram {
   View<Resolved> resolved;             ///< impacts, in any order
   View<std::uint64_t> key;             ///< sort key of each impact
   View<StruckBody> struck;
-  View<StruckPairs> chunks;  ///< chunks of bodies that were struck in the last round; there is room for all
+  // Of bodies that were struck in the last round; there is room for all:
+  View<StruckPairs> chunks;        ///< chunks of their pairs
+  View<std::int32_t> struck_hubs;  ///< those with more pairs than most_in_chunks
 
   SCREE_HD int phases(const State& state) const {
     if (state.halt != State::Halt::none) return 0;
@@ -66,7 +72,8 @@ struct ImpactProgram {
       const std::int64_t meetings_now = meetings_of(state);
       return phase == 0 ? state.kept + 2 * lanes * meetings_now : meetings_now;
     }
-    if (phase == 0) return state.round == 1 ? near_listed() : state.kept + chunk_size * state.chunks;
+    if (phase == 0 && state.round == 1) return near_listed();
+    if (phase == 0) return state.kept + chunk_size * state.chunks + threads_of_hub * state.struck_hubs;
     return listed_to_search(state);
   }
   std::int64_t most_items() const { return std::max(near.size(), to_search.size()); }
@@ -85,10 +92,12 @@ struct ImpactProgram {
       state.resolving = false;
       state.kept = meetings_of(state);
       state.chunks = static_cast<std::int64_t>(progress->chunks);
+      state.struck_hubs = static_cast<std::int64_t>(progress->struck_hubs);
       ++state.round;
       return state;
     }
     state.counts = progress->counts[state.round % 2];
+    state.fast = progress->fast;
     const auto lacks = [](std::uint64_t needed, std::int64_t room) {
       return static_cast<std::int64_t>(needed) > room;
     };
@@ -145,14 +154,14 @@ struct ImpactProgram {
       predict_or_list(state, near[item]);
     } else if (item < state.kept) {
       keep(state, meetings[(state.round + 1) % 2][item]);
+    } else if (const std::int64_t of_chunks = item - state.kept; of_chunks < chunk_size * state.chunks) {
+      look_at_chunk(state, of_chunks);
     } else {
-      look_again(state, item - state.kept);
+      look_at_hub(state, of_chunks - chunk_size * state.chunks);
     }
   }
 
-  /// Looks again at a pair of a body that has been struck; if both bodies have been, only from the row of the
-  /// first one.
-  SCREE_HD void look_again(const State& state, std::int64_t item) const {
+  SCREE_HD void look_at_chunk(const State& state, std::int64_t item) const {
     const StruckPairs of = chunks[item / chunk_size];
     const std::int64_t place = of.first + item % chunk_size;
     if (place >= adjacency.count(of.body)) return;
@@ -160,7 +169,19 @@ struct ImpactProgram {
     const auto [i, j] = pairs[k];
     load_ahead(state, i, j);
     if (loaded.size() > 0) prefetch_whole(loaded[k]);
-    if (of.body == j && was_struck(state, i)) return;
+    look_again(state, of.body, k);
+  }
+  /// Looks at every threads_of_hub-th pair of a hub. Few of them come near.
+  SCREE_HD void look_at_hub(const State& state, std::int64_t item) const {
+    const std::int32_t hub = struck_hubs[item / threads_of_hub];
+    for (std::int64_t place = item % threads_of_hub; place < adjacency.count(hub); place += threads_of_hub)
+      look_again(state, hub, adjacency.pair(hub, place));
+  }
+  /// Looks again at a pair of a body that has been struck; if both bodies have been, only from the row of the
+  /// first one.
+  SCREE_HD void look_again(const State& state, std::int32_t body, std::int64_t k) const {
+    const auto [i, j] = pairs[k];
+    if (body == j && was_struck(state, i)) return;
     if (stage.top_speed[i] + stage.top_speed[j] > progress->least_impact_speed) look(state, k);
   }
   SCREE_HD void keep(const State& state, const PredictedMeeting& last) const {
@@ -234,7 +255,7 @@ struct ImpactProgram {
       if (item == 0) {
         progress->counts[(state.round + 1) % 2] = {};
         progress->first[(state.round + 1) % 2] = {};
-        progress->chunks = 0;
+        progress->chunks = progress->struck_hubs = 0;
       }
       if (item < state.kept) {
         forget(state, meetings[(state.round + 1) % 2][item]);
@@ -491,7 +512,11 @@ struct ImpactProgram {
       const std::int32_t body = before[b].body;
       is_struck[b] = counts[b] && stage.is_free(body);
       is_new[b] = is_struck[b] && struck_in[body] == 0;
-      needed[b] = is_struck[b] ? (adjacency.count(body) + chunk_size - 1) / chunk_size : 0;
+      const std::int64_t of_body = adjacency.count(body);
+      const bool is_hub = of_body > most_in_chunks;
+      needed[b] = is_struck[b] && !is_hub ? (of_body + chunk_size - 1) / chunk_size : 0;
+      if (is_struck[b] && is_hub)
+        struck_hubs[static_cast<std::int64_t>(count_up(&progress->struck_hubs))] = body;
       all_new += is_new[b] ? 1 : 0;
       all_needed += static_cast<std::uint64_t>(needed[b]);
     }

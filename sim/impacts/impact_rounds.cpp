@@ -121,6 +121,8 @@ struct ListFast {
 /// Lists the pairs that come near each other, of those in `fast` or of all. This loop is not part of the
 /// rounds, nor of ListFast, since it takes many registers: so more pairs are looked at in parallel.
 struct ListNear {
+  static constexpr std::int64_t sample = 64;  // of all pairs, each one in so many is counted if it is fast
+
   FlightStage stage;
   ConstView<Pair> pairs;
   ConstView<LoadedParts> loaded;
@@ -131,6 +133,7 @@ struct ListNear {
     const std::int64_t k = fast.size() > 0 ? fast[item] : item;
     const auto [i, j] = pairs[k];
     if (stage.top_speed[i] + stage.top_speed[j] <= progress->least_impact_speed) return;
+    if (fast.size() == 0 && item % sample == 0) count_up(&progress->fast);
     ImpactLimits limits;
     if (!stage.may_meet(i, j, limits) || !stage.come_near(i, j, limits, detail::loads_at(loaded, k))) return;
     const auto place = static_cast<std::int64_t>(count_up_together(&progress->near));
@@ -215,7 +218,7 @@ Ledger ImpactRounds<Space>::resolve(const Problem& problem, const ResponseParame
                               MarkLoaded{stage, problem.pairs, problem.loaded});
   }
   if (problem.pairs_made == 0 || problem.pairs_made != adjacency_of_) adjacency_.clear();
-  parallel::for_each<Space>("impact.near", bodies.count(), ResetBodies{program(stage, problem)});
+  parallel::for_each<Space>("impact.reset", bodies.count(), ResetBodies{program(stage, problem)});
   list_fast(stage, problem);
   list_near(stage, problem);
   RoundsState state;
@@ -228,6 +231,8 @@ Ledger ImpactRounds<Space>::resolve(const Problem& problem, const ResponseParame
   if (state.round > 1 || state.counts.meetings > 0)
     copy_bytes<Host, Space>(&progress_, shared_progress_.data(), sizeof(progress_));
   if (state.counts.meetings > 0) progress_.hit_bound = 1;
+  const std::int64_t fast = signed_count(state.fast) * (fast_.size() > 0 ? 1 : ListNear::sample);
+  most_were_fast_[problem.terms.from > 0] = 2 * fast > problem.pairs.size();
   struck_.resize(signed_count(progress_.struck));
   return put_in_order(problem.pairs.size(), bodies.id);
 }
@@ -278,17 +283,21 @@ ImpactProgram ImpactRounds<Space>::program(const FlightStage& stage, const Probl
           .resolved = resolved_.view(),
           .key = key_.view(),
           .struck = struck_.view(),
-          .chunks = chunks_.view()};
+          .chunks = chunks_.view(),
+          .struck_hubs = struck_hubs_.view()};
 }
 
-/// Lists the fast pairs on Device, where slow pairs would make threads wait in list_near(). On Host that
-/// looks at all pairs itself, since threads would wait for one another to add to the list of fast ones.
+/// Lists the fast pairs on Device, where slow pairs would make threads wait in list_near(). That looks at all
+/// pairs itself if most were fast in the last such flight, and on Host, since threads would wait for one
+/// another to add to the list of fast ones.
 template <class Space>
 void ImpactRounds<Space>::list_fast(const FlightStage& stage, const Problem& problem) {
+  fast_.resize(0);
   if constexpr (!std::is_same_v<Space, Host>) {
+    if (most_were_fast_[problem.terms.from > 0]) return;
     fast_.resize(problem.pairs.size());
     parallel::for_each<Space>(
-        "impact.near", ListFast::items(problem.pairs.size()),
+        "impact.fast", ListFast::items(problem.pairs.size()),
         ListFast{stage.top_speed, problem.pairs, shared_progress_.data(), fast_.view()});
   }
 }
@@ -298,10 +307,10 @@ void ImpactRounds<Space>::list_near(const FlightStage& stage, const Problem& pro
   ImpactProgress* const progress = shared_progress_.data();
   const ListNear list{stage,    problem.pairs, problem.loaded, std::as_const(fast_).view(),
                       progress, near_.view()};
-  if constexpr (std::is_same_v<Space, Host>) {
-    parallel::for_each<Host>("impact.near", problem.pairs.size(), list);
-  } else {
+  if (fast_.size() > 0) {
     parallel::for_each_counted<Space>("impact.near", &progress->fast, list);
+  } else {
+    parallel::for_each<Space>("impact.near", problem.pairs.size(), list);
   }
 }
 
@@ -317,7 +326,10 @@ void ImpactRounds<Space>::make_room(const FlightStage& stage, const Problem& pro
     progress_.counts[state.round % 2] = {};
     const std::int64_t near = signed_count(progress_.near);
     const bool all_listed = near <= near_.size();
-    if (!all_listed) progress_.near = 0;
+    if (!all_listed) {
+      progress_.near = 0;
+      if (fast_.size() == 0) progress_.fast = 0;
+    }
     copy_bytes<Space, Host>(progress, &progress_, sizeof(progress_));
     if (!all_listed) {
       grow(near_, 0, near);
@@ -332,7 +344,9 @@ void ImpactRounds<Space>::make_room(const FlightStage& stage, const Problem& pro
     if (adjacency_.view().is_empty()) {
       adjacency_.build(problem.pairs, ConstView<Mobility>(stage.bodies.mobility));
       adjacency_of_ = problem.pairs_made;
-      chunks_.resize(adjacency_.view().row.size() / ImpactProgram::chunk_size + stage.bodies.count());
+      const std::int64_t of_rows = adjacency_.view().row.size();
+      chunks_.resize(of_rows / ImpactProgram::chunk_size + stage.bodies.count());
+      struck_hubs_.resize(of_rows / ImpactProgram::most_in_chunks);
     }
   }
   state.halt = RoundsState::Halt::none;

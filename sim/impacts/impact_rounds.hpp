@@ -98,7 +98,9 @@ class ImpactRounds {
   Array<detail::ImpactProgress, Space> shared_progress_;  // one element
   Array<detail::FlightBounds, Space> bounds_, bounds_scratch_;
   std::int64_t rounds_ = 0;
-  Array<std::int32_t, Space> fast_;  // pairs that are fast enough for an impact, on Device
+  Array<std::int32_t, Space> fast_;  // pairs that are fast enough for an impact; empty if they are not listed
+  // Whether most pairs were fast in the last flight from 0 on, and in the last one from later on.
+  bool most_were_fast_[2] = {false, false};
   // Arrays that detail::ImpactProgram views:
   Array<std::uint64_t, Space> first_[2];
   Array<std::uint32_t, Space> struck_in_, waits_in_, impact_group_of_, walls_of_;
@@ -109,6 +111,7 @@ class ImpactRounds {
   Array<std::uint64_t, Space> key_;
   Array<StruckBody, Space> struck_;
   Array<detail::StruckPairs, Space> chunks_;
+  Array<std::int32_t, Space> struck_hubs_;
   Adjacency<Space> adjacency_;
   std::int64_t adjacency_of_ = 0;  // Problem::pairs_made of the adjacency
   // Impacts in order:

@@ -80,9 +80,10 @@ struct ImpactProgress {
   FirstOfAll first[2];            ///< first meetings of the even rounds and of the odd ones
   double least_impact_speed = 0;  ///< FlightStage::least_impact_speed; infinite if no pair is faster (m/s)
   bool needs_search = false;      ///< whether the meetings of some body have no closed form
-  std::uint64_t fast = 0;         ///< number of pairs that are fast enough for an impact, on Device
+  std::uint64_t fast = 0;         ///< number of pairs that are fast enough for an impact, or of a sample
   std::uint64_t near = 0;         ///< number of pairs that come near each other, before the first round
   std::uint64_t chunks = 0;       ///< number of chunks that this round has listed
+  std::uint64_t struck_hubs = 0;  ///< number of hubs that this round has listed
   std::uint64_t impacts = 0;
   std::uint64_t struck = 0;       ///< number of struck bodies
   std::uint32_t late_impact = 0;  ///< whether a body was struck after the midpoint
@@ -99,9 +100,11 @@ struct RoundsState {
   Halt halt = Halt::none;
   bool resolving = false;  ///< whether the rounds are in the second half
   std::uint32_t round = 1;
-  std::int64_t kept = 0;    ///< number of meetings of the round before
-  std::int64_t chunks = 0;  ///< number of chunks of pairs of bodies that were struck in it
-  RoundCounts counts;       ///< counts of this round, once its first half is over
+  std::int64_t kept = 0;         ///< number of meetings of the round before
+  std::int64_t chunks = 0;       ///< number of chunks of pairs of bodies that were struck in it
+  std::int64_t struck_hubs = 0;  ///< number of hubs that were struck in it
+  RoundCounts counts;            ///< counts of this round, once its first half is over
+  std::uint64_t fast = 0;        ///< ImpactProgress::fast
 };
 
 /// An empty sum, since the phases add up nothing.

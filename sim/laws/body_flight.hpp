@@ -32,10 +32,12 @@ struct BodyFlight {
   SCREE_HD bool is_ball() const { return shape == Shape::sphere; }
   SCREE_HD Vec3 axis() const { return orientation * Vec3::UnitZ(); }
   /// Returns the part of a boundary's spin that moves its surfaces (rad/s): all but the spin about its own
-  /// axis.
+  /// axis. Returns exactly 0 if only the rounding of the axis tells the spin from one about it.
   SCREE_HD Vec3 tilting_spin() const {
+    constexpr double rounding = 1e-14;
     const Vec3 up = axis();
-    return spin - up.dot(spin) * up;
+    const Vec3 tilting = spin - up.dot(spin) * up;
+    return tilting.norm() > rounding * spin.norm() ? tilting : Vec3(Vec3::Zero());
   }
 };
 

@@ -64,6 +64,25 @@ TYPED_TEST(Rounds, ACradlePassesOnOneBall) {
     EXPECT_NEAR(rounds.bodies.velocity[static_cast<std::size_t>(k)].x(), k == balls - 1 ? 1.0 : 0.0, 1e-14);
 }
 
+TYPED_TEST(Rounds, AStruckBodyWithThousandsOfPairsLooksAtAllOfThem) {
+  constexpr std::int32_t others = 5000;
+  for (const std::int32_t struck : {2, 700, others + 1}) {
+    FlightScene scene;
+    scene.add_ball(1.0, Vec3(0, 0, 0), Vec3(0, 0, 0));
+    scene.add_ball(0.1, Vec3(-1.101, 0, 0), Vec3(2, 0, 0));
+    std::vector<Pair> pairs{{0, 1}};
+    for (std::int32_t k = 2; k < others + 2; ++k) {
+      // One of them is in the way that the large ball takes after it has been struck.
+      scene.add_ball(0.1, Vec3(k == struck ? 1.1005 : 1.2, 0, k == struck ? 0.0 : k), Vec3(0, 0, 0));
+      pairs.push_back({0, k});
+    }
+    const Outcome rounds = in_rounds<TypeParam>(scene, pairs);
+    expect_same(rounds, in_time_order(scene, pairs), 1e-15);
+    ASSERT_EQ(rounds.impacts.size(), 2u);
+    EXPECT_NEAR(rounds.bodies.velocity[static_cast<std::size_t>(struck)].x(), 2, 1e-14);
+  }
+}
+
 TYPED_TEST(Rounds, OfAGasAreTheSame) {
   FlightScene scene = gas(0.05);
   scene.parameters.rotation = false;
