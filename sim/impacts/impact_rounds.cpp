@@ -47,7 +47,7 @@ struct BoundSpeeds {
     FlightBounds bounds;
     const ConstView<PairLaw> laws = stage.terms.laws.table;
     if (k < laws.size()) bounds.restitution = laws[k].restitution;
-    if (k >= stage.bodies.count()) return bounds;
+    if (k >= stage.clock.size()) return bounds;
     const auto body = static_cast<std::int32_t>(k);
     bounds.top_speed = stage.top_speed_of(body, stage.flight(body));
     bounds.smallest = stage.size_of(k);

@@ -328,13 +328,13 @@ struct CorrectionPhases {
   }
   SCREE_HD State judge(const State& state, const Sum& seen) const {
     const int sweeps = state.sweeps + 1;
-    const bool are_small =
-        sweeps >= least && seen.deepest <= deepest && seen.sum <= static_cast<double>(mean) * seen.count;
+    const bool is_small_mean = seen.sum <= static_cast<double>(mean) * seen.count;
+    const bool are_small = sweeps >= least && seen.deepest <= deepest && is_small_mean;
     const bool looks = sweeps % sweeps_a_look == 0;
     // The deepest of many small overlaps that hardly changes, as with a wedged body, would be too deep after
     // the last sweep as well.
-    const bool is_stuck = looks && seen.sum < few * seen.deepest * seen.count &&
-                          fabsf(seen.deepest - state.deepest) < hardly * seen.deepest;
+    const bool is_stuck =
+        looks && is_small_mean && fabsf(seen.deepest - state.deepest) < hardly * seen.deepest;
     const double ratio = goes_on(state) && state.sweeps > 0 ? seen.sum / state.sum : 0.0;
     return {.sweeps = sweeps,
             .corrected = are_small || (sweeps >= usual && (seen.deepest <= too_deep || is_stuck)),
@@ -346,7 +346,6 @@ struct CorrectionPhases {
 
  private:
   static constexpr int sweeps_a_look = 4;  // sweeps between two looks at how fast the deepest overlap falls
-  static constexpr double few = 0.01;      // mean of the overlaps, of the deepest: few are as deep as that
   static constexpr float hardly = 0.01f;
 
   SCREE_CALLS_ITS_ARGUMENTS

@@ -115,7 +115,7 @@ TYPED_TEST(CorrectionTest, MomentumCarriesAPushThroughAColumn) {
 }
 
 /// Returns after how many sweeps the correction of a heap ends, in which the deepest overlap falls by the
-/// factor `falls` in a sweep, and the mean stays the same.
+/// factor `falls` in a sweep, and the mean is `mean` of what is allowed.
 int sweeps_of_heap(double falls, double mean) {
   const CorrectionPhases<float, true> phases{.ball_colors = ColorPhases({}, 1),
                                              .point_colors = ColorPhases({}, 1),
@@ -139,18 +139,18 @@ int sweeps_of_heap(double falls, double mean) {
   CorrectionState state;
   double deepest = 0.3;
   while (!state.corrected && state.sweeps < phases.most) {
-    state = phases.judge(state, {static_cast<float>(deepest), mean * contacts, contacts});
+    state = phases.judge(state, {static_cast<float>(deepest), mean * 1e-4 * contacts, contacts});
     deepest *= falls;
   }
   return state.sweeps;
 }
 
 TEST(CorrectionTest, OneWedgedContactDoesNotMakeAHeapTakeAllSweeps) {
-  EXPECT_EQ(sweeps_of_heap(0.999, 5e-5), 12);
-  EXPECT_EQ(sweeps_of_heap(1, 5e-4), 12);
-  // What still falls goes on until it is no longer too deep. So does a heap in which many are as deep.
-  EXPECT_EQ(sweeps_of_heap(0.95, 5e-5), 33);
-  EXPECT_EQ(sweeps_of_heap(0.999, 0.1), 60);
+  EXPECT_EQ(sweeps_of_heap(0.999, 0.5), 12);
+  EXPECT_EQ(sweeps_of_heap(1, 0.5), 12);
+  // What still falls goes on until it is no longer too deep, and so does a heap whose mean is too large.
+  EXPECT_EQ(sweeps_of_heap(0.95, 0.5), 33);
+  EXPECT_EQ(sweeps_of_heap(0.999, 2), 60);
 }
 
 }  // namespace
