@@ -3,6 +3,7 @@
 
 #include "bench/narrowphase/families.hpp"
 #include "bench/narrowphase/oracle.hpp"
+#include "core/rng.hpp"
 #include "tests/narrowphase/families.hpp"
 
 #include <gtest/gtest.h>
@@ -224,6 +225,47 @@ TEST(BoxBox, NearlyParallelEdgesThatTouchAreNoDeepContact) {
     ASSERT_TRUE(box_box(p.a, p.b, 0, m));
     EXPECT_NEAR(-detail::smallest_gap(m), depth, oracle::most_given_away(-depth, p.smallest));
   }
+}
+
+/// Boxes are brought together until their best axis separates them by no more than rounding.
+TEST(BoxBox, BoxesThatJustTouchDoNotOverlapWithoutAMargin) {
+  constexpr std::uint64_t trials = 40000;
+  int touching = 0;
+  for (std::uint64_t trial = 0; trial < trials; ++trial) {
+    Random random(29, trial);
+    const auto vector = [&random](double most) {
+      const double x = random.uniform(-most, most);
+      const double y = random.uniform(-most, most);
+      return Vec3(x, y, random.uniform(-most, most));
+    };
+    const auto half = [&random] { return random.uniform(0.3, 1); };
+    const auto size = [&half] {
+      const double x = half(), y = half();
+      return Vec3(x, y, half());
+    };
+    // Any two boxes, boxes that lie nearly flat on one another, boxes with parallel edges, aligned boxes.
+    const Quat turns[] = {rotation_of(vector(3)), rotation_of(vector(0.02)),
+                          rotation_of(Vec3(0, 0, random.uniform(-1, 1))), Quat::Identity()};
+    const Solid a{Vec3::Zero(), rotation_of(vector(2)), size()};
+    Solid b{Vec3::Zero(), a.orientation * turns[trial % 4], size()};
+    const Vec3 direction = vector(1).normalized();
+    double near = 0, far = 6;
+    while (far - near > 1e-15 * far) {
+      const double middle = 0.5 * (near + far);
+      if (middle <= near || middle >= far) break;
+      b.position = middle * direction;
+      (separating_axes(BoxPair(a, b), far).separation < 0 ? near : far) = middle;
+    }
+    for (const double distance : {near, far}) {
+      b.position = distance * direction;
+      Manifold m;
+      if (!box_box(a, b, 0, m)) continue;
+      ++touching;
+      const double rounding = tolerance::axis_preference_length * BoxPair(a, b).smallest;
+      for (int k = 0; k < m.count; ++k) ASSERT_GT(m.points[k].gap, -1.01 * rounding) << trial;
+    }
+  }
+  EXPECT_GT(touching, 30000);
 }
 
 /// A box that lies nearly flat on another one touches it at one point and turns about that point. The points
