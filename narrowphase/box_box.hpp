@@ -62,20 +62,25 @@ SCREE_HD inline bool feature_contact(const BoxPair& pair, const BoxAxes& axes, c
     return true;
   const double close = axes.separation + preference(axes.separation, pair.smallest);
   // At a margin of 0 rounding must not lose the points of boxes that just touch.
-  const double within = fmax(margin, tolerance::touching_gap * pair.smallest);
+  const double touching = tolerance::touching_gap * pair.smallest;
+  const double within = fmax(margin, touching);
   const BoxAxis* faces[2] = {&face, &axes.face[1 - face.box]};
   for (const BoxAxis* reference : faces) {
     if (clearly_better(axes.separation, reference->separation, pair.smallest)) continue;
     if (face_contact(pair, *reference, within, out) && detail::smallest_gap(out) <= close) return true;
   }
-  if (axes.separation > 0.0) return with_points_over_face(closest_edges(pair, axes, margin, out));
   const double of_edges = axes.any_edges.separation;
-  if (of_edges > -HUGE_VAL && !clearly_better(axes.separation, of_edges, pair.smallest))
+  const bool has_edges = of_edges > -HUGE_VAL;
+  if (axes.separation <= 0.0 && has_edges && !clearly_better(axes.separation, of_edges, pair.smallest))
     return with_points_over_face(edge_contact(pair, axes.any_edges, out));
-  // Boxes that just touch at the rim of a face may have no point over it.
-  if (axes.separation >= -within && with_points_over_face(closest_edges(pair, axes, within, out)))
-    return true;
-  return face_contact(pair, face, margin, out);
+  if (axes.separation >= -touching) {
+    // Boxes that just touch at the rim of a face may have no point over it.
+    if (with_points_over_face(closest_edges(pair, axes, within, out))) return true;
+    if (axes.separation > 0.0) return false;
+  }
+  if (face_contact(pair, face, margin, out)) return true;
+  return axes.separation < -touching && has_edges &&
+         with_points_over_face(edge_contact(pair, axes.any_edges, out));
 }
 
 }  // namespace detail

@@ -121,8 +121,8 @@ SCREE_HD inline std::uint32_t edges_within(const BoxPair& pair, const BoxAxes& a
 
 }  // namespace detail
 
-/// Finds the contact of boxes that are apart and have no face over the other: the closest points of their
-/// edges.
+/// Finds the contact of boxes that are apart or just touch, and have no face over the other: the closest
+/// points of their edges.
 SCREE_HD inline bool closest_edges(const BoxPair& pair, const BoxAxes& axes, double margin, Manifold& out) {
   const BoxAxis& face = axes.better_face();
   const int box = face.box, other = 1 - box;

@@ -54,9 +54,10 @@ SCREE_HD inline int find_ordered_contacts(Shape shape_a, const Solid& a, Shape s
 
 }  // namespace detail
 
-/// Finds the contacts of one pair by the closed forms and the 15 axes, with gaps of at most `margin` (m). It
-/// sets everything of the pair's manifolds except i and j, and returns their number, at most
-/// max_pair_manifolds. Boundaries (planes and tubes) make no contact with each other.
+/// Finds the contacts of one pair by the closed forms and the 15 axes, with gaps of at most `margin` (m), or
+/// of boxes that just touch, of tolerance::touching_gap. It sets everything of the pair's manifolds except i
+/// and j, and returns their number, at most max_pair_manifolds. Boundaries (planes and tubes) make no contact
+/// with each other.
 SCREE_HD inline int find_pair_contacts(Shape shape_a, const Solid& a, Shape shape_b, const Solid& b,
                                        double margin, Manifold* out) {
   const bool ordered = shape_a <= shape_b;

@@ -300,7 +300,7 @@ struct FlightStage {
     return offset.squaredNorm() > reach * reach;
   }
   /// Returns true if a body does not come near the surfaces of a boundary in the substep. `offset`: from the
-  /// boundary to the body (m); `travel`: how far it changes before or after the midpoint (m).
+  /// boundary to the body (m); `travel`: how far the offset changes before or after the midpoint (m).
   SCREE_HD bool is_far_from_boundary(std::int32_t body, std::int32_t boundary, const Vec3& offset,
                                      double travel) const {
     const BodyFlight in = flight(boundary);

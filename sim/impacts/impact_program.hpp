@@ -58,9 +58,9 @@ struct ImpactProgram {
   View<Resolved> resolved;             ///< impacts, in any order
   View<std::uint64_t> key;             ///< sort key of each impact
   View<StruckBody> struck;
-  // Of bodies that were struck in the last round; there is room for all:
-  View<StruckPairs> chunks;        ///< chunks of their pairs
-  View<std::int32_t> struck_hubs;  ///< those with more pairs than most_in_chunks
+  View<StruckPairs> chunks;  ///< chunks of pairs of bodies that were struck in the last round; room for all
+  /// Bodies with more pairs than most_in_chunks that were struck in the last round; there is room for all.
+  View<std::int32_t> struck_hubs;
 
   SCREE_HD int phases(const State& state) const {
     if (state.halt != State::Halt::none) return 0;

@@ -121,7 +121,7 @@ struct ListFast {
 /// Lists the pairs that come near each other, of those in `fast` or of all. This loop is not part of the
 /// rounds, nor of ListFast, since it takes many registers: so more pairs are looked at in parallel.
 struct ListNear {
-  static constexpr std::int64_t sample = 64;  // of all pairs, each one in so many is counted if it is fast
+  static constexpr std::int64_t sample = 64;  // one in so many of all pairs is counted if it is fast
 
   FlightStage stage;
   ConstView<Pair> pairs;

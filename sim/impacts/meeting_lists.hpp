@@ -83,7 +83,7 @@ struct ImpactProgress {
   std::uint64_t fast = 0;         ///< number of pairs that are fast enough for an impact, or of a sample
   std::uint64_t near = 0;         ///< number of pairs that come near each other, before the first round
   std::uint64_t chunks = 0;       ///< number of chunks that this round has listed
-  std::uint64_t struck_hubs = 0;  ///< number of hubs that this round has listed
+  std::uint64_t struck_hubs = 0;  ///< number of ImpactProgram::struck_hubs that this round has listed
   std::uint64_t impacts = 0;
   std::uint64_t struck = 0;       ///< number of struck bodies
   std::uint32_t late_impact = 0;  ///< whether a body was struck after the midpoint
@@ -102,7 +102,7 @@ struct RoundsState {
   std::uint32_t round = 1;
   std::int64_t kept = 0;         ///< number of meetings of the round before
   std::int64_t chunks = 0;       ///< number of chunks of pairs of bodies that were struck in it
-  std::int64_t struck_hubs = 0;  ///< number of hubs that were struck in it
+  std::int64_t struck_hubs = 0;  ///< number of ImpactProgram::struck_hubs
   RoundCounts counts;            ///< counts of this round, once its first half is over
   std::uint64_t fast = 0;        ///< ImpactProgress::fast
 };

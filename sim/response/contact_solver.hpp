@@ -37,7 +37,8 @@ namespace scree::solver {
 
 /// Number of sweeps of the position correction. After `least` sweeps it ends when the deepest overlap is at
 /// most `deepest` and the mean at most `mean` (relative to the smaller smallest_size); after `usual` sweeps,
-/// when the deepest is at most `too_deep`, or hardly changes any more; and in any case after `most`.
+/// when the deepest is at most `too_deep`, or hardly changes any more while the mean is at most `mean`; and
+/// in any case after `most`.
 struct CorrectionPlan {
   int least, usual, most;
   double deepest, mean, too_deep;

@@ -275,7 +275,7 @@ struct CorrectionState {
   double first = 0;   ///< mean of the overlaps that the first sweep has found, relative to the cap
   double sum = 0;     ///< the same of the last sweep
   double beta = 0;    ///< factor by which the next sweep extrapolates the last change, rounded
-  float deepest = 0;  ///< deepest overlap, as CorrectionPhases has last looked at how fast it falls
+  float deepest = 0;  ///< deepest overlap when judge() last looked at how fast it falls
 };
 
 /// Corrects positions: finds displacements and turns of the bodies that move overlapping bodies apart. They

@@ -6,7 +6,9 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <utility>
+#include <vector>
 
 namespace scree {
 namespace {
@@ -120,6 +122,21 @@ BodyTable near_a_boundary(std::uint64_t seed, Shape boundary, bool tilts) {
   return table;
 }
 
+/// Returns accelerations of the three bodies, or none if the seed is even.
+Array<Vec3, Host> accelerations(std::uint64_t seed) {
+  Array<Vec3, Host> of_bodies;
+  if (seed % 2 == 0) return of_bodies;
+  Random random(seed, 2);
+  std::vector<Vec3> values;
+  for (int k = 0; k < 3; ++k) {
+    const double x = random.uniform(-300, 300);
+    const double y = random.uniform(-300, 300);
+    values.emplace_back(x, y, random.uniform(-300, 300));
+  }
+  copy(of_bodies, values);
+  return of_bodies;
+}
+
 TEST(FlightStage, PairsThatMeetAreNotFar) {
   constexpr double step = 1.0 / 240;
   int met = 0, passed_over = 0;
@@ -136,16 +153,21 @@ TEST(FlightStage, PairsThatMeetAreNotFar) {
         parameters.restitution_threshold = {.any = 0, .lossy = 0};
         FlightLog<Host> log;
         log.resize(bodies.count());
-        const FlightStage stage({.laws = laws, .step = step, .from = 0, .bounces = true}, parameters,
+        // In every other trial the bodies have accelerations of their own.
+        const Array<Vec3, Host> acceleration = accelerations(seed);
+        parameters.acceleration = acceleration.view();
+        const double from = seed / 2 % 2 == 0 ? 0.0 : 0.5 * step;
+        const FlightStage stage({.laws = laws, .step = step, .from = from, .bounces = true}, parameters,
                                 view_of(bodies), log);
         for (std::int32_t k = 0; k < bodies.count(); ++k) {
-          stage.clock[k] = stage.budget_used[k] = 0;
+          stage.clock[k] = from;
+          stage.budget_used[k] = 0;
           stage.bound(k);
         }
         for (const auto& [i, j] : {std::pair(0, 1), std::pair(0, 2), std::pair(1, 2)}) {
           PairFlight pair = stage.pair_of(i, j, step);
           for (double& slowest : pair.slowest) slowest = 0.01;
-          const bool meet = next_meeting(pair, 0).time <= step;
+          const bool meet = next_meeting(pair, from).time <= step;
           ImpactLimits limits;
           const bool may = stage.may_meet(i, j, limits);
           met += meet ? 1 : 0;

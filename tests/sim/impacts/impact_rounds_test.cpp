@@ -80,7 +80,29 @@ TYPED_TEST(Rounds, AStruckBodyWithThousandsOfPairsLooksAtAllOfThem) {
     expect_same(rounds, in_time_order(scene, pairs), 1e-15);
     ASSERT_EQ(rounds.impacts.size(), 2u);
     EXPECT_NEAR(rounds.bodies.velocity[static_cast<std::size_t>(struck)].x(), 2, 1e-14);
+    expect_same(in_rounds<TypeParam>(scene, pairs, true), in_time_order(scene, pairs), 1e-15);
   }
+}
+
+/// The large ball is so heavy that it is struck in an impact group.
+TYPED_TEST(Rounds, AStruckHeavyBodyWithThousandsOfPairsLooksAtAllOfThem) {
+  constexpr std::int32_t others = 5000;
+  constexpr double mass = 1000;
+  FlightScene scene;
+  scene.add_ball(1.0, Vec3(0, 0, 0), Vec3(0, 0, 0));
+  scene.weigh(0, mass);
+  scene.add_ball(0.1, Vec3(-1.101, 0, 0), Vec3(800, 0, 0));
+  std::vector<Pair> pairs{{0, 1}};
+  constexpr std::int32_t struck = 700;
+  for (std::int32_t k = 2; k < others + 2; ++k) {
+    scene.add_ball(0.1, Vec3(k == struck ? 1.1005 : 1.2, 0, k == struck ? 0.0 : k), Vec3(0, 0, 0));
+    pairs.push_back({0, k});
+  }
+  const Outcome rounds = in_rounds<TypeParam>(scene, pairs);
+  ASSERT_EQ(rounds.impacts.size(), 2u);
+  // The speed that the large ball is given, and what an elastic impact of it gives to a ball at rest.
+  const double given = 2 * 800 / (1 + mass);
+  EXPECT_NEAR(rounds.bodies.velocity[struck].x(), 2 * mass / (1 + mass) * given, 1e-12);
 }
 
 TYPED_TEST(Rounds, OfAGasAreTheSame) {
