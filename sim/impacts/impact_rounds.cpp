@@ -20,21 +20,27 @@ using detail::ImpactProgress;
 using detail::Resolved;
 using detail::RoundsState;
 
+/// Returns the bounds of law k and of the size of body k, as far as there are such.
+SCREE_HD FlightBounds bounds_of_law_and_size(const FlightStage& stage, std::int64_t k) {
+  FlightBounds bounds;
+  const ConstView<PairLaw> laws = stage.terms.laws.table;
+  if (k < laws.size()) bounds.restitution = laws[k].restitution;
+  if (k < stage.clock.size()) bounds.smallest = stage.size_of(k);
+  return bounds;
+}
+
 /// Starts the values of a body, and bounds those of bodies and laws. A body that was struck after the start
 /// of the flight starts at that impact: its way until then is over.
 struct StartFlight {
   FlightStage stage;
   SCREE_HD FlightBounds operator()(std::int64_t k) const {
-    FlightBounds bounds;
-    const ConstView<PairLaw> laws = stage.terms.laws.table;
-    if (k < laws.size()) bounds.restitution = laws[k].restitution;
+    FlightBounds bounds = bounds_of_law_and_size(stage, k);
     if (k >= stage.clock.size()) return bounds;
     const double from = stage.terms.from;
     stage.clock[k] = from > 0 ? fmax(stage.clock[k], from) : 0.0;
     stage.budget_used[k] = 0;
     stage.bound(static_cast<std::int32_t>(k));
     bounds.top_speed = stage.top_speed[k];
-    bounds.smallest = stage.size_of(k);
     bounds.needs_search = stage.needs_search(static_cast<std::int32_t>(k));
     return bounds;
   }
@@ -44,13 +50,10 @@ struct StartFlight {
 struct BoundSpeeds {
   FlightStage stage;
   SCREE_HD FlightBounds operator()(std::int64_t k) const {
-    FlightBounds bounds;
-    const ConstView<PairLaw> laws = stage.terms.laws.table;
-    if (k < laws.size()) bounds.restitution = laws[k].restitution;
+    FlightBounds bounds = bounds_of_law_and_size(stage, k);
     if (k >= stage.clock.size()) return bounds;
     const auto body = static_cast<std::int32_t>(k);
     bounds.top_speed = stage.top_speed_of(body, stage.flight(body));
-    bounds.smallest = stage.size_of(k);
     return bounds;
   }
 };

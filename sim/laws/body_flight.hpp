@@ -34,8 +34,7 @@ struct BodyFlight {
   /// Returns the part of a boundary's spin that moves its surfaces (rad/s): all but the spin about its own
   /// axis. Returns exactly 0 if only the rounding of the axis tells the spin from one about it.
   SCREE_HD Vec3 tilting_spin() const {
-    constexpr double rounding = 1e-13;
-    static_assert(rounding > 4 * tolerance::unit_length);
+    constexpr double rounding = 10 * tolerance::unit_length;
     const Vec3 up = axis();
     const Vec3 tilting = spin - up.dot(spin) * up;
     return tilting.norm() > rounding * spin.norm() ? tilting : Vec3(Vec3::Zero());

@@ -346,6 +346,8 @@ struct CorrectionPhases {
 
  private:
   static constexpr int sweeps_a_look = 4;  // sweeps between two looks at how fast the deepest overlap falls
+  // Share by which the deepest overlap has to change between two looks. Larger: fewer sweeps for the sake of
+  // a few contacts, which stay deeper.
   static constexpr float hardly = 0.01f;
 
   SCREE_CALLS_ITS_ARGUMENTS

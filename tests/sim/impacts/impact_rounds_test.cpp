@@ -64,44 +64,47 @@ TYPED_TEST(Rounds, ACradlePassesOnOneBall) {
     EXPECT_NEAR(rounds.bodies.velocity[static_cast<std::size_t>(k)].x(), k == balls - 1 ? 1.0 : 0.0, 1e-14);
 }
 
-TYPED_TEST(Rounds, AStruckBodyWithThousandsOfPairsLooksAtAllOfThem) {
-  constexpr std::int32_t others = 5000;
-  for (const std::int32_t struck : {2, 700, others + 1}) {
-    FlightScene scene;
+/// A large ball at rest, in pairs with ball 1, which strikes it, and with thousands of others. One of these,
+/// `struck`, is in the way that the large ball takes then.
+struct LargeBall {
+  FlightScene scene;
+  std::vector<Pair> pairs;
+
+  static constexpr std::int32_t others = 5000;
+
+  LargeBall(double mass, double speed, std::int32_t struck) {
     scene.add_ball(1.0, Vec3(0, 0, 0), Vec3(0, 0, 0));
-    scene.add_ball(0.1, Vec3(-1.101, 0, 0), Vec3(2, 0, 0));
-    std::vector<Pair> pairs{{0, 1}};
+    scene.weigh(0, mass);
+    scene.add_ball(0.1, Vec3(-1.101, 0, 0), Vec3(speed, 0, 0));
+    pairs.push_back({0, 1});
     for (std::int32_t k = 2; k < others + 2; ++k) {
-      // One of them is in the way that the large ball takes after it has been struck.
       scene.add_ball(0.1, Vec3(k == struck ? 1.1005 : 1.2, 0, k == struck ? 0.0 : k), Vec3(0, 0, 0));
       pairs.push_back({0, k});
     }
-    const Outcome rounds = in_rounds<TypeParam>(scene, pairs);
-    expect_same(rounds, in_time_order(scene, pairs), 1e-15);
+  }
+};
+
+TYPED_TEST(Rounds, AStruckBodyWithThousandsOfPairsLooksAtAllOfThem) {
+  for (const std::int32_t struck : {2, 700, LargeBall::others + 1}) {
+    const LargeBall large(1, 2, struck);
+    const Outcome order = in_time_order(large.scene, large.pairs);
+    const Outcome rounds = in_rounds<TypeParam>(large.scene, large.pairs);
+    expect_same(rounds, order, 1e-15);
     ASSERT_EQ(rounds.impacts.size(), 2u);
     EXPECT_NEAR(rounds.bodies.velocity[static_cast<std::size_t>(struck)].x(), 2, 1e-14);
-    expect_same(in_rounds<TypeParam>(scene, pairs, true), in_time_order(scene, pairs), 1e-15);
+    expect_same(in_rounds<TypeParam>(large.scene, large.pairs, true), order, 1e-15);
   }
 }
 
 /// The large ball is so heavy that it is struck in an impact group.
 TYPED_TEST(Rounds, AStruckHeavyBodyWithThousandsOfPairsLooksAtAllOfThem) {
-  constexpr std::int32_t others = 5000;
-  constexpr double mass = 1000;
-  FlightScene scene;
-  scene.add_ball(1.0, Vec3(0, 0, 0), Vec3(0, 0, 0));
-  scene.weigh(0, mass);
-  scene.add_ball(0.1, Vec3(-1.101, 0, 0), Vec3(800, 0, 0));
-  std::vector<Pair> pairs{{0, 1}};
+  constexpr double mass = 1000, speed = 800;
   constexpr std::int32_t struck = 700;
-  for (std::int32_t k = 2; k < others + 2; ++k) {
-    scene.add_ball(0.1, Vec3(k == struck ? 1.1005 : 1.2, 0, k == struck ? 0.0 : k), Vec3(0, 0, 0));
-    pairs.push_back({0, k});
-  }
-  const Outcome rounds = in_rounds<TypeParam>(scene, pairs);
+  const LargeBall large(mass, speed, struck);
+  const Outcome rounds = in_rounds<TypeParam>(large.scene, large.pairs);
   ASSERT_EQ(rounds.impacts.size(), 2u);
   // The speed that the large ball is given, and what an elastic impact of it gives to a ball at rest.
-  const double given = 2 * 800 / (1 + mass);
+  const double given = 2 * speed / (1 + mass);
   EXPECT_NEAR(rounds.bodies.velocity[struck].x(), 2 * mass / (1 + mass) * given, 1e-12);
 }
 
