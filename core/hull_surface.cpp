@@ -50,30 +50,37 @@ Vec3 farthest(const std::vector<Vec3>& points, Value value) {
                            [&](const Vec3& a, const Vec3& b) { return value(a) < value(b); });
 }
 
-/// Returns the extent at right angles to the plane through two points that are far apart and the point
-/// farthest from their line. It is at least the least extent along any direction, and at most a few times
+/// A box around points that have been scaled: the line through two points that are far apart, the direction
+/// from it to the farthest point, and the direction at right angles to both.
+struct Box {
+  Mat3 axes;     ///< the three directions, as rows
+  Vec3 extents;  ///< along each of them; the last one is the thickness
+};
+
+/// Returns a box whose thickness is at least the least extent along any direction, and at most a few times
 /// that.
-double thickness_of(const std::vector<Vec3>& points) {
+Box box_around(const std::vector<Vec3>& points) {
   const Vec3 a = farthest(points, [](const Vec3& x) { return -x.x(); });
   const Vec3 b = farthest(points, [&](const Vec3& x) { return (x - a).squaredNorm(); });
   const Vec3 along = (b - a).normalized();
   const auto aside = [&](const Vec3& x) -> Vec3 { return x - a - along.dot(x - a) * along; };
   const Vec3 way = aside(farthest(points, [&](const Vec3& x) { return aside(x).squaredNorm(); }));
   if (!(way.norm() > tolerance::thin_hull)) fail_flat();
-  const Vec3 across = along.cross(way).normalized();
-  const auto height = [&](const Vec3& x) { return across.dot(x - a); };
-  return height(farthest(points, height)) -
-         height(farthest(points, [&](const Vec3& x) { return -height(x); }));
+  Box box;
+  box.axes << along.transpose(), way.normalized().transpose(), along.cross(way).normalized().transpose();
+  std::vector<Vec3> turned;
+  for (const Vec3& p : points) turned.push_back(box.axes * (p - a));
+  box.extents = extent_of(turned);
+  if (!(box.extents[2] > tolerance::thin_hull)) fail_flat();
+  return box;
 }
 
 /// Finds the surface of points that have been scaled. Lengths are relative to the longest extent of the
 /// points.
 class Surface {
  public:
-  explicit Surface(std::vector<Vec3> points) : points_(std::move(points)) {
-    const double thickness = thickness_of(points_);
-    if (!(thickness > tolerance::thin_hull)) fail_flat();
-    width_ = tolerance::coplanar * std::min(1.0, tolerance::coplanar_thicknesses * thickness);
+  explicit Surface(std::vector<Vec3> points) : points_(std::move(points)), box_(box_around(points_)) {
+    width_ = tolerance::coplanar * std::min(1.0, tolerance::coplanar_thicknesses * box_.extents[2]);
   }
 
   /// Finds the faces. In rare cases Qhull fails on points that are nearly equal; such points then count as
@@ -92,13 +99,21 @@ class Surface {
   const Vec3& at(int p) const { return points_[static_cast<std::size_t>(p)]; }
 
   /// Finds the faces of points that are farther than `apart` from each other. Returns false if there are none
-  /// that pass the checks.
+  /// that pass the checks. Facets of a thin plate can be so narrow that Qhull's normals are noise. Its points
+  /// are then stretched to a cube, which changes neither the corners of the hull nor the order of those of a
+  /// face.
   bool find_of_points(double apart) {
+    const Mat3 stretch = box_.extents.cwiseInverse().asDiagonal() * box_.axes;
+    return find_in_frame(Mat3::Identity(), apart) || find_in_frame(stretch, apart);
+  }
+
+  /// Finds the faces of points that are multiplied by a matrix before Qhull sees them.
+  bool find_in_frame(const Mat3& frame, double apart) {
     leave_out_nearer(apart);
     for (;;) {
-      find_faces();
+      find_faces(frame);
       const Polygon dents = find_dents();
-      if (dents.empty()) return is_closed() && (has_too_many_faces() || holds_points(apart));
+      if (dents.empty()) return is_closed() && (has_too_many_faces() || holds_points());
       std::erase_if(used_, [&](int p) { return std::binary_search(dents.begin(), dents.end(), p); });
     }
   }
@@ -126,12 +141,12 @@ class Surface {
 
   /// Finds the faces of the hull of the points in use, counterclockwise from outside; none if Qhull finds
   /// none.
-  void find_faces() {
+  void find_faces(const Mat3& frame) {
     std::vector<Vec3> given;
-    for (const int p : used_) given.push_back(at(p));
+    for (const int p : used_) given.push_back(frame * at(p));
     faces_ = faces_by_qhull(given, width_);
-    const Vec3 inside =
-        std::accumulate(given.begin(), given.end(), Vec3(Vec3::Zero())) / double(given.size());
+    Vec3 inside = Vec3::Zero();
+    for (const int p : used_) inside += at(p) / double(used_.size());
     for (Polygon& face : faces_) {
       for (int& corner : face) corner = used_[static_cast<std::size_t>(corner)];
       if (normal_of(face).dot(at(face.front()) - inside) < 0) std::reverse(face.begin(), face.end());
@@ -206,8 +221,8 @@ class Surface {
 
   /// Whether no point is far outside of a face, and no corner far from its face's plane. Qhull can merge
   /// facets whose normals are noise, as the normals of facets between nearly equal points are.
-  bool holds_points(double apart) const {
-    const double most = tolerance::most_off_face * apart;
+  bool holds_points() const {
+    const double most = tolerance::most_off_face * width_;
     return std::all_of(faces_.begin(), faces_.end(), [&](const Polygon& face) {
       const Vec3 normal = normal_of(face);
       double least = HUGE_VAL;
@@ -218,6 +233,7 @@ class Surface {
   }
 
   std::vector<Vec3> points_;
+  Box box_;
   double width_;  ///< the distance that counts as none
   Polygon used_;  ///< the points in use, in ascending order
   std::vector<Polygon> faces_;

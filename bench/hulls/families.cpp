@@ -148,6 +148,18 @@ class Maker {
     turn();
   }
 
+  void bevels() {
+    const double fine = power_of_ten(-7, -2);
+    std::vector<Vec3> corners;
+    for (int k = whole(2, 12); k > 0; --k) corners.emplace_back(whole(-8, 7) / 8.0, whole(-8, 7) / 8.0, 0);
+    for (int k = some(); k > 0; --k) {
+      const int x = whole(-8, 7), y = whole(-8, 7), z = whole(-8, 7);
+      const Vec3& corner = corners[static_cast<std::size_t>(whole(0, static_cast<int>(corners.size()) - 1))];
+      points_.push_back(corner + fine * Vec3(x, y, z) / 8);
+    }
+    if (whole(0, 1) == 0) turn();
+  }
+
   void fill(HullFamily family) {
     switch (family) {
       case HullFamily::ball:
@@ -207,6 +219,9 @@ class Maker {
         turn();
         move_each(power_of_ten(-7, -4));
         break;
+      case HullFamily::bevels:
+        bevels();
+        break;
       case HullFamily::count:
         break;
     }
@@ -220,9 +235,10 @@ class Maker {
 }  // namespace
 
 const char* name_of(HullFamily family) {
-  constexpr const char* names[] = {"ball",       "sphere",    "digits_6",   "digits_8", "single",   "whole",
-                                   "near_equal", "near_flat", "flat_faces", "prism",    "disc",     "aspect",
-                                   "clusters",   "far",       "magnitudes", "planes",   "tolerance"};
+  constexpr const char* names[] = {"ball",   "sphere",     "digits_6",  "digits_8",   "single",
+                                   "whole",  "near_equal", "near_flat", "flat_faces", "prism",
+                                   "disc",   "aspect",     "clusters",  "far",        "magnitudes",
+                                   "planes", "tolerance",  "bevels"};
   static_assert(std::size(names) == static_cast<std::size_t>(HullFamily::count));
   return names[static_cast<std::size_t>(family)];
 }

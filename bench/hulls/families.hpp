@@ -26,6 +26,7 @@ enum class HullFamily {
   magnitudes,  ///< points with coordinates of all magnitudes from 1e-12 on
   planes,      ///< points in three planes and on three lines
   tolerance,   ///< a turned lattice, moved by 1e-7 to 1e-4: about the distance that counts as coplanar
+  bevels,      ///< corners of a thin plate, each of several points of a lattice as fine as the plate is thick
   count
 };
 

@@ -64,6 +64,11 @@ Real longest(const std::vector<Vec>& points) {
   return most;
 }
 
+/// Returns the distance that counts as none for points of such a longest extent and thickness.
+Real width_of(Real longest, Real thickness) {
+  return tolerance::coplanar * std::min<Real>(longest, tolerance::coplanar_thicknesses * thickness);
+}
+
 /// Returns what is wrong between faces, edges and vertices, or an empty string.
 std::string fault_of_surface(const Hull& hull) {
   if (hull.vertices.size() + hull.faces.size() != hull.edges.size() + 2) return "Euler's formula is broken";
@@ -105,10 +110,11 @@ std::string fault_of_numbers(const Hull& hull) {
 /// Compares a found hull with its points, and notes the errors.
 class Judge {
  public:
-  Judge(const std::vector<Vec>& points, const Hull& hull, Real width, HullError& error)
+  Judge(const std::vector<Vec>& points, const Hull& hull, Real thickness, HullError& error)
       : points_(points),
         hull_(hull),
-        width_(width),
+        longest_(longest(points)),
+        width_(width_of(longest_, thickness)),
         error_(error),
         turn_(hull.axes.cast<Real>().normalized().toRotationMatrix()) {
     Real magnitude = 0;
@@ -127,7 +133,7 @@ class Judge {
       Real least = HUGE_VALL;
       for (const int c : corners) least = std::min(least, at(c).dot(n));
       // All corners of a face must be equally far out, and no point farther.
-      note(range.high - least, error_.plane);
+      note(range.high - least, width_, error_.plane);
       hold_polygon(corners, n);
     }
   }
@@ -139,8 +145,8 @@ class Judge {
  private:
   const Vec& at(int corner) const { return vertices_[static_cast<std::size_t>(corner)]; }
 
-  void note(Real found, double& most) const {
-    most = std::max(most, static_cast<double>((found - slack_) / width_));
+  void note(Real found, Real width, double& most) const {
+    most = std::max(most, static_cast<double>((found - slack_) / width));
   }
 
   /// Checks that the corners of a face are on the inner side of each of its edges.
@@ -148,20 +154,23 @@ class Judge {
     for (std::size_t k = 0; k < corners.size(); ++k) {
       const Vec& a = at(corners[k]);
       const Vec outward = (at(corners[(k + 1) % corners.size()]) - a).cross(n).normalized();
-      for (const int c : corners) note((at(c) - a).dot(outward), error_.polygon);
+      for (const int c : corners) note((at(c) - a).dot(outward), width_, error_.polygon);
     }
   }
 
   void hold_support(const Vec& along) {
     const Range exact = range_along(points_, along), found = range_along(vertices_, along);
-    note(std::max(exact.high - found.high, found.low - exact.low), error_.support);
+    // A thin plate may have an edge like a knife's, whose place along the plate matters less than that of its
+    // faces.
+    const Real width = width_of(longest_, exact.high - exact.low);
+    note(std::max(exact.high - found.high, found.low - exact.low), width, error_.support);
     if (found.high > exact.high + slack_ || found.low < exact.low - slack_)
       error_.fault = "a vertex outside of the points";
   }
 
   const std::vector<Vec>& points_;
   const Hull& hull_;
-  Real width_, slack_ = 0;
+  Real longest_, width_, slack_ = 0;
   HullError& error_;
   Eigen::Matrix<Real, 3, 3> turn_;
   std::vector<Vec> vertices_;
@@ -229,12 +238,12 @@ HullError judge_hull(const HullPoints& set) {
   error.fault = fault_of(*hull);
   if (!error.fault.empty()) return error;
   const Real thick = thickness(points, exact);
-  const Real width = tolerance::coplanar * std::min(longest(points), tolerance::coplanar_thicknesses * thick);
-  Judge judge(points, *hull, width, error);
+  Judge judge(points, *hull, thick, error);
   judge.hold_faces();
   Random random(0x5e7, set.points.size());
   judge.hold_supports(random);
-  error.volume = static_cast<double>(std::fabs(hull->volume - exact.volume) / exact.volume * thick / width);
+  error.volume = static_cast<double>(std::fabs(hull->volume - exact.volume) / exact.volume * thick /
+                                     width_of(longest(points), thick));
   note_bounds(error);
   return error;
 }

@@ -9,7 +9,8 @@
 namespace scree::oracle {
 
 /// The errors of a hull relative to its points. Lengths are in units of the distance that counts as zero:
-/// tolerance::coplanar times the longest extent, or times coplanar_thicknesses times the least.
+/// tolerance::coplanar times the longest extent, or times coplanar_thicknesses times the least. For a
+/// support, the extent along its direction is in place of the least.
 struct HullError {
   double support = 0;  ///< most by which the hull falls short of the points, over the directions tried
   double plane = 0;    ///< most by which a point is outside of a face, or a corner of the face inside of it
@@ -20,9 +21,8 @@ struct HullError {
                       ///< the bounds
 };
 
-/// The bound of the errors. Clusters of points that are only just not equal reach half of it, all other
-/// families a fifth.
-inline constexpr double most_error = 100;
+/// The bound of the errors. A million sets reach two fifths of it (decision 0040).
+inline constexpr double most_error = 50;
 
 /// Returns what is wrong with a hull by itself: faces, edges and vertices that do not form a closed surface,
 /// or invalid numbers. The string is empty if nothing is wrong.

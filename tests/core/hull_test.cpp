@@ -46,6 +46,13 @@ TEST(AwkwardHulls, SetsOfEachFamilyAreAsTheirExactHulls) {
   }
 }
 
+TEST(AwkwardHulls, AThinPlateWithBevelsKeepsItsThickness) {
+  // Qhull fails on these sets: their facets are so narrow that it merges what it must not, or that its
+  // normals are noise. Points farther apart than the plate is thick then counted as one.
+  for (const std::uint64_t n : {232, 375, 668, 690, 939, 1925})
+    EXPECT_EQ(oracle::judge_hull(oracle::make_points(HullFamily::bevels, n)).fault, "") << n;
+}
+
 TEST(AwkwardHulls, ATurnedLatticeOfFewDigitsIsACube) {
   Random random(7, 0);
   for (const double digit : {1e-6, 1e-7, 1e-8, 1e-12, 0.0})  // 0 stands for single precision
