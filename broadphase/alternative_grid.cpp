@@ -169,7 +169,7 @@ void require_numbers(std::int64_t entries) {
   if (entries <= most) return;
   throw RunError("the alternative grid has " + std::to_string(entries) +
                  " entries of objects in cells, over " + std::to_string(most) +
-                 ": the hierarchical grid has one for each object");
+                 "; broadphase.method: hierarchical_grid needs one for each object");
 }
 
 template <class Space>

@@ -25,13 +25,16 @@ void Archive::operator()(const char* name, std::string& text) {
 
 const SavedField& Archive::field_of(const char* name, const FieldType& type, std::int64_t rows) const {
   const SavedField* field = from_->find(prefix_ + name);
-  if (field == nullptr) throw InputError("the saved state has no " + prefix_ + name);
+  if (field == nullptr)
+    throw InputError("the saved state has no '" + prefix_ + name + "': it is of another version or scene");
   expect(field->type == type && (rows < 0 || field->rows() == rows), name);
   return *field;
 }
 
 void Archive::expect(bool holds, const char* name) const {
-  if (!holds) throw InputError("the saved state has another " + prefix_ + name);
+  if (!holds)
+    throw InputError("the saved state has '" + prefix_ + name +
+                     "' of another kind or length: it is of another version or scene");
 }
 
 }  // namespace scree

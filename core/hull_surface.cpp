@@ -32,11 +32,12 @@ Vec3 extent_of(std::span<const Vec3> points) {
 /// Returns the points relative to the first one, and scaled to a longest extent of 1, so that neither their
 /// place nor their size matters.
 std::vector<Vec3> scaled(std::span<const Vec3> points) {
-  if (points.size() < 4) throw InputError("needs four points at least");
+  if (points.size() < 4) throw InputError("needs at least four points");
   if (!std::all_of(points.begin(), points.end(), [](const Vec3& p) { return p.allFinite(); }))
     throw InputError("a coordinate is no finite number");
   const double longest = extent_of(points).maxCoeff();
-  if (!std::isfinite(longest)) throw InputError("the points are too far apart");
+  if (!std::isfinite(longest))
+    throw InputError("the points are too far apart: their distance is no finite number");
   if (!(longest > 0)) fail_flat();
   std::vector<Vec3> at;
   at.reserve(points.size());

@@ -20,7 +20,8 @@ namespace {
 class Stream {
  public:
   Stream() : descriptor_(memfd_create("scree", MFD_CLOEXEC)) {
-    if (descriptor_ < 0) throw RunError(std::string("cannot make a stream: ") + std::strerror(errno));
+    if (descriptor_ < 0)
+      throw RunError(std::string("cannot make a file in memory for a program: ") + std::strerror(errno));
   }
   ~Stream() { close(descriptor_); }
   Stream(const Stream&) = delete;
@@ -33,7 +34,8 @@ class Stream {
       const ssize_t got =
           pwrite(descriptor_, text.data() + done, text.size() - done, static_cast<off_t>(done));
       if (got < 0 && errno == EINTR) continue;
-      if (got < 0) throw RunError(std::string("cannot write a stream: ") + std::strerror(errno));
+      if (got < 0)
+        throw RunError(std::string("cannot write a file in memory for a program: ") + std::strerror(errno));
       done += static_cast<std::size_t>(got);
     }
   }
@@ -47,7 +49,8 @@ class Stream {
       const ssize_t got =
           pread(descriptor_, text.data() + done, text.size() - done, from + static_cast<off_t>(done));
       if (got < 0 && errno == EINTR) continue;
-      if (got <= 0) throw RunError(std::string("cannot read a stream: ") + std::strerror(errno));
+      if (got <= 0)
+        throw RunError(std::string("cannot read what a program has written: ") + std::strerror(errno));
       done += static_cast<std::size_t>(got);
     }
     return text;
@@ -88,7 +91,8 @@ std::string run_program(const std::vector<std::string>& command, std::string_vie
   const std::string& name = command.front();
   int status = 0;
   const int error = spawn(command, in, out, words, status);
-  if (error == ENOENT) throw RunError("the program " + name + " is not installed");
+  if (error == ENOENT)
+    throw RunError("the program " + name + " is not installed: install it and call scree again");
   if (error != 0) throw RunError(name + " does not start: " + std::strerror(error));
   if (WIFSIGNALED(status)) throw RunError(name + " was ended by signal " + std::to_string(WTERMSIG(status)));
   if (WEXITSTATUS(status) != 0) throw RunError(name + " failed: " + words.text(last_words));

@@ -75,7 +75,7 @@ class Response : public Solver {
     if (!contacts_.solve_islands(plan.tolerance, accurate_ ? thorough_limits : quick_limits, solved,
                                  failed) &&
         !contacts_.sweep(rest) && !accurate_)
-      contacts_.solve_islands(plan.tolerance, patient_limits, solved, failed);
+      contacts_.solve_islands(plan.tolerance, long_limits, solved, failed);
     return contacts_.impulses();
   }
 

@@ -38,7 +38,7 @@ bool Checkpoints::find(std::vector<std::string>& warnings) {
   found_ = folder_.newest(warnings);
   if (!found_ && !warnings.empty())
     refuse(fmt::format("no checkpoint can be read: {}", fmt::join(warnings, "; ")));
-  for (std::string& damaged : warnings) damaged += "; the one before it is taken";
+  for (std::string& damaged : warnings) damaged += "; the run goes on from the one before it";
   if (!found_) return false;
   RunIdentity saved;
   bool saved_draws = false;
@@ -48,9 +48,10 @@ bool Checkpoints::find(std::vector<std::string>& warnings) {
   if (const std::string difference = difference_of(saved, identity_); !difference.empty()) refuse(difference);
   if (saved_draws != draws_) refuse_pictures(saved_draws);
   if (saved.commit != identity_.commit)
-    warnings.push_back(
-        fmt::format("the checkpoint is of commit {}, and this is {}: bits may differ from here on",
-                    saved.commit, identity_.commit));
+    warnings.push_back(fmt::format(
+        "the checkpoint is of commit {}, and this program of {}: from here on the results may differ by "
+        "rounding from those of the other",
+        saved.commit, identity_.commit));
   return true;
 }
 

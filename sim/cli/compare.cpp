@@ -17,7 +17,7 @@ namespace {
 const char* verdict_on(const Comparison& found, const CompareArguments& arguments) {
   if (!found.differences_are_within(arguments.tolerance, arguments.absolute))
     return ", more than --tolerance and --absolute allow";
-  if (!found.unlike.empty()) return "; something is in one run alone";
+  if (!found.unlike.empty()) return "; some columns or rows are in one of the runs only";
   return found.differences.empty() ? "" : ", all within what was allowed";
 }
 

@@ -35,7 +35,9 @@ Console::Console(const std::filesystem::path& log, AtomicFile::Opening opening)
 void Console::print(std::string_view text) {
   if (!is_heard_) return;
   is_heard_ = std::fwrite(text.data(), 1, text.size(), stdout) == text.size() && std::fflush(stdout) == 0;
-  if (!is_heard_) warn(fmt::format("standard output is lost ({}); the run goes on", std::strerror(errno)));
+  if (!is_heard_)
+    warn(fmt::format("nothing more can be written to standard output ({}); the run goes on",
+                     std::strerror(errno)));
 }
 
 void Console::clear_progress() {
@@ -49,7 +51,7 @@ void Console::log(const std::function<void()>& act) {
     act();
   } catch (const RunError& error) {
     is_logged_ = false;
-    warn(fmt::format("the log is not complete: {}", error.what()));
+    warn(fmt::format("the log is not complete: {}; the results are not affected", error.what()));
   }
 }
 

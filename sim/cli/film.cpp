@@ -82,7 +82,8 @@ void Film::draw(std::shared_ptr<Studio>& studio, const Shot& shot) {
     image = studio->draw(shot.frame);
   } catch (const RunError& error) {
     const std::lock_guard lock(trouble_mutex_);
-    trouble_ = fmt::format("no pictures from t = {} s on: {}", shot.frame.snapshot.time, error.what());
+    trouble_ = fmt::format("no pictures from t = {} s on: {}; the results are not affected",
+                           shot.frame.snapshot.time, error.what());
     return;
   }
   writer_.push({std::move(image), shot.copies});

@@ -54,7 +54,9 @@ void write_all(int descriptor, std::string_view text) {
 Child start(int k, const std::function<std::string(int)>& work) {
   int ends[2];
   std::fflush(nullptr);  // otherwise the child would print it again
-  if (::pipe(ends) != 0) throw RunError(fmt::format("cannot make a pipe: {}", std::strerror(errno)));
+  if (::pipe(ends) != 0)
+    throw RunError(
+        fmt::format("cannot start a process: no pipe to it can be made: {}", std::strerror(errno)));
   const pid_t parent = getpid();
   const pid_t pid = ::fork();
   if (pid < 0) throw RunError(fmt::format("cannot start a process: {}", std::strerror(errno)));

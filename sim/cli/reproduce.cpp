@@ -14,10 +14,14 @@ int reproduce(const RunArguments& arguments) {
   const RecordedRun recorded = read_manifest(arguments.reproduce);
   const Scene scene = read_scene(arguments.reproduce.parent_path() / "scene.yaml", arguments.overrides);
   if (scene_hash_of(scene) != recorded.scene_hash)
-    throw InputError(fmt::format("{}: scene.yaml beside it is not the scene of that run (hash {}, then {})",
-                                 arguments.reproduce.string(), scene_hash_of(scene), recorded.scene_hash));
+    throw InputError(
+        fmt::format("{}: scene.yaml beside it is not the scene of that run (its hash is {}, that of the run "
+                    "{}); restore the file, or run the scene again",
+                    arguments.reproduce.string(), scene_hash_of(scene), recorded.scene_hash));
   if (const std::string commit = build_info().commit; commit != recorded.commit)
-    print_error(fmt::format("warning: that was commit {}, and this is {}", recorded.commit, commit));
+    print_error(fmt::format(
+        "warning: the run was made by commit {}, and this is {}: its states may differ for that reason alone",
+        recorded.commit, commit));
   SimulationOptions options = arguments.simulation;
   if (options.space == SpaceChoice::automatic)
     options.space = recorded.space == "cuda" ? SpaceChoice::cuda : SpaceChoice::host;

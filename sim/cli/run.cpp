@@ -117,8 +117,9 @@ BodyTable state_of(const Simulation& simulation) {
 }
 
 constexpr const char* out_of_memory =
-    "out of memory; --resume goes on from the last checkpoint where there is more, `scree plan` says how "
-    "much";
+    "out of memory; `scree plan` says how much the scene needs, and on a machine with as much --resume goes "
+    "on from "
+    "the last checkpoint";
 
 /// Adds the bodies of the step that failed to the summary, and draws them.
 void say_failure(const StepFailure& failure, const Scene& scene, Simulation& simulation,
@@ -134,7 +135,8 @@ void say_failure(const StepFailure& failure, const Scene& scene, Simulation& sim
     draw_failure(scene, simulation, failure.bodies(), context, file);
     console.say(fmt::format("picture:  the bodies named, before the step that failed: {}", file.string()));
   } catch (const RunError& error) {
-    console.warn(fmt::format("there is no picture of the failure: {}", error.what()));
+    console.warn(fmt::format("there is no picture of the bodies that failed: {}; manifest.json names them",
+                             error.what()));
   }
 }
 
@@ -350,7 +352,8 @@ int run(const RunArguments& arguments) {
     folder.remove_results();
     console.say(fmt::format("resumed at t = {:.6g} s, step {}", simulation.time(), simulation.steps()));
   } else if (arguments.resume) {
-    console.say("no checkpoint: from the beginning, which replaces what was in the folder");
+    console.say(
+        "there is no checkpoint: the run starts from the beginning and replaces the files in the folder");
   }
 
   return Run(arguments, scene, folder, simulation, checkpoints, console, recorder).to_end(last_step, end);

@@ -67,8 +67,8 @@ struct Counters {
   std::int64_t sweeps = 0;         ///< sweeps over the contacts
   std::int64_t direct = 0;         ///< islands solved by Newton's method
   std::int64_t direct_failed = 0;  ///< islands not solved by Newton's method, left to the sweeps
-  std::int64_t patient = 0;        ///< islands solved by a second direct solution, with higher limits
-  std::int64_t patient_failed = 0;
+  std::int64_t long_direct = 0;    ///< islands solved by a second direct solution, with higher limits
+  std::int64_t long_direct_failed = 0;
   double residual = 0;       ///< largest natural residual left by the response, in the accurate mode
   std::int64_t scaled = 0;   ///< islands whose impulses were scaled down, since they would have gained energy
   std::int64_t impacts = 0;  ///< impacts found in free flight, with and without a bounce

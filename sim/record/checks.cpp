@@ -162,7 +162,8 @@ void Checks::archive(Archive& archive) {
   std::vector<Series> series;
   for (const Watch& watch : watches_) series.push_back(watch.series);
   archive("series", series);
-  if (series.size() != watches_.size()) throw InputError("the saved state has other checks");
+  if (series.size() != watches_.size())
+    throw InputError("the saved state has another number of checks than the scene");
   for (std::size_t k = 0; k < series.size(); ++k) watches_[k].series = series[k];
 }
 

@@ -52,7 +52,7 @@ std::vector<GuardCount> guards_of(const Observation& last, const GuardedRun& run
        fmt::format("that is {} of {} substeps; their remaining impacts did not bounce; {}",
                    c.unfinished_impacts, c.substeps, overlap),
        is_deep(run) || loses_bounces},
-      {"newton", c.patient_failed,
+      {"newton", c.long_direct_failed,
        "groups of contacts that neither the direct solver nor all sweeps have solved",
        "a smaller time.step or more response.iterations", rest, unsolved_matters},
       {"gjk", c.narrowphase.ccd_stopped, "calls of libccd that reached their limit",
@@ -76,8 +76,9 @@ std::string overlap_warning(const std::vector<GuardCount>& guards, const Guarded
     return guard.count > 0 && guard.matters && guard.effect.ends_with(overlap);
   });
   if (is_told) return {};
-  return overlap + (run.worst.time == 0 ? ": the scene places these bodies into each other"
-                                        : "; try a smaller time.step");
+  return overlap + (run.worst.time == 0
+                        ? ": the scene places these bodies into each other; move them apart in the scene"
+                        : "; try a smaller time.step");
 }
 
 }  // namespace scree

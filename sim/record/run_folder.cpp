@@ -157,7 +157,8 @@ void RunFolder::lock() {
   const int reason = errno;
   ::close(lock_);
   if (reason == EWOULDBLOCK)
-    throw InputError(fmt::format("{}: another run is writing here", folder_.string()));
+    throw InputError(fmt::format(
+        "{}: another run is writing here; wait for it, or give another folder with -o", folder_.string()));
   throw InputError(fmt::format("cannot lock {}: {}", file.string(), std::strerror(reason)));
 }
 

@@ -109,7 +109,8 @@ template <class Space, class Real>
 bool ContactSolver<Space, Real>::solve_islands(const ConstBodyView& bodies, const SweepPlan& plan,
                                                bool accurate, Counters& counters) {
   SweepPlan first = plan, rest = plan;
-  if (plan.direct) first.most = sweeps_before_direct(plan.most, counters);
+  const bool moves = sweep_count_.moves();
+  if (plan.direct) first.most = sweeps_before_direct(plan.most, moves, counters);
   rest.most = std::max(plan.most - first.most, few_sweeps);
   const auto solve_directly = [&](const DirectLimits& limits, std::int64_t& solved, std::int64_t& failed) {
     Inspection<Real> seen = inspect(bodies);
@@ -126,14 +127,14 @@ bool ContactSolver<Space, Real>::solve_islands(const ConstBodyView& bodies, cons
     return converged;
   };
   const bool converged = sweep_many(first);
-  if (!converged && !accurate && first.most == plan.most) return false;
+  if (!converged && !accurate && plan.most <= few_sweeps) return false;
   if (converged && (accurate ? are_solved(plan.tolerance) : !spread_of_loads().is_wide(plan.tolerance)))
     return true;
   if (solve_directly(accurate ? thorough_limits : quick_limits, counters.direct, counters.direct_failed))
     return true;
   if (sweep_many(rest)) return true;
-  return !accurate && pays_long_solution(counters) &&
-         solve_directly(patient_limits, counters.patient, counters.patient_failed);
+  return !accurate && pays_long_solution(moves, counters) &&
+         solve_directly(long_limits, counters.long_direct, counters.long_direct_failed);
 }
 
 template <class Space, class Real>

@@ -14,19 +14,20 @@ namespace scree {
 
 namespace {
 
-/// Bounds of r, in units of the normal mass of the row. A larger r needs fewer passes, but more points change
-/// their state within a pass, and the rounding errors of the impulses are larger (r times those of the
-/// velocities).
-constexpr double softest = 1e2;
-constexpr double stiffest = 1e8;
-constexpr double stiffening = 10;  // greatest factor of r from one pass to the next
-/// The same once the slips are damped; where a pass leads away, r goes down by it.
-constexpr double stiffening_if_damped = 2;
-/// Passes that do not halve the residual; after as many the slips are damped.
-constexpr int most_in_vain = 10;
-/// The same; after as many the solution ends, since five of six that need more fail in the end.
-/// patient_limits has fewer passes, so that it ends the solutions of the accurate mode alone.
-constexpr int most_in_vain_if_damped = 60;
+/// Bounds of the penalty r, in units of the normal mass of the row. A larger r needs fewer passes, but more
+/// points change their state within a pass, and the rounding errors of the impulses are larger (r times those
+/// of the velocities).
+constexpr double least_penalty = 1e2;
+constexpr double most_penalty = 1e8;
+constexpr double penalty_growth = 10;  // greatest factor of r from one pass to the next
+/// Once the slips are damped, r grows by at most this factor. After a pass that leads away from the solution
+/// it falls by this factor.
+constexpr double damped_penalty_growth = 2;
+/// After so many passes in a row that do not halve the residual, the slips are damped.
+constexpr int most_stalled_passes = 10;
+/// After so many such passes a solution with damped slips ends, since five of six that need more fail in the
+/// end. long_limits has fewer passes, so that this bound ends the solutions of the accurate mode alone.
+constexpr int most_stalled_damped_passes = 60;
 /// Slips that change from one pass to the next move the impulses by r times that change. This bounds r: it is
 /// the largest such move, relative to the impulses. Larger: so many points change their state that Newton's
 /// method takes many more steps. Smaller: islands of boxes need more passes than there are.
@@ -43,18 +44,18 @@ using Vector = Eigen::VectorXd;
 struct PassRow {
   ContactRow* row;
   const Contact* contact;
-  Eigen::Index i, j;  // first unknown of each body; negative if it is not free
-  double closing;     // normal velocity at the start of the pass, less the target (m/s)
-  Vec3 slide;         // tangential velocity at the start of the pass (m/s)
-  double slip;        // length of `slide` (m/s)
-  double lag;         // constant slip of the pass, less `slip` (m/s)
-  Vec3 impulse;       // multiplier of the row (N s)
-  Vec3 projected;     // next multiplier: the point of the cone nearest to y (see project())
-  Mat3 derivative;    // derivative of `projected` by y
+  Eigen::Index i, j;   // first unknown of each body; negative if it is not free
+  double closing;      // normal velocity at the start of the pass, less the target (m/s)
+  Vec3 slide;          // tangential velocity at the start of the pass (m/s)
+  double slip;         // length of `slide` (m/s)
+  double slip_offset;  // constant slip of the pass, less `slip` (m/s)
+  Vec3 impulse;        // multiplier of the row (N s)
+  Vec3 projected;      // next multiplier: the point of the cone nearest to y (see project())
+  Mat3 derivative;     // derivative of `projected` by y
 
-  /// Sets `projected` and `derivative` for y = impulse - r (u - (target - mu (slip + lag)) n), where u has
-  /// changed by `change` since the start of the pass. The terms are ordered so that the large r multiplies no
-  /// difference of large numbers.
+  /// Sets `projected` and `derivative` for y = impulse - r (u - (target - mu (slip + slip_offset)) n), where
+  /// u has changed by `change` since the start of the pass. The terms are ordered so that the large r
+  /// multiplies no difference of large numbers.
   void project(const Vec3& change, double r) {
     const Vec3& n = contact->normal;
     const double mu = contact->friction;
@@ -63,7 +64,7 @@ struct PassRow {
     const Vec3 left = impulse - pn * n - r * (change - cn * n);
     const Vec3 yt = left - r * slide;
     const double length = yt.norm();
-    const double without_slip = pn - r * (closing + cn + mu * lag);
+    const double without_slip = pn - r * (closing + cn + mu * slip_offset);
     const double yn = without_slip - r * mu * slip;
     projected.setZero();
     derivative.setZero();
@@ -160,7 +161,7 @@ class IslandSolver {
                          .closing = 0,
                          .slide = Vec3::Zero(),
                          .slip = 0,
-                         .lag = 0,
+                         .slip_offset = 0,
                          .impulse = row.impulse,
                          .projected = Vec3::Zero(),
                          .derivative = Mat3::Zero()});
@@ -188,7 +189,7 @@ class IslandSolver {
   void set_slips(const Vector& slips) {
     slips_ = slips;
     Eigen::Index k = 0;
-    for (PassRow& row : rows_) row.lag = slips_[k++] - row.slip;
+    for (PassRow& row : rows_) row.slip_offset = slips_[k++] - row.slip;
   }
 
   Vector present_slips() const {
@@ -244,7 +245,7 @@ class IslandSolver {
       g.segment<3>(6 * k + 3) = inertia_[static_cast<std::size_t>(k)] * change.segment<3>(6 * k + 3);
     }
     for (PassRow& row : rows_) {
-      row.project(change_at(row, change), stiffness_ * row.row->normal_mass);
+      row.project(change_at(row, change), penalty_ * row.row->normal_mass);
       const Vec3 p = row.projected - row.impulse;
       if (row.i >= 0) {
         g.segment<3>(row.i) += p;
@@ -285,7 +286,7 @@ class IslandSolver {
       matrix_.add(static_cast<std::int32_t>(k), static_cast<std::int32_t>(k), mass);
     }
     for (const PassRow& row : rows_) {
-      const Mat3 a = stiffness_ * row.row->normal_mass * row.derivative;
+      const Mat3 a = penalty_ * row.row->normal_mass * row.derivative;
       if (a.isZero(0)) continue;
       const Jacobian ji = jacobian(row.row->arm_i, row.i);
       const Jacobian jj = jacobian(row.row->arm_j, row.j);
@@ -298,14 +299,14 @@ class IslandSolver {
     return matrix_.factorize();
   }
 
-  /// Makes passes of the multipliers, each with the stiffness that the one before it allows. Leaves the
+  /// Makes passes of the multipliers, each with the penalty that the one before it allows. Leaves the
   /// impulses of the last pass in the problem, and returns the residual that is left.
   ImpulseChange approach(ImpulseChange residual, double tolerance) {
-    const double accuracy = residual.step > 0 ? std::sqrt(residual.size / residual.step) : stiffest;
-    stiffness_ = std::clamp(accuracy, softest, stiffest);
+    const double accuracy = residual.step > 0 ? std::sqrt(residual.size / residual.step) : most_penalty;
+    penalty_ = std::clamp(accuracy, least_penalty, most_penalty);
     for (int pass = 0; pass < limits_.passes && can_go_on(); ++pass) {
       if (!minimise()) {
-        stiffness_ /= stiffening;
+        penalty_ /= penalty_growth;
         change_.setZero();
         continue;
       }
@@ -315,8 +316,8 @@ class IslandSolver {
       residual = natural_residual(problem_);
       if (residual.within(tolerance::direct_share * tolerance)) break;
       const bool is_nearer = residual.step * last.size <= last.step * residual.size;
-      damp_if_in_vain(residual);
-      if (in_vain_ > most_in_vain_if_damped) break;
+      damp_if_stalled(residual);
+      if (stalled_passes_ > most_stalled_damped_passes) break;
       start_pass();
       prepare_pass(is_nearer);
     }
@@ -326,18 +327,18 @@ class IslandSolver {
   /// Judges whether the iteration of the slips still converges. In packings that hold each other by friction
   /// it may amplify some change of the slips and turn it round; each slip then moves half the way, by which
   /// such changes decay.
-  void damp_if_in_vain(const ImpulseChange& residual) {
+  void damp_if_stalled(const ImpulseChange& residual) {
     constexpr double quarter = 0.25;  // of the squares
     if (residual.step < quarter * least_residual_ * residual.size) {
       least_residual_ = residual.step / residual.size;
-      in_vain_ = 0;
-    } else if (++in_vain_ > most_in_vain && !damped_) {
+      stalled_passes_ = 0;
+    } else if (++stalled_passes_ > most_stalled_passes && !damped_) {
       damped_ = true;
       acceleration_.forget();
     }
   }
 
-  /// Sets the slips and the stiffness of the pass that start_pass() has started. `is_nearer`: the pass before
+  /// Sets the slips and the penalty of the pass that start_pass() has started. `is_nearer`: the pass before
   /// it has led nearer to the solution.
   void prepare_pass(bool is_nearer) {
     const Vector old_slips = slips_;
@@ -345,17 +346,17 @@ class IslandSolver {
     if (!is_nearer) acceleration_.forget();
     if (damped_) {
       set_slips(extrapolated_slips(half_way));
-      stiffness_ *= is_nearer ? stiffening_if_damped : 1 / stiffening_if_damped;
+      penalty_ *= is_nearer ? damped_penalty_growth : 1 / damped_penalty_growth;
     } else if (is_nearer) {
       set_slips(extrapolated_slips(present_slips()));
-      stiffness_ *= stiffening;
+      penalty_ *= penalty_growth;
     } else {
       // The slips may oscillate about their solution.
       set_slips(half_way);
     }
     const double moved = (slips_ - old_slips).cwiseAbs2().dot(slip_weights());
-    const double bound = moved > 0 ? most_moved * std::sqrt(size() / moved) : stiffest;
-    stiffness_ = std::min(stiffness_, std::clamp(bound, softest, stiffest));
+    const double bound = moved > 0 ? most_moved * std::sqrt(size() / moved) : most_penalty;
+    penalty_ = std::min(penalty_, std::clamp(bound, least_penalty, most_penalty));
   }
 
   bool can_go_on() const { return factorizations_ * matrix_.cost() <= limits_.products_in_all; }
@@ -419,10 +420,10 @@ class IslandSolver {
   AndersonAcceleration acceleration_;   // of the slips, from pass to pass
   Vector change_;                       // change of the velocities in a pass
   BlockFactorization matrix_;           // Hessian; a block of unknowns for each body
-  double stiffness_ = 0;                // r divided by the normal mass
+  double penalty_ = 0;                  // r divided by the normal mass
   int factorizations_ = 0;
   double least_residual_ = HUGE_VAL;  // least relative residual so far, squared, as it was last halved
-  int in_vain_ = 0;                   // passes since then
+  int stalled_passes_ = 0;            // passes since then
   bool damped_ = false;               // whether slips move half the way
 };
 
@@ -454,15 +455,16 @@ bool mostly_succeed(std::int64_t solved, std::int64_t failed, std::int64_t solve
 
 }  // namespace
 
-bool pays_long_solution(const Counters& counters) {
+bool pays_long_solution(bool moves, const Counters& counters) {
   constexpr std::int64_t solved_per_failure = 20;
-  return mostly_succeed(counters.patient, counters.patient_failed, solved_per_failure);
+  return !moves && mostly_succeed(counters.long_direct, counters.long_direct_failed, solved_per_failure);
 }
 
-int sweeps_before_direct(int most, const Counters& counters) {
+int sweeps_before_direct(int most, bool moves, const Counters& counters) {
   constexpr int many_sweeps = 200;
   constexpr std::int64_t solved_per_failure = 4;
-  const int sweeps = mostly_succeed(counters.direct, counters.direct_failed, solved_per_failure)
+  const int sweeps = moves ? many_sweeps
+                     : mostly_succeed(counters.direct, counters.direct_failed, solved_per_failure)
                          ? few_sweeps
                          : std::clamp(most / 2, few_sweeps, many_sweeps);
   return std::min(most, sweeps);

@@ -27,6 +27,9 @@ class SweepCount {
   /// correction leaves shows less of the error of the impulses, the better the correction is.
   void judge_overlap(double mean) { overlap_ = std::max(overlap_, mean); }
 
+  /// Whether bodies slide on one another in places: they dissipate more than tolerance::moving_power of the
+  /// power of their impulses.
+  bool moves() const { return moves_; }
   /// Whether the heap flows: it dissipates more than tolerance::flowing_power of the power of its impulses.
   bool flows() const { return flows_; }
   /// The tolerance of the sweeps: they end when one changes the impulses by no more than this share of their
@@ -50,9 +53,8 @@ class SweepCount {
  private:
   int next_tolerance_exponent() const;
 
-  int degree_ = 2;      // degrees 0, 1, 2, 3... are 2, 3, 6, 12... sweeps for balls
-  bool moves_ = false;  // whether bodies slide on one another in places (tolerance::moving_power)
-  bool flows_ = false;  // whether they slide nearly everywhere (tolerance::flowing_power)
+  int degree_ = 2;  // degrees 0, 1, 2, 3... are 2, 3, 6, 12... sweeps for balls
+  bool moves_ = false, flows_ = false;
   double residual_ = 0, kicked_ = 0, dissipated_ = 0;
   int judged_ = 0;              // substeps since the sums were last reset
   double overlap_ = 0;          // largest mean overlap in these substeps

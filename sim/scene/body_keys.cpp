@@ -16,19 +16,18 @@ Codec<Distribution<T>> distribution(std::string name, const Codec<T>& value) {
       },
       [value](const D& sizes) { return sizes.value ? value.write(*sizes.value) : std::nullopt; }};
   return any_of<D>(
-      {fixed,
-       section<D>(
-           std::move(name), "A size to be drawn for each body. Exactly one key.",
-           {
-               key<D>("uniform", &D::uniform, optional(array_of<2>(value)), optionally,
-                      "[low, high]: any size between the two is as likely; each edge of a box by itself"),
-               key<D>("powerlaw", &D::powerlaw, optional(array_of<3>(number())), optionally,
-                      "[min, max, exponent]: sizes x from min to max, their number falling as "
-                      "x^-exponent; boxes are cubes"),
-               key<D>("choose", &D::choose, list_of(value, 1), optionally,
-                      "[size, ...]: each as likely as the others"),
-           },
-           check_distribution<T>)});
+      {fixed, section<D>(std::move(name), "A size to be drawn for each body. Exactly one key.",
+                         {
+                             key<D>("uniform", &D::uniform, optional(array_of<2>(value)), optionally,
+                                    "[low, high]: all sizes between the two are equally likely; each edge of "
+                                    "a box is drawn by itself"),
+                             key<D>("powerlaw", &D::powerlaw, optional(array_of<3>(number())), optionally,
+                                    "[min, max, exponent]: sizes x from min to max, whose number falls as "
+                                    "x^-exponent; boxes are cubes"),
+                             key<D>("choose", &D::choose, list_of(value, 1), optionally,
+                                    "[size, ...]: one of these sizes, all equally likely"),
+                         },
+                         check_distribution<T>)});
 }
 
 /// Makes the codec of three numbers, given as one number for all axes or as one for each. `is_short`: three
@@ -82,20 +81,20 @@ Codec<BoxEntry> box_section() {
 
 Codec<TubeEntry> tube_section() {
   using T = TubeEntry;
-  return section<T>(
-      "bodies[].tube",
-      "The inside of a cylinder along the body's z axis, closed by a cap at each end. It has one side: it "
-      "holds what is in it, and bodies whose centre is outside pass it by. It never moves freely.",
-      {
-          key<T>("radius", &T::radius, number(above_zero, "m"), required, "of the inside"),
-          key<T>("length", &T::length, number(above_zero, "m"), required, "from cap to cap"),
-      });
+  return section<T>("bodies[].tube",
+                    "The inside of a cylinder along the body's z axis, closed by a cap at each end. It acts "
+                    "on one side only: it holds what is in it, and does not touch bodies whose centre is "
+                    "outside. It never moves freely.",
+                    {
+                        key<T>("radius", &T::radius, number(above_zero, "m"), required, "of the inside"),
+                        key<T>("length", &T::length, number(above_zero, "m"), required, "from cap to cap"),
+                    });
 }
 
 Codec<CapsuleEntry> capsule_section() {
   using T = CapsuleEntry;
   return section<T>("bodies[].capsule",
-                    "All that is within a radius of a segment along the z axis of the body.",
+                    "All points within a radius of a segment along the z axis of the body.",
                     {
                         key<T>("radius", &T::radius, number(above_zero, "m"), required, "about the axis"),
                         key<T>("length", &T::length, number(above_zero, "m"), required,
@@ -117,13 +116,11 @@ Codec<PolyhedronEntry> polyhedron_section() {
   return section<T>(
       "bodies[].polyhedron",
       "The convex hull of points. `at`, `orientation` and `rotate` place the frame in which the points are "
-      "given; the body's own place is its centre of mass, and its axes are the principal ones. Of `scatter` "
-      "and `emit` the centre of mass is at the random place. A face may be bent, and points apart, by a "
-      "millionth of the longest extent (at most of five times the thickness): more points than the 128 "
-      "vertices "
-      "that a hull may have can lie within its faces and edges. Points thinner than 2e-7 of their longest "
-      "extent "
-      "lie in a plane.",
+      "given; the body's own place is its centre of mass, and its axes are the principal ones. With "
+      "`scatter` and `emit` the centre of mass is at the random place. Faces are flat, and points are one, "
+      "to a millionth of the longest extent (at most of five times the thickness). A hull may have 128 "
+      "vertices; more points may be given if the others lie within its faces and edges. Points thinner than "
+      "2e-7 of their longest extent count as points of a plane.",
       {
           key<T>("points", &T::points, optional(list_of(vector("m"), 4)), optionally,
                  "[[x, y, z], ...], not all in a plane"),
@@ -160,11 +157,10 @@ Codec<MeshEntry> mesh_section() {
   return section<T>(
       "bodies[].mesh",
       "A surface of triangles from a file. Each triangle is a body, called `name[k]`; `name` is all of them. "
-      "Bodies may touch both sides: a body is on the side of a triangle on which its centre is. Edges "
-      "between "
-      "triangles in one plane, and hollow ones, are not felt, nor are cracks that are welded. It never moves "
-      "freely. `scree plan` says how many corners were welded, how far they moved, how many triangles were "
-      "split, and how many edges are open. What of the file is not read is said as a warning.",
+      "Bodies may touch both sides: a body is on the side of a triangle on which its centre is. Bodies do "
+      "not feel edges between triangles in one plane, concave edges, or cracks that are welded. A mesh never "
+      "moves freely. `scree plan` says how many corners were welded, how far they moved, how many triangles "
+      "were split, and how many edges are open. A warning says what of the file is not read.",
       {
           key<T>("file", &T::file, text(), required,
                  "Wavefront OBJ, STL (text or binary) or PLY (likewise); polygons are cut into triangles"),
@@ -198,13 +194,13 @@ Codec<Oscillation> oscillate_section() {
   using T = Oscillation;
   return section<T>(
       "bodies[].motion.oscillate",
-      "To and fro: at the time t since the body has appeared it is moved and turned by the share sin(2 pi "
-      "frequency t + phase) - sin(phase) of these, on top of `velocity` and `spin`.",
+      "An oscillation. At the time t since the body has appeared, it is moved and turned by sin(2 pi "
+      "frequency t + phase) - sin(phase) times these amplitudes, on top of `velocity` and `spin`.",
       {
           key<T>("displacement", &T::displacement, vector("m"), optionally, "amplitude"),
           key<T>("angle", &T::angle, vector("rad"), optionally,
                  "amplitude of the turn, as a vector along its axis; parallel to `spin`, if there is one"),
-          key<T>("frequency", &T::frequency, number(above_zero, "Hz"), required, "swings per second"),
+          key<T>("frequency", &T::frequency, number(above_zero, "Hz"), required, "oscillations per second"),
           key<T>("phase", &T::phase, number(any_value, "rad"), optionally, "at the start"),
       },
       check_oscillation);
@@ -244,12 +240,13 @@ Codec<MotionEntry> motion_section() {
           key<T>("about", &T::about, optional(vector("m")), optionally,
                  "the point to turn about, which moves along with `velocity` and `oscillate`; the body's own "
                  "centre if not given"),
-          key<T>("oscillate", &T::oscillate, optional(oscillate_section()), optionally, "to and fro besides"),
-          key<T>(
-              "keyframes", &T::keyframes, list_of(motion_key_section(), 1), optionally,
-              "instead of all that, and of `at`: places by ascending time. Between them the body goes "
-              "smoothly (monotone cubics: along each axis never beyond the two keyframes, and at rest where "
-              "it turns round) and turns the short way; before the first and after the last it rests"),
+          key<T>("oscillate", &T::oscillate, optional(oscillate_section()), optionally,
+                 "an oscillation in addition"),
+          key<T>("keyframes", &T::keyframes, list_of(motion_key_section(), 1), optionally,
+                 "instead of all that, and of `at`: places at ascending times. Between them the body moves "
+                 "smoothly, on monotone cubics: along each axis it is never beyond the two keyframes, and it "
+                 "is at rest where the direction changes. It turns the short way. Before the first and after "
+                 "the last keyframe it rests"),
       },
       check_motion);
 }
@@ -258,15 +255,13 @@ Codec<ServoEntry> servo_section() {
   using T = ServoEntry;
   return section<T>(
       "bodies[].servo",
-      "A wall that holds a force: a box of its mass that moves along one axis alone, as if in a guide "
-      "without "
-      "friction, and does not turn. What it presses on at rest feels the force. It starts at rest. Its "
-      "weight "
-      "is borne by its drive. Steps are taken on Host, as in the accurate mode.",
+      "A wall that holds a force. It is a box that moves along one axis alone, as if in a guide without "
+      "friction, and does not turn. At rest, what it presses on feels the force. It starts at rest, and its "
+      "drive bears its weight. Steps are taken on Host, as in the accurate mode.",
       {
           key<T>("axis", &T::axis, vector(""), required, "along which it moves; of any length but 0"),
           key<T>("force", &T::force, number(any_value, "N"), required,
-                 "along the axis, all that moves the body but for contacts"),
+                 "along the axis; apart from contacts, nothing else moves the body"),
       },
       check_servo);
 }
@@ -275,8 +270,8 @@ Codec<RepeatEntry> repeat_section() {
   using T = RepeatEntry;
   return section<T>(
       "bodies[].repeat",
-      "The body again and again on a lattice, the first at `at`. Bodies are called `name[0]`, "
-      "`name[1]`, ..., x fastest.",
+      "Copies of the body on a lattice, the first one at `at`. Bodies are called `name[0]`, `name[1]`, ..., "
+      "x fastest.",
       {
           key<T>("count", &T::count, array_of<3>(large_integer(at_least(1))), required,
                  "bodies along x, y and z"),
@@ -288,31 +283,27 @@ Codec<RepeatEntry> repeat_section() {
 
 Codec<ScatterEntry> scatter_section() {
   using T = ScatterEntry;
-  return section<T>(
-      "bodies[].scatter",
-      "The body again and again at random places, in random orientations unless one is given. "
-      "Centres lie between the two corners, and no body overlaps another one that appears at the "
-      "same time, or a fixed one. "
-      "Bodies are called `name[0]`, `name[1]`, ...",
-      {
-          key<T>("count", &T::count, large_integer(at_least(1)), required, "how many"),
-          key<T>("from", &T::from, vector("m"), required, "lower corner"),
-          key<T>("to", &T::to, vector("m"), required, "upper corner"),
-      },
-      check_scatter);
+  return section<T>("bodies[].scatter",
+                    "Copies of the body at random places, in random orientations unless one is given. "
+                    "Centres lie between the two corners, and no body overlaps another one that appears at "
+                    "the same time, or a fixed one. Bodies are called `name[0]`, `name[1]`, ...",
+                    {
+                        key<T>("count", &T::count, large_integer(at_least(1)), required, "how many"),
+                        key<T>("from", &T::from, vector("m"), required, "lower corner"),
+                        key<T>("to", &T::to, vector("m"), required, "upper corner"),
+                    },
+                    check_scatter);
 }
 
 Codec<EmitEntry> emit_section() {
   using T = EmitEntry;
   return section<T>(
       "bodies[].emit",
-      "The body again and again, one after another as time goes by, the first at `from` of the item, at "
-      "random "
-      "places and in random orientations unless one is given. Each appears with its centre between the two "
-      "corners where it overlaps nothing; while there is no such place it waits, and none is left out: see "
-      "the "
-      "measures emission.requested and emission.emitted. Bodies are called `name[0]`, `name[1]`, ... in the "
-      "order in which they are asked for.",
+      "Copies of the body that appear one after another, at random places and in random orientations unless "
+      "one is given. The first one is asked for at `from` of the item. Each appears with its centre between "
+      "the two corners, where it overlaps nothing. While there is no such place it waits, and none is left "
+      "out: see the measures emission.requested and emission.emitted. Bodies are called `name[0]`, "
+      "`name[1]`, ... in the order in which they are asked for.",
       {
           key<T>("count", &T::count, large_integer(at_least(1)), required, "how many in all"),
           key<T>("rate", &T::rate, number(above_zero, "1/s"), required, "how many a second are asked for"),
@@ -360,7 +351,7 @@ Codec<BodyEntry> body_section() {
                  "of an XYZ file or a dump, from 0 on; the last one if not given"),
           key<T>("name", &T::name, identifier(), optionally, "to refer to it in measures"),
           key<T>("material", &T::material, identifier(), optionally,
-                 "one of `materials`; required but for a file that has a column of them"),
+                 "one of `materials`; required, except for a file that has a column of them"),
           key<T>("mass", &T::mass, optional(number(above_zero, "kg")), optionally,
                  "instead of the material's density"),
           with_default(key<T>("at", &T::at, optional(vector("m")), optionally,
@@ -386,8 +377,8 @@ Codec<BodyEntry> body_section() {
           key<T>("emit", &T::emit, optional(emit_section()), optionally, "many, one after another"),
           with_default(
               key<T>("from", &T::from, optional(number(not_negative, "s")), optionally,
-                     "when the body appears, in the state given here; its motion starts then. Taken at "
-                     "the nearest step, as is `until`. Of `emit`: when the first one is asked for"),
+                     "when the body appears, in the state given here; its motion starts then. The nearest "
+                     "step is taken, also for `until`. With `emit`: when the first body is asked for"),
               "0"),
           key<T>("until", &T::until, optional(number(above_zero, "s")), optionally,
                  "when the body is gone; never if not given"),

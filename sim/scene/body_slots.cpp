@@ -46,10 +46,11 @@ void require_room(const BodyEntry& body, const MemoryLoad& load, double memory, 
                    fmt::format("the scene would have {} bodies; at most {} are possible", load.bodies, most));
   const double need = memory_need(load).total();
   if (need > memory)
-    reader.fail_at(
-        cause, *body.node,
-        fmt::format("a run of the scene's {:.0f} bodies needs {} of memory, but this machine has {}",
-                    load.bodies, bytes_words(need), bytes_words(memory)));
+    reader.fail_at(cause, *body.node,
+                   fmt::format("a run of the scene's {:.0f} bodies needs {} of memory, but this machine has "
+                               "{}; use fewer bodies or "
+                               "another machine",
+                               load.bodies, bytes_words(need), bytes_words(memory)));
 }
 
 /// Returns the shape of a file's bodies if the entry gives it with its size.

@@ -14,7 +14,7 @@ constexpr std::int64_t most_names = 1000;
 Codec<TimeSettings> time_section() {
   using T = TimeSettings;
   return section<T>(
-      "time", "How long the run is, and how fine.",
+      "time", "Length and step of the run.",
       {
           key<T>("end", &T::end, number(above_zero, "s"), required, "when the run ends; it starts at 0"),
           key<T>("step", &T::step, number(above_zero, "s"), required,
@@ -37,8 +37,8 @@ Codec<MaterialEntry> material_section() {
           key<T>("friction", &T::friction, number(not_negative), optionally, "Coulomb's coefficient"),
           with_default(
               key<T>("rolling_friction", &T::rolling_friction, optional(number(not_negative)), optionally,
-                     "what rolls is held back by a couple of up to so much of the normal force times "
-                     "the radius: a ball starts to roll on a slope with this tangent"),
+                     "coefficient of rolling friction: the moment against rolling is at most this times the "
+                     "normal force times the radius. A ball starts to roll on a slope with this tangent"),
               "0"),
       });
 }
@@ -63,8 +63,8 @@ Codec<ForceEntry> force_section() {
   using T = ForceEntry;
   return section<T>(
       "forces[]",
-      "A constant force on the centre of a body, a torque, or both, in the world frame. They act for "
-      "from <= t < until, both taken at the nearest step.",
+      "A constant force on the centre of a body, a torque, or both, in the world frame. They act for from <= "
+      "t < until; for both times the nearest step is taken.",
       {
           key<T>(
               "on", &T::on, text(), required,
@@ -82,9 +82,8 @@ Codec<Region> region_section() {
   using T = Region;
   return section<T>(
       "regions.<name>",
-      "A box to measure in, its faces along the world's axes, or one where bodies end. The "
-      "names are yours; see "
-      "Measures.",
+      "A box to measure in, its faces along the world's axes, or one that takes bodies out. The names are "
+      "yours; see Measures.",
       {
           key<T>("from", &T::from, vector("m"), required, "lower corner"),
           key<T>("to", &T::to, vector("m"), required, "upper corner"),
@@ -99,19 +98,16 @@ Codec<Region> region_section() {
 Codec<World> world_section() {
   using T = World;
   return section<T>(
-      "world",
-      "A box, its faces along the world's axes, in which the bodies are expected to stay. A body that leaves "
-      "it is a guard's business, as a number that is not finite is.",
+      "world", "A box, its faces along the world's axes, in which the bodies are expected to stay.",
       {
           key<T>("from", &T::from, vector("m"), required, "lower corner"),
           key<T>("to", &T::to, vector("m"), required, "upper corner"),
-          key<T>(
-              "leaving", &T::leaving,
-              word<Leaving>(
-                  {{"stop", Leaving::stop}, {"remove", Leaving::remove}, {"ignore", Leaving::ignore}}),
-              optionally,
-              "what a free body whose centre leaves it does: it stops the run with the state before, or is "
-              "taken out and counted (bodies.left), or nothing at all"),
+          key<T>("leaving", &T::leaving,
+                 word<Leaving>(
+                     {{"stop", Leaving::stop}, {"remove", Leaving::remove}, {"ignore", Leaving::ignore}}),
+                 optionally,
+                 "what happens if the centre of a free body leaves it. stop: the run stops with the state "
+                 "before. remove: the body is taken out and counted (guards.left). ignore: nothing"),
       },
       check_world);
 }
@@ -121,11 +117,11 @@ Codec<PeriodicEntry> periodic_section() {
   const auto ends = optional(array_of<2>(number(any_value, "m")));
   return section<T>(
       "periodic",
-      "A space that repeats: what goes out of the cell at one end comes in at the other, and bodies meet "
-      "through its ends. Positions count on from period to period (a body that went through twice is two "
-      "periods away), and so does potential energy along a periodic axis; regions and pictures see the image "
-      "in the cell. Planes must be parallel to periodic axes. Momentum is conserved; angular momentum about "
-      "the origin is not, in a space that is the same in certain directions alone.",
+      "A space that repeats: what leaves the cell at one end comes in at the other, and bodies meet through "
+      "its ends. Positions are counted on from period to period: a body that went through twice is two "
+      "periods away. So is potential energy along a periodic axis. Regions and pictures use the image in the "
+      "cell. Planes must be parallel to periodic axes. Momentum is conserved. Angular momentum about the "
+      "origin is not, because such a space is not the same in all directions.",
       {
           key<T>("x", &T::x, ends, optionally, "[low, high]: the cell's ends along x"),
           key<T>("y", &T::y, ends, optionally, "along y"),
@@ -209,20 +205,19 @@ Codec<GravityEntry> gravity_value() {
     return gravity.spin ? write(gravity) : std::nullopt;
   };
   return any_of<T>(
-      {plain,
-       section<T>("gravity",
-                  "Gravity that turns or changes with time: the force alone. It is that of a frame that "
-                  "turns slowly; a frame that turns fast has centrifugal and Coriolis forces too, which "
-                  "are left out. Its work is part of energy.work.",
-                  {
-                      std::move(at_start),
-                      key<T>("spin", &T::spin, optional(vector("rad/s")), optionally,
-                             "constant angular velocity of the vector, from t = 0 on"),
-                      key<T>("keyframes", &T::keyframes, list_of(gravity_key_section(), 1), optionally,
-                             "instead of these: gravity by ascending time, straight between, constant "
-                             "before the first and after the last"),
-                  },
-                  check_gravity)});
+      {plain, section<T>("gravity",
+                         "Gravity that turns or changes with time. Only this force is computed, as in a "
+                         "frame that turns slowly. The centrifugal and Coriolis forces of a frame that turns "
+                         "fast are left out. The work of the change is part of energy.work.",
+                         {
+                             std::move(at_start),
+                             key<T>("spin", &T::spin, optional(vector("rad/s")), optionally,
+                                    "constant angular velocity of the vector, from t = 0 on"),
+                             key<T>("keyframes", &T::keyframes, list_of(gravity_key_section(), 1), optionally,
+                                    "instead of these: gravity at ascending times, linear between them, "
+                                    "constant before the first and after the last"),
+                         },
+                         check_gravity)});
 }
 
 Codec<Reduce> reduce_word() {
@@ -273,8 +268,8 @@ Codec<CheckEntry> check_section() {
                  "takes the place of `tolerance`, `relative`, `below` or `above` where response.mode is "
                  "default"),
           key<T>("confidence", &T::confidence, optional(number(between(0, 1))), optionally,
-                 "of the mean over the `seeds`: the whole interval that holds it with this probability "
-                 "(Student's t) must lie within the limits; without it every seed must by itself"),
+                 "of the mean over the `seeds`: its whole confidence interval of this level (Student's t) "
+                 "must lie within the limits; without it, each seed by itself must"),
       },
       check_check);
 }
@@ -293,9 +288,10 @@ const Codec<SceneEntry>& scene_codec() {
                  "`long` scenes are left out of verify unless asked for"),
           key<T>("seed", &T::seed, seed_integer(), optionally, "every random choice follows from it"),
           key<T>("seeds", &T::seeds, integer(between(1, 1000)), optionally,
-                 "runs, with seed, seed + 1, ..., that verify and study judge together; run makes the first"),
+                 "number of runs, with seed, seed + 1, ..., that verify and study judge together; run makes "
+                 "the first one"),
           key<T>("gravity", &T::gravity, gravity_value(), optionally,
-                 "acceleration of free bodies; a section where it turns"),
+                 "acceleration of free bodies; a map if it changes with time"),
           key<T>("time", &T::time, time_section(), required, "length and step of the run"),
           key<T>("materials", &T::materials, named(material_section(), most_names), required,
                  "a map of names to materials"),
@@ -306,18 +302,18 @@ const Codec<SceneEntry>& scene_codec() {
           key<T>("periodic", &T::periodic, optional(periodic_section()), optionally,
                  "axes along which the space repeats; none if not given"),
           key<T>("world", &T::world, optional(world_section()), optionally,
-                 "where bodies are expected to stay; without end if not given"),
+                 "where bodies are expected to stay; anywhere if not given"),
           key<T>("regions", &T::regions, named(region_section(), most_names), optionally,
                  "a map of names to boxes to measure in"),
-          key<T>("response", &T::response, response_section(), optionally, "how contacts answer"),
+          key<T>("response", &T::response, response_section(), optionally,
+                 "how contact impulses are computed"),
           key<T>("broadphase", &T::broadphase, broadphase_section(), optionally, "how pairs are found"),
           key<T>("narrowphase", &T::narrowphase, narrowphase_section(), optionally, "how contacts are found"),
           key<T>("precision", &T::precision,
                  word<Precision>({{"double", Precision::double_precision}, {"mixed", Precision::mixed}}),
                  optionally,
-                 "of the response. mixed: impulses and their velocities in float, faster and to 1e-7 of "
-                 "them; the "
-                 "state stays in double. Not in the accurate mode"),
+                 "precision of the response. mixed: impulses and their velocities are in float, which is "
+                 "faster and exact to 1e-7; the state stays in double. The accurate mode has double only"),
           key<T>("model", &T::model, model_section(), optionally, "features to compute"),
           key<T>("render", &T::render, render_section(), optionally, "the pictures"),
           key<T>("record", &T::record, record_section(), optionally, "what is written besides"),

@@ -107,7 +107,7 @@ constexpr MeasureInfo measures[] = {
      [](M s) -> double { return number(s.run.counters.unfinished_impacts); }, nullptr},
     {"guards.newton", S::run, "",
      "groups of contacts that neither the direct solver nor all sweeps have solved, since the start",
-     [](M s) -> double { return number(s.run.counters.patient_failed); }, nullptr},
+     [](M s) -> double { return number(s.run.counters.long_direct_failed); }, nullptr},
     {"guards.gjk", S::run, "",
      "calls of libccd that reached their limit, and were answered in another way, since the start",
      [](M s) -> double { return number(s.run.counters.narrowphase.ccd_stopped); }, nullptr},

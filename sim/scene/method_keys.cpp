@@ -52,7 +52,7 @@ Codec<double> quality_number() {
 Codec<ResponseSettings> response_section() {
   using T = ResponseSettings;
   return section<T>(
-      "response", "How contacts answer.",
+      "response", "How contact impulses are computed.",
       {
           key<T>(
               "mode", &T::mode,
@@ -61,25 +61,24 @@ Codec<ResponseSettings> response_section() {
               "accurate: contacts are solved until their natural residual is within the tolerance, free "
               "rotation is of fourth order, and slower approaches bounce; takes longer"),
           with_default(
-              key<T>("quality", &T::quality, quality_number(), optionally,
-                     "how little is left of errors. With 1 a step of many bodies in motion takes 1 to 4 "
-                     "substeps, as "
-                     "few as leave overlaps of 5e-4 of the smaller body in the mean and 2e-2 at worst; "
-                     "what moves faster leaves more. With q these, and the changes at which sweeps and "
-                     "position correction of heaps end, are divided by q. Overlaps fall with the square "
-                     "of the step's length: 4 allows twice as many substeps, 0.25 half as many"),
+              key<T>(
+                  "quality", &T::quality, quality_number(), optionally,
+                  "errors are smaller the larger it is. With 1, a step of many bodies in motion takes 1 to 4 "
+                  "substeps, as few as leave overlaps of 5e-4 of the smaller body in the mean and 2e-2 at "
+                  "worst. What moves faster leaves more. With q, these overlaps are divided by q, and so are "
+                  "the changes at which sweeps and position correction of heaps end. Overlaps fall with the "
+                  "square of the step's length: 4 allows twice as many substeps, 0.25 half as many"),
               "1"),
           key<T>("iterations", &T::iterations, or_auto(integer(between(1, 1e6))), optionally,
-                 "most sweeps over the contacts per substep; auto: 60, more the fewer contacts there are"),
+                 "largest number of sweeps over the contacts per substep; auto: 60, and more if there are "
+                 "few contacts"),
           key<T>("block_sweeps", &T::block_sweeps, or_auto(integer(between(1, 100))), optionally,
                  "sweeps over the points that two bodies share, at each visit; auto: 4, with which stacks "
                  "stand still, but 1 for heaps"),
-          key<T>(
-              "tolerance", &T::tolerance, or_auto(number(inside(0, 1))), optionally,
-              "sweeps stop when they change the impulses by less than this share; auto: 1e-10, but for "
-              "heaps, of which the rest is left to the next steps, 3e-3 (up to 2e-2 where they flow) and at "
-              "least 6 "
-              "sweeps, 12 where bodies share several points"),
+          key<T>("tolerance", &T::tolerance, or_auto(number(inside(0, 1))), optionally,
+                 "sweeps stop when they change the impulses by less than this share. auto: 1e-10. For heaps "
+                 "it is 3e-3 (up to 2e-2 where they flow), after at least 6 sweeps, or 12 where bodies share "
+                 "several points; the rest is left to the next steps"),
           key<T>("warm_start", &T::warm_start, boolean(), optionally, "start from the last step's impulses"),
           key<T>("restitution_threshold", &T::restitution_threshold, or_auto(number(not_negative, "m/s")),
                  optionally, "slower approaches do not bounce; auto: 2 gravity step (1 - e)"),
@@ -129,14 +128,14 @@ Codec<ModelSettings> model_section() {
                   {
                       key<T>("rotation", &T::rotation, feature, optionally,
                              "free bodies turn; off: they keep their orientation, and friction slides"),
-                      key<T>("friction", &T::friction, feature, optionally, "contacts rub"),
+                      key<T>("friction", &T::friction, feature, optionally, "contacts have friction"),
                       with_default(key<T>("rolling_friction", &T::rolling_friction, optional(on_or_off),
-                                          optionally, "contacts hold back what rolls"),
+                                          optionally, "contacts resist rolling"),
                                    "auto"),
                       key<T>("restitution", &T::restitution, feature, optionally, "impacts bounce"),
                       key<T>("continuous", &T::continuous, feature, optionally,
-                             "fast bodies meet at their own time inside a step; auto: where they could pass "
-                             "through one another, or nearly"),
+                             "continuous collision detection: fast bodies meet at their own time inside a "
+                             "step; auto: where they could pass through one another, or nearly"),
                   })});
 }
 

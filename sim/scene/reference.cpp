@@ -12,10 +12,10 @@ constexpr const char* introduction = R"(# Scene reference
 
 <!-- Generated from the table of keys in sim/scene/keys.cpp; test_scene compares, and writes with SCREE_WRITE=1. -->
 
-A scene is one YAML 1.2 file, or one of JSON, which is YAML too: words may be in quotes, numbers, true and false may not.
-Units are SI, angles are radians unless a key says degrees, and gravity alone decides what is up. Unknown keys, wrong types
-and values without sense are errors with file, line, column and the right or the nearest key. Every random choice follows from
-`seed` and the body's number.
+A scene is one file of YAML 1.2, or of JSON, which is YAML too. Words may be in quotes. Numbers, true and false may not. Units
+are SI, and angles are in radians unless a key says degrees. Gravity alone says which direction is up. Unknown keys, wrong types
+and impossible values are errors. Their messages give the file, the line, the column, and what is allowed or the nearest key.
+Every random choice follows from `seed` and the number of the body.
 
 ```yaml
 format: 1
@@ -35,18 +35,18 @@ checks:
   - {measure: energy.unexplained, over: [0, 3], reduce: max, below: 1e-9}
 ```
 
-Any key can be changed on the command line: `--set time.step=0.001 --set "bodies[1].velocity[0]=3"`. The part of a
-path that the file does not give is created, with its default; list items and names of your own must be in the file.
+Any key can be changed on the command line: `--set time.step=0.001 --set "bodies[1].velocity[0]=3"`. If the
+file lacks a part of the path, this part is created with its defaults. List items and names of your own must be in the file.
 )";
 
 constexpr const char* body_files = R"(
 ## Body files
 
-`file:` takes bodies from a file that has a row for each: a table, an XYZ file or a dump of LAMMPS, told apart by their first
-lines. Its path is relative to the scene file. A run that is done leaves its free bodies in `final.csv`, a table, every number
-to the bit, and the hulls of polyhedra in `hulls` beside it, which come back to rounding; `file: output/NAME` takes that.
-What is not free, such as a mesh, is for the next scene to give again. `name` names them `name[0]`, `name[1]`, ...;
-`fixed: true` holds them all.
+`file:` takes bodies from a file that has a row for each body. It is a table, an XYZ file or a dump of LAMMPS, which is seen
+from its first lines. Its path is relative to the scene file. A finished run leaves its free bodies in the table `final.csv`,
+with every number to the bit. It leaves the hulls of polyhedra in `hulls` beside it, and they come back to rounding.
+`file: output/NAME` takes both. Bodies that are not free, such as meshes, must be given again in the next scene. `name` gives
+the names `name[0]`, `name[1]`, ..., and `fixed: true` makes all the bodies fixed.
 
 ```yaml
 bodies:
@@ -56,7 +56,7 @@ bodies:
   - {file: output/04_pile-lammps/trajectory.lammpstrj, frame: 10, material: gravel}
 ```
 
-A table begins with a line that names its columns, in any order, in capitals or not; then comes one line per body.
+A table begins with a line that names its columns, in any order, in upper or lower case. Then comes one line per body.
 
 | column | meaning |
 |---|---|
@@ -68,27 +68,28 @@ A table begins with a line that names its columns, in any order, in capitals or 
 | `vx`, `vy`, `vz` | velocity (m/s); empty: 0 |
 | `wx`, `wy`, `wz` | spin, world frame (rad/s); empty: 0 |
 | `mass` | kg; empty: from the material's density |
-| `material` | one of `materials`, or its place among them, from 0; `material` in the scene goes before it |
-| `hull` | of a polyhedron: an OBJ, STL or PLY file, relative to this one, whose vertices' hull it is; else empty |
+| `material` | one of `materials`, or its place among them, from 0; `material` in the scene takes precedence |
+| `hull` | of a polyhedron: an OBJ, STL or PLY file, relative to this one; the body is the hull of its vertices; else empty |
 | `servo_x`, `servo_y`, `servo_z`, `servo_force` | of a box that is a servo: its axis, and its force (N); else empty |
 
-Cells are separated by commas, semicolons, tabs, bars or blanks, whichever the first line has, and may be in quotes (`"`; two of
-them within quotes stand for one). What parts cells may be there once more at a line's end. Columns that are left out count
-as empty. Blank lines are skipped, and lines that begin with `#`. The text is UTF-8.
+Cells are separated by commas, semicolons, tabs, bars or blanks, whichever the first line has. A cell may be in quotes (`"`), and
+two quotes within quotes stand for one. A line may end with one more separator. Columns that are left out count as empty. Blank
+lines, and lines that begin with `#`, are skipped. The text is UTF-8.
 
-Without the column `shape` all bodies are of the shape that the scene gives beside `file`: as a word, `shape: cylinder`, where the
-file has their sizes, or with its sizes, `sphere: {radius: 0.1}`, where it has none. Without either, a file with `radius` alone has
-spheres, one with `size_x` to `size_z` boxes, one with `hull` polyhedra. Columns that say nothing of a body, such as `id`, are
-ignored. `run`, `plan` and `verify` say both, once. A column that says something in other words (`diameter`, `density`) is an
-error that names the right one.
+Without the column `shape`, all bodies have the shape that the scene gives beside `file`. If the file has their sizes, this is a
+word, as in `shape: cylinder`. If the file has no sizes, it is a shape with sizes, as in `sphere: {radius: 0.1}`. Without either, a
+file with `radius` alone has spheres, one with `size_x` to `size_z` has boxes, and one with `hull` has polyhedra. Columns that say
+nothing of a body, such as `id`, are ignored. `run`, `plan` and `verify` report once which shape was assumed and which columns were
+ignored. A column that says something in other words (`diameter`, `density`) is an error, and its message names the right column.
 
 | format | what is read |
 |---|---|
 | XYZ | element, x, y, z. Extended: the columns that the comment names: `pos`, `velo` or `velocity`, `angular_velocity`, `orientation` (x, y, z, w), `radius`, `diameter`, `mass` |
 | LAMMPS | `x y z`, `xu yu zu`, or shares of the cell `xs ys zs`; `vx vy vz`, `omegax omegay omegaz`, `quatw quati quatj quatk`, `radius`, `diameter`, `mass` |
 
-Numbers are taken as SI. Of several frames the last one is taken, or that of `frame`. What `scree export --to xyz` and `--to lammps` write
-comes back with its shapes, but for polyhedra, whose corners are not in it; bodies that are not free are left out, and said.
+Numbers are read as SI units. Of several frames the last one is read, or that of `frame`. Files of `scree export --to xyz` and
+`--to lammps` come back with their shapes, except for polyhedra, whose vertices they do not have. Bodies that are not free are left
+out, and a message says so.
 )";
 
 /// Returns the text of a table cell. Each | in it is escaped, because it would end the cell.

@@ -60,9 +60,10 @@ void GuardedSteps::take_once_or_twice(std::int64_t step, double time, double len
     throw;
   } catch (const std::exception& error) {
     const auto* failure = dynamic_cast<const StepFailure*>(&error);
-    throw StepFailure(fmt::format("step {} (t = {} s) failed, and again in {} substeps: {}", step + 1, time,
-                                  more, error.what()),
-                      failure ? failure->bodies() : bodies_out_of_range(state_of(stepper)));
+    throw StepFailure(
+        fmt::format("step {} at t = {} s failed, also when it was taken again in {} substeps: {}", step + 1,
+                    time, more, error.what()),
+        failure ? failure->bodies() : bodies_out_of_range(state_of(stepper)));
   }
 }
 
@@ -94,12 +95,12 @@ void GuardedSteps::judge(const Exchange& exchange, const Stepper& stepper) {
   extend_baseline(energies, exchange, stepper);
   if (energies.not_finite > 0)
     fail(bodies_out_of_range(state_of(stepper)),
-         "no longer finite: its position or velocity has left the range of numbers; try a smaller time.step");
+         "no longer finite: its position or velocity is no finite number any more; try a smaller time.step");
   if (!(baseline_.unexplained_change() <= most_unexplained(scene_)))
     fail(by_kinetic_energy(state_of(stepper)),
          fmt::format(
-             "the energy changed by {:.2g} of its scale more than the ledger explains; the bodies named "
-             "have the most kinetic energy; try a smaller time.step",
+             "the energy changed by {:.2g} of its scale without a known cause; the bodies named have the "
+             "most kinetic energy; try a smaller time.step",
              baseline_.unexplained_change()));
   if (!scene_.world || scene_.world->leaving != Leaving::stop) return;
   std::vector<std::int32_t> out;

@@ -29,7 +29,8 @@ TEST(RunProgram, GivesAndTakesMuch) {
 }
 
 TEST(RunProgram, SaysHowItFailed) {
-  EXPECT_EQ(message_of({"scree-no-such-program"}), "the program scree-no-such-program is not installed");
+  EXPECT_EQ(message_of({"scree-no-such-program"}),
+            "the program scree-no-such-program is not installed: install it and call scree again");
   EXPECT_EQ(message_of({"sh", "-c", "echo fine; echo why >&2; exit 3"}), "sh failed: why\n");
   EXPECT_EQ(message_of({"sh", "-c", "kill -9 $$"}), "sh was ended by signal 9");
   EXPECT_EQ(message_of({"/"}), "/ does not start: Permission denied");

@@ -379,9 +379,9 @@ def closed_pipe():
 
 
 @case(
-    ("standard output on a full disk", ("stdout",), "/dev/full", "standard output is lost"),
-    ("standard output is a closed pipe", ("stdout",), "pipe", "standard output is lost (Broken pipe)"),
-    ("all that is said goes to a closed pipe", ("stdout", "stderr"), "pipe", "standard output is lost (Broken pipe)"),
+    ("standard output on a full disk", ("stdout",), "/dev/full", "nothing more can be written to standard output"),
+    ("standard output is a closed pipe", ("stdout",), "pipe", "nothing more can be written to standard output (Broken pipe)"),
+    ("all that is said goes to a closed pipe", ("stdout", "stderr"), "pipe", "nothing more can be written to standard output (Broken pipe)"),
 )
 def unheard(case, streams, kind, words):
     end = os.open("/dev/full", os.O_WRONLY) if kind == "/dev/full" else closed_pipe()

@@ -198,7 +198,7 @@ std::string_view words_of_counter(std::string_view name) {
   constexpr std::array<std::pair<std::string_view, std::string_view>, 5> words = {
       {{"cuts", "substeps cut where a sliding contact came to stick"},
        {"scaled", "groups of contacts whose impulses were made smaller, since they would have gained energy"},
-       {"patient", "groups of contacts solved by a second direct solution, with higher limits"},
+       {"long_direct", "groups of contacts solved by a second direct solution, with higher limits"},
        {"pcs_made", "times that the broad phase found new pairs"},
        {"direct_failed", "groups of contacts that the direct solver left to the sweeps"}}};
   const auto found = std::ranges::find(words, name, &std::pair<std::string_view, std::string_view>::first);

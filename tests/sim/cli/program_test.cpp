@@ -95,7 +95,8 @@ TEST_F(ProgramTest, CompareSaysHowFarTwoRunsDiffer) {
   const Finished alone = scree_in(folder_, {"compare", "one", "two"});
   EXPECT_EQ(alone.status, 1);
   EXPECT_TRUE(contains(alone.out, "final.csv: only in the first run\n")) << alone.out;
-  EXPECT_TRUE(contains(alone.out, ": 0 columns differ; something is in one run alone\n")) << alone.out;
+  EXPECT_TRUE(contains(alone.out, ": 0 columns differ; some columns or rows are in one of the runs only\n"))
+      << alone.out;
   EXPECT_EQ(scree_in(folder_, {"compare", "one", "nowhere"}).status, 2);
 }
 

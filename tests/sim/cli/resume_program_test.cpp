@@ -64,7 +64,9 @@ TEST_F(ResumeTest, WithoutACheckpointStartsFromTheBeginning) {
   ASSERT_EQ(run_scene(scene_, {"-o", "whole"}).status, 0);
   const Finished fresh = run_scene(scene_, {"-o", "fresh", "--resume"});
   EXPECT_EQ(fresh.status, 0) << fresh.error;
-  EXPECT_TRUE(contains(fresh.out, "no checkpoint: from the beginning, which replaces what was in the folder"))
+  EXPECT_TRUE(contains(
+      fresh.out,
+      "there is no checkpoint: the run starts from the beginning and replaces the files in the folder"))
       << fresh.out;
   expect_same("whole", "fresh");
 }

@@ -163,7 +163,8 @@ TEST_F(ProgramTest, ARunThatCannotGoOnExitsWith3AndSavesWhatItHas) {
   const Finished run =
       run_scene(falling_ball(no_pictures + good_check), {"--set", "bodies[0].velocity=[1e150, 0, 0]"});
   EXPECT_EQ(run.status, 3);
-  EXPECT_TRUE(run.error.starts_with("scree: step 1 (t = 0 s) failed, and again in 4 substeps: "))
+  EXPECT_TRUE(
+      run.error.starts_with("scree: step 1 at t = 0 s failed, also when it was taken again in 4 substeps: "))
       << run.error;
   const Json manifest = manifest_in(folder_ / "output/fall");
   EXPECT_EQ(manifest["status"], "failed");
@@ -171,7 +172,7 @@ TEST_F(ProgramTest, ARunThatCannotGoOnExitsWith3AndSavesWhatItHas) {
   EXPECT_EQ(manifest["steps"], 0);
   EXPECT_EQ(manifest["checks"][0]["verdict"], "not reached");
   EXPECT_TRUE(contains(run.out, "picture:  the bodies named, before the step that failed: ") ||
-              contains(run.error, "there is no picture of the failure: "))
+              contains(run.error, "there is no picture of the bodies that failed: "))
       << run.out << run.error;
   const std::string metrics = text_of(folder_ / "output/fall/metrics.csv");
   EXPECT_EQ(std::ranges::count(metrics, '\n'), 2) << "the row of the last good state";
@@ -386,7 +387,7 @@ TEST_F(ProgramTest, ALargeOverlapIsAWarning) {
   const std::string words =
       "the deepest overlap was 150 % of the smaller body's radius or half edge, between a (body 0) and body "
       "1, at "
-      "t = 0 s: the scene places these bodies into each other";
+      "t = 0 s: the scene places these bodies into each other; move them apart in the scene";
   const Finished deep = run_scene(two_balls("[0.05, 0, 0]"));
   EXPECT_EQ(deep.status, 0);
   EXPECT_TRUE(contains(deep.error, "scree: warning: " + words + "\n")) << deep.error;

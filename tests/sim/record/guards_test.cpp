@@ -20,7 +20,7 @@ Observation busy() {
   seen.left = 2;
   seen.counters.unconverged = 3;
   seen.counters.unfinished_impacts = 4;
-  seen.counters.patient_failed = 5;
+  seen.counters.long_direct_failed = 5;
   seen.counters.narrowphase.ccd_stopped = 6;
   seen.counters.residual = 1e-7;
   return seen;
@@ -81,7 +81,8 @@ TEST(Guards, ALargeOverlapIsToldOnce) {
   const std::string deep =
       "the deepest overlap was 210 % of the smaller body's radius or half edge, between a (body 0) and body "
       "1, at t = ";
-  EXPECT_EQ(warning({}, 2.1, 0), deep + "0 s: the scene places these bodies into each other");
+  EXPECT_EQ(warning({}, 2.1, 0),
+            deep + "0 s: the scene places these bodies into each other; move them apart in the scene");
   EXPECT_EQ(warning({}, 2.1, 0.25), deep + "0.25 s; try a smaller time.step");
   EXPECT_EQ(warning({}, 0.04, 0), "");
   EXPECT_EQ(warning({}, 0, 0), "");

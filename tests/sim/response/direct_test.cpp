@@ -382,6 +382,25 @@ TEST(Direct, SolvesBedsThatFrictionHolds) {
   EXPECT_EQ(solved, beds);
 }
 
+TEST(Direct, ComesAfterManySweepsWhereBodiesMoveOrSolutionsFail) {
+  Counters counters;
+  EXPECT_EQ(sweeps_before_direct(1000, false, counters), few_sweeps);
+  EXPECT_EQ(sweeps_before_direct(1000, true, counters), 200);
+  EXPECT_EQ(sweeps_before_direct(60, true, counters), 60);
+  EXPECT_EQ(sweeps_before_direct(5, false, counters), 5);
+  counters.direct_failed = 3;
+  EXPECT_EQ(sweeps_before_direct(1000, false, counters), 200);
+  EXPECT_EQ(sweeps_before_direct(60, false, counters), 30);
+}
+
+TEST(Direct, IsLongWhereItsSolutionsLast) {
+  Counters counters;
+  EXPECT_TRUE(pays_long_solution(false, counters));
+  EXPECT_FALSE(pays_long_solution(true, counters));
+  counters.long_direct_failed = 3;
+  EXPECT_FALSE(pays_long_solution(false, counters));
+}
+
 TEST(Islands, AreWhatFreeBodiesConnect) {
   Scene scene;
   scene.bodies.push_back(fixed_body());

@@ -134,7 +134,17 @@ TEST(SweepCount, AHeapThatLandsLayerByLayerDoesNotFlow) {
   SweepCount count;
   flow(count, 8, 0.0, 0.7);
   EXPECT_FALSE(count.flows());
+  EXPECT_TRUE(count.moves());
   EXPECT_DOUBLE_EQ(count.change(), tolerance::heap_change);
+}
+
+TEST(SweepCount, BodiesAtRestDoNotMove) {
+  SweepCount count;
+  EXPECT_FALSE(count.moves());
+  judge(count, 1, 0.0, 1.1 * tolerance::moving_power);
+  EXPECT_TRUE(count.moves());
+  judge(count, 1, 0.0, 0.9 * tolerance::moving_power);
+  EXPECT_FALSE(count.moves());
 }
 
 TEST(SweepCount, SubstepsShareTheSweepsOfAStep) {

@@ -46,7 +46,7 @@ Observation numbered() {
   o.left = 541;
   o.counters.unconverged = 542;
   o.counters.unfinished_impacts = 543;
-  o.counters.patient_failed = 544;
+  o.counters.long_direct_failed = 544;
   o.counters.narrowphase.ccd_stopped = 545;
   o.centre = {2, 3, 6};
   o.coordination_mean = 523;

@@ -169,7 +169,7 @@ TEST_F(GuardedStepsTest, WhateverIsNotFiniteFailsAndIsNamed) {
       if (field == 3) s.bodies.spin[0].x() = bad - bad;
     };
     expect_given_up(
-        "ball (body 0): no longer finite: its position or velocity has left the range of numbers; ");
+        "ball (body 0): no longer finite: its position or velocity is no finite number any more; ");
   }
 }
 
@@ -177,7 +177,7 @@ TEST_F(GuardedStepsTest, EnergyThatTheLedgerDoesNotExplainFails) {
   // Each substep adds 1e-5 of the kinetic energy, which is 9 J.
   stepper_.on_substep = [](double, FakeStepper& s) { s.bodies.velocity[0] *= 1 + 0.5e-5; };
   expect_given_up(
-      "the energy changed by 4e-05 of its scale more than the ledger explains; the bodies named have the "
+      "the energy changed by 4e-05 of its scale without a known cause; the bodies named have the "
       "most "
       "kinetic energy");
   stepper_.on_substep = [](double, FakeStepper& s) {
