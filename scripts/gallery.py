@@ -31,9 +31,9 @@ HEAD = f"""# Gallery
 
 <!-- Written by scripts/gallery.py; run it again rather than edit this page. -->
 
-Each picture is one frame of what `./run configs/NAME.yaml` makes, scaled to {WIDTH} pixels at most. Run times are those of that
-run, with as many pictures as are named drawn beside it (`--set render.fps=2` makes fewer), on a machine that may have had other work;
-"simulation" is the time of its stages without them.
+Each picture is one frame of what `./run configs/NAME.yaml` makes, scaled to {WIDTH} pixels at most. The figures below it are those
+of the whole run. Its time includes the pictures that were drawn (`--set render.fps=2` makes fewer), and "simulation" is the time
+of the stages without them. The machine may have had other work.
 """
 
 
