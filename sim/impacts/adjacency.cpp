@@ -36,7 +36,7 @@ struct FillRows {
 
 constexpr std::int32_t no_pair = -1;
 
-struct PairOfHubs {
+struct PairOfManyPairs {
   ConstView<Pair> pairs;
   AdjacencyView adjacency;
   SCREE_HD std::int32_t operator()(std::int64_t k) const {
@@ -57,7 +57,7 @@ void Adjacency<Space>::build(ConstView<Pair> pairs, ConstView<Mobility> mobility
   parallel::for_each<Space>(
       "adjacency", pairs.size(),
       FillRows{pairs, mobility, std::as_const(begin_).view(), count_.view(), row_.view()});
-  parallel::select("adjacency", pairs.size(), PairOfHubs{pairs, view()}, no_pair, between_many_);
+  parallel::select("adjacency", pairs.size(), PairOfManyPairs{pairs, view()}, no_pair, between_many_);
 }
 
 #define SCREE_INSTANTIATE(Space) template class Adjacency<Space>;

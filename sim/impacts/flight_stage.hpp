@@ -30,8 +30,8 @@ SCREE_HD inline double impact_cost(double restitution) {
 struct FlightTerms {
   ContactLaws laws;
   double step;  ///< length of the substep (s)
-  /// Start of the flight, into the substep (s). If it is not 0, the previous flight began at 0, a body that
-  /// was struck in it after `from` starts at its last impact, and the response has kicked the bodies since.
+  /// Start of the flight, into the substep (s). It is 0 for the first flight. In a second flight the response
+  /// has kicked the bodies already, and a body that was struck after `from` starts at its last impact.
   double from;
   bool bounces;  ///< whether approaches faster than the threshold count; if not, only deep approaches do
 };
@@ -51,8 +51,8 @@ struct FlightLog {
   Array<double, Space> turn;         ///< bound on the speed that rotation gives its surface (m/s)
   Array<double, Space> top_speed;    ///< bound on its surface's speed, without what gravity adds (m/s)
   Array<double, Space> radius;       ///< bounding_radius(); infinite for a boundary (m)
-  /// 1 for a body that bore load together with another free body in the last substep. Empty if there is no
-  /// such body, or if none counts.
+  /// The value is 1 for a body that bore load together with another free body in the last substep. The array
+  /// is empty if there is no such body, or if the flight ignores them.
   Array<std::uint32_t, Space> bore_load;
 
   void resize(std::int64_t bodies) {
@@ -109,9 +109,8 @@ struct FlightStage {
     return is_free(body) && tolerance::heavy_ratio * bodies.inverse_mass[body] <= bodies.inverse_mass[other];
   }
   SCREE_HD bool has_late_impact(std::int32_t body) const { return clock[body] > 0.5 * terms.step; }
-  /// Returns whether two bodies bounce off each other together with the contacts in which they bear load, and
-  /// not in an impact before that: among many bodies that bear load the order of impacts is chaotic, and
-  /// their contacts are solved at once.
+  /// Returns whether both bodies bore load in the last substep. Such bodies bounce in the response, together
+  /// with their contacts. One by one, their impacts would come in a chaotic order.
   SCREE_HD bool both_bore_load(std::int32_t i, std::int32_t j) const {
     return bore_load.size() > 0 && bore_load[i] != 0 && bore_load[j] != 0;
   }

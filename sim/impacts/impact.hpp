@@ -412,7 +412,7 @@ SCREE_HD inline double fly_on(const FlightStage& stage, std::int32_t body, const
     stage.bodies.orientation[body] = next.orientation;
     stage.bodies.spin[body] = next.spin;
   }
-  next.velocity -= kick;  // rounded as the kick rounds it
+  next.velocity -= kick;  // so that adding the kick later rounds in the same way
   stage.bound(body, next);
   return drift;
 }

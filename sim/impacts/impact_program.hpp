@@ -34,7 +34,8 @@ struct ImpactProgram {
   /// A body with more pairs than this is listed as a whole when it is struck: one thread would be slow to
   /// list its chunks.
   static constexpr std::int64_t most_in_chunks = 4096;
-  static constexpr std::int64_t threads_of_hub = 1 << 15;  ///< items that look at the pairs of such a body
+  /// Items that look at the pairs of such a body.
+  static constexpr std::int64_t threads_of_large_body = 1 << 15;
 
   FlightStage stage;
   ConstView<Pair> pairs;
@@ -60,7 +61,7 @@ struct ImpactProgram {
   View<StruckBody> struck;
   View<StruckPairs> chunks;  ///< chunks of pairs of bodies that were struck in the last round; room for all
   /// Bodies with more pairs than most_in_chunks that were struck in the last round; there is room for all.
-  View<std::int32_t> struck_hubs;
+  View<std::int32_t> struck_large_bodies;
 
   SCREE_HD int phases(const State& state) const {
     if (state.halt != State::Halt::none) return 0;
@@ -73,7 +74,8 @@ struct ImpactProgram {
       return phase == 0 ? state.kept + 2 * lanes * meetings_now : meetings_now;
     }
     if (phase == 0 && state.round == 1) return near_listed();
-    if (phase == 0) return state.kept + chunk_size * state.chunks + threads_of_hub * state.struck_hubs;
+    if (phase == 0)
+      return state.kept + chunk_size * state.chunks + threads_of_large_body * state.struck_large_bodies;
     return listed_to_search(state);
   }
   std::int64_t most_items() const { return std::max(near.size(), to_search.size()); }
@@ -92,7 +94,7 @@ struct ImpactProgram {
       state.resolving = false;
       state.kept = meetings_of(state);
       state.chunks = static_cast<std::int64_t>(progress->chunks);
-      state.struck_hubs = static_cast<std::int64_t>(progress->struck_hubs);
+      state.struck_large_bodies = static_cast<std::int64_t>(progress->struck_large_bodies);
       ++state.round;
       return state;
     }
@@ -157,7 +159,7 @@ struct ImpactProgram {
     } else if (const std::int64_t of_chunks = item - state.kept; of_chunks < chunk_size * state.chunks) {
       look_at_chunk(state, of_chunks);
     } else {
-      look_at_hub(state, of_chunks - chunk_size * state.chunks);
+      look_at_large_body(state, of_chunks - chunk_size * state.chunks);
     }
   }
 
@@ -171,11 +173,13 @@ struct ImpactProgram {
     if (loaded.size() > 0) prefetch_whole(loaded[k]);
     look_again(state, of.body, k);
   }
-  /// Looks at every threads_of_hub-th pair of a hub. Few of them come near.
-  SCREE_HD void look_at_hub(const State& state, std::int64_t item) const {
-    const std::int32_t hub = struck_hubs[item / threads_of_hub];
-    for (std::int64_t place = item % threads_of_hub; place < adjacency.count(hub); place += threads_of_hub)
-      look_again(state, hub, adjacency.pair(hub, place));
+  /// Looks at every threads_of_large_body-th pair of a struck body with more than most_in_chunks pairs. Few
+  /// of them come near.
+  SCREE_HD void look_at_large_body(const State& state, std::int64_t item) const {
+    const std::int32_t body = struck_large_bodies[item / threads_of_large_body];
+    for (std::int64_t place = item % threads_of_large_body; place < adjacency.count(body);
+         place += threads_of_large_body)
+      look_again(state, body, adjacency.pair(body, place));
   }
   /// Looks again at a pair of a body that has been struck; if both bodies have been, only from the row of the
   /// first one.
@@ -251,11 +255,11 @@ struct ImpactProgram {
   SCREE_HD void resolve(const State& state, int phase, std::int64_t item) const {
     const bool with_heavy = state.counts.with_heavy > 0;
     if (phase == 0) {
-      // No thread counts in the values of the next round yet.
+      // The counters of the next round can be cleared here, since no thread adds to them in this phase.
       if (item == 0) {
         progress->counts[(state.round + 1) % 2] = {};
         progress->first[(state.round + 1) % 2] = {};
-        progress->chunks = progress->struck_hubs = 0;
+        progress->chunks = progress->struck_large_bodies = 0;
       }
       if (item < state.kept) {
         forget(state, meetings[(state.round + 1) % 2][item]);
@@ -375,7 +379,7 @@ struct ImpactProgram {
     const std::int32_t partner = stage.bodies.place(of_body.partner());
     const double from = of_body.time(stage.terms.step);
     const double until = of_other.time(stage.terms.step);
-    // The largest speed after its meeting, as off a moving wall.
+    // Its meeting gives the body at most the speed that an elastic bounce off a moving wall gives.
     const double driven = stage.top_speed[body] + 2 * stage.top_speed[partner];
     const BodyFlight flight = stage.flight(body);
     const BodyFlight others = stage.flight(other);
@@ -513,10 +517,10 @@ struct ImpactProgram {
       is_struck[b] = counts[b] && stage.is_free(body);
       is_new[b] = is_struck[b] && struck_in[body] == 0;
       const std::int64_t of_body = adjacency.count(body);
-      const bool is_hub = of_body > most_in_chunks;
-      needed[b] = is_struck[b] && !is_hub ? (of_body + chunk_size - 1) / chunk_size : 0;
-      if (is_struck[b] && is_hub)
-        struck_hubs[static_cast<std::int64_t>(count_up(&progress->struck_hubs))] = body;
+      const bool is_large = of_body > most_in_chunks;
+      needed[b] = is_struck[b] && !is_large ? (of_body + chunk_size - 1) / chunk_size : 0;
+      if (is_struck[b] && is_large)
+        struck_large_bodies[static_cast<std::int64_t>(count_up(&progress->struck_large_bodies))] = body;
       all_new += is_new[b] ? 1 : 0;
       all_needed += static_cast<std::uint64_t>(needed[b]);
     }

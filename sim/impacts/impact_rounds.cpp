@@ -287,7 +287,7 @@ ImpactProgram ImpactRounds<Space>::program(const FlightStage& stage, const Probl
           .key = key_.view(),
           .struck = struck_.view(),
           .chunks = chunks_.view(),
-          .struck_hubs = struck_hubs_.view()};
+          .struck_large_bodies = struck_large_bodies_.view()};
 }
 
 /// Lists the fast pairs on Device, where slow pairs would make threads wait in list_near(). That looks at all
@@ -349,7 +349,7 @@ void ImpactRounds<Space>::make_room(const FlightStage& stage, const Problem& pro
       adjacency_of_ = problem.pairs_made;
       const std::int64_t of_rows = adjacency_.view().row.size();
       chunks_.resize(of_rows / ImpactProgram::chunk_size + stage.bodies.count());
-      struck_hubs_.resize(of_rows / ImpactProgram::most_in_chunks);
+      struck_large_bodies_.resize(of_rows / ImpactProgram::most_in_chunks);
     }
   }
   state.halt = RoundsState::Halt::none;

@@ -54,7 +54,7 @@ class ImpactRounds {
     ConstView<LoadedParts> loaded;  ///< loaded parts of each pair; empty: none
     FlightTerms terms;
     bool one_by_one = false;      ///< resolve strictly in the order of the times, whatever that costs
-    std::int64_t pairs_made = 0;  ///< an equal number means the same pairs of the same bodies; 0: unknown
+    std::int64_t pairs_made = 0;  ///< equal numbers mean the same pairs of the same bodies; 0: unknown
   };
 
   /// Returns false if all bodies are too slow for an impact in the flight, wherever they are.
@@ -111,7 +111,7 @@ class ImpactRounds {
   Array<std::uint64_t, Space> key_;
   Array<StruckBody, Space> struck_;
   Array<detail::StruckPairs, Space> chunks_;
-  Array<std::int32_t, Space> struck_hubs_;
+  Array<std::int32_t, Space> struck_large_bodies_;
   Adjacency<Space> adjacency_;
   std::int64_t adjacency_of_ = 0;  // Problem::pairs_made of the adjacency
   // Impacts in order:

@@ -69,7 +69,7 @@ struct RoundCounts {
   std::uint64_t with_heavy = 0;  ///< meetings with a body that is heavy to the other
 };
 
-/// The first meeting of all: the one with the smallest exact time, and of equal times the first pair.
+/// The first meeting of all. The smallest exact time decides, and among equal times the first pair.
 struct FirstOfAll {
   std::uint64_t time = no_meeting, pair = no_meeting;
 };
@@ -83,7 +83,8 @@ struct ImpactProgress {
   std::uint64_t fast = 0;         ///< number of pairs that are fast enough for an impact, or of a sample
   std::uint64_t near = 0;         ///< number of pairs that come near each other, before the first round
   std::uint64_t chunks = 0;       ///< number of chunks that this round has listed
-  std::uint64_t struck_hubs = 0;  ///< number of ImpactProgram::struck_hubs that this round has listed
+  std::uint64_t struck_large_bodies =
+      0;  ///< number of ImpactProgram::struck_large_bodies that this round has listed
   std::uint64_t impacts = 0;
   std::uint64_t struck = 0;       ///< number of struck bodies
   std::uint32_t late_impact = 0;  ///< whether a body was struck after the midpoint
@@ -100,11 +101,11 @@ struct RoundsState {
   Halt halt = Halt::none;
   bool resolving = false;  ///< whether the rounds are in the second half
   std::uint32_t round = 1;
-  std::int64_t kept = 0;         ///< number of meetings of the round before
-  std::int64_t chunks = 0;       ///< number of chunks of pairs of bodies that were struck in it
-  std::int64_t struck_hubs = 0;  ///< number of ImpactProgram::struck_hubs
-  RoundCounts counts;            ///< counts of this round, once its first half is over
-  std::uint64_t fast = 0;        ///< ImpactProgress::fast
+  std::int64_t kept = 0;                 ///< number of meetings of the round before
+  std::int64_t chunks = 0;               ///< number of chunks of pairs of bodies that were struck in it
+  std::int64_t struck_large_bodies = 0;  ///< number of ImpactProgram::struck_large_bodies
+  RoundCounts counts;                    ///< counts of this round, once its first half is over
+  std::uint64_t fast = 0;                ///< ImpactProgress::fast
 };
 
 /// An empty sum, since the phases add up nothing.

@@ -29,14 +29,14 @@ std::vector<T> to_host(ConstView<T> list) {
   return on_host;
 }
 
-/// Body 0 is not free; bodies 1 and 2 are hubs, which are candidates with all others.
+/// Body 0 is not free; bodies 1 and 2 have many pairs: they are candidates with all others.
 TYPED_TEST(AdjacencyTest, OfRandomPairs) {
   constexpr std::int32_t bodies = 1000;
   std::vector<Mobility> mobility(bodies, Mobility::free);
   mobility[0] = Mobility::fixed;
   std::vector<Pair> pairs;
-  for (std::int32_t hub = 0; hub < 3; ++hub)
-    for (std::int32_t k = hub + 1; k < bodies; ++k) pairs.push_back({hub, k});
+  for (std::int32_t body = 0; body < 3; ++body)
+    for (std::int32_t k = body + 1; k < bodies; ++k) pairs.push_back({body, k});
   Random random(5, 0);
   for (std::int32_t k = 3; k + 20 < bodies; ++k)
     pairs.push_back({k, k + 1 + static_cast<std::int32_t>(random.uniform(0, 19))});

@@ -257,19 +257,19 @@ TYPED_TEST(Rounds, RoomMayBeLackingInALaterRound) {
   expect_same(rounds, in_time_order(scene, pairs), 1e-11);
 }
 
-/// The first of four hubs drives the second into the third before the third meets the fourth, so that the
-/// third waits. Each hub is a candidate with very many other bodies, none of which it meets.
-TYPED_TEST(Rounds, HubsWaitForOneAnother) {
-  constexpr std::int32_t hubs = 4, others = 300;
+/// The first of four bodies with many pairs drives the second into the third before the third meets the
+/// fourth, so that the third waits. Each is a candidate with very many other bodies, none of which it meets.
+TYPED_TEST(Rounds, BodiesWithManyPairsWaitForOneAnother) {
+  constexpr std::int32_t many = 4, others = 300;
   static_assert(others > AdjacencyView::most_of_few);
   FlightScene scene;
-  const double at[hubs] = {0, 0.2002, 0.4004, 0.6009};
-  const double speed[hubs] = {3, 0, 0, -1};
-  for (int k = 0; k < hubs; ++k) scene.add_ball(0.1, Vec3(at[k], 0, 0), Vec3(speed[k], 0, 0));
+  const double at[many] = {0, 0.2002, 0.4004, 0.6009};
+  const double speed[many] = {3, 0, 0, -1};
+  for (int k = 0; k < many; ++k) scene.add_ball(0.1, Vec3(at[k], 0, 0), Vec3(speed[k], 0, 0));
   for (std::int32_t k = 0; k < others; ++k) scene.add_ball(0.1, Vec3(k, 5, 0), Vec3(0, 0.1, 0));
   std::vector<Pair> pairs = {{0, 1}, {1, 2}, {2, 3}};
-  for (std::int32_t hub = 0; hub < hubs; ++hub)
-    for (std::int32_t other = hubs; other < hubs + others; ++other) pairs.push_back({hub, other});
+  for (std::int32_t body = 0; body < many; ++body)
+    for (std::int32_t other = many; other < many + others; ++other) pairs.push_back({body, other});
   const Outcome rounds = in_rounds<TypeParam>(scene, pairs);
   EXPECT_GE(rounds.impacts.size(), 3u);
   expect_same(rounds, in_time_order(scene, pairs), 1e-12);
