@@ -17,7 +17,7 @@ struct alignas(32) Reach {
   double extent;  ///< radius plus margin; infinite if no ball, or with a late impact
 };
 
-/// Number of slots that one call of VisitKernels::near() tests.
+/// Number of slots that one call of ContactKernels::near() tests.
 inline constexpr int look = 64;
 
 /// The bodies of the contacts of one block, two balls for each contact, and what is known of the contacts.
@@ -28,7 +28,7 @@ struct BallBlock {
   V3<double> impulse[simd::width];  ///< remembered impulse, times the ratio of the substeps' lengths (N s)
 };
 
-/// The arguments of VisitKernels::prepare_balls(), which makes contacts at the midpoint of balls that are
+/// The arguments of ContactKernels::prepare_balls(), which makes contacts at the midpoint of balls that are
 /// whole bodies and not parts of hubs.
 struct PrepareBalls {
   const MidBody<double>* mid;
@@ -47,7 +47,7 @@ struct BlockTotals {
   std::int64_t loaded = 0, ends = 0, gaining = 0;
 };
 
-/// The arguments of VisitKernels::account_balls(), which adds up the totals of contacts of balls and sets
+/// The arguments of ContactKernels::account_balls(), which adds up the totals of contacts of balls and sets
 /// their gaps at the end of the substep.
 struct AccountBlocks {
   BallContacts<double> contacts;

@@ -53,7 +53,7 @@ struct FindBallTile {
     const Period* const period = stage.bodies.period.exists ? &stage.bodies.period : nullptr;
     std::int32_t count = 0;
     for (int s = 0; s < parallel::tile && slots[s].i != Slot::empty; s += look) {
-      const std::uint64_t near = visit_kernels().near(reach, slots + s, period);
+      const std::uint64_t near = contact_kernels().near(reach, slots + s, period);
       for (int k = s; k < s + look && slots[k].i != Slot::empty; ++k) {
         FindBalls<double>::Record record;
         if ((near >> (k - s) & 1) == 0) {
@@ -101,7 +101,7 @@ struct MakeBallBlock {
     }
     const Period* const period = stage.bodies.period.exists ? &stage.bodies.period : nullptr;
     const PrepareBalls prepare{stage.mid.data(), contacts, period, stage.step, stage.noise};
-    const std::uint32_t closing = visit_kernels().prepare_balls(prepare, block, first);
+    const std::uint32_t closing = contact_kernels().prepare_balls(prepare, block, first);
     for (int l = 0; l < simd::width; ++l) {
       const std::int64_t c = first + l;
       if (contacts.slot[c] == Slot::empty) return;
@@ -128,7 +128,7 @@ struct AccountBallBlocks {
   ContactTotals operator()(std::int64_t run) const {
     const std::int64_t first = run * together;
     const Blocks of{first * simd::width, std::min(together, blocks() - first)};
-    const BlockTotals sums = visit_kernels().account_balls(account, of);
+    const BlockTotals sums = contact_kernels().account_balls(account, of);
     for (std::int64_t b = 0; b < of.count; ++b) remember(of.place(b));
     return {.restitution = sums.restitution,
             .friction = sums.friction,

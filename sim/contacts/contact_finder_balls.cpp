@@ -7,7 +7,7 @@ namespace scree::solver {
 namespace {
 
 template <class Space, class Real>
-constexpr bool one_by_one = visit_width<Space, Real> == 1;
+constexpr bool one_by_one = !has_ball_kernels<Space, Real>;
 
 /// Calls what(search) with a search that can do what the slots need.
 template <class Space, class Real, class What>

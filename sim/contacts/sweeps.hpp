@@ -1,6 +1,6 @@
 // Visits to the contacts of a substep: visits that find the impulses, and visits of the position correction,
 // which move overlapping bodies apart. Each visit is written once, for an arithmetic A that works on one
-// contact or on several side by side (Scalar, and Lanes in visit_kernels.cpp).
+// contact or on several side by side (Scalar, and LanesOf in visit_kernels.cpp).
 #pragma once
 
 #include "core/space_prefetch.hpp"

@@ -1,4 +1,4 @@
-// The kernels of VisitKernels. This file is compiled once for each instruction set, as
+// The kernels of ContactKernels. This file is compiled once for each instruction set, as
 // sim/laws/simd/kernels.cpp is; SCREE_SIMD names the instruction set.
 #include "sim/contacts/visit_kernels.hpp"
 
@@ -11,22 +11,29 @@ namespace scree::solver::SCREE_SIMD {
 
 namespace {
 
-using Vectors = simd::SCREE_SIMD::Lanes;
-using Vector = Vectors::V;
 constexpr int width = simd::width;
 
-static_assert(sizeof(BodyRecord<double>) == sizeof(Vector));
-static_assert(sizeof(CentreRecord<double>) == sizeof(Vector) / 2);
+template <class Number>
+using VectorOf = typename simd::SCREE_SIMD::LanesOf<Number>::V;
+
+/// Returns the same numbers in double precision.
+template <class Vector>
+SCREE_LAW VectorOf<double> in_double(const Vector& v) {
+  return __builtin_convertvector(v, VectorOf<double>);
+}
 
 /// The arithmetic of eight contacts side by side. It adds what the visits need beyond the laws, as Scalar
 /// does.
-struct Lanes : Vectors {
-  using Real = double;
+template <class Number>
+struct LanesOf : simd::SCREE_SIMD::LanesOf<Number> {
+  using Real = Number;
+  using V = VectorOf<Number>;
   static constexpr int width = simd::width;
+  static_assert(sizeof(BodyRecord<Real>) == sizeof(V) && 2 * sizeof(CentreRecord<Real>) == sizeof(V));
 
-  SCREE_LAW static V all(double a) { return a - V{}; }
-  SCREE_LAW static V get(const double* from) { return *reinterpret_cast<const V*>(from); }
-  SCREE_LAW static void set(double* to, const V& value) { *reinterpret_cast<V*>(to) = value; }
+  SCREE_LAW static V all(Real a) { return a - V{}; }
+  SCREE_LAW static V get(const Real* from) { return *reinterpret_cast<const V*>(from); }
+  SCREE_LAW static void set(Real* to, const V& value) { *reinterpret_cast<V*>(to) = value; }
   SCREE_LAW static std::int32_t most(const std::int32_t* of) {
     std::int32_t most = 0;
     for (int l = 0; l < width; ++l) most = of[l] > most ? of[l] : most;
@@ -34,14 +41,14 @@ struct Lanes : Vectors {
   }
 
   template <End end>
-  SCREE_LAW static simd::Moving<Lanes> bodies(const BodyRecord<double>* from, const Ends* ends) {
+  SCREE_LAW static simd::Moving<LanesOf> bodies(const BodyRecord<Real>* from, const Ends* ends) {
     V rows[width];
     for (int l = 0; l < width; ++l) rows[l] = reinterpret_cast<const V&>(from[body_at<end>(ends[l])]);
     simd::SCREE_SIMD::transpose<width>(rows);
     return {{rows[0], rows[1], rows[2]}, rows[3], {rows[4], rows[5], rows[6]}, rows[7]};
   }
   template <End end>
-  SCREE_LAW static simd::Centre<Lanes> bodies(const CentreRecord<double>* from, const Ends* ends) {
+  SCREE_LAW static simd::Centre<LanesOf> bodies(const CentreRecord<Real>* from, const Ends* ends) {
     V rows[half];
     for (int l = 0; l < half; ++l) {
       rows[l] = __builtin_shufflevector(half_of(from[body_at<end>(ends[l])]),
@@ -51,52 +58,58 @@ struct Lanes : Vectors {
     return {{rows[0], rows[1], rows[2]}, rows[3]};
   }
   template <End end>
-  SCREE_LAW static void put(const simd::Moving<Lanes>& from, BodyRecord<double>* to, const Ends* ends) {
+  SCREE_LAW static void put(const simd::Moving<LanesOf>& from, BodyRecord<Real>* to, const Ends* ends) {
     V rows[width] = {from.velocity.x, from.velocity.y, from.velocity.z, from.inverse_mass,
                      from.spin.x,     from.spin.y,     from.spin.z,     from.inverse_inertia};
     simd::SCREE_SIMD::transpose<width>(rows);
     for (int l = 0; l < width; ++l) {
-      BodyRecord<double>& body = to[body_at<end>(ends[l])];
+      BodyRecord<Real>& body = to[body_at<end>(ends[l])];
       if (body.inverse_mass > 0) whole(body) = rows[l];
     }
   }
   template <End end>
-  SCREE_LAW static void put(const simd::Centre<Lanes>& from, CentreRecord<double>* to, const Ends* ends) {
+  SCREE_LAW static void put(const simd::Centre<LanesOf>& from, CentreRecord<Real>* to, const Ends* ends) {
     V rows[half] = {from.velocity.x, from.velocity.y, from.velocity.z, from.inverse_mass};
     simd::SCREE_SIMD::transpose<half>(rows);
     for (int l = 0; l < half; ++l) {
-      CentreRecord<double>& low = to[body_at<end>(ends[l])];
-      CentreRecord<double>& high = to[body_at<end>(ends[l + half])];
+      CentreRecord<Real>& low = to[body_at<end>(ends[l])];
+      CentreRecord<Real>& high = to[body_at<end>(ends[l + half])];
       if (low.inverse_mass > 0) half_of(low) = __builtin_shufflevector(rows[l], rows[l], 0, 1, 2, 3);
       if (high.inverse_mass > 0) half_of(high) = __builtin_shufflevector(rows[l], rows[l], 4, 5, 6, 7);
     }
   }
 
-  SCREE_LAW static V& whole(BodyRecord<double>& body) { return reinterpret_cast<V&>(body); }
+  SCREE_LAW static V& whole(BodyRecord<Real>& body) { return reinterpret_cast<V&>(body); }
 
  private:
   static constexpr int half = width / 2;
-  using Half = simd::SCREE_SIMD::Half;
+  using Half = typename simd::SCREE_SIMD::VectorsOf<Real>::Half;
 
-  SCREE_LAW static const Half& half_of(const CentreRecord<double>& body) {
+  SCREE_LAW static const Half& half_of(const CentreRecord<Real>& body) {
     return reinterpret_cast<const Half&>(body);
   }
-  SCREE_LAW static Half& half_of(CentreRecord<double>& body) { return reinterpret_cast<Half&>(body); }
+  SCREE_LAW static Half& half_of(CentreRecord<Real>& body) { return reinterpret_cast<Half&>(body); }
 };
 
+using Lanes = LanesOf<double>;
+using Vector = Lanes::V;
+
 // Each of these loops has its own copy of the visit, which stores to memory cannot change.
-template <class Visit>
+template <class Real, class Visit>
 void push_over(const Visit& given, Blocks blocks) {
   const Visit visit = given;
-  for (std::int64_t k = 0; k < blocks.count; ++k) visit.template visit<Lanes>(blocks.place(k));
+  for (std::int64_t k = 0; k < blocks.count; ++k) visit.template visit<LanesOf<Real>>(blocks.place(k));
 }
 
-template <class Visit>
-SweepChange sweep_over(const Visit& given, Blocks blocks, double beta) {
+/// Sums are in double, as those of single contacts are.
+template <class Real, class Visit>
+SweepChange sweep_over(const Visit& given, Blocks blocks, Real beta) {
   const Visit visit = given;
   ChangeOf<Lanes> sum;
-  for (std::int64_t k = 0; k < blocks.count; ++k)
-    sum = sum + visit.template visit<Lanes>(blocks.place(k), beta);
+  for (std::int64_t k = 0; k < blocks.count; ++k) {
+    const ChangeOf<LanesOf<Real>> change = visit.template visit<LanesOf<Real>>(blocks.place(k), beta);
+    sum = sum + ChangeOf<Lanes>{in_double(change.step), in_double(change.size)};
+  }
   SweepChange total;
   for (int l = 0; l < width; ++l) {
     total.step += sum.step[l];
@@ -105,12 +118,12 @@ SweepChange sweep_over(const Visit& given, Blocks blocks, double beta) {
   return total;
 }
 
-template <class Visit>
-Overlaps correct_over(const Visit& given, Blocks blocks, double beta) {
+template <class Real, class Visit>
+Overlaps correct_over(const Visit& given, Blocks blocks, Real beta) {
   const Visit visit = given;
   Vector deepest{}, sum{}, count{};
   for (std::int64_t k = 0; k < blocks.count; ++k) {
-    const Vector gap = visit.template visit<Lanes>(blocks.place(k), beta);
+    const Vector gap = in_double(visit.template visit<LanesOf<Real>>(blocks.place(k), beta));
     const Vector depth = gap < 0 ? -gap : Vector{};
     deepest = depth > deepest ? depth : deepest;
     sum += depth;
@@ -128,15 +141,30 @@ Overlaps correct_over(const Visit& given, Blocks blocks, double beta) {
 
 /// Extrapolates whole records. The inverse mass and inertia in them do not change, since they are equal in
 /// `last`.
-void accelerate(const Accelerate<double>& visit, std::int64_t begin, std::int64_t end, double beta) {
+template <class Real>
+void accelerate(const Accelerate<Real>& visit, std::int64_t begin, std::int64_t end, Real beta) {
+  using A = LanesOf<Real>;
   for (std::int64_t k = begin; k < end; ++k) {
-    Vector& body = Lanes::whole(visit.bodies[k]);
-    Vector& last = Lanes::whole(visit.last[k]);
-    const Vector now = body;
+    typename A::V& body = A::whole(visit.bodies[k]);
+    typename A::V& last = A::whole(visit.last[k]);
+    const typename A::V now = body;
     if (beta > 0) body = now + beta * (now - last);
     last = now;
   }
 }
+
+template <class Real>
+constexpr VisitKernels<Real> visits_in = {.push_balls = push_over<Real, PushBalls<Real>>,
+                                          .push_points = push_over<Real, PushPoints<Real>>,
+                                          .push_rolling_balls = push_over<Real, PushRollingBalls<Real>>,
+                                          .push_rolling_points = push_over<Real, PushRollingPoints<Real>>,
+                                          .sweep_balls = sweep_over<Real, SweepBalls<Real>>,
+                                          .sweep_points = sweep_over<Real, SweepPoints<Real>>,
+                                          .roll_balls = sweep_over<Real, RollBalls<Real>>,
+                                          .roll_points = sweep_over<Real, RollPoints<Real>>,
+                                          .correct_balls = correct_over<Real, CorrectBalls<Real>>,
+                                          .correct_points = correct_over<Real, CorrectPoints<Real>>,
+                                          .accelerate = accelerate<Real>};
 
 using Half = simd::SCREE_SIMD::Half;
 using VectorOfMasks = decltype(Vector{} > Vector{});
@@ -322,19 +350,10 @@ BlockTotals account_balls(const AccountBlocks& given, Blocks blocks) {
 
 }  // namespace
 
-extern const VisitKernels visit_kernels = {.push_balls = push_over<PushBalls<double>>,
-                                           .push_points = push_over<PushPoints<double>>,
-                                           .push_rolling_balls = push_over<PushRollingBalls>,
-                                           .push_rolling_points = push_over<PushRollingPoints>,
-                                           .sweep_balls = sweep_over<SweepBalls<double>>,
-                                           .sweep_points = sweep_over<SweepPoints<double>>,
-                                           .roll_balls = sweep_over<RollBalls>,
-                                           .roll_points = sweep_over<RollPoints>,
-                                           .correct_balls = correct_over<CorrectBalls<double>>,
-                                           .correct_points = correct_over<CorrectPoints<double>>,
-                                           .near = near,
-                                           .prepare_balls = prepare_balls,
-                                           .account_balls = account_balls,
-                                           .accelerate = accelerate};
+extern const ContactKernels contact_kernels = {.in_double = visits_in<double>,
+                                               .in_float = visits_in<float>,
+                                               .near = near,
+                                               .prepare_balls = prepare_balls,
+                                               .account_balls = account_balls};
 
 }  // namespace scree::solver::SCREE_SIMD

@@ -3,6 +3,6 @@
 
 namespace scree::solver {
 
-const VisitKernels& visit_kernels(const char*) { return baseline::visit_kernels; }
+const ContactKernels& contact_kernels(const char*) { return baseline::contact_kernels; }
 
 }  // namespace scree::solver

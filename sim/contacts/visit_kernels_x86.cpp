@@ -5,10 +5,10 @@
 
 namespace scree::solver {
 
-const VisitKernels& visit_kernels(const char* instruction_set) {
+const ContactKernels& contact_kernels(const char* instruction_set) {
   const std::string_view name = instruction_set;
-  if (name == "avx512") return avx512::visit_kernels;
-  return name == "avx2" ? avx2::visit_kernels : baseline::visit_kernels;
+  if (name == "avx512") return avx512::contact_kernels;
+  return name == "avx2" ? avx2::contact_kernels : baseline::contact_kernels;
 }
 
 }  // namespace scree::solver

@@ -3,8 +3,8 @@
 
 namespace scree::solver {
 
-const VisitKernels& visit_kernels() {
-  static const VisitKernels& widest = visit_kernels(simd::supported_kernels().back().name);
+const ContactKernels& contact_kernels() {
+  static const ContactKernels& widest = contact_kernels(simd::supported_kernels().back().name);
   return widest;
 }
 

@@ -166,7 +166,7 @@ void ContactSolver<Space, Real>::find(ConstView<double> margin, double scale, co
   counts_.contacts = counts_.points = store_.ball_colors().contacts();
   if (parameters.rolling_friction) start_rolling(stage);
   copy(free_, solver_);
-  if constexpr (visit_width < Space, Real >> 1) pad();
+  if constexpr (visit_width<Space> != 1) pad();
   if (store_.point_colors().contacts() == 0) return;
   counts_.contacts += store_.point_colors().contacts();
   const CountPoints<Real> count{store_.points()};

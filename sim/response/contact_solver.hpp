@@ -160,7 +160,7 @@ class ContactSolver {
   AccountPoints<Real> account_points(const AccountStage<Real>& stage);
   AccountRolling<Real, BallContacts<Real>> account_rolling_balls(const AccountStage<Real>& stage);
   AccountRolling<Real, PointContacts<Real>> account_rolling_points(const AccountStage<Real>& stage);
-  ContactTotals account_ball_blocks(const AccountStage<Real>& stage) requires(visit_width<Space, Real> > 1);
+  ContactTotals account_ball_blocks(const AccountStage<Real>& stage) requires(has_ball_kernels<Space, Real>);
   ReloadBody<Real> reload(const ConstBodyView& bodies, const Array<BodyRecord<Real>, Space>& from,
                           Array<BodyRecord<Real>, Space>& to);
   void fly_on_with_changes(bool late_are_turned);

@@ -65,8 +65,8 @@ double ContactSolver<Space, Real>::run_correction_phases(const CorrectionPlan& p
   const CorrectionState done = parallel::run_in_phases<Space>(
       "correction",
       CorrectionPhases<Real, only_balls>{
-          .ball_colors = ColorPhases(store_.ball_colors(), visit_width<Space, Real>),
-          .point_colors = ColorPhases(store_.point_colors(), visit_width<Space, Real>),
+          .ball_colors = ColorPhases(store_.ball_colors(), visit_width<Space>),
+          .point_colors = ColorPhases(store_.point_colors(), visit_width<Space>),
           .balls = store_.balls(),
           .points = store_.points(),
           .displacements = {displacement_.data(), last_displacement_.data()},

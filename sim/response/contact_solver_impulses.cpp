@@ -31,24 +31,23 @@ template <bool only_balls>
 SweepState ContactSolver<Space, Real>::run_impulse_phases(const SweepPlan& plan) {
   return parallel::run_in_phases<Space>(
       "sweeps",
-      ImpulsePhases<Real, only_balls>{
-          .ball_colors = ColorPhases(store_.ball_colors(), visit_width<Space, Real>),
-          .point_colors = ColorPhases(store_.point_colors(), visit_width<Space, Real>),
-          .balls = store_.balls(),
-          .points = store_.points(),
-          .rolls = rolls(),
-          .ball_rolling = rolling_of_balls(),
-          .point_rolling = rolling_of_points(),
-          .bodies = solver_.data(),
-          .last = last_.data(),
-          .body_count = slots_.solver_bodies().count(),
-          .hubs = join_hubs(solver_),
-          .guides = {guided_.view(), solver_.data()},
-          .least = plan.least,
-          .most = plan.most,
-          .block_sweeps = plan.block_sweeps,
-          .tolerance = plan.tolerance,
-          .first_with_momentum = plan.first_with_momentum},
+      ImpulsePhases<Real, only_balls>{.ball_colors = ColorPhases(store_.ball_colors(), visit_width<Space>),
+                                      .point_colors = ColorPhases(store_.point_colors(), visit_width<Space>),
+                                      .balls = store_.balls(),
+                                      .points = store_.points(),
+                                      .rolls = rolls(),
+                                      .ball_rolling = rolling_of_balls(),
+                                      .point_rolling = rolling_of_points(),
+                                      .bodies = solver_.data(),
+                                      .last = last_.data(),
+                                      .body_count = slots_.solver_bodies().count(),
+                                      .hubs = join_hubs(solver_),
+                                      .guides = {guided_.view(), solver_.data()},
+                                      .least = plan.least,
+                                      .most = plan.most,
+                                      .block_sweeps = plan.block_sweeps,
+                                      .tolerance = plan.tolerance,
+                                      .first_with_momentum = plan.first_with_momentum},
       SweepState{});
 }
 
@@ -283,7 +282,7 @@ AccountRolling<Real, PointContacts<Real>> ContactSolver<Space, Real>::account_ro
 
 template <class Space, class Real>
 ContactTotals ContactSolver<Space, Real>::account_ball_blocks(const AccountStage<Real>& stage) requires(
-    visit_width<Space, Real> > 1) {
+    has_ball_kernels<Space, Real>) {
   before_.resize(free_.size());
   parallel::for_each<Host>("accounts.before", before_.size(), reload(stage.bodies, free_, before_));
   const AccountBallBlocks account{.account = {.contacts = store_.balls(),
@@ -309,7 +308,7 @@ void ContactSolver<Space, Real>::account(const AccountStage<Real>& stage) {
     parallel::sum_into<ContactTotals, Space>(label, contacts, on_contacts(account.contacts, account),
                                              totals_scratch_, kind_totals_.data() + kinds++);
   };
-  if constexpr (visit_width<Space, Real> == 1) {
+  if constexpr (!has_ball_kernels<Space, Real>) {
     add_up("accounts.balls", account_balls(stage));
   } else if (store_.ball_colors().contacts() > 0) {
     kind_totals_.view()[kinds++] = account_ball_blocks(stage);

@@ -70,38 +70,14 @@ struct RunOfItems {
 
   template <class Visit, class... More>
   auto visit(const ColorPhases& colors, int color, const Visit& visit, More... more) const {
-    const auto place = [&](std::int64_t k) { return colors.place(color, k); };
-    if constexpr (by_kernels) {
-      return visit_kernels()(visit, Blocks{place(begin), end - begin}, more...);
-    } else {
-      using One = decltype(visit.template visit<Scalar<Real>>(0, more...));
-      if constexpr (std::is_void_v<One>) {
-        for (std::int64_t k = begin; k < end; ++k) visit.template visit<Scalar<Real>>(place(k), more...);
-      } else {
-        SweepChange sum;
-        for (std::int64_t k = begin; k < end; ++k)
-          sum = sum + visit.template visit<Scalar<Real>>(place(k), more...);
-        return sum;
-      }
-    }
+    return kernels()(visit, Blocks{colors.place(color, begin), end - begin}, more...);
   }
   template <class Visit>
   Overlaps part(const ColorPhases& colors, int color, const Visit& visit, Real beta) const {
-    if constexpr (by_kernels) {
-      return this->visit(colors, color, visit, beta);
-    } else {
-      Overlaps sum;
-      for (std::int64_t k = begin; k < end; ++k)
-        sum = sum + OneItem<Real>{k}.part(colors, color, visit, beta);
-      return sum;
-    }
+    return this->visit(colors, color, visit, beta);
   }
   void accelerate(const Accelerate<Real>& bodies, Real beta) const {
-    if constexpr (by_kernels) {
-      visit_kernels().accelerate(bodies, begin, end, beta);
-    } else {
-      for (std::int64_t k = begin; k < end; ++k) bodies.visit(k, beta);
-    }
+    kernels().accelerate(bodies, begin, end, beta);
   }
   template <class F>
   void each(const F& f) const {
@@ -109,7 +85,7 @@ struct RunOfItems {
   }
 
  private:
-  static constexpr bool by_kernels = visit_width<Host, Real> != 1;
+  static const VisitKernels<Real>& kernels() { return contact_kernels().template visits<Real>(); }
 };
 
 /// Holds bodies of the solver that move along one axis alone to that axis, since the visits to contacts treat
