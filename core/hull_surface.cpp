@@ -76,11 +76,11 @@ Box box_around(const std::vector<Vec3>& points) {
   return box;
 }
 
-/// Finds the surface of points that have been scaled. Lengths are relative to the longest extent of the
-/// points.
+/// Finds the surface of points. Lengths are relative to the longest extent of the points.
 class Surface {
  public:
-  explicit Surface(std::vector<Vec3> points) : points_(std::move(points)), box_(box_around(points_)) {
+  explicit Surface(std::span<const Vec3> given)
+      : given_(given), points_(scaled(given)), box_(box_around(points_)) {
     width_ = tolerance::coplanar * std::min(1.0, tolerance::coplanar_thicknesses * box_.extents[2]);
   }
 
@@ -104,13 +104,15 @@ class Surface {
   /// are then stretched to a cube, which changes neither the corners of the hull nor the order of those of a
   /// face.
   bool find_of_points(double apart) {
-    const Mat3 stretch = box_.extents.cwiseInverse().asDiagonal() * box_.axes;
-    return find_in_frame(Mat3::Identity(), apart) || find_in_frame(stretch, apart);
+    leave_out_nearer(apart);
+    const Polygon all = used_;
+    if (find_in_frame(Mat3::Identity())) return true;
+    used_ = all;
+    return find_in_frame(box_.extents.cwiseInverse().asDiagonal() * box_.axes);
   }
 
-  /// Finds the faces of points that are multiplied by a matrix before Qhull sees them.
-  bool find_in_frame(const Mat3& frame, double apart) {
-    leave_out_nearer(apart);
+  /// Finds the faces of the points in use, which are multiplied by a matrix before Qhull sees them.
+  bool find_in_frame(const Mat3& frame) {
     for (;;) {
       find_faces(frame);
       const Polygon dents = find_dents();
@@ -154,7 +156,9 @@ class Surface {
     }
   }
 
-  Vec3 normal_of(const Polygon& face) const { return polygon_normal(face, points_); }
+  /// Returns the normal that the hull's face will have. For a sliver, that of the scaled points would be
+  /// another.
+  Vec3 normal_of(const Polygon& face) const { return polygon_normal(face, given_); }
 
   Vec3 side_of(const Polygon& face, std::size_t k) const {
     return at(face[(k + 1) % face.size()]) - at(face[k]);
@@ -233,7 +237,8 @@ class Surface {
     });
   }
 
-  std::vector<Vec3> points_;
+  std::span<const Vec3> given_;
+  std::vector<Vec3> points_;  ///< scaled()
   Box box_;
   double width_;  ///< the distance that counts as none
   Polygon used_;  ///< the points in use, in ascending order
@@ -242,9 +247,7 @@ class Surface {
 
 }  // namespace
 
-std::vector<std::vector<int>> hull_surface(std::span<const Vec3> points) {
-  return Surface(scaled(points)).find();
-}
+std::vector<std::vector<int>> hull_surface(std::span<const Vec3> points) { return Surface(points).find(); }
 
 Vec3 polygon_normal(std::span<const int> corners, std::span<const Vec3> points) {
   using Fine = Eigen::Matrix<long double, 3, 1>;

@@ -14,8 +14,9 @@ namespace scree {
 ///
 /// Points count as one if they are nearer to each other than tolerance::coplanar, which is relative to the
 /// longest extent, or for thin hulls to a few times the thickness. Facets that bend by less than this length
-/// count as one face. Therefore a point may be outside of the surface, and a corner out of its face's plane,
-/// by a few times this length, but by no more than tolerance::most_off_face allows.
+/// count as one face, except across thin hulls on which Qhull fails at first. Therefore a point may be
+/// outside of the surface, and a corner out of its face's plane, by a few times this length, but by no more
+/// than tolerance::most_off_face allows.
 ///
 /// Throws InputError, without a line and column, if there are fewer than four points, if one is not finite,
 /// or if they lie in a plane.

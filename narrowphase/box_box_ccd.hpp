@@ -15,7 +15,7 @@ namespace detail {
 /// Returns the answer of libccd, with its direction in world axes.
 inline ccd::Answer ask_ccd(const BoxPair& pair, ccd::Method method) {
   const double unit = fmin(pair.half[0].maxCoeff(), pair.half[1].maxCoeff());
-  ccd::Answer answer = ccd::parting_direction(
+  ccd::Answer answer = ccd::separating_direction(
       {{pair.half[0] / unit, pair.half[1] / unit}, pair.axes[0].transpose() * pair.offset / unit, pair.turn},
       method);
   if (answer.direction) answer.direction = pair.axes[0] * *answer.direction;

@@ -85,14 +85,14 @@ Answer search(const Shape& a, const Shape& b, Method method, double tolerance, i
 
 }  // namespace
 
-Answer parting_direction(const Boxes& boxes, Method method, int budget) {
+Answer separating_direction(const Boxes& boxes, Method method, int budget) {
   int supports_left = 2 * budget;  // each support point is asked of both bodies
   const Box a{Vec3::Zero(), Mat3::Identity(), boxes.half[0], &supports_left};
   const Box b{boxes.offset, boxes.turn, boxes.half[1], &supports_left};
   return search(a, b, method, box_tolerance, budget, supports_left);
 }
 
-Answer parting_direction(const Convex& a, const Convex& b, Method method, int budget) {
+Answer separating_direction(const Convex& a, const Convex& b, Method method, int budget) {
   int supports_left = 2 * budget;
   const Body body_a{a, a.centre, &supports_left}, body_b{b, b.centre, &supports_left};
   return search(body_a, body_b, method, convex_tolerance, budget, supports_left);

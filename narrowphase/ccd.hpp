@@ -49,7 +49,7 @@ struct Answer {
 
 /// Returns libccd's answer for two bodies. The search is bounded in time and the answer is never NaN. The
 /// caller must check whether it is right, because it often is not.
-Answer parting_direction(const Boxes& boxes, Method method, int budget = support_budget);
-Answer parting_direction(const Convex& a, const Convex& b, Method method, int budget);
+Answer separating_direction(const Boxes& boxes, Method method, int budget = support_budget);
+Answer separating_direction(const Convex& a, const Convex& b, Method method, int budget);
 
 }  // namespace scree::ccd

@@ -44,7 +44,7 @@ int support_budget_of(const ConvexBody& a, const ConvexBody& b) {
 ccd::Answer ask_ccd(const ConvexBody& a, const ConvexBody& b, ccd::Method method, int budget) {
   const double unit = std::min(a.extent(), b.extent());
   const Shown first{a, a.axes(), unit}, second{b, a.axes(), unit};
-  ccd::Answer answer = ccd::parting_direction(first.to_ccd(), second.to_ccd(), method, budget);
+  ccd::Answer answer = ccd::separating_direction(first.to_ccd(), second.to_ccd(), method, budget);
   if (answer.direction) answer.direction = a.axes() * *answer.direction;
   return answer;
 }

@@ -151,7 +151,10 @@ class Maker {
   void bevels() {
     const double fine = power_of_ten(-7, -2);
     std::vector<Vec3> corners;
-    for (int k = whole(2, 12); k > 0; --k) corners.emplace_back(whole(-8, 7) / 8.0, whole(-8, 7) / 8.0, 0);
+    for (int k = whole(2, 12); k > 0; --k) {
+      const int x = whole(-8, 7), y = whole(-8, 7);
+      corners.emplace_back(x / 8.0, y / 8.0, 0);
+    }
     for (int k = some(); k > 0; --k) {
       const int x = whole(-8, 7), y = whole(-8, 7), z = whole(-8, 7);
       const Vec3& corner = corners[static_cast<std::size_t>(whole(0, static_cast<int>(corners.size()) - 1))];

@@ -51,7 +51,7 @@ class DirectAlone : public Solver {
   ScreeContacts contacts_;
 };
 
-/// Solves as ContactSolver::solve_islands() does.
+/// Solves as ContactSolver::solve_islands() does for bodies at rest.
 class Response : public Solver {
  public:
   Response(const ContactProblem& scene, bool accurate) : contacts_(scene), accurate_(accurate) {}

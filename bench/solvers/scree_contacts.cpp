@@ -13,7 +13,7 @@ namespace scree::bench {
 using namespace solver;
 
 ScreeContacts::ScreeContacts(const ContactProblem& problem)
-    : problem_(problem), nobody_(static_cast<std::int32_t>(problem.bodies.size())) {
+    : problem_(problem), padding_(static_cast<std::int32_t>(problem.bodies.size())) {
   std::vector<BodyRecord<double>> records;
   for (const ContactProblem::Body& of : problem.bodies) {
     BodyRecord<double>& record = records.emplace_back();
@@ -97,9 +97,9 @@ void ScreeContacts::place_contacts() {
     }
   }
   for (std::int64_t b = 0; b < balls / simd::width; ++b)
-    PadBalls<double>{store_.balls(), {}, false, nobody_}(b);
+    PadBalls<double>{store_.balls(), {}, false, padding_}(b);
   for (std::int64_t b = 0; b < ranges[false].places() / simd::width; ++b)
-    PadPoints<double>{store_.points(), {}, false, nobody_}(b);
+    PadPoints<double>{store_.points(), {}, false, padding_}(b);
 }
 
 void ScreeContacts::fill_ball(const ContactProblem::Contact& contact, std::int64_t to) {
@@ -199,7 +199,7 @@ bool ScreeContacts::solve_islands(double tolerance, const DirectLimits& limits, 
   seen.first_wall_point = seen.first_part = free_.size();
   seen.first_place = store_.ball_colors().places();
   ContactsOnHost<double> contacts(seen, {});
-  const bool all = contacts.solve(tolerance, limits, solved, failed);
+  const bool all = contacts.solve(tolerance, limits, nullptr, solved, failed);
   contacts.put_back();
   return all;
 }

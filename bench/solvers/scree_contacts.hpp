@@ -49,7 +49,7 @@ class ScreeContacts {
   std::vector<Place> place_;  // place of each contact
   std::vector<solver::Slot> slots_;
   solver::ContactStore<Host, double> store_;
-  std::int32_t nobody_;
+  std::int32_t padding_;
   Array<solver::BodyRecord<double>, Host> free_, solver_, last_;
 };
 

@@ -118,8 +118,7 @@ BodyTable state_of(const Simulation& simulation) {
 
 constexpr const char* out_of_memory =
     "out of memory; `scree plan` says how much the scene needs, and on a machine with as much --resume goes "
-    "on from "
-    "the last checkpoint";
+    "on from the last checkpoint";
 
 /// Adds the bodies of the step that failed to the summary, and draws them.
 void say_failure(const StepFailure& failure, const Scene& scene, Simulation& simulation,

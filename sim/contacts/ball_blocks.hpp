@@ -35,7 +35,7 @@ struct PrepareBalls {
   BallContacts<double> contacts;
   const Period* period;  ///< null if the scene has no period
   double step;           ///< s
-  double noise;          ///< largest parting speed that counts as none (m/s)
+  double noise;          ///< largest separating speed that counts as none (m/s)
 };
 
 /// Sums of ContactTotals over blocks of contacts.
@@ -43,7 +43,7 @@ struct BlockTotals {
   double restitution = 0, friction = 0, work = 0;
   double gaps = 0;
   double deepest = 0;
-  double gap_power = 0, kick_power = 0;
+  double residual_power = 0, impulse_power = 0;
   std::int64_t loaded = 0, ends = 0, gaining = 0;
 };
 

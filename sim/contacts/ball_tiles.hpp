@@ -138,8 +138,8 @@ struct AccountBallBlocks {
             .ends = sums.ends,
             .gaining = sums.gaining,
             .deepest = sums.deepest,
-            .gap_power = sums.gap_power,
-            .kick_power = sums.kick_power};
+            .residual_power = sums.residual_power,
+            .impulse_power = sums.impulse_power};
   }
 
  private:

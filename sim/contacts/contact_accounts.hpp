@@ -20,14 +20,14 @@ namespace scree::solver {
 struct ContactTotals {
   double restitution = 0;  ///< energy dissipated by normal impulses (J)
   double friction = 0;
-  double work = 0;           ///< work done by bodies that are not free (J)
-  double gaps = 0;           ///< sum of |gap| of loaded points (m)
-  std::int64_t loaded = 0;   ///< points that carry an impulse
-  std::int64_t ends = 0;     ///< free bodies at loaded contacts
-  std::int64_t gaining = 0;  ///< contacts that gain energy (Moved::gains); with none, no set of them gains
-  double deepest = 0;        ///< deepest overlap at the end of the substep, relative to the cap
-  double gap_power = 0;      ///< power of normal impulses on residual velocities: 0 at the solution (J)
-  double kick_power = 0;     ///< power of impulses on the relative velocities that they have changed (J)
+  double work = 0;            ///< work done by bodies that are not free (J)
+  double gaps = 0;            ///< sum of |gap| of loaded points (m)
+  std::int64_t loaded = 0;    ///< points that carry an impulse
+  std::int64_t ends = 0;      ///< free bodies at loaded contacts
+  std::int64_t gaining = 0;   ///< contacts that gain energy (Moved::gains); with none, no set of them gains
+  double deepest = 0;         ///< deepest overlap at the end of the substep, relative to the cap
+  double residual_power = 0;  ///< power of normal impulses on residual velocities: 0 at the solution (J)
+  double impulse_power = 0;   ///< power of impulses on the relative velocities that they have changed (J)
 
   SCREE_HD friend ContactTotals operator+(const ContactTotals& a, const ContactTotals& b) {
     return {a.restitution + b.restitution,
@@ -38,13 +38,13 @@ struct ContactTotals {
             a.ends + b.ends,
             a.gaining + b.gaining,
             a.deepest > b.deepest ? a.deepest : b.deepest,
-            a.gap_power + b.gap_power,
-            a.kick_power + b.kick_power};
+            a.residual_power + b.residual_power,
+            a.impulse_power + b.impulse_power};
   }
 
   /// Returns the energy that all impulses have moved, as a parabola in their common scale.
   SCREE_HD Moved moved() const {
-    const double square = 0.5 * kick_power;
+    const double square = 0.5 * impulse_power;
     return {-(restitution + friction) - square, square};
   }
 };
@@ -152,8 +152,8 @@ struct AccountStage {
     totals.friction -= through_mean - normal_part;
     if (!ends.is_free_i()) totals.work += p.dot(velocity_of(ends.after_i, at.arm_i));
     if (!ends.is_free_j()) totals.work -= p.dot(velocity_of(ends.after_j, at.arm_j));
-    totals.gap_power += pn * (after.dot(at.normal) - at.target);
-    totals.kick_power += changed;
+    totals.residual_power += pn * (after.dot(at.normal) - at.target);
+    totals.impulse_power += changed;
   }
   /// Sets `gaining` in the totals of one contact, all of whose points have been added.
   SCREE_HD static void judge_gain(ContactTotals& totals) {
@@ -174,9 +174,9 @@ struct AccountStage {
   }
 };
 
-/// Whether the bodies of a contact fly past each other: they were foreseen to, and none of its points bears
-/// load (`loaded`). The gap of such a contact does not count, since a body that flies past is nearer to the
-/// other's tangent plane than to the other itself.
+/// Returns whether the bodies of a contact fly past each other: this was predicted, and none of its points
+/// bears load (`loaded`). The gap of such a contact does not count, since a body that flies past is nearer to
+/// the other's tangent plane than to the other itself.
 SCREE_HD inline bool passes(std::uint8_t flags, bool loaded) { return (flags & flag_flying) != 0 && !loaded; }
 
 /// Accounts for a contact of balls: returns its totals, sets its gap at the end, and stores its impulse in

@@ -124,9 +124,9 @@ SCREE_HD bool would_push_apart(const StruckFlights& struck, const Header& m, con
 
 /// Decides how the response treats a contact (Header is Manifold). Two bodies that the rows would hold apart,
 /// although they do not touch anywhere yet, may pass by each other: the normal at the midpoint says nothing
-/// about this. Or they meet later in an impact in which they bounce; in a crowd they bounce in the response
-/// instead. `size`: the smaller smallest_size of the two bodies (m); `loaded`: whether the pair's part
-/// carried an impulse in the last substep.
+/// about this. Or they meet later in an impact in which they bounce; two bodies that both bear load bounce in
+/// the response instead. `size`: the smaller smallest_size of the two bodies (m); `loaded`: whether the
+/// pair's part carried an impulse in the last substep.
 template <class Header>
 SCREE_HD ContactFlight flight_of_contact(const StruckFlights& struck, const Header& m,
                                          const ContactPoint* points, double size, bool loaded) {

@@ -151,7 +151,7 @@ struct FindBalls {
     const double curvature = stage.curvature_of(at, n);
     const double opened = stage.opened_by_then(at, n, curvature, record.delay);
     if constexpr (rare) set_wall_points(at, record);
-    const double parting = n.dot(stage.relative_velocity(at));
+    const double separating = n.dot(stage.relative_velocity(at));
     const double closing = -n.dot(stage.kicked_relative_velocity(at));
     const bool approaches =
         !remembered.is_loaded() && stage.may_be_held_apart(record.gap, closing, record.delay);
@@ -166,7 +166,7 @@ struct FindBalls {
     put(C::arm_i, record.arm_i);
     put(C::arm_j, record.arm_j);
     put(C::friction, friction);
-    put(C::target, stage.target_of(record.gap, 0.0, curvature, parting, record.delay));
+    put(C::target, stage.target_of(record.gap, 0.0, curvature, separating, record.delay));
     put(C::normal_mass, masses.normal);
     put(C::tangent_mass, masses.tangent);
     f.set(C::impulse, to, impulse);

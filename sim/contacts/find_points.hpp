@@ -157,8 +157,8 @@ struct FindPoints {
       for (int q = 0; q < old.count; ++q)
         if (old.feature[q] == point.feature) last = old.impulse[q];
       const V3<Real> impulse = v3<Real>(stage.remembered(last, m.normal, friction));
-      const double parting = m.normal.dot(row.relative_velocity(i, j));
-      const double closing = -(parting + m.normal.dot(kick));
+      const double separating = m.normal.dot(row.relative_velocity(i, j));
+      const double closing = -(separating + m.normal.dot(kick));
       approaches = approaches || stage.may_be_held_apart(point.gap, closing, delay);
       const auto at = [p](auto field) { return C::at_point(p, field); };
       const auto& f = contacts.point_fields;
@@ -169,7 +169,7 @@ struct FindPoints {
       const double stick[] = {w(0, 0), w(1, 1), w(2, 2), w(0, 1), w(0, 2), w(1, 2)};
       for (int e = 0; e < 6; ++e) f.at(at(C::stick) + e, to) = static_cast<Real>(stick[e]);
       f.set(at(C::coupling), to, v3<Real>(coupling.normal));
-      put(C::target, stage.target_of(point.gap, shell, curvature, parting, delay));
+      put(C::target, stage.target_of(point.gap, shell, curvature, separating, delay));
       put(C::normal_mass, row.normal_mass);
       put(C::tangent_mass, row.tangent_mass);
       f.set(at(C::impulse), to, impulse);

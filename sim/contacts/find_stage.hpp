@@ -42,7 +42,7 @@ struct FindStage {
   ResponseParameters parameters;
   double step;                       ///< s
   double scale;                      ///< factor for remembered impulses
-  double noise;                      ///< largest parting speed that counts as none (m/s)
+  double noise;                      ///< largest separating speed that counts as none (m/s)
   StruckFlights struck;              ///< the bodies after their impacts
   bool any_late_impact;              ///< whether any body was struck after the midpoint
   LibccdContacts* libccd = nullptr;  ///< on Host alone; null if libccd is not used
@@ -116,11 +116,12 @@ struct FindStage {
 
   /// Returns the target of the normal velocity of a point (m/s): its gap may close by the next midpoint, and
   /// no more, so that nothing overlaps there. `shell`: the gap that counts as closed (m). A contact that was
-  /// parting before the kick (`parting`, m/s) would gain energy if it were held; it may close as fast as it
-  /// was parting.
-  SCREE_HD double target_of(double gap, double shell, double curvature, double parting, double delay) const {
+  /// separating before the kick (at the speed `separating`, m/s) would gain energy if it were held. It may
+  /// close as fast as it was separating.
+  SCREE_HD double target_of(double gap, double shell, double curvature, double separating,
+                            double delay) const {
     const double closing = gap > shell ? -(gap - shell) / (step - delay) : 0.0;
-    return fmin(closing - 0.5 * step * curvature, noise - parting);
+    return fmin(closing - 0.5 * step * curvature, noise - separating);
   }
   /// Whether the row of a point may hold its bodies apart, judged by the normal velocity of the point alone.
   /// This excludes nearly all contacts; flight_of_contact() decides about the others.
@@ -136,8 +137,8 @@ struct FindStage {
     return fmin(target, free - tolerance::flight_margin * fabs(free) - rounding * speed);
   }
 
-  /// Returns the target of a contact of two bodies in a crowd that approach. If their gap would close within
-  /// the substep, so that the contact would push anyway, they bounce together with all contacts of the crowd
+  /// Returns the target of a contact of two bodies that both bear load and approach. If their gap would close
+  /// within the substep, so that the contact would push anyway, they bounce together with all their contacts
   /// (u+ = -e u-; Moreau 1999). `before` and `free`: the normal velocities before the kick and after it
   /// (m/s).
   SCREE_HD double target_of_bounce(const Slot& slot, double target, double gap, double before, double free,

@@ -1,6 +1,6 @@
 // Visits to the contacts of a substep: visits that find the impulses, and visits of the position correction,
 // which move overlapping bodies apart. Each visit is written once, for an arithmetic A that works on one
-// contact or on several side by side (Scalar, and LanesOf in visit_kernels.cpp).
+// contact or on several side by side (Scalar, and ContactLanes in visit_kernels.cpp).
 #pragma once
 
 #include "core/space_prefetch.hpp"
@@ -316,7 +316,7 @@ struct CorrectBalls {
     if constexpr (A::width == 1) load_here(cap, mass);
     if (!A::any((gap < 0) | (before > 0) | (last > 0))) return typename A::V{};
     auto pushed = before + A::all(beta) * (before - last);
-    const auto more = simd::parting<A>(gap, cap, A::all(share), mass, pushed);
+    const auto more = simd::correction_push<A>(gap, cap, A::all(share), mass, pushed);
     push_centres(more * n, two.i, two.j);
     store<A>(two, bodies, ends);
     contacts.gaps.template put<A>(C::pushed, c, pushed);
@@ -377,7 +377,7 @@ struct CorrectPoints {
       parts[p] = parts[p] || A::any(gap < 0);
       if (parts[p]) {
         const V mass = is_gpu_code ? masses_there[p] : mass_at(p);
-        const V more = simd::parting<A>(gap, cap, A::all(share), mass, pushed[p]);
+        const V more = simd::correction_push<A>(gap, cap, A::all(share), mass, pushed[p]);
         apart = apart + masses * more;
         pushed_apart = pushed_apart + more;
         turned.i.velocity = turned.i.velocity - more * (turning.i * lever_i);

@@ -25,7 +25,7 @@ SCREE_LAW VectorOf<double> in_double(const Vector& v) {
 /// The arithmetic of eight contacts side by side. It adds what the visits need beyond the laws, as Scalar
 /// does.
 template <class Number>
-struct LanesOf : simd::SCREE_SIMD::LanesOf<Number> {
+struct ContactLanes : simd::SCREE_SIMD::LanesOf<Number> {
   using Real = Number;
   using V = VectorOf<Number>;
   static constexpr int width = simd::width;
@@ -41,14 +41,14 @@ struct LanesOf : simd::SCREE_SIMD::LanesOf<Number> {
   }
 
   template <End end>
-  SCREE_LAW static simd::Moving<LanesOf> bodies(const BodyRecord<Real>* from, const Ends* ends) {
+  SCREE_LAW static simd::Moving<ContactLanes> bodies(const BodyRecord<Real>* from, const Ends* ends) {
     V rows[width];
     for (int l = 0; l < width; ++l) rows[l] = reinterpret_cast<const V&>(from[body_at<end>(ends[l])]);
     simd::SCREE_SIMD::transpose<width>(rows);
     return {{rows[0], rows[1], rows[2]}, rows[3], {rows[4], rows[5], rows[6]}, rows[7]};
   }
   template <End end>
-  SCREE_LAW static simd::Centre<LanesOf> bodies(const CentreRecord<Real>* from, const Ends* ends) {
+  SCREE_LAW static simd::Centre<ContactLanes> bodies(const CentreRecord<Real>* from, const Ends* ends) {
     V rows[half];
     for (int l = 0; l < half; ++l) {
       rows[l] = __builtin_shufflevector(half_of(from[body_at<end>(ends[l])]),
@@ -58,7 +58,7 @@ struct LanesOf : simd::SCREE_SIMD::LanesOf<Number> {
     return {{rows[0], rows[1], rows[2]}, rows[3]};
   }
   template <End end>
-  SCREE_LAW static void put(const simd::Moving<LanesOf>& from, BodyRecord<Real>* to, const Ends* ends) {
+  SCREE_LAW static void put(const simd::Moving<ContactLanes>& from, BodyRecord<Real>* to, const Ends* ends) {
     V rows[width] = {from.velocity.x, from.velocity.y, from.velocity.z, from.inverse_mass,
                      from.spin.x,     from.spin.y,     from.spin.z,     from.inverse_inertia};
     simd::SCREE_SIMD::transpose<width>(rows);
@@ -68,7 +68,8 @@ struct LanesOf : simd::SCREE_SIMD::LanesOf<Number> {
     }
   }
   template <End end>
-  SCREE_LAW static void put(const simd::Centre<LanesOf>& from, CentreRecord<Real>* to, const Ends* ends) {
+  SCREE_LAW static void put(const simd::Centre<ContactLanes>& from, CentreRecord<Real>* to,
+                            const Ends* ends) {
     V rows[half] = {from.velocity.x, from.velocity.y, from.velocity.z, from.inverse_mass};
     simd::SCREE_SIMD::transpose<half>(rows);
     for (int l = 0; l < half; ++l) {
@@ -91,14 +92,14 @@ struct LanesOf : simd::SCREE_SIMD::LanesOf<Number> {
   SCREE_LAW static Half& half_of(CentreRecord<Real>& body) { return reinterpret_cast<Half&>(body); }
 };
 
-using Lanes = LanesOf<double>;
+using Lanes = ContactLanes<double>;
 using Vector = Lanes::V;
 
 // Each of these loops has its own copy of the visit, which stores to memory cannot change.
 template <class Real, class Visit>
 void push_over(const Visit& given, Blocks blocks) {
   const Visit visit = given;
-  for (std::int64_t k = 0; k < blocks.count; ++k) visit.template visit<LanesOf<Real>>(blocks.place(k));
+  for (std::int64_t k = 0; k < blocks.count; ++k) visit.template visit<ContactLanes<Real>>(blocks.place(k));
 }
 
 /// Sums are in double, as those of single contacts are.
@@ -107,7 +108,8 @@ SweepChange sweep_over(const Visit& given, Blocks blocks, Real beta) {
   const Visit visit = given;
   ChangeOf<Lanes> sum;
   for (std::int64_t k = 0; k < blocks.count; ++k) {
-    const ChangeOf<LanesOf<Real>> change = visit.template visit<LanesOf<Real>>(blocks.place(k), beta);
+    const ChangeOf<ContactLanes<Real>> change =
+        visit.template visit<ContactLanes<Real>>(blocks.place(k), beta);
     sum = sum + ChangeOf<Lanes>{in_double(change.step), in_double(change.size)};
   }
   SweepChange total;
@@ -123,7 +125,7 @@ Overlaps correct_over(const Visit& given, Blocks blocks, Real beta) {
   const Visit visit = given;
   Vector deepest{}, sum{}, count{};
   for (std::int64_t k = 0; k < blocks.count; ++k) {
-    const Vector gap = in_double(visit.template visit<LanesOf<Real>>(blocks.place(k), beta));
+    const Vector gap = in_double(visit.template visit<ContactLanes<Real>>(blocks.place(k), beta));
     const Vector depth = gap < 0 ? -gap : Vector{};
     deepest = depth > deepest ? depth : deepest;
     sum += depth;
@@ -143,7 +145,7 @@ Overlaps correct_over(const Visit& given, Blocks blocks, Real beta) {
 /// `last`.
 template <class Real>
 void accelerate(const Accelerate<Real>& visit, std::int64_t begin, std::int64_t end, Real beta) {
-  using A = LanesOf<Real>;
+  using A = ContactLanes<Real>;
   for (std::int64_t k = begin; k < end; ++k) {
     typename A::V& body = A::whole(visit.bodies[k]);
     typename A::V& last = A::whole(visit.last[k]);
@@ -295,7 +297,7 @@ SCREE_LAW Vector predict_gaps(const AccountBlocks& by, std::int64_t c, const Vec
 BlockTotals account_balls(const AccountBlocks& given, Blocks blocks) {
   using C = BallContacts<double>;
   const AccountBlocks by = given;
-  Vector restitution{}, friction{}, work{}, of_gaps{}, deepest{}, gap_power{}, kick_power{};
+  Vector restitution{}, friction{}, work{}, of_gaps{}, deepest{}, residual_power{}, impulse_power{};
   Vector loaded{}, ends{}, gaining{};
   const Vector one = Lanes::all(1);
   for (std::int64_t k = 0; k < blocks.count; ++k) {
@@ -322,8 +324,8 @@ BlockTotals account_balls(const AccountBlocks& given, Blocks blocks) {
     friction = friction - (through_mean - normal_part);
     work = work + (free_i ? Vector{} : dot(p, after.i.velocity + arm(balls.arm_i, after.i.spin)));
     work = work - (free_j ? Vector{} : dot(p, after.j.velocity + arm(balls.arm_j, after.j.spin)));
-    gap_power = gap_power + pn * (dot(u, balls.normal) - balls.target);
-    kick_power = kick_power + changed;
+    residual_power = residual_power + pn * (dot(u, balls.normal) - balls.target);
+    impulse_power = impulse_power + changed;
     const Vector square = 0.5 * changed;
     gaining = gaining + ((carries & (through_mean > by.rounding * square)) ? one : Vector{});
     const Vector gap = by.contacts.gaps.get<Lanes>(C::gap, c);
@@ -339,8 +341,8 @@ BlockTotals account_balls(const AccountBlocks& given, Blocks blocks) {
   totals.friction = sum_of(friction);
   totals.work = sum_of(work);
   totals.gaps = sum_of(of_gaps);
-  totals.gap_power = sum_of(gap_power);
-  totals.kick_power = sum_of(kick_power);
+  totals.residual_power = sum_of(residual_power);
+  totals.impulse_power = sum_of(impulse_power);
   totals.loaded = static_cast<std::int64_t>(sum_of(loaded));
   totals.ends = static_cast<std::int64_t>(sum_of(ends));
   totals.gaining = static_cast<std::int64_t>(sum_of(gaining));

@@ -65,9 +65,9 @@ struct StartProgress {
   SCREE_HD void operator()(std::int64_t) const {
     const double least_impact_speed =
         stage.find_least_impact_speed(bounds[0].smallest, bounds[0].restitution);
-    const bool nobody = 2 * bounds[0].top_speed <= least_impact_speed;
+    const bool all_are_slow = 2 * bounds[0].top_speed <= least_impact_speed;
     *progress = {};
-    progress->least_impact_speed = nobody ? HUGE_VAL : least_impact_speed;
+    progress->least_impact_speed = all_are_slow ? HUGE_VAL : least_impact_speed;
     progress->needs_search = bounds[0].needs_search;
   }
 };

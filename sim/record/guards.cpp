@@ -53,7 +53,7 @@ std::vector<GuardCount> guards_of(const Observation& last, const GuardedRun& run
                    c.unfinished_impacts, c.substeps, overlap),
        is_deep(run) || loses_bounces},
       {"newton", c.long_direct_failed,
-       "groups of contacts that neither the direct solver nor all sweeps have solved",
+       "groups of contacts that neither all sweeps nor a second, longer direct solution has solved",
        "a smaller time.step or more response.iterations", rest, unsolved_matters},
       {"gjk", c.narrowphase.ccd_stopped, "calls of libccd that reached their limit",
        "narrowphase.box_box: sat, convex: axes", "another method has answered them", false},

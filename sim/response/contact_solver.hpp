@@ -138,6 +138,7 @@ class ContactSolver {
   bool are_solved(double tolerance);
   double residual();
   double find_slip_end(const AccountStage<Real>& stage);
+  std::vector<BodyRecord<Real>> velocities_before(const ConstBodyView& bodies);
   int keep_from_gaining(const AccountStage<Real>& stage);
   bool no_island_gains(AccountStage<Real> stage);
   void scale_impulses(double by);
@@ -163,7 +164,7 @@ class ContactSolver {
   ContactTotals account_ball_blocks(const AccountStage<Real>& stage) requires(has_ball_kernels<Space, Real>);
   ReloadBody<Real> reload(const ConstBodyView& bodies, const Array<BodyRecord<Real>, Space>& from,
                           Array<BodyRecord<Real>, Space>& to);
-  void fly_on_with_changes(bool late_are_turned);
+  void fly_on_with_changes(bool rotations_are_applied);
   Ledger shift_after_late_impacts(const FlightStage& flight);
   void find_end_gaps(const ConstBodyView& bodies);
 

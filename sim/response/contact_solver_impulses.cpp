@@ -108,13 +108,13 @@ template <class Space, class Real>
 bool ContactSolver<Space, Real>::solve_islands(const ConstBodyView& bodies, const SweepPlan& plan,
                                                bool accurate, Counters& counters) {
   SweepPlan first = plan, rest = plan;
-  const bool moves = sweep_count_.moves();
-  if (plan.direct) first.most = sweeps_before_direct(plan.most, moves, counters);
+  if (plan.direct) first.most = sweeps_before_direct(plan.most, sweep_count_.moves(), counters);
   rest.most = std::max(plan.most - first.most, few_sweeps);
-  const auto solve_directly = [&](const DirectLimits& limits, std::int64_t& solved, std::int64_t& failed) {
+  const auto solve_directly = [&](const DirectLimits& limits, const std::vector<BodyRecord<Real>>* before,
+                                  std::int64_t& solved, std::int64_t& failed) {
     Inspection<Real> seen = inspect(bodies);
     ContactsOnHost<Real> contacts(seen, guides_);
-    const bool all = contacts.solve(plan.tolerance, limits, solved, failed);
+    const bool all = contacts.solve(plan.tolerance, limits, before, solved, failed);
     put_back(seen, contacts);
     return all;
   };
@@ -129,11 +129,12 @@ bool ContactSolver<Space, Real>::solve_islands(const ConstBodyView& bodies, cons
   if (!converged && !accurate && plan.most <= few_sweeps) return false;
   if (converged && (accurate ? are_solved(plan.tolerance) : !spread_of_loads().is_wide(plan.tolerance)))
     return true;
-  if (solve_directly(accurate ? thorough_limits : quick_limits, counters.direct, counters.direct_failed))
-    return true;
+  const DirectLimits& limits = accurate ? thorough_limits : quick_limits;
+  if (solve_directly(limits, nullptr, counters.direct, counters.direct_failed)) return true;
   if (sweep_many(rest)) return true;
-  return !accurate && pays_long_solution(moves, counters) &&
-         solve_directly(long_limits, counters.long_direct, counters.long_direct_failed);
+  if (accurate || !pays_long_solution(counters)) return false;
+  const std::vector<BodyRecord<Real>> before = velocities_before(bodies);
+  return solve_directly(long_limits, &before, counters.long_direct, counters.long_direct_failed);
 }
 
 template <class Space, class Real>
@@ -203,6 +204,14 @@ ReloadBody<Real> ContactSolver<Space, Real>::reload(const ConstBodyView& bodies,
           all.first_part(), from.view(), to.view()};
 }
 
+/// Returns the velocities of the bodies of the solver before the substep's forces.
+template <class Space, class Real>
+std::vector<BodyRecord<Real>> ContactSolver<Space, Real>::velocities_before(const ConstBodyView& bodies) {
+  before_.resize(free_.size());
+  parallel::for_each<Space>("accounts.before", before_.size(), reload(bodies, free_, before_));
+  return to_vector(before_);
+}
+
 /// Scales down impulses that would gain energy, until they gain none. Few contacts are scaled island by
 /// island; those of a heap (or too many for Host) by one factor, as one island. Returns the number of islands
 /// scaled.
@@ -221,9 +230,7 @@ int ContactSolver<Space, Real>::keep_from_gaining(const AccountStage<Real>& stag
   if (no_island_gains(stage)) return 0;
   Inspection<Real> seen = inspect(stage.bodies);
   ContactsOnHost<Real> contacts(seen, guides_);
-  before_.resize(free_.size());
-  parallel::for_each<Space>("accounts.before", before_.size(), reload(stage.bodies, free_, before_));
-  const int scaled = contacts.keep_from_gaining(to_vector(before_));
+  const int scaled = contacts.keep_from_gaining(velocities_before(stage.bodies));
   if (scaled == 0) return 0;
   copy(last_, solver_);
   put_back(seen, contacts);
@@ -351,7 +358,7 @@ Ledger ContactSolver<Space, Real>::solve(const FlightStage& flight, bool any_lat
     ledger.restitution = totals_.restitution;
     ledger.friction = totals_.friction;
     ledger.work = totals_.work;
-    sweep_count_.judge(totals_.gap_power, totals_.kick_power, totals_.restitution + totals_.friction);
+    sweep_count_.judge(totals_.residual_power, totals_.impulse_power, totals_.restitution + totals_.friction);
     // Where Newton's method has failed, the impulses do not tell when a contact comes to stick.
     if (parameters.accurate && parameters.friction && !has_heap() && !newton_failed)
       slip_end_ = find_slip_end(stage);
@@ -403,12 +410,12 @@ void ContactSolver<Space, Real>::take_velocities(const FlightStage& flight) {
 }
 
 /// Corrects the gaps at the end of the substep, after the velocities have changed from those of `last_`.
-/// `late_are_turned`: whether shift_after_late_impacts() has been called.
+/// `rotations_are_applied`: whether shift_after_late_impacts() has been called.
 template <class Space, class Real>
-void ContactSolver<Space, Real>::fly_on_with_changes(bool late_are_turned) {
+void ContactSolver<Space, Real>::fly_on_with_changes(bool rotations_are_applied) {
   for_balls("gaps.predict", PredictGapsOfBalls<Real>{store_.balls(), last_.view(), solver_.view(), step_});
   for_points("gaps.predict", PredictGapsOfPoints<Real>{store_.points(), last_.view(), solver_.view(), step_,
-                                                       late_are_turned});
+                                                       rotations_are_applied});
 }
 
 #define SCREE_INSTANTIATE_REAL(Space, Real)                                                       \

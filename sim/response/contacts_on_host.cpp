@@ -1,6 +1,7 @@
 #include "sim/response/contacts_on_host.hpp"
 
 #include "core/parallel_loops.hpp"
+#include "core/tolerances.hpp"
 #include "sim/contacts/contact_accounts.hpp"
 #include "sim/laws/impulse_energy.hpp"
 #include "sim/laws/rolling.hpp"
@@ -150,9 +151,54 @@ ImpulseChange ContactsOnHost<Real>::residual_of(const IslandProblem& problem) co
   return residual;
 }
 
+/// Sorts records of the bodies of the solver by their numbers.
 template <class Real>
-bool ContactsOnHost<Real>::solve(double tolerance, const DirectLimits& limits, std::int64_t& solved,
+std::vector<BodyRecord<Real>> ContactsOnHost<Real>::by_index(
+    const std::vector<BodyRecord<Real>>& by_place) const {
+  std::vector<BodyRecord<Real>> sorted(by_place.size());
+  for (std::size_t k = 0; k < sorted.size(); ++k) sorted[static_cast<std::size_t>(index_[k])] = by_place[k];
+  return sorted;
+}
+
+/// Returns the velocities of j relative to i at a point of a contact, which are before the substep's forces,
+/// with these but without contacts, and with the impulses found. `before` is sorted by the numbers of the
+/// bodies.
+template <class Real>
+VelocitiesAt ContactsOnHost<Real>::velocities_at(const ContactRow& row, const Contact& contact,
+                                                 const std::vector<BodyRecord<Real>>& before) const {
+  const BodyRecord<Real>& before_i = before[static_cast<std::size_t>(contact.i)];
+  const BodyRecord<Real>& before_j = before[static_cast<std::size_t>(contact.j)];
+  return {row.relative_velocity(vec3(before_i.velocity), vec3(before_i.spin), vec3(before_j.velocity),
+                                vec3(before_j.spin)),
+          row.relative_velocity(velocity_.view()[contact.i], spin_.view()[contact.i],
+                                velocity_.view()[contact.j], spin_.view()[contact.j]),
+          row.relative_velocity(bodies_.view()[contact.i], bodies_.view()[contact.j])};
+}
+
+/// Returns whether the bodies of an island move on one another: whether the power of its impulses on the
+/// velocities before the substep's forces is more than a share of their power on what they change. At rest it
+/// is 0, even where the impulses are far from the solution. `before` is sorted by the numbers of the bodies.
+template <class Real>
+bool ContactsOnHost<Real>::moves(std::int64_t island, const std::vector<BodyRecord<Real>>& before) const {
+  double taken = 0, changed = 0;
+  for (const std::int32_t c : islands_.contacts(island)) {
+    const Contact& contact = contacts_.view()[c];
+    for (int k = 0; k < contact.count; ++k) {
+      const ContactRow& row = rows_.view()[contact.first_row + k];
+      const VelocitiesAt u = velocities_at(row, contact, before);
+      taken -= row.impulse.dot(u.before);
+      changed += row.impulse.dot(u.after - u.free);
+    }
+  }
+  return taken > tolerance::moving_power * changed;
+}
+
+template <class Real>
+bool ContactsOnHost<Real>::solve(double tolerance, const DirectLimits& limits,
+                                 const std::vector<BodyRecord<Real>>* before, std::int64_t& solved,
                                  std::int64_t& failed) {
+  const std::vector<BodyRecord<Real>> sorted =
+      before != nullptr ? by_index(*before) : std::vector<BodyRecord<Real>>{};
   Array<DirectOutcome, Host> outcomes(islands_.count());
   const View<DirectOutcome> outcome = outcomes.view();
   parallel::for_each<Host>("response.islands", islands_.count(), [&](std::int64_t island) {
@@ -164,8 +210,9 @@ bool ContactsOnHost<Real>::solve(double tolerance, const DirectLimits& limits, s
                                 .islands = islands_,
                                 .island = island,
                                 .guides = std::as_const(guides_).view()};
+    const bool is_left = rolls(island) || (before != nullptr && moves(island, sorted));
     outcome[island] = residual_of(problem).within(tolerance) ? DirectOutcome::not_needed
-                      : rolls(island)                        ? DirectOutcome::too_large
+                      : is_left                              ? DirectOutcome::too_large
                                                              : solve_directly(problem, tolerance, limits);
   });
   solved += std::ranges::count(outcome, DirectOutcome::solved);
@@ -177,31 +224,23 @@ bool ContactsOnHost<Real>::solve(double tolerance, const DirectLimits& limits, s
 
 template <class Real>
 int ContactsOnHost<Real>::keep_from_gaining(const std::vector<BodyRecord<Real>>& before_by_place) {
-  std::vector<BodyRecord<Real>> before(before_by_place.size());
-  for (std::size_t k = 0; k < before.size(); ++k)
-    before[static_cast<std::size_t>(index_[k])] = before_by_place[k];
+  const std::vector<BodyRecord<Real>> before = by_index(before_by_place);
   int scaled = 0;
   for (std::int64_t island = 0; island < islands_.count(); ++island) {
     Moved moved;
     for (const std::int32_t c : islands_.contacts(island)) {
       const Contact& contact = contacts_.view()[c];
-      const SolverBody& i = bodies_.view()[contact.i];
-      const SolverBody& j = bodies_.view()[contact.j];
-      const BodyRecord<Real>& before_i = before[static_cast<std::size_t>(contact.i)];
-      const BodyRecord<Real>& before_j = before[static_cast<std::size_t>(contact.j)];
       double through_mean = 0, square = 0;
       for (int k = 0; k < contact.count; ++k) {
         const ContactRow& row = rows_.view()[contact.first_row + k];
-        const Vec3 u = row.relative_velocity(i, j);
-        const Vec3 u_before = row.relative_velocity(vec3(before_i.velocity), vec3(before_i.spin),
-                                                    vec3(before_j.velocity), vec3(before_j.spin));
-        const Vec3 u_free = row.relative_velocity(velocity_.view()[contact.i], spin_.view()[contact.i],
-                                                  velocity_.view()[contact.j], spin_.view()[contact.j]);
-        through_mean += 0.5 * row.impulse.dot(u_before + u);
-        square += 0.5 * row.impulse.dot(u - u_free);
+        const VelocitiesAt u = velocities_at(row, contact, before);
+        through_mean += 0.5 * row.impulse.dot(u.before + u.after);
+        square += 0.5 * row.impulse.dot(u.after - u.free);
       }
+      const BodyRecord<Real>& before_i = before[static_cast<std::size_t>(contact.i)];
+      const BodyRecord<Real>& before_j = before[static_cast<std::size_t>(contact.j)];
       const Vec3& couple = couples_[static_cast<std::size_t>(c)];
-      const Vec3 spin = j.spin - i.spin;
+      const Vec3 spin = bodies_.view()[contact.j].spin - bodies_.view()[contact.i].spin;
       through_mean += 0.5 * couple.dot(vec3(before_j.spin) - vec3(before_i.spin) + spin);
       square += 0.5 * couple.dot(spin - spin_.view()[contact.j] + spin_.view()[contact.i]);
       moved = moved + Moved{through_mean - square, square};

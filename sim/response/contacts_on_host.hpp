@@ -12,6 +12,12 @@
 
 namespace scree::solver {
 
+/// Velocities of j relative to i at a point of a contact: before the substep's forces, with these but without
+/// contacts, and with the impulses found (m/s).
+struct VelocitiesAt {
+  Vec3 before, free, after;
+};
+
 template <class Real>
 class ContactsOnHost {
  public:
@@ -21,16 +27,23 @@ class ContactsOnHost {
 
   /// Solves the islands whose natural residual is beyond the tolerance. Adds the numbers of successes and
   /// failures to `solved` and `failed`. Returns true if no island is left to the sweeps. An unsolved island
-  /// with couples always is, since Newton's method here does not include couples.
-  bool solve(double tolerance, const DirectLimits& limits, std::int64_t& solved, std::int64_t& failed);
+  /// with couples always is, since Newton's method here does not include couples. If `before` is given, which
+  /// holds for each body of the solver its velocities before the substep's forces, so is an island whose
+  /// bodies move on one another: the next substep has other contacts and cannot start from the solution.
+  bool solve(double tolerance, const DirectLimits& limits, const std::vector<BodyRecord<Real>>* before,
+             std::int64_t& solved, std::int64_t& failed);
   /// Scales down the impulses of each island that gains energy, until it gains none. Returns the number of
-  /// such islands. `before` holds for each body of the solver its velocities before the substep's forces.
+  /// such islands. `before`: as in solve().
   int keep_from_gaining(const std::vector<BodyRecord<Real>>& before);
   /// Writes the impulses and couples back to the contacts of the inspection.
   void put_back() const;
 
  private:
   bool rolls(std::int64_t island) const;
+  bool moves(std::int64_t island, const std::vector<BodyRecord<Real>>& before) const;
+  VelocitiesAt velocities_at(const ContactRow& row, const Contact& contact,
+                             const std::vector<BodyRecord<Real>>& before) const;
+  std::vector<BodyRecord<Real>> by_index(const std::vector<BodyRecord<Real>>& by_place) const;
   ImpulseChange residual_of(const IslandProblem& problem) const;
   void take_bodies(const std::vector<Guide>& guides);
   std::vector<std::int64_t> sort_contacts();

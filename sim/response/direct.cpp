@@ -455,16 +455,17 @@ bool mostly_succeed(std::int64_t solved, std::int64_t failed, std::int64_t solve
 
 }  // namespace
 
-bool pays_long_solution(bool moves, const Counters& counters) {
+bool pays_long_solution(const Counters& counters) {
   constexpr std::int64_t solved_per_failure = 20;
-  return !moves && mostly_succeed(counters.long_direct, counters.long_direct_failed, solved_per_failure);
+  return mostly_succeed(counters.long_direct, counters.long_direct_failed, solved_per_failure);
 }
 
 int sweeps_before_direct(int most, bool moves, const Counters& counters) {
   constexpr int many_sweeps = 200;
   constexpr std::int64_t solved_per_failure = 4;
-  const int sweeps = moves ? many_sweeps
-                     : mostly_succeed(counters.direct, counters.direct_failed, solved_per_failure)
+  // A few sweeps are left to come after it.
+  if (moves) return std::min(most, std::clamp(most - few_sweeps, few_sweeps, many_sweeps));
+  const int sweeps = mostly_succeed(counters.direct, counters.direct_failed, solved_per_failure)
                          ? few_sweeps
                          : std::clamp(most / 2, few_sweeps, many_sweeps);
   return std::min(most, sweeps);

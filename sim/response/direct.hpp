@@ -30,17 +30,17 @@ inline constexpr DirectLimits thorough_limits{.passes = 300, .products = 1e8, .p
 inline constexpr int few_sweeps = 10;
 
 /// Returns the number of sweeps, of at most `most`, after which islands that converge slowly go to the direct
-/// solver. It is few_sweeps. It is up to 200 where bodies move on one another (`moves`), since the next
-/// substep has other contacts and cannot start from the solution (docs/decisions/0069). Where direct
-/// solutions often fail, as in stirred heaps, it is half of `most`, but no more than 200: within these nearly
-/// all islands converge, for a twentieth of the time (docs/decisions/0011).
+/// solver. It is few_sweeps. It is up to 200 where bodies of the scene move on one another (`moves`), since
+/// such bodies have other contacts in the next substep, which cannot start from the solution
+/// (docs/decisions/0069). Where direct solutions often fail, as in stirred heaps, it is half of `most`, but
+/// no more than 200: within these nearly all islands converge, for a twentieth of the time
+/// (docs/decisions/0011).
 int sweeps_before_direct(int most, bool moves, const Counters& counters);
 
 /// Returns whether a long direct solution is worth its time for large islands on which sweeps converge
-/// slowly. It is if nearly all such solutions succeed in the scene and its bodies do not move on one another
-/// (`moves`): then warm starts keep their results. Where everything tumbles they do not succeed
-/// (docs/decisions/0017).
-bool pays_long_solution(bool moves, const Counters& counters);
+/// slowly. It is if nearly all such solutions succeed in the scene: then warm starts keep their results.
+/// Where everything tumbles they do not succeed (docs/decisions/0017).
+bool pays_long_solution(const Counters& counters);
 
 /// The least load of contacts and the sum of their loads, measured as ImpulseChange::size (J).
 struct LoadSpread {

@@ -32,12 +32,12 @@ struct PredictGapsOfPoints {
   PointContacts<Real> contacts;
   ConstView<BodyRecord<Real>> before, after;
   double step;
-  bool late_are_turned;  ///< whether late contacts have had their turn after the response (TurnLatePoints)
+  bool rotations_are_applied;  ///< whether TurnLatePoints has added the rotations after the response
   SCREE_HD void operator()(std::int64_t c) const {
     using C = PointContacts<Real>;
-    // Where the centres of bodies with a late contact are at the end is measured then.
+    // Once they are applied, the positions at the end of bodies with a late impact are measured directly.
     const bool is_late = (contacts.flags[c] & flag_late_impact) != 0;
-    if (is_late && !late_are_turned) return;
+    if (is_late && !rotations_are_applied) return;
     const Moving<Real> i = change(contacts.ends[c].i, is_late);
     const Moving<Real> j = change(contacts.ends[c].j, is_late);
     for (int k = 0; k < contacts.points[c]; ++k) {

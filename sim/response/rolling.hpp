@@ -65,7 +65,7 @@ struct AccountRolling {
     const Vec3 before = stage.bodies.spin[slot.j] - stage.bodies.spin[slot.i];
     const Vec3 free = vec3(stage.free[ends.j].spin) - vec3(stage.free[ends.i].spin);
     totals.friction = -0.5 * couple.dot(before + spin_j - spin_i);
-    totals.kick_power = couple.dot(spin_j - spin_i - free);
+    totals.impulse_power = couple.dot(spin_j - spin_i - free);
     stage.judge_gain(totals);
     if (!(i.inverse_mass > 0)) totals.work += couple.dot(spin_i);
     if (!(j.inverse_mass > 0)) totals.work -= couple.dot(spin_j);

@@ -27,8 +27,8 @@ class SweepCount {
   /// correction leaves shows less of the error of the impulses, the better the correction is.
   void judge_overlap(double mean) { overlap_ = std::max(overlap_, mean); }
 
-  /// Whether bodies slide on one another in places: they dissipate more than tolerance::moving_power of the
-  /// power of their impulses.
+  /// Whether bodies slide on others in places, or land on them without bouncing off: contacts dissipate more
+  /// than tolerance::moving_power of the power of their impulses.
   bool moves() const { return moves_; }
   /// Whether the heap flows: it dissipates more than tolerance::flowing_power of the power of its impulses.
   bool flows() const { return flows_; }

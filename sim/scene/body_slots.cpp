@@ -48,8 +48,7 @@ void require_room(const BodyEntry& body, const MemoryLoad& load, double memory, 
   if (need > memory)
     reader.fail_at(cause, *body.node,
                    fmt::format("a run of the scene's {:.0f} bodies needs {} of memory, but this machine has "
-                               "{}; use fewer bodies or "
-                               "another machine",
+                               "{}; use fewer bodies or another machine",
                                load.bodies, bytes_words(need), bytes_words(memory)));
 }
 

@@ -106,7 +106,8 @@ constexpr MeasureInfo measures[] = {
     {"guards.impacts", S::run, "", "substeps whose chains of impacts reached the limit, since the start",
      [](M s) -> double { return number(s.run.counters.unfinished_impacts); }, nullptr},
     {"guards.newton", S::run, "",
-     "groups of contacts that neither the direct solver nor all sweeps have solved, since the start",
+     "groups of contacts that neither all sweeps nor a second, longer direct solution has solved, since the "
+     "start",
      [](M s) -> double { return number(s.run.counters.long_direct_failed); }, nullptr},
     {"guards.gjk", S::run, "",
      "calls of libccd that reached their limit, and were answered in another way, since the start",

@@ -11,9 +11,9 @@ namespace scree {
 namespace {
 
 /// First words of lines that do not change the surface: colours, normals, groups.
-constexpr std::array harmless = {"vt",       "vn",     "g",          "o",        "s",     "usemtl",
-                                 "mtllib",   "usemap", "maplib",     "mg",       "bevel", "c_interp",
-                                 "d_interp", "lod",    "shadow_obj", "trace_obj"};
+constexpr std::array ignored_keywords = {"vt",       "vn",     "g",          "o",        "s",     "usemtl",
+                                         "mtllib",   "usemap", "maplib",     "mg",       "bevel", "c_interp",
+                                         "d_interp", "lod",    "shadow_obj", "trace_obj"};
 
 /// Reads a line, and the lines that follow while each ends with a backslash, without comments, which begin
 /// with #. Returns false at the end of the file.
@@ -72,7 +72,7 @@ void read_obj(MeshSource& source, MeshMaker& mesh) {
       for (std::string_view word = words.next(); !word.empty(); word = words.next())
         corners.push_back(corner(word, vertices, source));
       mesh.polygon(corners);
-    } else if (!kind.empty() && std::ranges::find(harmless, kind) == harmless.end()) {
+    } else if (!kind.empty() && std::ranges::find(ignored_keywords, kind) == ignored_keywords.end()) {
       const std::string word = excerpt(kind);
       ++skipped[skipped.size() < most_kinds || skipped.contains(word) ? word : "..."];
     }

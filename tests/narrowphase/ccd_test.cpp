@@ -106,7 +106,7 @@ TEST_P(CcdMethods, EveryCallEnds) {
     // The search gets the budget that is used, and budgets that run out in each of its phases.
     for (const int budget : {ccd::support_budget, n % 40}) {
       const auto start = std::chrono::steady_clock::now();
-      const ccd::Answer answer = ccd::parting_direction(boxes, GetParam(), budget);
+      const ccd::Answer answer = ccd::separating_direction(boxes, GetParam(), budget);
       worst =
           std::max(worst, std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
       ASSERT_LE(answer.supports, budget + 16);  // a false support point ends each running loop

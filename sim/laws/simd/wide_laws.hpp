@@ -15,7 +15,7 @@
 
 namespace scree::simd {
 
-/// The number of contacts on which one instruction of Host works, in double precision.
+/// The number of contacts on which one visit of Host works.
 inline constexpr int width = 8;
 
 template <class A>
@@ -156,8 +156,8 @@ SCREE_LAW BallContact<A> contact_of(const V3<A>& offset, const typename A::V& fr
   const V3<A> across = w - dot(w, normal) * normal;
   const V curvature = dot(across, across) / reach;
   const V closing = (gap > 0 ? -gap / step : zero) - 0.5 * step * curvature;
-  const V parting = noise - dot(before, normal);
-  const V target = parting < closing ? parting : closing;
+  const V separating = noise - dot(before, normal);
+  const V target = separating < closing ? separating : closing;
   const V masses = i.inverse_mass + j.inverse_mass;
   const V turning = i.inverse_inertia * (arm_i * arm_i) + j.inverse_inertia * (arm_j * arm_j);
   return {{normal, arm_i, arm_j, friction, target, 1.0 / masses, 1.0 / (masses + turning)}, gap, curvature};
@@ -307,9 +307,9 @@ SCREE_LAW V3<A> couple_of(const V3<A>& n, const typename A::V& most, const typen
 /// point takes back its own push, so that bodies move apart no more than they must. Sets `pushed` to the new
 /// total.
 template <class A>
-SCREE_LAW typename A::V parting(const typename A::V& gap, const typename A::V& cap,
-                                const typename A::V& share, const typename A::V& normal_mass,
-                                typename A::V& pushed) {
+SCREE_LAW typename A::V correction_push(const typename A::V& gap, const typename A::V& cap,
+                                        const typename A::V& share, const typename A::V& normal_mass,
+                                        typename A::V& pushed) {
   using V = typename A::V;
   const V part = -share * gap;
   const V before = pushed;

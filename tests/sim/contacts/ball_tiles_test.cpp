@@ -253,8 +253,8 @@ TEST(BallTiles, AccountWhatIsAccountedOneByOne) {
   EXPECT_NEAR(got.friction, expected.friction, 1e-10);
   EXPECT_NEAR(got.work, expected.work, 1e-10);
   EXPECT_NEAR(got.gaps, expected.gaps, 1e-10);
-  EXPECT_NEAR(got.gap_power, expected.gap_power, 1e-10);
-  EXPECT_NEAR(got.kick_power, expected.kick_power, 1e-10);
+  EXPECT_NEAR(got.residual_power, expected.residual_power, 1e-10);
+  EXPECT_NEAR(got.impulse_power, expected.impulse_power, 1e-10);
   EXPECT_NEAR(got.deepest, expected.deepest, 1e-12);
   EXPECT_EQ(got.loaded, expected.loaded);
   EXPECT_EQ(got.ends, expected.ends);

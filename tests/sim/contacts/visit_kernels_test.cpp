@@ -285,7 +285,7 @@ class VisitKernelsTest : public testing::TestWithParam<std::tuple<std::string, b
   template <class Real>
   void expect_that_bodies_go_on() const {
     Problem<Real> each = problem<Real>(), several = problem<Real>();
-    for (const Real beta : {static_cast<Real>(0.6), Real{}}) {
+    for (const Real beta : {static_cast<Real>(0.6), static_cast<Real>(0.6), Real{}}) {
       for (Problem<Real>* p : {&each, &several})
         for (BodyRecord<Real>& body : p->bodies) body.velocity.x += 1;
       const Accelerate<Real> one{each.bodies.data(), each.last.data()};

@@ -386,7 +386,8 @@ TEST(Direct, ComesAfterManySweepsWhereBodiesMoveOrSolutionsFail) {
   Counters counters;
   EXPECT_EQ(sweeps_before_direct(1000, false, counters), few_sweeps);
   EXPECT_EQ(sweeps_before_direct(1000, true, counters), 200);
-  EXPECT_EQ(sweeps_before_direct(60, true, counters), 60);
+  EXPECT_EQ(sweeps_before_direct(60, true, counters), 50);
+  EXPECT_EQ(sweeps_before_direct(12, true, counters), few_sweeps);
   EXPECT_EQ(sweeps_before_direct(5, false, counters), 5);
   counters.direct_failed = 3;
   EXPECT_EQ(sweeps_before_direct(1000, false, counters), 200);
@@ -395,10 +396,9 @@ TEST(Direct, ComesAfterManySweepsWhereBodiesMoveOrSolutionsFail) {
 
 TEST(Direct, IsLongWhereItsSolutionsLast) {
   Counters counters;
-  EXPECT_TRUE(pays_long_solution(false, counters));
-  EXPECT_FALSE(pays_long_solution(true, counters));
+  EXPECT_TRUE(pays_long_solution(counters));
   counters.long_direct_failed = 3;
-  EXPECT_FALSE(pays_long_solution(false, counters));
+  EXPECT_FALSE(pays_long_solution(counters));
 }
 
 TEST(Islands, AreWhatFreeBodiesConnect) {

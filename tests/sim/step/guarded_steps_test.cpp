@@ -178,8 +178,7 @@ TEST_F(GuardedStepsTest, EnergyThatTheLedgerDoesNotExplainFails) {
   stepper_.on_substep = [](double, FakeStepper& s) { s.bodies.velocity[0] *= 1 + 0.5e-5; };
   expect_given_up(
       "the energy changed by 4e-05 of its scale without a known cause; the bodies named have the "
-      "most "
-      "kinetic energy");
+      "most kinetic energy");
   stepper_.on_substep = [](double, FakeStepper& s) {
     const double before = s.bodies.velocity[0].squaredNorm();
     s.bodies.velocity[0] *= 2;

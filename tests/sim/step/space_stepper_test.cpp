@@ -387,8 +387,32 @@ bodies:
     material: gravel)");
   run_to_end(run);
   const Counters& counters = run.observe().counters;
+  if (!is_mixed()) {
+    EXPECT_GT(counters.direct, 0);
+  }
   EXPECT_LE(50 * counters.direct_failed, counters.direct);
   EXPECT_EQ(counters.long_direct + counters.long_direct_failed, 0);
+}
+
+/// A ball appears at rest on a hundred grains of a millionth of its mass, which the sweeps do not solve. That
+/// another body slides elsewhere must not take the long solution by Newton's method from them.
+TEST_P(SpaceStep, ABallLiesOnGrainsBesideABodyThatSlides) {
+  if (is_mixed()) GTEST_SKIP() << "a grain's impulse is beyond single precision";
+  Simulation run = simulate(R"(
+gravity: [0, 0, -9.81]
+time: {end: 0.4, step: 0.004166666666666667}
+materials: {steel: {density: 7800, friction: 0.5}}
+bodies:
+  - {box: {size: [0.2, 0.2, 0.1]}, at: [0, 0, -0.05], fixed: true, material: steel}
+  - sphere: {radius: 0.001}
+    at: [-0.00945, -0.00945, 0.001]
+    repeat: {count: [10, 10, 1], spacing: [0.0021, 0.0021, 1]}
+    material: steel
+  - {sphere: {radius: 0.1}, at: [0, 0, 0.10198908356847289], from: 0.2, material: steel}
+  - {box: {size: [12, 0.4, 0.1]}, at: [4, 1, -0.05], fixed: true, material: steel}
+  - {box: {size: 0.2}, at: [0, 1, 0.1], velocity: [6, 0, 0], material: steel})");
+  run_to_end(run);
+  EXPECT_NEAR(run.body(101).position.z(), 0.10198908356847289, 1e-6);
 }
 
 /// The sums of forces on walls are left out where no check measures a force. Nothing else changes by that.
