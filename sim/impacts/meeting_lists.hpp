@@ -83,8 +83,8 @@ struct ImpactProgress {
   std::uint64_t fast = 0;         ///< number of pairs that are fast enough for an impact, or of a sample
   std::uint64_t near = 0;         ///< number of pairs that come near each other, before the first round
   std::uint64_t chunks = 0;       ///< number of chunks that this round has listed
-  std::uint64_t struck_large_bodies =
-      0;  ///< number of ImpactProgram::struck_large_bodies that this round has listed
+  /// Number of ImpactProgram::struck_large_bodies that this round has listed.
+  std::uint64_t struck_large_bodies = 0;
   std::uint64_t impacts = 0;
   std::uint64_t struck = 0;       ///< number of struck bodies
   std::uint32_t late_impact = 0;  ///< whether a body was struck after the midpoint

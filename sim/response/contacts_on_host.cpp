@@ -212,7 +212,7 @@ bool ContactsOnHost<Real>::solve(double tolerance, const DirectLimits& limits,
                                 .guides = std::as_const(guides_).view()};
     const bool is_left = rolls(island) || (before != nullptr && moves(island, sorted));
     outcome[island] = residual_of(problem).within(tolerance) ? DirectOutcome::not_needed
-                      : is_left                              ? DirectOutcome::too_large
+                      : is_left                              ? DirectOutcome::not_tried
                                                              : solve_directly(problem, tolerance, limits);
   });
   solved += std::ranges::count(outcome, DirectOutcome::solved);

@@ -441,7 +441,7 @@ ImpulseChange natural_residual(const IslandProblem& problem) {
 
 DirectOutcome solve_directly(const IslandProblem& problem, double tolerance, const DirectLimits& limits) {
   IslandSolver solver(problem, limits);
-  return solver.is_cheap() ? solver.solve(tolerance) : DirectOutcome::too_large;
+  return solver.is_cheap() ? solver.solve(tolerance) : DirectOutcome::not_tried;
 }
 
 namespace {

@@ -77,7 +77,7 @@ ImpulseChange natural_residual(const IslandProblem& problem);
 enum class DirectOutcome {
   not_needed,
   solved,     ///< the natural residual is within the tolerance
-  too_large,  ///< no solution was tried, since sweeps are cheaper
+  not_tried,  ///< no solution was tried, since sweeps are cheaper or it would not last
   failed,     ///< not solved; the result is kept if its residual is less than the initial one
 };
 

@@ -311,7 +311,7 @@ TEST(Direct, CarriesStacksWhateverTheirMasses) {
 
 TEST(Direct, LeavesWhatIsTooLargeAsItWas) {
   Scene scene = stack(std::vector<double>(1000, 1.0), 0.5);
-  EXPECT_EQ(scene.solve(), DirectOutcome::too_large);
+  EXPECT_EQ(scene.solve(), DirectOutcome::not_tried);
   for (const ContactRow& row : scene.rows) EXPECT_TRUE(row.impulse.isZero(0));
 }
 
