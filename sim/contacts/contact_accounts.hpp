@@ -212,14 +212,12 @@ struct AccountBalls {
       stage.judge_gain(totals);
       if (stage.loads.size() > 0) stage.mark_loaded_balls(place);
     }
+    if ((contacts.flags[c] & flag_late_impact) != 0) return totals;
     Real& predicted_gap = contacts.gaps.at(C::predicted_gap, c);
-    if (passes(contacts.flags[c], loaded)) {
-      predicted_gap = static_cast<Real>(HUGE_VAL);
-    } else if ((contacts.flags[c] & flag_late_impact) == 0) {
-      const V3<Real> u = ends.after_j.velocity - ends.after_i.velocity;
-      if (!stage.again) predicted_gap += static_cast<Real>(0.5 * stage.step) * dot(n, u);
+    const V3<Real> u = ends.after_j.velocity - ends.after_i.velocity;
+    if (!stage.again) predicted_gap += static_cast<Real>(0.5 * stage.step) * dot(n, u);
+    if (!passes(contacts.flags[c], loaded))
       totals.deepest = fmax(0.0, static_cast<double>(-predicted_gap / contacts.gaps.at(C::cap, c)));
-    }
     return totals;
   }
 };
@@ -258,13 +256,12 @@ struct AccountPoints {
         totals.gaps += fabs(static_cast<double>(contacts.gaps.at(C::at_point(k, C::gap), c)));
         ++totals.loaded;
       }
+      if ((contacts.flags[c] & flag_late_impact) != 0) continue;
       Real& predicted_gap = contacts.gaps.at(C::at_point(k, C::predicted_gap), c);
-      if (flies_past) predicted_gap = static_cast<Real>(HUGE_VAL);
-      if (flies_past || (contacts.flags[c] & flag_late_impact) != 0) continue;
       const V3<Real> u = velocity_at(at, ends.after_i, ends.after_j);
       if (!stage.again)
         predicted_gap += static_cast<Real>(0.5 * stage.step) * dot(contacts.fields.vector(C::normal, c), u);
-      totals.deepest = fmax(totals.deepest, static_cast<double>(-predicted_gap) / cap);
+      if (!flies_past) totals.deepest = fmax(totals.deepest, static_cast<double>(-predicted_gap) / cap);
     }
     if (totals.loaded == 0) return totals;
     totals.ends = ends.free_ends();

@@ -4,7 +4,9 @@
 #include "core/tolerances.hpp"
 #include "narrowphase/contact.hpp"
 #include "sim/impacts/flight_stage.hpp"
+#include "sim/laws/displace.hpp"
 #include "sim/laws/response_parameters.hpp"
+#include "sim/laws/rotation.hpp"
 #include "sim/laws/separated_flight.hpp"
 #include "sim/observe/observation.hpp"
 
@@ -155,21 +157,31 @@ SCREE_HD inline Vec3 moment_of_delay(const BodyView& bodies, std::int32_t body, 
   return -delay * before.cross(impulse);
 }
 
-/// Moves the midpoint of a free body with a late impact, after the response. Until that impact the body has
-/// been where it was without the response, so the midpoint becomes the point from which the new flight leads
-/// through the place of the impact. Returns the ledger of this shift; for other bodies nothing is done.
-/// `total`: the sum of all impulses of the response on the body (N s).
-SCREE_HD inline Ledger shift_after_late_impact(const FlightStage& stage, std::int32_t body,
-                                               const Vec3& total) {
+/// Moves and turns a free body with a late impact at the midpoint, after the response. Until that impact the
+/// body has flown as it did without the response, so its place and its orientation at the midpoint become
+/// those from which the new flight leads through its state at the impact. Returns the ledger of this shift;
+/// for other bodies nothing is done. `total`: the sum of all impulses of the response on the body (N s);
+/// `spin_before`: its spin before the response (rad/s).
+SCREE_HD inline Ledger shift_after_late_impact(const FlightStage& stage, std::int32_t body, const Vec3& total,
+                                               const Vec3& spin_before) {
   if (!stage.has_late_impact(body)) return {};
   const BodyView& bodies = stage.bodies;
-  Vec3 moment = (stage.clock[body] - 0.5 * stage.terms.step) * total;
+  const double delay = stage.clock[body] - 0.5 * stage.terms.step;
+  Vec3 moment = delay * total;
   hold_to_guide(stage.parameters.guides, body, moment);
   bodies.position[body] -= bodies.inverse_mass[body] * moment;
   Ledger ledger;
   ledger.correction = -moment.dot(stage.parameters.acceleration_of(body));
   ledger.angular_correction = -moment.cross(bodies.velocity[body]);
-  return ledger;
+  if (!stage.parameters.rotation || bodies.spin[body] == spin_before) return ledger;
+  const Vec3& inverse_inertia = bodies.inverse_inertia[body];
+  Quat at_impact = bodies.orientation[body], ahead = at_impact;
+  Vec3 old_spin = spin_before, spin_there = bodies.spin[body];
+  rotate_freely(at_impact, old_spin, inverse_inertia, delay);
+  // The spin of the new flight at the impact is found as if the body had not been turned yet.
+  rotate_freely(ahead, spin_there, inverse_inertia, delay);
+  rotate_freely(at_impact, spin_there, inverse_inertia, -delay);
+  return ledger + turn_to(bodies, body, at_impact);
 }
 
 }  // namespace scree

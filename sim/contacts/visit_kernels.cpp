@@ -287,11 +287,9 @@ SCREE_LAW Vector predict_gaps(const AccountBlocks& by, std::int64_t c, const Vec
     flying[l] = (flags[l] & flag_flying) != 0 ? 1 : 0;
   }
   const VectorOfMasks passes = (flying > 0) & !carries;
-  const VectorOfMasks met = (late == 0) & !passes;
-  if (!by.again) gap = met ? gap + 0.5 * by.step * velocity : gap;
-  gap = passes ? Lanes::all(HUGE_VAL) : gap;
+  if (!by.again) gap = late == 0 ? gap + 0.5 * by.step * velocity : gap;
   by.contacts.gaps.put<Lanes>(C::predicted_gap, c, gap);
-  return met ? -gap / cap : Vector{};
+  return (late == 0) & !passes ? -gap / cap : Vector{};
 }
 
 BlockTotals account_balls(const AccountBlocks& given, Blocks blocks) {

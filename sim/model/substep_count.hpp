@@ -63,12 +63,14 @@ class SubstepCount {
     const double mean = tolerance::mean_overlap_left / quality_;
     const double worst = tolerance::worst_overlap_left / quality_;
     const OverlapsLeft left = measure();
-    if (left.exceed(2 * mean, 2 * worst)) return refine(taken);
+    if (left.exceed(2 * mean, far_too_deep * worst)) return refine(taken);
     seen_.mean += left.mean / looks_together;
-    seen_.worst += left.worst / looks_together;
+    seen_.worst = std::max(seen_.worst, std::min(left.worst, deepest_seen_));
+    deepest_seen_ = std::max(deepest_seen_, left.worst);
     if (++looks_ % looks_together != 0) return;
     const OverlapsLeft seen = seen_;
     seen_ = {};
+    deepest_seen_ = 0;
     if (seen.exceed(mean, worst)) return refine(taken);
     if (taken == 1 || seen.exceed(tried_from * mean, tried_from * worst) || looks_ < looks_to_try_) return;
     coarsen(taken);
@@ -84,12 +86,17 @@ class SubstepCount {
     archive("is_tried", is_tried_);
     archive("mean_seen", seen_.mean);
     archive("worst_seen", seen_.worst);
+    archive("deepest_seen", deepest_seen_);
   }
 
  private:
   // Steps between two measurements (looks), and looks that are judged together. Larger: the number follows
   // later, and single looks matter less.
   static constexpr int steps_a_look = 8, looks_together = 4;
+  // Multiple of the bound on the worst overlap over which a single look decides. Of looks that are judged
+  // together, the one with the deepest overlap is left out: among millions of contacts a single one is deep
+  // now and then, for a step or two, and to avoid it all bodies would have to take more substeps.
+  static constexpr double far_too_deep = 5;
   // Half as many substeps are tried if the overlaps are under this share of the bounds, after `looks_to_try_`
   // looks, which are at most this many.
   static constexpr double tried_from = 0.75;
@@ -105,6 +112,7 @@ class SubstepCount {
     next_ = substeps;
     shallow_steps_ = steps_ = looks_ = 0;
     seen_ = {};
+    deepest_seen_ = 0;
     is_tried_ = false;
   }
 
@@ -113,7 +121,9 @@ class SubstepCount {
   int shallow_steps_ = 0;  // steps since the number was last chosen that needed neither more nor fewer
   // For a heap, since the number was last chosen:
   int steps_ = 0, looks_ = 0;
-  OverlapsLeft seen_;  // mean of the looks that are judged together, as far as they were taken
+  // Of the looks that are judged together, as far as they were taken:
+  OverlapsLeft seen_;  // sum of their shares of the mean, and the second largest of their worst overlaps
+  double deepest_seen_ = 0;            // the largest of their worst overlaps
   int looks_to_try_ = looks_together;  // looks before fewer substeps are tried
   bool is_tried_ = false;              // whether the present number is a try of fewer substeps
 };

@@ -18,7 +18,7 @@ void prepare_checkpoints();
 
 /// How a checkpoint's file begins. The number is another one whenever the contents have changed, so that
 /// files of other versions are refused at once.
-inline constexpr std::string_view checkpoint_head = "scree checkpoint 9, xxh3 of what follows: ";
+inline constexpr std::string_view checkpoint_head = "scree checkpoint 10, xxh3 of what follows: ";
 
 /// Writes the state as HDF5: a dataset for each field, of its numbers or of records as opaque bytes, each
 /// with the attribute xxh3, the checksum of its bytes. Before the HDF5 part comes text that HDF5's readers

@@ -1,12 +1,14 @@
 // Corrections to contacts and bodies after impacts; they are needed only where a flight has had impacts.
 #pragma once
 
+#include "sim/contacts/contact_accounts.hpp"
 #include "sim/contacts/contact_flight.hpp"
 #include "sim/contacts/layout.hpp"
 #include "sim/contacts/sweeps.hpp"
 #include "sim/observe/observation.hpp"
 #include "sim/response/bodies.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 
@@ -105,8 +107,8 @@ struct TakeImpacts {
 
 /// Adds to the gap at the end of the substep of a late contact what its points move by the spins of the two
 /// bodies, after the response. The contact was found `delay` after the midpoint, with the spins before the
-/// response. But orientations follow the new spins from the midpoint on, since only positions are shifted
-/// (shift_after_late_impact()).
+/// response. A body that was struck late itself flies with its new spin from its impact on
+/// (shift_after_late_impact()), and others do from the midpoint on.
 template <class Real>
 struct TurnLateBalls {
   BallContacts<Real> contacts;
@@ -144,10 +146,11 @@ struct TurnLatePoints {
     const Slot& slot = places[contacts.slot[c]];
     const double half = 0.5 * flight.terms.step;
     const double delay = fmax(flight.clock[slot.i], flight.clock[slot.j]) - half;
-    const auto turn = [&](std::int32_t end) {
-      return Vec3(half * vec3(after[end].spin) - delay * vec3(free[end].spin));
+    const auto turn = [&](std::int32_t body, std::int32_t end) {
+      const double from = flight.is_free(body) ? fmax(flight.clock[body] - half, 0.0) : 0.0;
+      return Vec3((half - from) * vec3(after[end].spin) - (delay - from) * vec3(free[end].spin));
     };
-    const Vec3 turn_i = turn(slot.end_i), turn_j = turn(slot.end_j);
+    const Vec3 turn_i = turn(slot.i, slot.end_i), turn_j = turn(slot.j, slot.end_j);
     const Vec3 n = vec3(contacts.fields.vector(C::normal, c));
     for (int k = 0; k < contacts.points[c]; ++k) {
       const auto at = point_at<Scalar<Real>>(contacts, c, k);
@@ -160,8 +163,9 @@ struct TurnLatePoints {
 /// Finds the gap at the end of the substep of a contact whose normal at the midpoint does not tell it, since
 /// its bodies fly past each other or were struck late. That of two balls is measured. If the contact carries
 /// no load, it gets the normal at the end as well, along which the correction may push it. With other bodies,
-/// a late contact's gap is completed from the positions at the end, and bodies that fly past each other have
-/// none (passes()).
+/// a late contact's gap is completed from the positions at the end. Bodies that fly past each other
+/// (passes()) do not overlap, whatever the normal at the midpoint says. The gap keeps the correction from
+/// pushing one of them into the other.
 template <class Real>
 struct FindEndGapsOfBalls {
   BallContacts<Real> contacts;
@@ -169,22 +173,25 @@ struct FindEndGapsOfBalls {
   ConstBodyView bodies;
   SCREE_HD void operator()(std::int64_t c) const {
     using C = BallContacts<Real>;
-    if (contacts.flags[c] == 0) return;
+    const std::uint8_t flags = contacts.flags[c];
+    if (flags == 0) return;
     const Slot& slot = places[contacts.slot[c]];
     const Vec3 apart = bodies.period.nearest(bodies.position[slot.j] - bodies.position[slot.i]);
+    const bool is_loaded = !is_zero(contacts.fields.vector(C::impulse, c));
     Real& predicted_gap = contacts.gaps.at(C::predicted_gap, c);
     if (bodies.shape[slot.i] == Shape::sphere && bodies.shape[slot.j] == Shape::sphere) {
       const double distance = apart.norm();
       predicted_gap = static_cast<Real>(distance - bodies.size[slot.i].x() - bodies.size[slot.j].x());
-      const bool is_loaded = !is_zero(contacts.fields.vector(C::impulse, c));
       if (!is_loaded && distance > 0) contacts.fields.set(C::normal, c, v3<Real>(apart / distance));
-    } else if ((contacts.flags[c] & flag_late_impact) != 0) {
-      predicted_gap += static_cast<Real>(vec3(contacts.fields.vector(C::normal, c)).dot(apart));
+      return;
     }
+    if ((flags & flag_late_impact) != 0)
+      predicted_gap += static_cast<Real>(vec3(contacts.fields.vector(C::normal, c)).dot(apart));
+    if (passes(flags, is_loaded)) predicted_gap = std::max(predicted_gap, Real{0});
   }
 };
 
-/// Completes the gaps of a contact of several points whose bodies were struck late.
+/// Does for a contact of several points what FindEndGapsOfBalls does for one with a wall.
 template <class Real>
 struct FindEndGapsOfPoints {
   PointContacts<Real> contacts;
@@ -192,12 +199,22 @@ struct FindEndGapsOfPoints {
   ConstBodyView bodies;
   SCREE_HD void operator()(std::int64_t c) const {
     using C = PointContacts<Real>;
-    if ((contacts.flags[c] & flag_late_impact) == 0) return;
-    const Slot& slot = places[contacts.slot[c]];
-    const Vec3 apart = bodies.period.nearest(bodies.position[slot.j] - bodies.position[slot.i]);
-    const auto along = static_cast<Real>(vec3(contacts.fields.vector(C::normal, c)).dot(apart));
+    const std::uint8_t flags = contacts.flags[c];
+    if (flags == 0) return;
+    Real along{};
+    if ((flags & flag_late_impact) != 0) {
+      const Slot& slot = places[contacts.slot[c]];
+      const Vec3 apart = bodies.period.nearest(bodies.position[slot.j] - bodies.position[slot.i]);
+      along = static_cast<Real>(vec3(contacts.fields.vector(C::normal, c)).dot(apart));
+    }
+    bool is_loaded = false;
     for (int k = 0; k < contacts.points[c]; ++k)
-      contacts.gaps.at(C::at_point(k, C::predicted_gap), c) += along;
+      is_loaded = is_loaded || !is_zero(contacts.point_fields.vector(C::at_point(k, C::impulse), c));
+    for (int k = 0; k < contacts.points[c]; ++k) {
+      Real& predicted_gap = contacts.gaps.at(C::at_point(k, C::predicted_gap), c);
+      predicted_gap += along;
+      if (passes(flags, is_loaded)) predicted_gap = std::max(predicted_gap, Real{0});
+    }
   }
 };
 
@@ -259,8 +276,8 @@ struct ShiftLate {
   SCREE_HD Ledger operator()(std::int64_t k) const {
     const auto body = static_cast<std::int32_t>(k);
     if (!flight.is_free(body)) return {};
-    return shift_after_late_impact(flight, body,
-                                   impulse_on(free[k], after[k], flight.bodies.inverse_mass[k]));
+    return shift_after_late_impact(flight, body, impulse_on(free[k], after[k], flight.bodies.inverse_mass[k]),
+                                   vec3(free[k].spin));
   }
 };
 

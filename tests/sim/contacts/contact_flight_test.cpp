@@ -63,8 +63,40 @@ struct ShiftBody {
       return;
     }
     const Vec3 moment = moment_of_delay(stage.bodies, body, total[k], 1, led[k]);
-    moved[k] = shift_after_late_impact(stage, body, total[k]);
+    moved[k] = shift_after_late_impact(stage, body, total[k], stage.bodies.spin[k]);
     moved[k].angular_correction += moment;
+  }
+};
+
+/// Gives a body the velocities that a response might give it, and finds how far that moves and turns it at
+/// the time of its last impact (m, rad).
+struct RespondAndShift {
+  StruckFlights struck;
+  ConstView<Vec3> kick, turn;
+  View<Vec3> moved, turned;
+  View<Ledger> ledger;
+  SCREE_HD void operator()(std::int64_t k) const {
+    const auto body = static_cast<std::int32_t>(k);
+    const FlightStage& stage = struck.stage;
+    moved[k] = turned[k] = Vec3::Zero();
+    ledger[k] = {};
+    if (!stage.is_free(body) || !stage.has_late_impact(body)) return;
+    const BodyView& bodies = stage.bodies;
+    const Solid before = struck.at(body, stage.clock[k]).solid;
+    const double energy = rotational_energy_of(k);
+    const Vec3 spin = bodies.spin[k];
+    bodies.velocity[k] += kick[k];
+    bodies.spin[k] += turn[k];
+    const double responded = rotational_energy_of(k) - energy;
+    ledger[k] = shift_after_late_impact(stage, body, kick[k] / bodies.inverse_mass[k], spin);
+    ledger[k].correction += rotational_energy_of(k) - energy - responded;
+    const Solid after = struck.at(body, stage.clock[k]).solid;
+    moved[k] = after.position - before.position;
+    turned[k] = 2 * (after.orientation * before.orientation.conjugate()).vec();
+  }
+  SCREE_HD double rotational_energy_of(std::int64_t k) const {
+    const BodyView& bodies = struck.stage.bodies;
+    return rotational_energy(bodies.orientation[k], bodies.spin[k], bodies.inverse_inertia[k]);
   }
 };
 
@@ -72,8 +104,9 @@ template <class Space>
 class ContactFlights : public test::InSpace<Space> {};
 TYPED_TEST_SUITE(ContactFlights, test::Spaces, test::SpaceName);
 
-/// Returns balls and boxes over a plane: in the substep some fall on it and some meet one another.
-FlightScene falling_crowd() {
+/// Returns balls and boxes over a plane: in the substep some fall on it and some meet one another. `box`:
+/// half edges of the boxes (m).
+FlightScene falling_crowd(const Vec3& box = Vec3::Constant(0.04)) {
   FlightScene scene;
   scene.law = {.restitution = 0.5, .friction = 0.3};
   scene.step = 1.0 / 60;
@@ -83,7 +116,7 @@ FlightScene falling_crowd() {
   for (int k = 0; k < 300; ++k) {
     Random random(21, static_cast<std::uint64_t>(k));
     const Vec3 place(0.11 * (k % 10), 0.11 * (k / 10 % 10), 0.06 + 0.12 * (k / 100));
-    scene.add(k % 3 == 0 ? Shape::box : Shape::sphere, Vec3::Constant(k % 3 == 0 ? 0.04 : 0.05),
+    scene.add(k % 3 == 0 ? Shape::box : Shape::sphere, k % 3 == 0 ? box : Vec3::Constant(0.05),
               place + vector_in(random, 0.01), vector_in(random, 1.5));
     scene.bodies.spin.back() = vector_in(random, 5);
   }
@@ -169,6 +202,51 @@ TYPED_TEST(ContactFlights, AsAfterTheImpactsInTheOrderOfTheirTimes) {
   EXPECT_GT(expected.shifted.angular_correction.norm(), 1e-4);
   for (std::size_t k = 0; k < got.bodies.position.size(); ++k)
     ASSERT_LE((got.bodies.position[k] - expected.bodies.position[k]).norm(), 1e-12) << k;
+}
+
+/// Until its late impact a body has flown without the response, so the response must change neither its place
+/// nor its orientation there. A box of unequal edges precesses meanwhile, which the turn takes into account
+/// to second order.
+TYPED_TEST(ContactFlights, TheResponseLeavesABodyThatWasStruckLateWhereItsImpactWas) {
+  FlightScene scene = falling_crowd({0.04, 0.03, 0.02});
+  scene.parameters.gravity = Vec3::Zero();
+  const std::vector<Pair> pairs = scene.pairs(0.1);
+  World<TypeParam> world(scene);
+  Array<Pair, TypeParam> list;
+  copy(list, pairs);
+  ImpactRounds<TypeParam> rounds;
+  rounds.resolve({std::as_const(list).view(), {}, world.terms(0)}, scene.parameters, view_of(world.bodies));
+
+  const auto count = static_cast<std::int64_t>(scene.bodies.position.size());
+  std::vector<Vec3> kicks, turns;
+  for (std::int64_t k = 0; k < count; ++k) {
+    Random random(23, static_cast<std::uint64_t>(k));
+    kicks.push_back(vector_in(random, 1));
+    turns.push_back(vector_in(random, 20));
+  }
+  Array<Vec3, TypeParam> kick, turn, moved(count), turned(count);
+  copy(kick, kicks);
+  copy(turn, turns);
+  Array<Ledger, TypeParam> ledgers(count);
+  parallel::for_each<TypeParam>(
+      "test.respond", count,
+      RespondAndShift{{rounds.stage(world.terms(0), scene.parameters, view_of(world.bodies))},
+                      std::as_const(kick).view(),
+                      std::as_const(turn).view(),
+                      moved.view(),
+                      turned.view(),
+                      ledgers.view()});
+  const std::vector<Vec3> by = to_vector(moved), angle = to_vector(turned);
+  const std::vector<Ledger> ledger = to_vector(ledgers);
+  int late = 0;
+  for (std::size_t k = 0; k < by.size(); ++k) {
+    EXPECT_LE(by[k].norm(), 1e-12) << k;
+    const bool precesses = scene.bodies.shape[k] == Shape::box;
+    EXPECT_LE(angle[k].norm(), precesses ? 0.02 : 1e-12) << k;
+    EXPECT_NEAR(ledger[k].correction, 0, 1e-12) << k;
+    late += ledger[k].angular_correction.isZero(0) ? 0 : 1;
+  }
+  EXPECT_GT(late, 20);
 }
 
 }  // namespace

@@ -75,6 +75,24 @@ TEST(SubstepCount, AHeapFollowsWhatIsLeftAndNotWhatIsCorrected) {
   EXPECT_EQ(next_after(64, count, [](int) { return 0.2; }), 1);
 }
 
+/// One of four measurements may be deep, since a single contact may cause it, but not two of them, and none
+/// may be far too deep.
+TEST(SubstepCount, ASingleDeepOverlapDoesNotDecideForAHeap) {
+  const auto after_looks = [](std::initializer_list<double> worst) {
+    SubstepCount count;
+    for (const double times : worst)
+      for (int k = 0; k < 8; ++k)
+        count.judge_heap(count.next(), between, [times] {
+          return OverlapsLeft{0, times * tolerance::worst_overlap_left};
+        });
+    return count.next();
+  };
+  EXPECT_EQ(after_looks({0.5, 4.5, 0.5, 0.5, 4.5, 0.5, 0.5, 0.5}), 1);
+  EXPECT_EQ(after_looks({0.5, 4.5, 0.5, 1.1}), 2);
+  EXPECT_EQ(after_looks({1.1, 0.5, 4.5, 0.5}), 2);
+  EXPECT_EQ(after_looks({5.1}), 2);
+}
+
 TEST(SubstepCount, AHeapThatSinksDeepIsNotMeasuredFirst) {
   SubstepCount count;
   const auto unseen = []() -> OverlapsLeft { throw "is measured"; };

@@ -207,6 +207,36 @@ bodies:
   EXPECT_LT(deep, 10);
 }
 
+/// Boxes land layer by layer, a step at a time. Most are struck by the next layer after the midpoint, while
+/// the layer below turns them, and many fly past each other beside overlaps that are corrected. On Host 40 of
+/// these steps left overlaps of more than a hundredth while only the places of late impacts were kept and
+/// bodies that fly past each other had no gap; 13 do now.
+TEST_P(HeapStep, BoxesThatLandInLayersOverlapLittle) {
+  int deep = 0;
+  for (const int seed : {1, 2, 3}) {
+    Simulation run = simulate(fmt::format(R"(
+seed: {}
+gravity: [4.905, 0, -8.4957]
+time: {{end: 0.25, step: 0.0020833333333333333, substeps: 1}}
+materials: {{stone: {{density: 2500, restitution: 0.5, friction: 0.4}}}}
+bodies:
+  - {{plane: {{normal: [0, 0, 1], offset: 0}}, material: stone}}
+  - {{plane: {{normal: [1, 0, 0], offset: -0.02}}, material: stone}}
+  - {{plane: {{normal: [0, 1, 0], offset: -0.106}}, material: stone}}
+  - {{plane: {{normal: [0, -1, 0], offset: -0.106}}, material: stone}}
+  - box: {{size: {{uniform: [[0.014, 0.014, 0.014], [0.022, 0.022, 0.022]]}}}}
+    at: [0, -0.091, 0.02]
+    repeat: {{count: [8, 8, 8], spacing: [0.026, 0.026, 0.026], jitter: 0.001}}
+    material: stone)",
+                                          seed));
+    while (!run.finished()) {
+      run.step();
+      deep += run.observe().penetration.relative_max > tolerance::worst_corrected_overlap;
+    }
+  }
+  EXPECT_LT(deep, 24);
+}
+
 INSTANTIATE_TEST_SUITE_P(Ways, HeapStep, every_way(), name_of);
 
 }  // namespace
