@@ -76,7 +76,7 @@ struct CodeOfBox {
 /// which finds both children done, makes the node (Apetrei 2014, "Fast and Simple Agglomerative LBVH
 /// Construction"). Which thread comes second changes nothing in the tree.
 struct Climb {
-  static constexpr std::int32_t nobody = -1;
+  static constexpr std::int32_t unvisited = -1;
 
   Tree tree;
   ConstView<Aabb> bounds;
@@ -94,7 +94,7 @@ struct Climb {
       tree.at(Tree::number_of(first, last, lower)) = node;
       const std::int32_t split = lower ? last : first - 1;
       const std::int32_t far = exchange(&reached[split], lower ? first : last);
-      if (far == nobody) return;
+      if (far == unvisited) return;
       (lower ? last : first) = far;
       if (first == 0 && last + 1 == tree.leaves) return;  // the root, which no search visits
       const std::int32_t sibling =
@@ -215,7 +215,7 @@ class Lbvh final : public BroadPhase<Space> {
   Tree build(ConstView<Aabb> bounds, ConstView<Mobility> mobility, std::int32_t leaves) {
     nodes_.resize(2 * std::int64_t{leaves});
     reached_.resize(leaves);
-    parallel::fill("broadphase.lbvh.clear", reached_, Climb::nobody);
+    parallel::fill("broadphase.lbvh.clear", reached_, Climb::unvisited);
     const Tree tree{leaves, code_.data(), nodes_.data()};
     parallel::for_each<Space>("broadphase.lbvh.build", leaves,
                               Climb{tree, bounds, mobility, body_.view(), reached_.view()});

@@ -7,7 +7,7 @@ if(PROJECT_VERSION_MAJOR EQUAL 0)
   set(SCREE_ABI_VERSION 0.${PROJECT_VERSION_MINOR})
 endif()
 
-set(parts scree_core scree_broadphase scree_ccd scree_narrowphase scree_observe scree_laws scree_scene scree_bodies scree_pairs
+set(parts scree_core scree_broadphase scree_libccd scree_narrowphase scree_observe scree_laws scree_scene scree_bodies scree_pairs
           scree_impacts scree_contacts scree_response scree_model scree_step scree_record)
 if(SCREE_CUDA)
   list(APPEND parts scree_broadphase_device)

@@ -195,7 +195,7 @@ __global__ void __launch_bounds__(Program::threads, blocks_at_once<Program>())
   __syncthreads();
   GridBarrier barrier(barrier_word);
   Sum* const sums_of[] = {sums, sums + gridDim.x};
-  int turn = 0;
+  int set = 0;
   for (int phases = program.phases(state); phases > 0; phases = program.phases(state)) {
     Sum mine{};
     for (int phase = 0; phase < phases;) {
@@ -217,17 +217,17 @@ __global__ void __launch_bounds__(Program::threads, blocks_at_once<Program>())
     }
     if constexpr (adds_up) {
       const Sum sum = sum_over_block<threads>(mine, room.data());
-      if (threadIdx.x == 0) sums_of[turn][blockIdx.x] = sum;
+      if (threadIdx.x == 0) sums_of[set][blockIdx.x] = sum;
     }
     barrier.wait();
     Sum of_blocks{};
     if constexpr (adds_up) {
-      for (unsigned b = threadIdx.x; b < gridDim.x; b += threads) of_blocks = of_blocks + sums_of[turn][b];
+      for (unsigned b = threadIdx.x; b < gridDim.x; b += threads) of_blocks = of_blocks + sums_of[set][b];
       of_blocks = sum_over_block<threads>(of_blocks, room.data());
     }
     if (threadIdx.x == 0) state = program.judge(state, of_blocks);
     __syncthreads();
-    turn = 1 - turn;
+    set = 1 - set;
   }
   if (blockIdx.x == 0 && threadIdx.x == 0) *out = state;
 }

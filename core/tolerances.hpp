@@ -25,9 +25,9 @@ inline constexpr double pair_skin = 0.03;
 inline constexpr double pair_life_rounding = 1e-6;
 
 /// Mean travel of the bodies within a substep (of smallest_size) under which contacts are searched within the
-/// whole travel of each body, and not only within its travel relative to others. It is as large as
-/// contact_slack: below, the travel adds hardly any contacts. Larger: more contacts to solve that never
-/// close.
+/// whole travel of each body, and not only within its travel relative to others, and boxes of the broad phase
+/// are around places and not around paths. It is as large as contact_slack: below, the travel adds hardly any
+/// contacts. Larger: more contacts to solve that never close.
 inline constexpr double little_travel = contact_slack;
 
 /// Safety factor on the distance that a body can travel in a step, because impacts add to its speed.
@@ -151,8 +151,8 @@ inline constexpr double stirring_power = 0.001;
 /// it, slow modes leave 0.3 to 1. Larger: heaps come to rest later. Smaller: heaps in motion are swept more
 /// often, which changes nothing in them.
 inline constexpr double residual_of_dissipated = 0.1;
-/// Dissipated power, as a share of the power of all impulses, over which the bodies of a heap move on one
-/// another: 0.5 to 1 where it flows, under 0.1 at rest.
+/// Dissipated power, as a share of the power of all impulses, over which the bodies of a heap, or of an island
+/// that is solved on Host, move on one another: 0.5 to 1 where they flow, under 0.1 at rest.
 inline constexpr double moving_power = 0.25;
 /// Dissipated power, as a share of the power of all impulses, over which a heap flows as a whole, with 0.8 to
 /// 2. Bodies that fall on others lose half of that power, and more by friction: boxes that rain on others
@@ -173,7 +173,7 @@ inline constexpr double mixed_change = 2e-6;
 /// Separating speed before gravity's kick up to which a contact is still held at 0, in units of |gravity| *
 /// step. Smaller: the noise of resting faces becomes targets that no rigid body can meet at all points, and
 /// solving them takes long. Larger: held contacts gain more energy, before their island is scaled down.
-inline constexpr double parting_speed = 1e-5;
+inline constexpr double separating_speed = 1e-5;
 
 /// Sliding speed of a contact, as a share of that before the substep, under which the contact may have come
 /// to stick. It is not 0: on a slope, the energy that sticking would gain is taken out of the impulses, which
@@ -291,7 +291,7 @@ inline constexpr double same_feature = 1e-6;
 
 /// Amount by which the overlap along libccd's direction may exceed the least known overlap before the
 /// direction is refused.
-inline constexpr double ccd_excess = 1e-6;
+inline constexpr double libccd_excess = 1e-6;
 
 /// Amount by which a unit normal may leave the normal cone of a mesh's edge or vertex: rounding, because of
 /// which neither of two triangles might make the contact otherwise. A bend under this counts as flat.
@@ -335,8 +335,8 @@ inline constexpr double thin_hull = 2e-7;
 inline constexpr double coplanar = 1e-6;
 inline constexpr double coplanar_thicknesses = 5;
 /// Multiple of the distance that counts as none by which a point may be outside of a hull's face, or a corner
-/// off its plane; beyond that, the hull is made again from points farther apart. A million adversarial sets
-/// reach 15, except clusters of points that are nearly equal (decision 0040).
+/// off its plane; beyond that, the points are stretched to a box and the hull is made again. How
+/// far adversarial sets go is in decision 0040.
 inline constexpr double most_off_face = 20;
 // All corners of a face must touch at once: the smallest size is half the thickness.
 static_assert(2 * coplanar * coplanar_thicknesses <= closed_gap);

@@ -19,7 +19,7 @@ SCREE_HD inline double smallest_gap(const Manifold& manifold) {
 /// edge or a corner.
 SCREE_HD inline bool is_at_edge(const BoxPair& pair, const BoxAxes& axes, double margin) {
   if (axes.next_face >= -margin) return true;
-  const double cosine = fabs(pair.turn(axes.face[0].index[0], axes.face[1].index[0]));
+  const double cosine = fabs(pair.rotation(axes.face[0].index[0], axes.face[1].index[0]));
   return fmin(axes.face[0].separation, axes.face[1].separation) >= -margin &&
          cosine < 1.0 - tolerance::face_cosine;
 }

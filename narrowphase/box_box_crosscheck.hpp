@@ -1,7 +1,7 @@
 // The comparison of the 15 axes with libccd while a scene runs. This file is for Host only.
 #pragma once
 
-#include "narrowphase/box_box_ccd.hpp"
+#include "narrowphase/box_box_libccd.hpp"
 #include "narrowphase/crosscheck.hpp"
 
 namespace scree {
@@ -11,10 +11,10 @@ namespace scree {
 inline void crosscheck(const Solid& a, const Solid& b, CrosscheckStats& stats) {
   const BoxPair pair(a, b);
   const double separation = separating_axes(pair, HUGE_VAL).separation;
-  const std::optional<Vec3> direction = detail::ask_ccd(pair, ccd::Method::mpr).direction;
-  std::optional<double> by_ccd;
-  if (direction) by_ccd = pair.separation_along(*direction);
-  note_difference(separation, by_ccd, pair.smallest, stats);
+  const std::optional<Vec3> direction = detail::ask_libccd(pair, libccd::Method::mpr).direction;
+  std::optional<double> by_libccd;
+  if (direction) by_libccd = pair.separation_along(*direction);
+  note_difference(separation, by_libccd, pair.smallest, stats);
 }
 
 }  // namespace scree

@@ -125,9 +125,9 @@ SCREE_HD inline IncidentFace incident_face(const BoxPair& pair, int box, int k, 
   const int other = 1 - box;
   IncidentFace face;
   if (box == 0) {
-    face.axes = pair.turn;
+    face.axes = pair.rotation;
   } else {
-    face.axes = pair.turn.transpose();
+    face.axes = pair.rotation.transpose();
   }
   face.axis = 0;
   for (int m = 1; m < 3; ++m) {

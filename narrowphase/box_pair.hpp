@@ -12,7 +12,7 @@ struct BoxPair {
   Mat3 axes[2];  ///< columns are the axes of the box in the world
   Vec3 half[2];
   Vec3 offset;      ///< vector from the first centre to the second (m)
-  Mat3 turn;        ///< axes[0]^T axes[1]
+  Mat3 rotation;    ///< axes[0]^T axes[1]
   double smallest;  ///< smallest half extent of both boxes, to which tolerances are relative (m)
 
   SCREE_HD BoxPair(const Solid& a, const Solid& b)
@@ -20,7 +20,7 @@ struct BoxPair {
         axes{a.orientation.toRotationMatrix(), b.orientation.toRotationMatrix()},
         half{a.size, b.size},
         offset(b.position - a.position),
-        turn(axes[0].transpose() * axes[1]),
+        rotation(axes[0].transpose() * axes[1]),
         smallest(fmin(a.size.minCoeff(), b.size.minCoeff())) {}
 
   /// Returns the signed distance of the boxes' projections on a unit direction (world axes, m); negative:
@@ -62,7 +62,7 @@ SCREE_HD inline void face_axis(const BoxPair& pair, int box, BoxAxis& best, doub
   for (int k = 0; k < 3; ++k) {
     double reach = pair.half[box][k];
     for (int m = 0; m < 3; ++m) {
-      reach += pair.half[1 - box][m] * fabs(box == 0 ? pair.turn(k, m) : pair.turn(m, k));
+      reach += pair.half[1 - box][m] * fabs(box == 0 ? pair.rotation(k, m) : pair.rotation(m, k));
     }
     const double separation = fabs(offset[k]) - reach;
     next = fmax(next, fmin(separation, best.separation));
@@ -74,7 +74,7 @@ SCREE_HD inline void face_axis(const BoxPair& pair, int box, BoxAxis& best, doub
 /// only the components of e_i x C_j along i1 and i2 are not 0, and the axis is exactly normal to both edges.
 SCREE_HD inline void edge_axis(const BoxPair& pair, const Vec3& offset, int i, int j, BoxAxes& best) {
   const int i1 = (i + 1) % 3, i2 = (i + 2) % 3, j1 = (j + 1) % 3, j2 = (j + 2) % 3;
-  const Mat3& C = pair.turn;
+  const Mat3& C = pair.rotation;
   const double n1 = -C(i2, j), n2 = C(i1, j);
   const double reach_a = pair.half[0][i1] * fabs(n1) + pair.half[0][i2] * fabs(n2);
   const double reach_b = pair.half[1][j1] * fabs(n1 * C(i1, j1) + n2 * C(i2, j1)) +

@@ -24,13 +24,13 @@ inline bool is_crosschecked(double share, std::uint64_t search, std::int32_t i, 
 /// the largest separation that the axes have. The overlap along any direction is at least the penetration
 /// depth: if libccd's overlap is the smaller one, the axes are wrong. `size` is the size of the smaller body
 /// (m).
-inline void note_difference(double separation, const std::optional<double>& by_ccd, double size,
+inline void note_difference(double separation, const std::optional<double>& by_libccd, double size,
                             CrosscheckStats& stats) {
   ++stats.asked;
-  if (by_ccd.has_value() != (separation < 0.0)) {
+  if (by_libccd.has_value() != (separation < 0.0)) {
     stats.touching.note(std::fabs(separation) / size);
-  } else if (by_ccd) {
-    const double excess = (separation - *by_ccd) / size;
+  } else if (by_libccd) {
+    const double excess = (separation - *by_libccd) / size;
     stats.ccd_deeper.note(excess);
     stats.ccd_shallower.note(-excess);
   }

@@ -1,8 +1,8 @@
 #include "narrowphase/libccd_contacts.hpp"
 
-#include "narrowphase/box_box_ccd.hpp"
 #include "narrowphase/box_box_crosscheck.hpp"
-#include "narrowphase/convex_ccd.hpp"
+#include "narrowphase/box_box_libccd.hpp"
+#include "narrowphase/convex_libccd.hpp"
 #include "narrowphase/crosscheck.hpp"
 
 #include <optional>
@@ -19,15 +19,15 @@ bool is_box_pair(Shape a, Shape b) { return a == Shape::box && b == Shape::box; 
 /// us where centres coincide). The axes are exact to rounding, while the certificate refuses about 10 % of
 /// libccd's answers and more in every family except that of shallow contacts:
 /// bench/results/xeon-2-cores/narrowphase.md.
-std::optional<ccd::Method> method_of(BoxBoxMethod method) {
-  if (method == BoxBoxMethod::ccd_gjk) return ccd::Method::gjk;
-  if (method == BoxBoxMethod::ccd_mpr) return ccd::Method::mpr;
+std::optional<libccd::Method> method_of(BoxBoxMethod method) {
+  if (method == BoxBoxMethod::ccd_gjk) return libccd::Method::gjk;
+  if (method == BoxBoxMethod::ccd_mpr) return libccd::Method::mpr;
   return std::nullopt;
 }
 /// Returns the method of libccd, none for the axes. As for boxes, `automatic` means the search along axes.
-std::optional<ccd::Method> method_of(ConvexMethod method) {
-  if (method == ConvexMethod::ccd_gjk) return ccd::Method::gjk;
-  if (method == ConvexMethod::ccd_mpr) return ccd::Method::mpr;
+std::optional<libccd::Method> method_of(ConvexMethod method) {
+  if (method == ConvexMethod::ccd_gjk) return libccd::Method::gjk;
+  if (method == ConvexMethod::ccd_mpr) return libccd::Method::mpr;
   return std::nullopt;
 }
 
@@ -48,9 +48,9 @@ int LibccdContacts::find(const ShapedSolid& a, const ShapedSolid& b, const PairS
   int count = 0;
   if (is_box_pair(a.shape, b.shape)) {
     out->part = 0;
-    count = box_box_ccd(a.solid, b.solid, margin, *method_of(settings_.box_box), *out, stats) ? 1 : 0;
+    count = box_box_libccd(a.solid, b.solid, margin, *method_of(settings_.box_box), *out, stats) ? 1 : 0;
   } else {
-    count = find_contacts_by_ccd(a, b, shapes, margin, *method_of(settings_.convex), out, stats);
+    count = find_contacts_by_libccd(a, b, shapes, margin, *method_of(settings_.convex), out, stats);
   }
   const std::scoped_lock lock(mutex_);
   stats_ += stats;

@@ -11,7 +11,7 @@
 //   miss, NaN    overlapping pairs without a contact found; answers with a number that is not finite
 //   error        largest excess of an overlap over the least one: for axes along the best axis, for ccd along
 //                libccd's own direction before the certificate refuses it; `over`: share of excesses over
-//                ccd_excess; `taken`: largest excess along directions that the certificate accepted
+//                libccd_excess; `taken`: largest excess along directions that the certificate accepted
 //   given away   largest difference of the deepest point's gap from the truth, relative to the difference
 //                that decision 0007 allows
 //   refused      share of libccd's answers that the certificate refused
@@ -24,7 +24,7 @@
 #include "bench/narrowphase/convex_oracle.hpp"
 #include "bench/options.hpp"
 #include "narrowphase/box_pair.hpp"
-#include "narrowphase/convex_ccd.hpp"
+#include "narrowphase/convex_libccd.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -43,9 +43,10 @@ constexpr std::int64_t batch = 500;
 
 struct Method {
   const char* name;
-  std::optional<ccd::Method> ccd;
+  std::optional<libccd::Method> ccd;
 };
-constexpr Method methods[] = {{"axes", {}}, {"ccd_gjk", ccd::Method::gjk}, {"ccd_mpr", ccd::Method::mpr}};
+constexpr Method methods[] = {
+    {"axes", {}}, {"ccd_gjk", libccd::Method::gjk}, {"ccd_mpr", libccd::Method::mpr}};
 
 struct Item {
   ConvexPair pair;
@@ -71,7 +72,7 @@ int find(const Item& item, const Method& method, Manifold& out) {
   const ConvexPair& pair = item.pair;
   if (!method.ccd) return find_general_contacts(pair.a, pair.b, pair.shapes(), {.margin = item.margin}, &out);
   NarrowPhaseStats stats;
-  return find_contacts_by_ccd(pair.a, pair.b, pair.shapes(), item.margin, *method.ccd, &out, stats);
+  return find_contacts_by_libccd(pair.a, pair.b, pair.shapes(), item.margin, *method.ccd, &out, stats);
 }
 
 /// The oracle's bodies relative to the first one's place, which the narrow phase uses as origin too.
@@ -104,11 +105,11 @@ void judge_axes(const Item& item, Row& row) {
   best_axes(a, b, HUGE_VAL, std::min(a.size(), b.size()), axes);
   const double error = (item.truth - axes.best.separation) / pair.smallest;
   row.error = std::max(row.error, error);
-  row.over += error > tolerance::ccd_excess + rounding * pair.length / pair.smallest;
+  row.over += error > tolerance::libccd_excess + rounding * pair.length / pair.smallest;
 }
 
 /// Judges libccd on one pair. Returns false if it continued after its budget.
-bool judge_ccd(const Item& item, ccd::Method method, Row& row) {
+bool judge_libccd(const Item& item, libccd::Method method, Row& row) {
   const ConvexPair& pair = item.pair;
   const ConvexBody a(pair.a, &pair.data_a, pair.a.solid.position),
       b(pair.b, &pair.data_b, pair.a.solid.position);
@@ -122,11 +123,11 @@ bool judge_ccd(const Item& item, ccd::Method method, Row& row) {
   row.refused += stats.ccd_rejected;
   row.stopped += stats.ccd_stopped;
   const int budget = detail::support_budget_of(a, b);
-  const ccd::Answer answer = detail::ask_ccd(a, b, method, budget);
+  const libccd::Answer answer = detail::ask_libccd(a, b, method, budget);
   if (answer.direction) {
     const double error = (item.truth - separation_along(a, b, *answer.direction)) / pair.smallest;
     row.error = std::max(row.error, error);
-    row.over += error > tolerance::ccd_excess + rounding * pair.length / pair.smallest;
+    row.over += error > tolerance::libccd_excess + rounding * pair.length / pair.smallest;
   }
   const bool hung = answer.supports > budget + supports_to_end;
   row.hung += hung;
@@ -160,7 +161,7 @@ void judge(const Item& item, const Method& method, const Answer& answer, Row& ro
   ++row.pairs;
   bool good = judge_contact(item, answer, row);
   if (method.ccd) {
-    good = judge_ccd(item, *method.ccd, row) && good;
+    good = judge_libccd(item, *method.ccd, row) && good;
   } else {
     judge_axes(item, row);
   }

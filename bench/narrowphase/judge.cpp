@@ -2,7 +2,7 @@
 
 #include "bench/narrowphase/bounds.hpp"
 #include "bench/narrowphase/oracle.hpp"
-#include "narrowphase/box_box_ccd.hpp"
+#include "narrowphase/box_box_libccd.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -100,12 +100,12 @@ bool judge_axes(const Item& item, Row& row) {
 
 /// Judges libccd's own answer, if the method by libccd called it. Returns false if it continued after its
 /// budget.
-bool judge_ccd(const Item& item, ccd::Method method, Row& row) {
+bool judge_libccd(const Item& item, libccd::Method method, Row& row) {
   const BoxPair pair(item.pair.a, item.pair.b);
   const BoxAxes axes = separating_axes(pair, item.margin);
   if (axes.separation >= 0.0) return true;
-  const ccd::Answer answer = detail::ask_ccd(pair, method);
-  const bool hung = answer.supports > ccd::support_budget + supports_to_end;
+  const libccd::Answer answer = detail::ask_libccd(pair, method);
+  const bool hung = answer.supports > libccd::support_budget + supports_to_end;
   NarrowPhaseStats stats;
   detail::certified_direction(pair, axes, method, stats);
   row.ccd_calls += stats.ccd_calls;
@@ -154,7 +154,7 @@ void find_truth(ClosedForm form, Item& item) {
 }
 
 void judge(const Item& item, const Answer& answer, std::uint64_t n, bool of_boxes,
-           std::optional<ccd::Method> method, Row& row) {
+           std::optional<libccd::Method> method, Row& row) {
   ++row.pairs;
   bool good = is_finite(answer);
   row.not_finite += !good;
@@ -165,7 +165,7 @@ void judge(const Item& item, const Answer& answer, std::uint64_t n, bool of_boxe
   }
   row.touching += touches;
   if (method) {
-    good = judge_ccd(item, *method, row) && good;
+    good = judge_libccd(item, *method, row) && good;
   } else if (of_boxes) {
     good = judge_axes(item, row) && good;
   }

@@ -2,8 +2,8 @@
 #pragma once
 
 #include "bench/narrowphase/families.hpp"
-#include "narrowphase/ccd.hpp"
 #include "narrowphase/contact.hpp"
+#include "narrowphase/libccd.hpp"
 
 #include <array>
 #include <cstdint>
@@ -44,6 +44,6 @@ void find_truth(oracle::ClosedForm form, Item& item);
 /// Adds the answer to pair `n` to the row. `of_boxes` says that the pair is two boxes, tested by libccd's
 /// method or by the 15 axes alone.
 void judge(const Item& item, const Answer& answer, std::uint64_t n, bool of_boxes,
-           std::optional<ccd::Method> method, Row& row);
+           std::optional<libccd::Method> method, Row& row);
 
 }  // namespace scree::bench

@@ -23,7 +23,7 @@
 #include "bench/narrowphase/families.hpp"
 #include "bench/narrowphase/judge.hpp"
 #include "bench/options.hpp"
-#include "narrowphase/box_box_ccd.hpp"
+#include "narrowphase/box_box_libccd.hpp"
 #include "narrowphase/box_plane.hpp"
 #include "narrowphase/box_tube.hpp"
 #include "narrowphase/sphere_box.hpp"
@@ -50,7 +50,7 @@ constexpr std::int64_t batch = 1000;
 struct Method {
   const char* name;
   int (*test)(const SolidPair& pair, double margin, Manifold* out);
-  std::optional<ccd::Method> ccd;
+  std::optional<libccd::Method> ccd;
 };
 
 struct Family {
@@ -70,16 +70,16 @@ int by(const SolidPair& pair, double margin, Manifold* out) {
   }
 }
 
-template <ccd::Method method>
-int by_ccd(const SolidPair& pair, double margin, Manifold* out) {
+template <libccd::Method method>
+int by_libccd(const SolidPair& pair, double margin, Manifold* out) {
   NarrowPhaseStats stats;
-  return box_box_ccd(pair.a, pair.b, margin, method, *out, stats);
+  return box_box_libccd(pair.a, pair.b, margin, method, *out, stats);
 }
 
 std::vector<Family> all_families() {
   const std::vector<Method> box_methods = {{"sat", by<box_box>, {}},
-                                           {"ccd_gjk", by_ccd<ccd::Method::gjk>, ccd::Method::gjk},
-                                           {"ccd_mpr", by_ccd<ccd::Method::mpr>, ccd::Method::mpr}};
+                                           {"ccd_gjk", by_libccd<libccd::Method::gjk>, libccd::Method::gjk},
+                                           {"ccd_mpr", by_libccd<libccd::Method::mpr>, libccd::Method::mpr}};
   const Method closed_forms[] = {{"closed", by<sphere_sphere>, {}}, {"closed", by<sphere_box>, {}},
                                  {"closed", by<sphere_plane>, {}},  {"closed", by<box_plane>, {}},
                                  {"closed", by<sphere_tube>, {}},   {"closed", by<box_tube>, {}}};

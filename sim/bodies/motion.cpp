@@ -50,7 +50,7 @@ struct RotateBatch {
     const BodyView& bodies = rotate.bodies;
     const std::int64_t first = batch * simd::width;
     const auto count = static_cast<int>(std::min<std::int64_t>(simd::width, bodies.count() - first));
-    simd::Tops tops = no_tops;
+    simd::RotatingBodies rotating = at_rest;
     std::uint32_t filled = 0;
     for (int l = 0; l < count; ++l) {
       const std::int64_t k = first + l;
@@ -58,31 +58,32 @@ struct RotateBatch {
         drift[k] = rotate(k);
       } else {
         filled |= 1u << l;
-        load(k, l, tops);
+        load(k, l, rotating);
       }
     }
     if (filled == 0) return;
-    simd::kernels().turn(tops, rotate.dt, rotate.order == RotationOrder::fourth);
+    simd::kernels().turn(rotating, rotate.dt, rotate.order == RotationOrder::fourth);
     for (int l = 0; l < count; ++l) {
       if ((filled >> l & 1) == 0) continue;
       const std::int64_t k = first + l;
-      drift[k] = (tops.far >> l & 1) != 0 ? rotate(k) : store(tops, l, k);
+      drift[k] = (rotating.far >> l & 1) != 0 ? rotate(k) : store(rotating, l, k);
     }
   }
 
  private:
-  /// Tops that a turn leaves as they are, for unused lanes.
-  static constexpr simd::Tops no_tops = [] {
-    simd::Tops tops{};
+  /// Bodies that a rotation leaves as they are, for unused lanes.
+  static constexpr simd::RotatingBodies at_rest = [] {
+    simd::RotatingBodies rotating{};
     for (int l = 0; l < simd::width; ++l) {
-      tops.w.at[l] = 1;
-      for (simd::Lane* inverse : {&tops.inverse_inertia.x, &tops.inverse_inertia.y, &tops.inverse_inertia.z})
+      rotating.w.at[l] = 1;
+      for (simd::Lane* inverse :
+           {&rotating.inverse_inertia.x, &rotating.inverse_inertia.y, &rotating.inverse_inertia.z})
         inverse->at[l] = 1;
     }
-    return tops;
+    return rotating;
   }();
 
-  void load(std::int64_t k, int l, simd::Tops& tops) const {
+  void load(std::int64_t k, int l, simd::RotatingBodies& rotating) const {
     const Vec3& inverse_inertia = rotate.bodies.inverse_inertia[k];
     const Quat& q = rotate.bodies.orientation[k];
     const AxisOrder axes(inverse_inertia);
@@ -91,21 +92,21 @@ struct RotateBatch {
       lanes.y.at[l] = value.y();
       lanes.z.at[l] = value.z();
     };
-    tops.w.at[l] = q.w();
-    put(tops.v, axes.renamed(q.vec()));
-    put(tops.spin, axes.renamed(rotate.bodies.spin[k]));
-    put(tops.inverse_inertia, axes.ordered(inverse_inertia));
+    rotating.w.at[l] = q.w();
+    put(rotating.v, axes.renamed(q.vec()));
+    put(rotating.spin, axes.renamed(rotate.bodies.spin[k]));
+    put(rotating.inverse_inertia, axes.ordered(inverse_inertia));
   }
   /// Stores the result of a lane, and returns the drift of the body's energy (J).
-  double store(const simd::Tops& tops, int l, std::int64_t k) const {
+  double store(const simd::RotatingBodies& rotating, int l, std::int64_t k) const {
     const AxisOrder axes(rotate.bodies.inverse_inertia[k]);
     const auto take = [l, &axes](const simd::LaneVec& lanes) {
       return axes.named_back(Vec3(lanes.x.at[l], lanes.y.at[l], lanes.z.at[l]));
     };
-    rotate.bodies.orientation[k].w() = tops.w.at[l];
-    rotate.bodies.orientation[k].vec() = take(tops.v);
-    rotate.bodies.spin[k] = take(tops.spin);
-    return tops.drift.at[l];
+    rotate.bodies.orientation[k].w() = rotating.w.at[l];
+    rotate.bodies.orientation[k].vec() = take(rotating.v);
+    rotate.bodies.spin[k] = take(rotating.spin);
+    return rotating.drift.at[l];
   }
 };
 

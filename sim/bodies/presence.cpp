@@ -141,12 +141,13 @@ Presence::Change Presence::account_all(const BodyTable& table, double sign, cons
   return change;
 }
 
-Presence::Change Presence::take_leave_of(const BodyTable& gone, const Scene& scene,
-                                         const PotentialField& field) {
+Presence::Change Presence::account_for_removed(const BodyTable& gone, const Scene& scene,
+                                               const PotentialField& field) {
   return account_all(gone, -1, scene, field);
 }
 
-Presence::Change Presence::welcome(const BodyTable& come, const Scene& scene, const PotentialField& field) {
+Presence::Change Presence::account_for_added(const BodyTable& come, const Scene& scene,
+                                             const PotentialField& field) {
   return account_all(come, 1, scene, field);
 }
 

@@ -48,9 +48,9 @@ class Presence {
   /// brings in those whose lifetime begins. Returns the change of the accounts.
   Change update(std::int64_t step, const Scene& scene, const PotentialField& field, Bodies<Host>& bodies);
   /// Accounts for bodies that were removed for another reason, in the state that they had.
-  Change take_leave_of(const BodyTable& gone, const Scene& scene, const PotentialField& field);
+  Change account_for_removed(const BodyTable& gone, const Scene& scene, const PotentialField& field);
   /// Accounts for bodies of an emission that were brought in.
-  Change welcome(const BodyTable& come, const Scene& scene, const PotentialField& field);
+  Change account_for_added(const BodyTable& come, const Scene& scene, const PotentialField& field);
   std::vector<Emission>& emissions() { return emissions_; }
 
  private:

@@ -48,7 +48,7 @@ template <class Space>
 struct FlightLog {
   Array<double, Space> clock;        ///< time of its last impact (s); the start of the flight if it had none
   Array<double, Space> budget_used;  ///< cost of its impacts so far, by impact_cost()
-  Array<double, Space> turn;         ///< bound on the speed that rotation gives its surface (m/s)
+  Array<double, Space> turn_speed;   ///< bound on the speed that rotation gives its surface (m/s)
   Array<double, Space> top_speed;    ///< bound on its surface's speed, without what gravity adds (m/s)
   Array<double, Space> radius;       ///< bounding_radius(); infinite for a boundary (m)
   /// The value is 1 for a body that bore load together with another free body in the last substep. The array
@@ -58,7 +58,7 @@ struct FlightLog {
   void resize(std::int64_t bodies) {
     clock.resize(bodies);
     budget_used.resize(bodies);
-    turn.resize(bodies);
+    turn_speed.resize(bodies);
     top_speed.resize(bodies);
     radius.resize(bodies);
   }
@@ -86,7 +86,7 @@ struct FlightStage {
         bodies(b),
         clock(log.clock.view()),
         budget_used(log.budget_used.view()),
-        turn(log.turn.view()),
+        turn_speed(log.turn_speed.view()),
         top_speed(log.top_speed.view()),
         radius(log.radius.view()),
         bore_load(log.bore_load.view()) {}
@@ -96,7 +96,7 @@ struct FlightStage {
   BodyView bodies;
   View<double> clock;
   View<double> budget_used;
-  View<double> turn;
+  View<double> turn_speed;
   View<double> top_speed;
   View<double> radius;
   View<std::uint32_t> bore_load;
@@ -123,7 +123,7 @@ struct FlightStage {
       load(bodies.position, bodies.orientation, bodies.velocity, bodies.spin, bodies.size,
            bodies.inverse_mass, bodies.inverse_inertia, bodies.shape, bodies.mobility, bodies.material,
            bodies.id);
-      load(clock, budget_used, turn, top_speed, radius);
+      load(clock, budget_used, turn_speed, top_speed, radius);
       if (bore_load.size() > 0) load(bore_load);
     }
   }
@@ -168,9 +168,9 @@ struct FlightStage {
     return pair;
   }
 
-  /// Sets the turn, the top speed and the radius of a body in the given flight.
+  /// Sets the turn speed, the top speed and the radius of a body in the given flight.
   SCREE_HD void bound(std::int32_t body, const BodyFlight& in) const {
-    turn[body] = turn_of(body, in);
+    turn_speed[body] = turn_speed_of(body, in);
     top_speed[body] = top_speed_of(body, in);
     radius[body] = is_boundary(in.shape) ? HUGE_VAL : bounding_radius(in.shape, in.size);
   }
@@ -180,7 +180,7 @@ struct FlightStage {
   SCREE_HD double top_speed_of(std::int32_t body, const BodyFlight& in) const {
     if (is_absent(body)) return 0.0;
     const bool gains = parameters.acceleration.size() > 0;
-    return in.velocity.norm() + turn_of(body, in) + (gains ? in.acceleration.norm() * terms.step : 0.0);
+    return in.velocity.norm() + turn_speed_of(body, in) + (gains ? in.acceleration.norm() * terms.step : 0.0);
   }
 
   /// Returns the length to which the tolerances of a body are relative (m); infinite for absent bodies.
@@ -188,11 +188,11 @@ struct FlightStage {
     return is_absent(body) ? HUGE_VAL : smallest_size(bodies.shape[body], bodies.size[body]);
   }
 
-  /// Returns whether the meetings of a body with others need a search (next_meeting), by the turn that
+  /// Returns whether the meetings of a body with others need a search (next_meeting), by the turn speed that
   /// bound() has set.
   SCREE_HD bool needs_search(std::int32_t body) const {
     if (is_absent(body) || bodies.shape[body] == Shape::sphere) return false;
-    return !is_boundary(bodies.shape[body]) || turn[body] == HUGE_VAL;
+    return !is_boundary(bodies.shape[body]) || turn_speed[body] == HUGE_VAL;
   }
 
   /// Returns the largest possible `least_impact_speed` for the bodies as bound() has set them (m/s): two
@@ -218,7 +218,7 @@ struct FlightStage {
     limits.slowest = terms.bounces && !both_bore_load(i, j) ? slowest_bounce(i, j) : HUGE_VAL;
     limits.farthest =
         parameters.continuous ? tolerance::deep_approach * terms.laws.smaller_size(i, j) : HUGE_VAL;
-    return limits.may_count(linear + turn[i] + turn[j]);
+    return limits.may_count(linear + turn_speed[i] + turn_speed[j]);
   }
 
   /// Returns for two bodies that may_meet() whether an impact may count with these loads and whether they
@@ -256,7 +256,7 @@ struct FlightStage {
 
  private:
   /// Returns a bound on the speed that rotation gives the surface of a body (m/s).
-  SCREE_HD double turn_of(std::int32_t body, const BodyFlight& in) const {
+  SCREE_HD double turn_speed_of(std::int32_t body, const BodyFlight& in) const {
     return is_absent(body) ? 0.0 : fastest_turn(in);
   }
   /// Returns whether an approach at this speed may go deep, or bounce on a part that bears no load.
@@ -273,7 +273,7 @@ struct FlightStage {
   }
   /// Returns a bound on how fast two bodies come closer in the substep (m/s).
   SCREE_HD double fastest(std::int32_t i, std::int32_t j) const {
-    return linear_approach(i, j) + turn[i] + turn[j];
+    return linear_approach(i, j) + turn_speed[i] + turn_speed[j];
   }
   /// Returns the part of that bound for the motion of their centres (m/s).
   SCREE_HD double linear_approach(std::int32_t i, std::int32_t j) const {
@@ -295,7 +295,7 @@ struct FlightStage {
     if (near == HUGE_VAL)
       return is_boundary(bodies.shape[i]) ? is_far_from_boundary(j, i, offset, linear * half)
                                           : is_far_from_boundary(i, j, -offset, linear * half);
-    const double reach = near + (linear + turn[i] + turn[j]) * half;
+    const double reach = near + (linear + turn_speed[i] + turn_speed[j]) * half;
     return offset.squaredNorm() > reach * reach;
   }
   /// Returns true if a body does not come near the surfaces of a boundary in the substep. `offset`: from the
@@ -304,7 +304,7 @@ struct FlightStage {
                                      double travel) const {
     const BodyFlight in = flight(boundary);
     const double half = 0.5 * terms.step;
-    const double around = radius[body] + travel + turn[body] * half;
+    const double around = radius[body] + travel + turn_speed[body] * half;
     const double tilts = in.tilting_spin().norm() * half;
     const double room = around + tilts * (offset.norm() + around);
     const Vec3 at = in.orientation.conjugate() * offset;

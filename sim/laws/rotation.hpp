@@ -91,23 +91,23 @@ namespace detail {
   const auto v3 = [](const Vec3& a) { return simd::V3<Number>{a.x(), a.y(), a.z()}; };
   const auto vec3 = [&axes](const simd::V3<Number>& a) { return axes.named_back(Vec3(a.x, a.y, a.z)); };
   const Vec3 inverse = axes.ordered(inverse_inertia);
-  simd::Top<Number> top{{orientation.w(), v3(axes.renamed(orientation.vec()))},
-                        v3(axes.renamed(spin)),
-                        v3(inverse.cwiseInverse()),
-                        v3(inverse)};
-  const auto start = simd::start_of(top);
+  simd::RotatingBody<Number> body{{orientation.w(), v3(axes.renamed(orientation.vec()))},
+                                  v3(axes.renamed(spin)),
+                                  v3(inverse.cwiseInverse()),
+                                  v3(inverse)};
+  const auto start = simd::start_of(body);
   const double turn = start.fastest * fabs(dt);
   double drift = 0;
   if (turn < tolerance::hardly_a_turn) {
-    simd::turn_little(top, start, dt);
+    simd::turn_little(body, start, dt);
   } else {
     constexpr double most_steps = 1000;
     const double steps = fmin(most_steps, fmax(1.0, ceil(turn / tolerance::split_turn)));
-    drift = simd::turn_by_splitting(top, start, dt, static_cast<int>(steps), order == RotationOrder::fourth);
+    drift = simd::turn_by_splitting(body, start, dt, static_cast<int>(steps), order == RotationOrder::fourth);
   }
-  orientation.w() = top.orientation.w;
-  orientation.vec() = vec3(top.orientation.v);
-  spin = vec3(top.spin);
+  orientation.w() = body.orientation.w;
+  orientation.vec() = vec3(body.orientation.v);
+  spin = vec3(body.spin);
   return drift;
 }
 

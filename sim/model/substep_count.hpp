@@ -56,23 +56,25 @@ class SubstepCount {
     if (deepest > tolerance::heap_substep_overlap / quality_) return refine(taken);
     if (deepest < tolerance::coarser_overlap / quality_) {
       coarsen(taken);
-      looks_to_try_ = looks_together;
+      measurements_to_try_ = measured_together;
       return;
     }
-    if (++steps_ % steps_a_look != 0) return;
+    if (++steps_ % steps_between_measurements != 0) return;
     const double mean = tolerance::mean_overlap_left / quality_;
     const double worst = tolerance::worst_overlap_left / quality_;
     const OverlapsLeft left = measure();
     if (left.exceed(2 * mean, far_too_deep * worst)) return refine(taken);
-    seen_.mean += left.mean / looks_together;
-    seen_.worst = std::max(seen_.worst, std::min(left.worst, deepest_seen_));
-    deepest_seen_ = std::max(deepest_seen_, left.worst);
-    if (++looks_ % looks_together != 0) return;
-    const OverlapsLeft seen = seen_;
-    seen_ = {};
-    deepest_seen_ = 0;
-    if (seen.exceed(mean, worst)) return refine(taken);
-    if (taken == 1 || seen.exceed(tried_from * mean, tried_from * worst) || looks_ < looks_to_try_) return;
+    measured_.mean += left.mean / measured_together;
+    measured_.worst = std::max(measured_.worst, std::min(left.worst, deepest_measured_));
+    deepest_measured_ = std::max(deepest_measured_, left.worst);
+    if (++measurements_ % measured_together != 0) return;
+    const OverlapsLeft all = measured_;
+    measured_ = {};
+    deepest_measured_ = 0;
+    if (all.exceed(mean, worst)) return refine(taken);
+    if (taken == 1 || all.exceed(tried_from * mean, tried_from * worst) ||
+        measurements_ < measurements_to_try_)
+      return;
     coarsen(taken);
     is_tried_ = true;
   }
@@ -81,38 +83,38 @@ class SubstepCount {
     archive("next", next_);
     archive("shallow_steps", shallow_steps_);
     archive("steps", steps_);
-    archive("looks", looks_);
-    archive("looks_to_try", looks_to_try_);
+    archive("measurements", measurements_);
+    archive("measurements_to_try", measurements_to_try_);
     archive("is_tried", is_tried_);
-    archive("mean_seen", seen_.mean);
-    archive("worst_seen", seen_.worst);
-    archive("deepest_seen", deepest_seen_);
+    archive("mean_measured", measured_.mean);
+    archive("worst_measured", measured_.worst);
+    archive("deepest_measured", deepest_measured_);
   }
 
  private:
-  // Steps between two measurements (looks), and looks that are judged together. Larger: the number follows
-  // later, and single looks matter less.
-  static constexpr int steps_a_look = 8, looks_together = 4;
-  // Multiple of the bound on the worst overlap over which a single look decides. Of looks that are judged
+  // Steps between two measurements, and measurements that are judged together. Larger: the number follows
+  // later, and single measurements matter less.
+  static constexpr int steps_between_measurements = 8, measured_together = 4;
+  // Multiple of the bound on the worst overlap over which a single measurement decides. Of those judged
   // together, the one with the deepest overlap is left out: among millions of contacts a single one is deep
   // now and then, for a step or two, and to avoid it all bodies would have to take more substeps.
   static constexpr double far_too_deep = 5;
-  // Half as many substeps are tried if the overlaps are under this share of the bounds, after `looks_to_try_`
-  // looks, which are at most this many.
+  // Half as many substeps are tried if the overlaps are under this share of the bounds, after
+  // `measurements_to_try_` measurements, which are at most this many.
   static constexpr double tried_from = 0.75;
-  static constexpr int most_looks = 64;
+  static constexpr int most_measurements = 64;
 
   void refine(int taken) {
     // If fewer substeps were tried and left too much overlap, they are tried less often from now on.
-    if (is_tried_) looks_to_try_ = std::min(2 * looks_to_try_, most_looks);
+    if (is_tried_) measurements_to_try_ = std::min(2 * measurements_to_try_, most_measurements);
     use(std::min(2 * taken, most_substeps(quality_)));
   }
   void coarsen(int taken) { use(std::max(taken / 2, 1)); }
   void use(int substeps) {
     next_ = substeps;
-    shallow_steps_ = steps_ = looks_ = 0;
-    seen_ = {};
-    deepest_seen_ = 0;
+    shallow_steps_ = steps_ = measurements_ = 0;
+    measured_ = {};
+    deepest_measured_ = 0;
     is_tried_ = false;
   }
 
@@ -120,12 +122,12 @@ class SubstepCount {
   int next_ = 1;
   int shallow_steps_ = 0;  // steps since the number was last chosen that needed neither more nor fewer
   // For a heap, since the number was last chosen:
-  int steps_ = 0, looks_ = 0;
-  // Of the looks that are judged together, as far as they were taken:
-  OverlapsLeft seen_;  // sum of their shares of the mean, and the second largest of their worst overlaps
-  double deepest_seen_ = 0;            // the largest of their worst overlaps
-  int looks_to_try_ = looks_together;  // looks before fewer substeps are tried
-  bool is_tried_ = false;              // whether the present number is a try of fewer substeps
+  int steps_ = 0, measurements_ = 0;
+  // Of the measurements that are judged together, as far as they were taken:
+  OverlapsLeft measured_;  // sum of their shares of the mean, and the second largest of their worst overlaps
+  double deepest_measured_ = 0;                  // the largest of their worst overlaps
+  int measurements_to_try_ = measured_together;  // measurements before fewer substeps are tried
+  bool is_tried_ = false;                        // whether the present number is a try of fewer substeps
 };
 
 }  // namespace scree

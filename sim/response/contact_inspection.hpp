@@ -17,7 +17,7 @@ namespace scree::solver {
 
 /// Copies on Host of the arrays that an Inspection needs from Device.
 template <class Real>
-struct BroughtContacts {
+struct ContactsFromDevice {
   std::vector<Slot> places;
   std::vector<BodyNumber> number;
   std::vector<BodyRecord<Real>> free;
@@ -34,11 +34,11 @@ struct Inspection {
   ContactStore<Host, Real>* contacts = nullptr;
   RollingFields<Real> ball_rolling, point_rolling;
   bool rolls = false;
-  std::int64_t first_wall_point = 0;               ///< index of the first wall point in `free`
-  std::int64_t first_part = 0;                     ///< index after the last wall point in `free`
-  double step = 0;                                 ///< length of the substep (s)
-  std::int64_t first_place = 0;                    ///< place of the first slot that is not of balls
-  std::shared_ptr<BroughtContacts<Real>> brought;  ///< null where the contacts are on Host
+  std::int64_t first_wall_point = 0;                      ///< index of the first wall point in `free`
+  std::int64_t first_part = 0;                            ///< index after the last wall point in `free`
+  double step = 0;                                        ///< length of the substep (s)
+  std::int64_t first_place = 0;                           ///< place of the first slot that is not of balls
+  std::shared_ptr<ContactsFromDevice<Real>> from_device;  ///< null where the contacts are on Host
 };
 
 struct SeenPoint {

@@ -77,8 +77,8 @@ Inspection<Real> ContactSolver<Space, Real>::inspect(const ConstBodyView& bodies
     seen.ball_rolling = rolling_of_balls();
     seen.point_rolling = rolling_of_points();
   } else {
-    seen.brought = std::make_shared<BroughtContacts<Real>>();
-    BroughtContacts<Real>& to = *seen.brought;
+    seen.from_device = std::make_shared<ContactsFromDevice<Real>>();
+    ContactsFromDevice<Real>& to = *seen.from_device;
     to.places.resize(static_cast<std::size_t>(slots_.places().size()));
     copy_bytes<Host, Space>(to.places.data(), slots_.places().data(), to.places.size() * sizeof(Slot));
     to.number.resize(static_cast<std::size_t>(bodies.id.size()));
@@ -151,7 +151,7 @@ void ContactSolver<Space, Real>::find(ConstView<double> margin, double scale, co
                         .parameters = parameters,
                         .step = step_,
                         .scale = scale,
-                        .noise = tolerance::parting_speed * step_ * parameters.gravity.norm(),
+                        .noise = tolerance::separating_speed * step_ * parameters.gravity.norm(),
                         .struck = {flight},
                         .any_late_impact = any_late_impact,
                         .libccd = libccd};

@@ -140,10 +140,10 @@ bool ContactSolver<Space, Real>::solve_islands(const ConstBodyView& bodies, cons
 template <class Space, class Real>
 void ContactSolver<Space, Real>::put_back(Inspection<Real>& seen, const ContactsOnHost<Real>& contacts) {
   contacts.put_back();
-  if (seen.brought != nullptr) {
-    store_.copy_from(seen.brought->store);
-    copy(ball_rolling_, seen.brought->ball_rolling);
-    copy(point_rolling_, seen.brought->point_rolling);
+  if (seen.from_device != nullptr) {
+    store_.copy_from(seen.from_device->store);
+    copy(ball_rolling_, seen.from_device->ball_rolling);
+    copy(point_rolling_, seen.from_device->point_rolling);
   }
   set_velocities();
 }

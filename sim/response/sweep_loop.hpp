@@ -251,7 +251,7 @@ struct CorrectionState {
   double first = 0;   ///< mean of the overlaps that the first sweep has found, relative to the cap
   double sum = 0;     ///< the same of the last sweep
   double beta = 0;    ///< factor by which the next sweep extrapolates the last change, rounded
-  float deepest = 0;  ///< deepest overlap when judge() last looked at how fast it falls
+  float deepest = 0;  ///< deepest overlap when judge() last checked how fast it falls
 };
 
 /// Corrects positions: finds displacements and turns of the bodies that move overlapping bodies apart. They
@@ -306,23 +306,24 @@ struct CorrectionPhases {
     const int sweeps = state.sweeps + 1;
     const bool is_small_mean = seen.sum <= static_cast<double>(mean) * seen.count;
     const bool are_small = sweeps >= least && seen.deepest <= deepest && is_small_mean;
-    const bool looks = sweeps % sweeps_a_look == 0;
+    const bool checks = sweeps % sweeps_between_checks == 0;
     // The deepest of many small overlaps that hardly changes, as with a wedged body, would be too deep after
     // the last sweep as well.
     const bool is_stuck =
-        looks && is_small_mean && fabsf(seen.deepest - state.deepest) < hardly * seen.deepest;
+        checks && is_small_mean && fabsf(seen.deepest - state.deepest) < hardly * seen.deepest;
     const double ratio = goes_on(state) && state.sweeps > 0 ? seen.sum / state.sum : 0.0;
     return {.sweeps = sweeps,
             .corrected = are_small || (sweeps >= usual && (seen.deepest <= too_deep || is_stuck)),
             .first = state.sweeps == 0 ? seen.sum / fmax(seen.count, 1.0) : state.first,
             .sum = seen.sum,
             .beta = ratio < 1.0 ? rounded(ratio) : 0.0,
-            .deepest = looks ? seen.deepest : state.deepest};
+            .deepest = checks ? seen.deepest : state.deepest};
   }
 
  private:
-  static constexpr int sweeps_a_look = 4;  // sweeps between two looks at how fast the deepest overlap falls
-  // Share by which the deepest overlap has to change between two looks. Larger: fewer sweeps for the sake of
+  static constexpr int sweeps_between_checks =
+      4;  // sweeps between two checks of how fast the deepest overlap falls
+  // Share by which the deepest overlap has to change between two checks. Larger: fewer sweeps for the sake of
   // a few contacts, which stay deeper.
   static constexpr float hardly = 0.01f;
 

@@ -190,7 +190,7 @@ struct Simulation::Parts {
 
   Removed take_out(const std::vector<BodyNumber>& bodies) {
     if (bodies.empty()) return {};
-    const Presence::Change change = presence.take_leave_of(stepper->take_out(bodies), scene, field());
+    const Presence::Change change = presence.account_for_removed(stepper->take_out(bodies), scene, field());
     account(change);
     return {static_cast<std::int64_t>(bodies.size()), -change.exchange.mass};
   }
@@ -202,7 +202,7 @@ struct Simulation::Parts {
           step, scene, [this](const Vec3& low, const Vec3& high) { return stepper->bodies_near(low, high); });
       if (come.count() == 0) continue;
       stepper->bring_in(come);
-      account(presence.welcome(come, scene, field()));
+      account(presence.account_for_added(come, scene, field()));
     }
   }
 

@@ -69,7 +69,7 @@ SCREE_LAW V3<A> times(const V3<A>& a, const V3<A>& b) {
 /// A body that turns freely. Its axes are in the order of ascending moments: for rotation about a middle
 /// axis, other orders of the splitting are up to 20 times less accurate (a tumbling box after 12 s).
 template <class A>
-struct Top {
+struct RotatingBody {
   Quaternion<A> orientation;
   V3<A> spin;  ///< world frame (rad/s)
   V3<A> inertia, inverse_inertia;
@@ -86,28 +86,28 @@ struct Top {
 };
 
 template <class A, class Condition>
-SCREE_LAW void choose(const Condition& yes, const Top<A>& other, Top<A>& top) {
-  top.orientation.w = yes ? other.orientation.w : top.orientation.w;
-  top.orientation.v = where(yes, other.orientation.v, top.orientation.v);
-  top.spin = where(yes, other.spin, top.spin);
+SCREE_LAW void choose(const Condition& yes, const RotatingBody<A>& other, RotatingBody<A>& body) {
+  body.orientation.w = yes ? other.orientation.w : body.orientation.w;
+  body.orientation.v = where(yes, other.orientation.v, body.orientation.v);
+  body.spin = where(yes, other.spin, body.spin);
 }
 
 /// The state of a body before it turns.
 template <class A>
-struct TopStart {
+struct RotationStart {
   V3<A> body_spin, momentum;  ///< spin and angular momentum in the body frame
   V3<A> world_momentum;
   typename A::V fastest;  ///< bound on the spin at any time, fastest_spin() (rad/s)
 };
 template <class A>
-SCREE_LAW TopStart<A> start_of(const Top<A>& top) {
+SCREE_LAW RotationStart<A> start_of(const RotatingBody<A>& body) {
   using V = typename A::V;
-  const Axes<A> axes = axes_of(top.orientation);
-  const V3<A> body_spin = axes.to_body(top.spin);
-  const V3<A> momentum = times(body_spin, top.inertia);
-  const V largest = top.inverse_inertia.x;
+  const Axes<A> axes = axes_of(body.orientation);
+  const V3<A> body_spin = axes.to_body(body.spin);
+  const V3<A> momentum = times(body_spin, body.inertia);
+  const V largest = body.inverse_inertia.x;
   const V by_momentum = largest * largest * dot(momentum, momentum);
-  const V by_energy = largest * dot(times(momentum, momentum), top.inverse_inertia);
+  const V by_energy = largest * dot(times(momentum, momentum), body.inverse_inertia);
   return {body_spin, momentum, axes.to_world(momentum),
           A::root(by_momentum < by_energy ? by_momentum : by_energy)};
 }
@@ -115,13 +115,13 @@ SCREE_LAW TopStart<A> start_of(const Top<A>& top) {
 /// Turns a body that turns by a very small angle, about its mean spin. The second term of Magnus' expansion
 /// is of third order, which is rounding here.
 template <class A>
-SCREE_LAW void turn_little(Top<A>& top, const TopStart<A>& start, double dt) {
+SCREE_LAW void turn_little(RotatingBody<A>& body, const RotationStart<A>& start, double dt) {
   using V = typename A::V;
-  const V3<A> change = times(cross(start.momentum, start.body_spin), top.inverse_inertia);
+  const V3<A> change = times(cross(start.momentum, start.body_spin), body.inverse_inertia);
   const V half = V{} + 0.5 * dt;
   const V3<A> half_turn = half * (start.body_spin + half * change);
-  top.orientation = (top.orientation * Quaternion<A>{V{} + 1.0, half_turn}).normalized();
-  top.spin_by(start.world_momentum);
+  body.orientation = (body.orientation * Quaternion<A>{V{} + 1.0, half_turn}).normalized();
+  body.spin_by(start.world_momentum);
 }
 
 /// Applies the exact flow of the kinetic energy of one principal axis, L^2 / (2 I), with the angular momentum
@@ -150,11 +150,11 @@ SCREE_LAW void turn_about(const typename A::V& half_angle, typename A::V& w, typ
 
 /// Does one step of the symmetric three-axis splitting of the body-frame equations.
 template <class A>
-SCREE_LAW void split(Top<A>& top, V3<A>& momentum, double length) {
+SCREE_LAW void split(RotatingBody<A>& body, V3<A>& momentum, double length) {
   using V = typename A::V;
-  auto& [w, v] = top.orientation;
+  auto& [w, v] = body.orientation;
   V3<A>& l = momentum;
-  const V3<A>& inverse = top.inverse_inertia;
+  const V3<A>& inverse = body.inverse_inertia;
   const V quarter = V{} + 0.25 * length;
   const V half = V{} + 0.5 * length;
   turn_about<A>(quarter * l.x * inverse.x, w, v.x, v.y, v.z, l.y, l.z);
@@ -168,14 +168,14 @@ SCREE_LAW void split(Top<A>& top, V3<A>& momentum, double length) {
 /// direction in which the energy changes most. The energy of a splitting oscillates, and impacts that sample
 /// the oscillation would make it a random walk.
 template <class A>
-SCREE_LAW void restore_energy(Top<A>& top, const V3<A>& l, const typename A::V& energy) {
+SCREE_LAW void restore_energy(RotatingBody<A>& body, const V3<A>& l, const typename A::V& energy) {
   using V = typename A::V;
   constexpr int most_iterations = 4;
   const V zero{};
   const V least_slope = tolerance::energy_slope * energy;
   for (int iteration = 0; iteration < most_iterations; ++iteration) {
-    const V excess = 0.5 * dot(top.spin, l) - energy;
-    const V3<A> slope = cross(top.spin, l);
+    const V excess = 0.5 * dot(body.spin, l) - energy;
+    const V3<A> slope = cross(body.spin, l);
     const V square = dot(slope, slope);
     const V3<A> half_turn = (-0.5 * excess / square) * slope;
     const V half_square = dot(half_turn, half_turn);
@@ -184,36 +184,36 @@ SCREE_LAW void restore_energy(Top<A>& top, const V3<A>& l, const typename A::V& 
                        (half_square <= 0.25 * tolerance::energy_turn * tolerance::energy_turn);
     if (!A::any(turns)) return;
     const HalfTurn<A> half = A::half_turn(half_square);
-    Top<A> turned = top;
+    RotatingBody<A> turned = body;
     turned.orientation =
-        (Quaternion<A>{half.cosine, half.sine_ratio * half_turn} * top.orientation).normalized();
+        (Quaternion<A>{half.cosine, half.sine_ratio * half_turn} * body.orientation).normalized();
     turned.spin_by(l);
-    choose(turns, turned, top);
+    choose(turns, turned, body);
   }
 }
 
 /// Turns a body by the splitting, in the given number of steps. Returns the drift of the rotational energy
 /// (J).
 template <class A>
-SCREE_LAW typename A::V turn_by_splitting(Top<A>& top, const TopStart<A>& start, double dt, int steps,
-                                          bool fourth_order) {
+SCREE_LAW typename A::V turn_by_splitting(RotatingBody<A>& body, const RotationStart<A>& start, double dt,
+                                          int steps, bool fourth_order) {
   using V = typename A::V;
   const V3<A>& l = start.world_momentum;
-  const V energy = 0.5 * dot(top.spin, l);
+  const V energy = 0.5 * dot(body.spin, l);
   const double h = dt / steps;
   for (int step = 0; step < steps; ++step) {
-    V3<A> momentum = step == 0 ? start.momentum : axes_of(top.orientation).to_body(l);
+    V3<A> momentum = step == 0 ? start.momentum : axes_of(body.orientation).to_body(l);
     if (fourth_order) {
       constexpr double p = 0.41449077179437573714;  // 1 / (4 - 4^(1/3))
-      for (int k = 0; k < 5; ++k) split(top, momentum, k == 2 ? (1.0 - 4.0 * p) * h : p * h);
+      for (int k = 0; k < 5; ++k) split(body, momentum, k == 2 ? (1.0 - 4.0 * p) * h : p * h);
     } else {
-      split(top, momentum, h);
+      split(body, momentum, h);
     }
-    top.orientation = top.orientation.normalized();
-    top.spin_by(l);
-    restore_energy(top, l, energy);
+    body.orientation = body.orientation.normalized();
+    body.spin_by(l);
+    restore_energy(body, l, energy);
   }
-  return 0.5 * dot(top.spin, l) - energy;
+  return 0.5 * dot(body.spin, l) - energy;
 }
 
 }  // namespace scree::simd

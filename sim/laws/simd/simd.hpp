@@ -17,8 +17,8 @@ struct LaneVec {
   Lane x, y, z;
 };
 
-/// Eight bodies that turn freely, with the members of Top.
-struct Tops {
+/// Eight bodies that turn freely, with the members of RotatingBody.
+struct RotatingBodies {
   Lane w;
   LaneVec v, spin, inverse_inertia;
   Lane drift;        ///< drift of the rotational energy (J)
@@ -26,8 +26,8 @@ struct Tops {
 };
 
 struct Kernels {
-  /// Turns all bodies for a time (s), except those that turn far (Tops::far).
-  void (*turn)(Tops&, double dt, bool fourth_order);
+  /// Turns all bodies for a time (s), except those that turn far (RotatingBodies::far).
+  void (*turn)(RotatingBodies&, double dt, bool fourth_order);
 };
 
 /// The kernels of one instruction set, with its name.

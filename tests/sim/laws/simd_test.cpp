@@ -27,11 +27,11 @@ Vec3 random_vector(Random& random, double size) {
 TEST(Lanes, TurnsAsOneBodyAloneDoes) {
   constexpr int far[] = {2, 5};
   for (const bool fourth_order : {false, true}) {
-    simd::Tops first{};
+    simd::RotatingBodies first{};
     for (const auto& [name, kernels] : simd::supported_kernels()) {
       for (std::uint64_t item = 0; item < 500; ++item) {
         Random random(31, item);
-        simd::Tops tops{};
+        simd::RotatingBodies bodies{};
         Quat orientation[simd::width];
         Vec3 spin[simd::width];
         Vec3 inverse_inertia[simd::width];
@@ -49,30 +49,30 @@ TEST(Lanes, TurnsAsOneBodyAloneDoes) {
             lanes.y.at[l] = value.y();
             lanes.z.at[l] = value.z();
           };
-          tops.w.at[l] = orientation[l].w();
-          put(tops.v, orientation[l].vec());
-          put(tops.spin, spin[l]);
-          put(tops.inverse_inertia, inverse_inertia[l]);
+          bodies.w.at[l] = orientation[l].w();
+          put(bodies.v, orientation[l].vec());
+          put(bodies.spin, spin[l]);
+          put(bodies.inverse_inertia, inverse_inertia[l]);
         }
-        kernels->turn(tops, dt, fourth_order);
-        ASSERT_EQ(tops.far, 1 << far[0] | 1 << far[1]) << name << item;
+        kernels->turn(bodies, dt, fourth_order);
+        ASSERT_EQ(bodies.far, 1 << far[0] | 1 << far[1]) << name << item;
         for (int l = 0; l < simd::width; ++l) {
           const auto take = [l](const simd::LaneVec& lanes) {
             return Vec3(lanes.x.at[l], lanes.y.at[l], lanes.z.at[l]);
           };
-          if ((tops.far >> l & 1) == 0)
+          if ((bodies.far >> l & 1) == 0)
             rotate_freely(orientation[l], spin[l], inverse_inertia[l], dt,
                           fourth_order ? RotationOrder::fourth : RotationOrder::second);
           const double speed = spin[l].norm();
-          ASSERT_LT((take(tops.spin) - spin[l]).norm(), rounding * speed) << name << item;
-          ASSERT_LT((take(tops.v) - orientation[l].vec()).norm(), rounding) << name << item;
-          ASSERT_NEAR(tops.w.at[l], orientation[l].w(), rounding) << name << item;
-          ASSERT_LT(std::abs(tops.drift.at[l]), rounding * speed * speed / inverse_inertia[l].z());
+          ASSERT_LT((take(bodies.spin) - spin[l]).norm(), rounding * speed) << name << item;
+          ASSERT_LT((take(bodies.v) - orientation[l].vec()).norm(), rounding) << name << item;
+          ASSERT_NEAR(bodies.w.at[l], orientation[l].w(), rounding) << name << item;
+          ASSERT_LT(std::abs(bodies.drift.at[l]), rounding * speed * speed / inverse_inertia[l].z());
         }
         if (item > 0) continue;
-        if (name == simd::supported_kernels().front().name) first = tops;
-        EXPECT_EQ(std::memcmp(&first.spin, &tops.spin, sizeof tops.spin), 0) << name;
-        EXPECT_EQ(std::memcmp(&first.v, &tops.v, sizeof tops.v), 0) << name;
+        if (name == simd::supported_kernels().front().name) first = bodies;
+        EXPECT_EQ(std::memcmp(&first.spin, &bodies.spin, sizeof bodies.spin), 0) << name;
+        EXPECT_EQ(std::memcmp(&first.v, &bodies.v, sizeof bodies.v), 0) << name;
       }
     }
   }

@@ -78,7 +78,7 @@ TEST(SubstepCount, AHeapFollowsWhatIsLeftAndNotWhatIsCorrected) {
 /// One of four measurements may be deep, since a single contact may cause it, but not two of them, and none
 /// may be far too deep.
 TEST(SubstepCount, ASingleDeepOverlapDoesNotDecideForAHeap) {
-  const auto after_looks = [](std::initializer_list<double> worst) {
+  const auto after_measurements = [](std::initializer_list<double> worst) {
     SubstepCount count;
     for (const double times : worst)
       for (int k = 0; k < 8; ++k)
@@ -87,10 +87,10 @@ TEST(SubstepCount, ASingleDeepOverlapDoesNotDecideForAHeap) {
         });
     return count.next();
   };
-  EXPECT_EQ(after_looks({0.5, 4.5, 0.5, 0.5, 4.5, 0.5, 0.5, 0.5}), 1);
-  EXPECT_EQ(after_looks({0.5, 4.5, 0.5, 1.1}), 2);
-  EXPECT_EQ(after_looks({1.1, 0.5, 4.5, 0.5}), 2);
-  EXPECT_EQ(after_looks({5.1}), 2);
+  EXPECT_EQ(after_measurements({0.5, 4.5, 0.5, 0.5, 4.5, 0.5, 0.5, 0.5}), 1);
+  EXPECT_EQ(after_measurements({0.5, 4.5, 0.5, 1.1}), 2);
+  EXPECT_EQ(after_measurements({1.1, 0.5, 4.5, 0.5}), 2);
+  EXPECT_EQ(after_measurements({5.1}), 2);
 }
 
 TEST(SubstepCount, AHeapThatSinksDeepIsNotMeasuredFirst) {

@@ -16,32 +16,32 @@ void set(LaneVec& lanes, const V3& value) {
   set(lanes.z, value.z);
 }
 
-void turn(Tops& tops, double dt, bool fourth_order) {
-  const V3 inverse_inertia = get(tops.inverse_inertia);
+void turn(RotatingBodies& bodies, double dt, bool fourth_order) {
+  const V3 inverse_inertia = get(bodies.inverse_inertia);
   const V3 inertia = {1.0 / inverse_inertia.x, 1.0 / inverse_inertia.y, 1.0 / inverse_inertia.z};
-  Top<Lanes> top{{get(tops.w), get(tops.v)}, get(tops.spin), inertia, inverse_inertia};
-  const auto start = start_of(top);
+  RotatingBody<Lanes> body{{get(bodies.w), get(bodies.v)}, get(bodies.spin), inertia, inverse_inertia};
+  const auto start = start_of(body);
   const V turn = start.fastest * (dt < 0 ? -dt : dt);
   const auto hardly = turn < tolerance::hardly_a_turn;
   const auto splits = (turn >= tolerance::hardly_a_turn) & (turn <= tolerance::split_turn);
-  tops.far = static_cast<std::int32_t>(bits_of(turn > tolerance::split_turn));
+  bodies.far = static_cast<std::int32_t>(bits_of(turn > tolerance::split_turn));
   V drift{};
-  const Top<Lanes> before = top;
+  const RotatingBody<Lanes> before = body;
   if (Lanes::any(hardly)) {
-    Top<Lanes> turned = before;
+    RotatingBody<Lanes> turned = before;
     turn_little(turned, start, dt);
-    choose(hardly, turned, top);
+    choose(hardly, turned, body);
   }
   if (Lanes::any(splits)) {
-    Top<Lanes> turned = before;
+    RotatingBody<Lanes> turned = before;
     const V drifted = turn_by_splitting(turned, start, dt, 1, fourth_order);
-    choose(splits, turned, top);
+    choose(splits, turned, body);
     drift = splits ? drifted : drift;
   }
-  set(tops.w, top.orientation.w);
-  set(tops.v, top.orientation.v);
-  set(tops.spin, top.spin);
-  set(tops.drift, drift);
+  set(bodies.w, body.orientation.w);
+  set(bodies.v, body.orientation.v);
+  set(bodies.spin, body.spin);
+  set(bodies.drift, drift);
 }
 
 }  // namespace

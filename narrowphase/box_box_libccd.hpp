@@ -3,7 +3,7 @@
 #pragma once
 
 #include "narrowphase/box_box.hpp"
-#include "narrowphase/ccd.hpp"
+#include "narrowphase/libccd.hpp"
 #include "narrowphase/stats.hpp"
 
 #include <optional>
@@ -13,11 +13,12 @@ namespace scree {
 namespace detail {
 
 /// Returns the answer of libccd, with its direction in world axes.
-inline ccd::Answer ask_ccd(const BoxPair& pair, ccd::Method method) {
+inline libccd::Answer ask_libccd(const BoxPair& pair, libccd::Method method) {
   const double unit = fmin(pair.half[0].maxCoeff(), pair.half[1].maxCoeff());
-  ccd::Answer answer = ccd::separating_direction(
-      {{pair.half[0] / unit, pair.half[1] / unit}, pair.axes[0].transpose() * pair.offset / unit, pair.turn},
-      method);
+  libccd::Answer answer = libccd::separating_direction({{pair.half[0] / unit, pair.half[1] / unit},
+                                                        pair.axes[0].transpose() * pair.offset / unit,
+                                                        pair.rotation},
+                                                       method);
   if (answer.direction) answer.direction = pair.axes[0] * *answer.direction;
   return answer;
 }
@@ -25,13 +26,13 @@ inline ccd::Answer ask_ccd(const BoxPair& pair, ccd::Method method) {
 /// Returns the direction of libccd (world axes) if it passes the certificate, else none. No direction has
 /// less overlap than the best of the 15 axes, so a direction that has no more overlap than that axis is
 /// right. There is none either if libccd finds no direction.
-inline std::optional<Vec3> certified_direction(const BoxPair& pair, const BoxAxes& axes, ccd::Method method,
-                                               NarrowPhaseStats& stats) {
-  const ccd::Answer answer = ask_ccd(pair, method);
+inline std::optional<Vec3> certified_direction(const BoxPair& pair, const BoxAxes& axes,
+                                               libccd::Method method, NarrowPhaseStats& stats) {
+  const libccd::Answer answer = ask_libccd(pair, method);
   const bool certified = answer.direction && axes.separation - pair.separation_along(*answer.direction) <=
-                                                 tolerance::ccd_excess * pair.smallest;
+                                                 tolerance::libccd_excess * pair.smallest;
   ++stats.ccd_calls;
-  stats.ccd_stopped += answer.supports > ccd::support_budget;
+  stats.ccd_stopped += answer.supports > libccd::support_budget;
   stats.ccd_rejected += !certified;
   return certified ? answer.direction : std::nullopt;
 }
@@ -57,8 +58,8 @@ inline BoxAxis face_along(const BoxPair& pair, const Vec3& direction) {
 /// Finds the contact as box_box() does, with the direction of libccd. Boxes that are apart stay with the 15
 /// axes, because libccd has no distance query. So do boxes for which the certificate refuses libccd's answer;
 /// `stats` counts these.
-inline bool box_box_ccd(const Solid& a, const Solid& b, double margin, ccd::Method method, Manifold& out,
-                        NarrowPhaseStats& stats) {
+inline bool box_box_libccd(const Solid& a, const Solid& b, double margin, libccd::Method method,
+                           Manifold& out, NarrowPhaseStats& stats) {
   const BoxPair pair(a, b);
   const BoxAxes axes = separating_axes(pair, margin);
   if (axes.separation > margin) return false;

@@ -1,4 +1,4 @@
-#include "narrowphase/convex_ccd.hpp"
+#include "narrowphase/convex_libccd.hpp"
 
 #include "core/tolerances.hpp"
 #include "narrowphase/box_pair.hpp"
@@ -30,7 +30,7 @@ struct Shown {
     if (body.radius() > 0 && length > 0) at += body.radius() / length * direction;
     return frame.transpose() * at / unit;
   }
-  ccd::Convex to_ccd() const { return {this, frame.transpose() * body.centre() / unit, support}; }
+  libccd::Convex to_libccd() const { return {this, frame.transpose() * body.centre() / unit, support}; }
 };
 
 bool is_round(const ConvexBody& body) { return body.radius() > 0 || body.is_cylinder(); }
@@ -38,24 +38,24 @@ bool is_round(const ConvexBody& body) { return body.radius() > 0 || body.is_cyli
 }  // namespace
 
 int support_budget_of(const ConvexBody& a, const ConvexBody& b) {
-  return is_round(a) || is_round(b) ? ccd::round_support_budget : ccd::support_budget;
+  return is_round(a) || is_round(b) ? libccd::round_support_budget : libccd::support_budget;
 }
 
-ccd::Answer ask_ccd(const ConvexBody& a, const ConvexBody& b, ccd::Method method, int budget) {
+libccd::Answer ask_libccd(const ConvexBody& a, const ConvexBody& b, libccd::Method method, int budget) {
   const double unit = std::min(a.extent(), b.extent());
   const Shown first{a, a.axes(), unit}, second{b, a.axes(), unit};
-  ccd::Answer answer = ccd::separating_direction(first.to_ccd(), second.to_ccd(), method, budget);
+  libccd::Answer answer = libccd::separating_direction(first.to_libccd(), second.to_libccd(), method, budget);
   if (answer.direction) answer.direction = a.axes() * *answer.direction;
   return answer;
 }
 
 std::optional<ConvexAxis> certified_axis(const ConvexBody& a, const ConvexBody& b, const ConvexAxes& axes,
-                                         double size, ccd::Method method, NarrowPhaseStats& stats) {
+                                         double size, libccd::Method method, NarrowPhaseStats& stats) {
   const int budget = support_budget_of(a, b);
-  const ccd::Answer answer = ask_ccd(a, b, method, budget);
+  const libccd::Answer answer = ask_libccd(a, b, method, budget);
   std::optional<ConvexAxis> axis;
   if (answer.direction) axis = {*answer.direction, separation_along(a, b, *answer.direction)};
-  if (axis && !(axes.best.separation - axis->separation <= tolerance::ccd_excess * size)) axis.reset();
+  if (axis && !(axes.best.separation - axis->separation <= tolerance::libccd_excess * size)) axis.reset();
   ++stats.ccd_calls;
   stats.ccd_stopped += answer.supports > budget;
   stats.ccd_rejected += !axis;
@@ -95,10 +95,10 @@ void take_axis(const ConvexBody& a, const ConvexBody& b, const ConvexAxis& axis,
 
 }  // namespace detail
 
-int find_contacts_by_ccd(const ShapedSolid& a, const ShapedSolid& b, const PairShapes& shapes, double margin,
-                         ccd::Method method, Manifold* out, NarrowPhaseStats& stats) {
+int find_contacts_by_libccd(const ShapedSolid& a, const ShapedSolid& b, const PairShapes& shapes,
+                            double margin, libccd::Method method, Manifold* out, NarrowPhaseStats& stats) {
   if (a.shape > b.shape) {
-    const int count = find_contacts_by_ccd(b, a, {shapes.b, shapes.a}, margin, method, out, stats);
+    const int count = find_contacts_by_libccd(b, a, {shapes.b, shapes.a}, margin, method, out, stats);
     if (count > 0) out->normal = -out->normal;
     return count;
   }
@@ -121,10 +121,10 @@ void crosscheck(const ShapedSolid& a, const ShapedSolid& b, const PairShapes& sh
   ConvexAxes axes;
   best_axes(first, second, HUGE_VAL, size, axes);
   const int budget = detail::support_budget_of(first, second);
-  const auto direction = detail::ask_ccd(first, second, ccd::Method::gjk, budget).direction;
-  std::optional<double> by_ccd;
-  if (direction) by_ccd = separation_along(first, second, *direction);
-  note_difference(axes.best.separation, by_ccd, size, stats);
+  const auto direction = detail::ask_libccd(first, second, libccd::Method::gjk, budget).direction;
+  std::optional<double> by_libccd;
+  if (direction) by_libccd = separation_along(first, second, *direction);
+  note_difference(axes.best.separation, by_libccd, size, stats);
 }
 
 }  // namespace scree

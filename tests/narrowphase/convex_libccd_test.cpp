@@ -1,6 +1,6 @@
 // Tests of libccd for convex particles: whatever it answers, the contact is as deep as by axes, and as deep
 // as the bodies are.
-#include "narrowphase/convex_ccd.hpp"
+#include "narrowphase/convex_libccd.hpp"
 
 #include "bench/narrowphase/convex_families.hpp"
 #include "bench/narrowphase/convex_oracle.hpp"
@@ -114,73 +114,76 @@ TEST(ConvexAxes, ABoxNextToApartFromACylinderIsApart) {
 
 // ---- By libccd ----
 
-class ConvexByCcd : public testing::TestWithParam<ccd::Method> {};
-INSTANTIATE_TEST_SUITE_P(Each, ConvexByCcd, testing::Values(ccd::Method::gjk, ccd::Method::mpr),
-                         [](const auto& method) { return method.param == ccd::Method::gjk ? "gjk" : "mpr"; });
+class ConvexByLibccd : public testing::TestWithParam<libccd::Method> {};
+INSTANTIATE_TEST_SUITE_P(Each, ConvexByLibccd, testing::Values(libccd::Method::gjk, libccd::Method::mpr),
+                         [](const auto& method) {
+                           return method.param == libccd::Method::gjk ? "gjk" : "mpr";
+                         });
 
-TEST_P(ConvexByCcd, NothingIsMissedAndTheDepthIsRight) {
+TEST_P(ConvexByLibccd, NothingIsMissedAndTheDepthIsRight) {
   for (const ConvexFamily family : all_convex_families()) {
     NarrowPhaseStats stats;
     for (std::uint64_t n = 0; n < 77; ++n) {
       const ConvexPair p = oracle::make_pair(family, n);
       const double margin = 0.05 * p.smallest, slack = rounding * p.length;
-      Manifold by_ccd, by_axes;
-      ASSERT_EQ(find_contacts_by_ccd(p.a, p.b, p.shapes(), margin, GetParam(), &by_ccd, stats), 1)
+      Manifold by_libccd, by_axes;
+      ASSERT_EQ(find_contacts_by_libccd(p.a, p.b, p.shapes(), margin, GetParam(), &by_libccd, stats), 1)
           << oracle::name_of(family) << " " << n;
       ASSERT_EQ(find_general_contacts(p.a, p.b, p.shapes(), {.margin = margin}, &by_axes), 1);
-      ASSERT_TRUE(by_ccd.normal.allFinite() && std::abs(by_ccd.normal.norm() - 1) < 1e-12) << n;
-      ASSERT_TRUE(by_ccd.count >= 1 && by_ccd.count <= Manifold::max_points);
-      for (int k = 0; k < by_ccd.count; ++k)
-        ASSERT_TRUE(by_ccd.points[k].position.allFinite() && std::isfinite(by_ccd.points[k].gap));
+      ASSERT_TRUE(by_libccd.normal.allFinite() && std::abs(by_libccd.normal.norm() - 1) < 1e-12) << n;
+      ASSERT_TRUE(by_libccd.count >= 1 && by_libccd.count <= Manifold::max_points);
+      for (int k = 0; k < by_libccd.count; ++k)
+        ASSERT_TRUE(by_libccd.points[k].position.allFinite() && std::isfinite(by_libccd.points[k].gap));
 
       // The samples of the oracle may fall short of the largest separation, and no direction shows more than
       // that: the largest of the three is the best estimate.
       const Exact exact(p);
       const double truth =
-          std::max({exact.separation(), exact.along(by_ccd.normal), exact.along(by_axes.normal)});
+          std::max({exact.separation(), exact.along(by_libccd.normal), exact.along(by_axes.normal)});
       const double allowed =
           oracle::most_given_away(truth, p.smallest) + tolerance::same_feature * p.smallest + slack;
-      ASSERT_NEAR(least_gap(by_ccd), truth, allowed) << oracle::name_of(family) << " " << n;
+      ASSERT_NEAR(least_gap(by_libccd), truth, allowed) << oracle::name_of(family) << " " << n;
       ASSERT_NEAR(least_gap(by_axes), truth, allowed) << oracle::name_of(family) << " " << n;
-      ASSERT_GE(exact.along(by_ccd.normal), truth - allowed) << oracle::name_of(family) << " " << n;
+      ASSERT_GE(exact.along(by_libccd.normal), truth - allowed) << oracle::name_of(family) << " " << n;
 
       Manifold swapped;
-      ASSERT_EQ(find_contacts_by_ccd(p.b, p.a, {&p.data_b, &p.data_a}, margin, GetParam(), &swapped, stats),
-                1);
+      ASSERT_EQ(
+          find_contacts_by_libccd(p.b, p.a, {&p.data_b, &p.data_a}, margin, GetParam(), &swapped, stats), 1);
       ASSERT_NEAR(least_gap(swapped), truth, allowed) << oracle::name_of(family) << " " << n;
       ASSERT_GE(exact.along(-swapped.normal), truth - allowed) << oracle::name_of(family) << " " << n;
     }
     EXPECT_GT(stats.ccd_calls, 100) << oracle::name_of(family);
-    if (GetParam() == ccd::Method::gjk && (family == ConvexFamily::shallow || family == ConvexFamily::far)) {
+    if (GetParam() == libccd::Method::gjk &&
+        (family == ConvexFamily::shallow || family == ConvexFamily::far)) {
       EXPECT_LT(stats.ccd_rejected, stats.ccd_calls / 50);  // otherwise the calls of libccd are wrong
     }
   }
 }
 
-TEST_P(ConvexByCcd, BodiesThatAreApartAreFoundByAxes) {
+TEST_P(ConvexByLibccd, BodiesThatAreApartAreFoundByAxes) {
   int found = 0;
   for (std::uint64_t n = 0; n < 330; ++n) {
     ConvexPair p = oracle::make_pair(ConvexFamily::any, n);
     const Vec3 offset = p.b.solid.position - p.a.solid.position;
     p.b.solid.position += (0.2 + 0.1 * static_cast<double>(n % 7)) * p.length * offset.normalized();
     NarrowPhaseStats stats;
-    Manifold by_ccd, by_axes;
-    const int count = find_contacts_by_ccd(p.a, p.b, p.shapes(), p.length, GetParam(), &by_ccd, stats);
+    Manifold by_libccd, by_axes;
+    const int count = find_contacts_by_libccd(p.a, p.b, p.shapes(), p.length, GetParam(), &by_libccd, stats);
     ASSERT_EQ(count, find_general_contacts(p.a, p.b, p.shapes(), {.margin = p.length}, &by_axes));
     if (count == 0 || stats.ccd_calls > 0) continue;
     ++found;
-    ASSERT_EQ(by_ccd.normal, by_axes.normal);
-    ASSERT_EQ(by_ccd.count, by_axes.count);
-    for (int k = 0; k < by_ccd.count; ++k) {
-      ASSERT_EQ(by_ccd.points[k].position, by_axes.points[k].position);
-      ASSERT_EQ(by_ccd.points[k].gap, by_axes.points[k].gap);
-      ASSERT_EQ(by_ccd.points[k].feature, by_axes.points[k].feature);
+    ASSERT_EQ(by_libccd.normal, by_axes.normal);
+    ASSERT_EQ(by_libccd.count, by_axes.count);
+    for (int k = 0; k < by_libccd.count; ++k) {
+      ASSERT_EQ(by_libccd.points[k].position, by_axes.points[k].position);
+      ASSERT_EQ(by_libccd.points[k].gap, by_axes.points[k].gap);
+      ASSERT_EQ(by_libccd.points[k].feature, by_axes.points[k].feature);
     }
   }
   EXPECT_GT(found, 200);
 }
 
-TEST_P(ConvexByCcd, ACertificateRefusesAWrongDirection) {
+TEST_P(ConvexByLibccd, ACertificateRefusesAWrongDirection) {
   NarrowPhaseStats stats;
   for (const ConvexFamily family : {ConvexFamily::deep, ConvexFamily::slender, ConvexFamily::size_ratio}) {
     for (std::uint64_t n = 0; n < 220; ++n) {
@@ -194,14 +197,14 @@ TEST_P(ConvexByCcd, ACertificateRefusesAWrongDirection) {
       // the axes.
       const double along = Exact(p).along(axis->normal);
       ASSERT_NEAR(axis->separation, along, rounding * p.length) << oracle::name_of(family) << " " << n;
-      ASSERT_GE(along, axes.best.separation - tolerance::ccd_excess * p.smallest - rounding * p.length);
+      ASSERT_GE(along, axes.best.separation - tolerance::libccd_excess * p.smallest - rounding * p.length);
     }
   }
   EXPECT_GT(stats.ccd_rejected, 50);
   EXPECT_LT(stats.ccd_rejected, stats.ccd_calls);
 }
 
-TEST_P(ConvexByCcd, EveryCallEnds) {
+TEST_P(ConvexByLibccd, EveryCallEnds) {
   double worst = 0;
   for (const ConvexFamily family : all_convex_families()) {
     for (std::uint64_t n = 0; n < 55; ++n) {
@@ -210,7 +213,7 @@ TEST_P(ConvexByCcd, EveryCallEnds) {
       // The search gets the budget that is used, and budgets that run out in each of its phases.
       for (const int budget : {detail::support_budget_of(a, b), static_cast<int>(n % 40)}) {
         const auto start = std::chrono::steady_clock::now();
-        const ccd::Answer answer = detail::ask_ccd(a, b, GetParam(), budget);
+        const libccd::Answer answer = detail::ask_libccd(a, b, GetParam(), budget);
         worst =
             std::max(worst, std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
         ASSERT_LE(answer.supports, budget + 16);  // a false support point ends each running loop

@@ -1,10 +1,10 @@
 // The calls of libccd 2.1. Its faults, which this file keeps from its callers, are described where each is
 // met.
-#include "narrowphase/ccd.hpp"
+#include "narrowphase/libccd.hpp"
 
 #include <ccd/ccd.h>
 
-namespace scree::ccd {
+namespace scree::libccd {
 
 namespace {
 
@@ -57,7 +57,7 @@ void support(const void* object, const ccd_vec3_t* direction, ccd_vec3_t* out) {
 
 // EPA compares these tolerances with squared lengths, so they are 1e-5 and 1e-7 of a length. On a round body
 // EPA ends when its polytope is that near to the surface; with box_tolerance, half of the directions would
-// have more overlap than the best one by more than ccd_excess.
+// have more overlap than the best one by more than libccd_excess.
 constexpr double box_tolerance = 1e-10, convex_tolerance = 1e-14;
 
 template <class Shape>
@@ -98,4 +98,4 @@ Answer separating_direction(const Convex& a, const Convex& b, Method method, int
   return search(body_a, body_b, method, convex_tolerance, budget, supports_left);
 }
 
-}  // namespace scree::ccd
+}  // namespace scree::libccd

@@ -14,33 +14,35 @@ namespace {
 using oracle::Family;
 using oracle::SolidPair;
 
-class CcdMethods : public testing::TestWithParam<ccd::Method> {};
-INSTANTIATE_TEST_SUITE_P(Each, CcdMethods, testing::Values(ccd::Method::gjk, ccd::Method::mpr),
-                         [](const auto& method) { return method.param == ccd::Method::gjk ? "gjk" : "mpr"; });
+class LibccdMethods : public testing::TestWithParam<libccd::Method> {};
+INSTANTIATE_TEST_SUITE_P(Each, LibccdMethods, testing::Values(libccd::Method::gjk, libccd::Method::mpr),
+                         [](const auto& method) {
+                           return method.param == libccd::Method::gjk ? "gjk" : "mpr";
+                         });
 
-TEST_P(CcdMethods, NothingIsMissedAndTheDepthIsRight) {
+TEST_P(LibccdMethods, NothingIsMissedAndTheDepthIsRight) {
   for (int f = 0; f < static_cast<int>(Family::count); ++f) {
     const auto family = static_cast<Family>(f);
     NarrowPhaseStats stats;
     for (std::uint64_t n = 0; n < 5000; ++n) {
       const SolidPair p = oracle::make_pair(family, n);
       const double smallest = p.smallest, margin = 0.05 * smallest;
-      Manifold by_ccd, by_axes;
-      const bool found = box_box_ccd(p.a, p.b, margin, GetParam(), by_ccd, stats);
+      Manifold by_libccd, by_axes;
+      const bool found = box_box_libccd(p.a, p.b, margin, GetParam(), by_libccd, stats);
       ASSERT_EQ(found, box_box(p.a, p.b, margin, by_axes)) << oracle::name_of(family) << " " << n;
       if (!found) continue;
-      for (int k = 0; k < by_ccd.count; ++k) {
-        ASSERT_TRUE(by_ccd.points[k].position.allFinite());
-        ASSERT_TRUE(std::isfinite(by_ccd.points[k].gap));
+      for (int k = 0; k < by_libccd.count; ++k) {
+        ASSERT_TRUE(by_libccd.points[k].position.allFinite());
+        ASSERT_TRUE(std::isfinite(by_libccd.points[k].gap));
       }
       const double separation = static_cast<double>(oracle::separation(p.a, p.b));
       if (separation > 0) continue;
       const double allowed =
           oracle::most_given_away(separation, smallest) + tolerance::same_feature * smallest;
       const double slack = 1e-12 * p.length;
-      ASSERT_NEAR(detail::smallest_gap(by_ccd), separation, allowed + slack)
+      ASSERT_NEAR(detail::smallest_gap(by_libccd), separation, allowed + slack)
           << oracle::name_of(family) << " " << n;
-      const oracle::Vec normal = by_ccd.normal.cast<oracle::Real>();
+      const oracle::Vec normal = by_libccd.normal.cast<oracle::Real>();
       const double along =
           static_cast<double>(oracle::separation_along(oracle::Box(p.a), oracle::Box(p.b), normal));
       ASSERT_GE(along, separation - allowed - slack) << oracle::name_of(family) << " " << n;
@@ -70,7 +72,7 @@ TEST(Crosscheck, AgreesWithPortalRefinementOnShallowPairs) {
   EXPECT_EQ(stats.ccd_shallower.total(), 0);
 }
 
-TEST_P(CcdMethods, ACertificateRefusesAWrongDirection) {
+TEST_P(LibccdMethods, ACertificateRefusesAWrongDirection) {
   // In deep overlaps the portal ray of MPR is far from the shortest way out.
   NarrowPhaseStats stats;
   for (std::uint64_t n = 0; n < 3000; ++n) {
@@ -82,19 +84,19 @@ TEST_P(CcdMethods, ACertificateRefusesAWrongDirection) {
     if (!direction) continue;
     const double along = static_cast<double>(
         oracle::separation_along(oracle::Box(p.a), oracle::Box(p.b), direction->cast<oracle::Real>()));
-    ASSERT_GE(along, static_cast<double>(oracle::separation(p.a, p.b)) - 2 * tolerance::ccd_excess);
+    ASSERT_GE(along, static_cast<double>(oracle::separation(p.a, p.b)) - 2 * tolerance::libccd_excess);
   }
-  if (GetParam() == ccd::Method::mpr) {
+  if (GetParam() == libccd::Method::mpr) {
     EXPECT_GT(stats.ccd_rejected, 100);
   }
 }
 
-TEST_P(CcdMethods, EveryCallEnds) {
+TEST_P(LibccdMethods, EveryCallEnds) {
   // EPA runs for ever without the support budget in these families: thin floors under small boxes.
   Random random(4, 0);
   double worst = 0;
   for (int n = 0; n < 20000; ++n) {
-    ccd::Boxes boxes;
+    libccd::Boxes boxes;
     const double flat = std::pow(10.0, -random.uniform(0, 6)), wide = std::pow(10.0, random.uniform(0, 4));
     boxes.half[0] = Vec3(wide, wide * random.uniform(0.1, 1), wide * flat);
     boxes.half[1] = Vec3(1, random.uniform(0.1, 1), random.uniform(1e-3, 1));
@@ -104,9 +106,9 @@ TEST_P(CcdMethods, EveryCallEnds) {
                         random.uniform(0, boxes.half[0].z() + boxes.half[1].z()));
     if (n % 7 == 0) boxes.offset.setZero();
     // The search gets the budget that is used, and budgets that run out in each of its phases.
-    for (const int budget : {ccd::support_budget, n % 40}) {
+    for (const int budget : {libccd::support_budget, n % 40}) {
       const auto start = std::chrono::steady_clock::now();
-      const ccd::Answer answer = ccd::separating_direction(boxes, GetParam(), budget);
+      const libccd::Answer answer = libccd::separating_direction(boxes, GetParam(), budget);
       worst =
           std::max(worst, std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
       ASSERT_LE(answer.supports, budget + 16);  // a false support point ends each running loop

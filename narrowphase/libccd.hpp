@@ -6,7 +6,7 @@
 
 #include <optional>
 
-namespace scree::ccd {
+namespace scree::libccd {
 
 enum class Method {
   gjk,  ///< Gilbert-Johnson-Keerthi, then the expanding polytope
@@ -52,4 +52,4 @@ struct Answer {
 Answer separating_direction(const Boxes& boxes, Method method, int budget = support_budget);
 Answer separating_direction(const Convex& a, const Convex& b, Method method, int budget);
 
-}  // namespace scree::ccd
+}  // namespace scree::libccd

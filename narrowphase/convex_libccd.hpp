@@ -2,8 +2,8 @@
 // the contact points come from the same clipping as without libccd. This file is for Host only.
 #pragma once
 
-#include "narrowphase/ccd.hpp"
 #include "narrowphase/convex_axes.hpp"
+#include "narrowphase/libccd.hpp"
 #include "narrowphase/stats.hpp"
 
 #include <optional>
@@ -24,21 +24,21 @@ namespace detail {
 int support_budget_of(const ConvexBody& a, const ConvexBody& b);
 
 /// Returns the answer of libccd, with its direction in the axes in which the bodies are placed.
-ccd::Answer ask_ccd(const ConvexBody& a, const ConvexBody& b, ccd::Method method, int budget);
+libccd::Answer ask_libccd(const ConvexBody& a, const ConvexBody& b, libccd::Method method, int budget);
 
 /// Returns the axis along libccd's direction if it passes the certificate, else none. The overlap along it is
 /// exact, and it must not be more than the overlap along the best axis found. There is none either if libccd
 /// finds no direction. `size` is as in best_axes().
 std::optional<ConvexAxis> certified_axis(const ConvexBody& a, const ConvexBody& b, const ConvexAxes& axes,
-                                         double size, ccd::Method method, NarrowPhaseStats& stats);
+                                         double size, libccd::Method method, NarrowPhaseStats& stats);
 
 }  // namespace detail
 
 /// Finds the contacts of a convex pair as find_general_contacts() does, with the direction of libccd. Bodies
 /// that are apart stay with the search along axes, because libccd has no distance query. So do bodies for
 /// which the certificate refuses libccd's answer; `stats` counts these.
-int find_contacts_by_ccd(const ShapedSolid& a, const ShapedSolid& b, const PairShapes& shapes, double margin,
-                         ccd::Method method, Manifold* out, NarrowPhaseStats& stats);
+int find_contacts_by_libccd(const ShapedSolid& a, const ShapedSolid& b, const PairShapes& shapes,
+                            double margin, libccd::Method method, Manifold* out, NarrowPhaseStats& stats);
 
 /// Compares the separation along the axes of a convex pair with that along the direction of libccd's GJK and
 /// EPA, and counts the difference. GJK and EPA are used because they fail less often here than libccd's MPR.
