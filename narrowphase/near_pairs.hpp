@@ -59,10 +59,10 @@ struct NearPairs {
   /// Returns the offset of two bodies when they are nearest to each other on their paths (m).
   SCREE_HD Vec3 least_offset(std::int32_t i, std::int32_t j) const {
     const Vec3 apart = offset(i, j);
-    const Vec3 parting = velocity(j) - velocity(i);
-    const double squared = parting.squaredNorm();
+    const Vec3 separating = velocity(j) - velocity(i);
+    const double squared = separating.squaredNorm();
     if (squared == 0) return apart;
-    return apart + paths.within(-apart.dot(parting) / squared) * parting;
+    return apart + paths.within(-apart.dot(separating) / squared) * separating;
   }
   SCREE_HD double reach(std::int32_t k) const {
     return bounding_radius(bodies.shape[k], bodies.size[k]) + margin[k];

@@ -60,12 +60,13 @@ TEST(BoxLife, DoesNotJudgeBoxesThatWereForgotten) {
 TEST(BoxLife, LeavesRoomForImpactsWhereTheyHaveSentBodiesOut) {
   constexpr double rate = 0.3 / substep;
   BoxLife life;
-  const double calm = life.choose(0, substep, rate, 0);
+  const double undisturbed = life.choose(0, substep, rate, 0);
   life.make_room();
   const double room = life.choose(substep, substep, rate, 0);
-  EXPECT_GT(room, 1.1 * calm);
+  EXPECT_GT(room, 1.1 * undisturbed);
   double now = 2 * substep;
-  EXPECT_LT(substeps_after(life, 200, 1, rate, now) * substep, calm) << "nothing was sent out for long";
+  EXPECT_LT(substeps_after(life, 200, 1, rate, now) * substep, undisturbed)
+      << "nothing was sent out for long";
   for (int k = 0; k < 100; ++k) life.make_room();
   EXPECT_LT(life.choose(now, substep, rate, 0) / substep, 4) << "room is bounded";
 }
