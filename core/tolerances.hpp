@@ -151,8 +151,8 @@ inline constexpr double stirring_power = 0.001;
 /// it, slow modes leave 0.3 to 1. Larger: heaps come to rest later. Smaller: heaps in motion are swept more
 /// often, which changes nothing in them.
 inline constexpr double residual_of_dissipated = 0.1;
-/// Dissipated power, as a share of the power of all impulses, over which the bodies of a heap, or of an island
-/// that is solved on Host, move on one another: 0.5 to 1 where they flow, under 0.1 at rest.
+/// Dissipated power, as a share of the power of all impulses, over which the bodies of a heap, or of an
+/// island that is solved on Host, move on one another: 0.5 to 1 where they flow, under 0.1 at rest.
 inline constexpr double moving_power = 0.25;
 /// Dissipated power, as a share of the power of all impulses, over which a heap flows as a whole, with 0.8 to
 /// 2. Bodies that fall on others lose half of that power, and more by friction: boxes that rain on others
