@@ -108,10 +108,7 @@ struct ImpactProgram {
       state.halt = State::Halt::lists;
       return state;
     }
-    // If no body was struck in the last round and no meeting came to nothing, each further round is like it.
-    const bool is_stuck = state.round > 1 && state.chunks == 0 && state.struck_large_bodies == 0 &&
-                          meetings_of(state) == state.kept;
-    state.resolving = state.counts.meetings > 0 && state.round <= most_rounds && !is_stuck;
+    state.resolving = state.counts.meetings > 0 && state.round <= most_rounds;
     if (!state.resolving) {
       state.halt = State::Halt::end;
     } else if (adjacency.is_empty() ||
