@@ -164,7 +164,7 @@ TEST_P(HeapStep, WhatFlowsOverlapsLittle) {
   EXPECT_LT(left.sweeps, 24 * left.substeps);
 }
 
-/// One measurement may find up to twice the worst overlap, before more substeps follow.
+/// One measurement of four may find a deeper overlap than the bound, without more substeps after it.
 TEST_P(HeapStep, QualityDividesWhatFlowsOverlaps) {
   const LeftInFlow fine(simulate(falling_column(4))), coarse(simulate(falling_column(0.25)));
   for (const auto& [left, quality] : {std::pair(&fine, 4.0), std::pair(&coarse, 0.25)}) {
